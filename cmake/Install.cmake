@@ -1,0 +1,25 @@
+# Installation: the libraries, their headers and find_package(flexura).
+include(CMakePackageConfigHelpers)
+get_property(folders GLOBAL PROPERTY FLEXURA_FOLDERS)
+
+# flexura::flexura is every folder at once.
+add_library(flexura_all INTERFACE)
+add_library(flexura::flexura ALIAS flexura_all)
+set_target_properties(flexura_all PROPERTIES EXPORT_NAME flexura)
+list(TRANSFORM folders PREPEND flexura_ OUTPUT_VARIABLE targets)
+target_link_libraries(flexura_all INTERFACE ${targets})
+
+install(TARGETS flexura_all ${targets} EXPORT flexuraTargets)
+install(TARGETS flexura DESTINATION ${CMAKE_INSTALL_BINDIR})
+foreach(folder ${folders})
+  install(DIRECTORY flexura/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flexura
+    FILES_MATCHING PATTERN "*.h")
+endforeach()
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/flexura)
+install(EXPORT flexuraTargets NAMESPACE flexura:: DESTINATION ${config_dir})
+configure_package_config_file(cmake/flexuraConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/flexuraConfig.cmake INSTALL_DESTINATION ${config_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/flexuraConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/flexuraConfig.cmake
+  ${PROJECT_BINARY_DIR}/flexuraConfigVersion.cmake DESTINATION ${config_dir})

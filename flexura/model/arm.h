@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flexura/math/pose.h"
+
+namespace flexura {
+
+/// Planar: bends in one plane only, the world's XOY plane for the paper's arm. Spatial: in any direction.
+enum class ArmKind { planar, spatial };
+
+/// One independently bent part of the arm (the paper's "segment").
+struct Section {
+  double length = 1.0;                          ///< Arc length when not stretched, m; > 0.
+  std::array<double, 2> radius = {0.02, 0.02};  ///< Of the tube at the section's base and end, m; > 0.
+  double max_bend = std::numeric_limits<double>::infinity();       ///< Largest |bend|, rad.
+  double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
+  std::array<double, 2> stretch_limits = {1.0, 1.0};               ///< Smallest and largest factor on `length`.
+};
+
+/// What changes when the arm moves: each section's bend vector and stretch, base first.
+/// bend = theta (cos phi, sin phi), rad, towards the x and y of the section's own base frame; a planar arm has
+/// bend_y = 0, and a planar arching b (counter-clockwise) is the bend (-2 b, 0).
+struct ArmState {
+  std::vector<Eigen::Vector2d> bends;  ///< rad, one a section.
+  std::vector<double> stretches;       ///< Factor on each section's length, one a section.
+
+  /// A straight, unstretched arm of `count` sections.
+  [[nodiscard]] static ArmState straight(std::size_t count) {
+    return {std::vector<Eigen::Vector2d>(count, Eigen::Vector2d::Zero()), std::vector<double>(count, 1.0)};
+  }
+};
+
+/// B standing on W's origin with the straight arm along W's +Y: B's z is W's +Y, B's x is W's +X.
+[[nodiscard]] Pose default_base_pose();
+
+/// An arm as the file describes it.
+struct Arm {
+  ArmKind kind = ArmKind::planar;
+  Pose X_WB = default_base_pose();
+  std::vector<Section> sections;
+  ArmState initial;  ///< One bend and stretch a section.
+
+  /// Sum of the unstretched section lengths, m.
+  [[nodiscard]] double length() const;
+};
+
+}  // namespace flexura

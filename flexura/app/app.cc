@@ -1,0 +1,101 @@
+#include "flexura/app/app.h"
+
+#include <fmt/format.h>
+
+// Only this file sees CLI11 (docs/architecture.md, "Heavy headers").
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+#include <iostream>
+
+#include "flexura/app/commands.h"
+#include "flexura/base/source.h"
+#include "flexura/base/version.h"
+
+namespace flexura {
+namespace {
+
+using Command = std::function<int()>;
+
+void add_run(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* run = app.add_subcommand("run", "Run an experiment and write its results into a new folder");
+  run->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
+  run->add_option("--out", arguments->out, "Folder to make for the results (default: results/NAME)")
+      ->type_name("DIR");
+  run->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  run->add_option("--seed", arguments->seed, "Seed of every random number")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  run->add_flag("--json", arguments->json, "Print the summary as one JSON document");
+  run->callback([&chosen, arguments] {
+    chosen = [arguments] { return run_command(*arguments, std::cout, std::cerr); };
+  });
+}
+
+void add_forward(CLI::App& app, Command& chosen) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* fk = app.add_subcommand("fk", "Forward kinematics: JSON lines in, JSON lines out");
+  fk->add_option("ARM", *file, "A file with [arm] (an experiment, or an arm alone)")->required();
+  fk->callback([&chosen, file] { chosen = [file] { return forward_command(*file, std::cin, std::cout); }; });
+}
+
+void add_export(CLI::App& app, Command& chosen) {
+  auto results = std::make_shared<std::string>();
+  auto format = std::make_shared<std::string>("csv");
+  CLI::App* command = app.add_subcommand("export", "Write a run's log in another format");
+  command->add_option("RESULTS", *results, "A folder made by `flexura run`")->required();
+  command->add_option("--to", *format, "The format")->check(CLI::IsMember({"csv"}))->required();
+  command->callback([&chosen, results, format] {
+    chosen = [results, format] { return export_command(*results, *format, std::cout, std::cerr); };
+  });
+}
+
+void add_schema(CLI::App& app, Command& chosen) {
+  auto format = std::make_shared<std::string>("json");
+  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of experiment files");
+  command->add_option("--format", *format, "json, or markdown for a reference page")
+      ->check(CLI::IsMember({"json", "markdown"}))
+      ->capture_default_str();
+  command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app("Flexura: a simulator for hyperredundant robots under visual control", "flexura");
+  app.set_version_flag("--version", std::string(version()));
+  app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("flexura: {} (see flexura --help)\n", error.what());
+  });
+  Command chosen;
+  add_run(app, chosen);
+  add_forward(app, chosen);
+  add_export(app, chosen);
+  add_schema(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_bad_input;
+  }
+  return chosen();
+}
+
+}  // namespace
+
+int run_app(int argc, const char* const* argv) noexcept {
+  try {
+    const int status = parse_and_run(argc, argv);
+    std::cout.flush();
+    return std::cout ? status : exit_system_failure;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_input;
+  } catch (const std::exception& error) {
+    std::cerr << "flexura: " << error.what() << '\n';
+    return exit_system_failure;
+  }
+}
+
+}  // namespace flexura

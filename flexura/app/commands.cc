@@ -1,0 +1,117 @@
+#include "flexura/app/commands.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <istream>
+#include <ostream>
+
+#include "flexura/app/forward.h"
+#include "flexura/app/terminal_progress.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/export_csv.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/json.h"
+#include "flexura/store/schema.h"
+#include "flexura/store/text_file.h"
+
+namespace flexura {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Every wall-clock value of a run, in the one file that may differ from run to run.
+void write_timing(const std::filesystem::path& folder, std::time_t started, double wall,
+                  const Node& summary) {
+  const double simulated = *summary.find("duration")->as<double>();
+  const Node timing{Node::Table{{"started", {}, {fmt::format("{:%FT%TZ}", fmt::gmtime(started)), {}}},
+                                {"wall_seconds", {}, {wall, {}}},
+                                {"simulated_seconds", {}, {simulated, {}}},
+                                {"times_real_time", {}, {wall > 0 ? simulated / wall : 0.0, {}}}},
+                    {}};
+  write_new_file(folder / timing_file_name, write_json(timing, 2) + "\n");
+}
+
+void print_result(const Experiment& experiment, const RunResult& result, std::ostream& out) {
+  const auto& position = *result.summary.find("tip")->find("position")->as<Node::Array>();
+  const auto coordinate = [&](std::size_t i) { return *position[i].as<double>(); };
+  const bool planar = experiment.arm.kind == ArmKind::planar;
+  const std::string z = planar ? "" : fmt::format(", {:.3f}", coordinate(2));
+  if (result.outcome == Outcome::done) {
+    out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
+  }
+  out << fmt::format("results: {}\n", result.folder.string());
+}
+
+// A line of input without its end; what is longer than the bound is dropped, and `too_long` says so.
+bool read_line(std::istream& in, std::string& line, bool& too_long) {
+  constexpr std::size_t longest = std::size_t{1} << 24;
+  line.clear();
+  too_long = false;
+  std::streambuf& buffer = *in.rdbuf();
+  for (int c = buffer.sbumpc(); c != std::char_traits<char>::eof(); c = buffer.sbumpc()) {
+    if (c == '\n') return true;
+    if (line.size() < longest) {
+      line += static_cast<char>(c);
+    } else {
+      too_long = true;
+    }
+  }
+  return !line.empty();
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
+  const auto start = Clock::now();
+  const std::time_t started = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
+  if (experiment.task.empty())
+    throw input_error(arguments.experiment, "nothing to do: expected at least one [[task]]");
+  const auto folder = make_new_folder(arguments.out.empty() ? default_results_folder(arguments.experiment)
+                                                            : std::filesystem::path(arguments.out));
+  TerminalProgress progress(err);
+  const RunResult result = run_experiment(experiment, folder, progress);
+  progress.clear();
+  write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
+  for (const std::string& reason : result.reasons) err << "unsafe: " << reason << '\n';
+  if (arguments.json) {
+    out << write_json(result.summary, 2) << '\n';
+    err << "results: " << folder.string() << '\n';
+  } else {
+    print_result(experiment, result, out);
+  }
+  return result.outcome == Outcome::done ? exit_done : exit_missed;
+}
+
+int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
+  const Arm arm = load_experiment(arm_file).arm.arm();
+  std::string line;
+  bool too_long = false;
+  while (read_line(in, line, too_long)) {
+    out << (too_long ? R"({"error":"the line is longer than 16 MiB"})" : answer_forward(arm, line)) << '\n';
+    // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
+    if (in.rdbuf()->in_avail() <= 0) out.flush();
+  }
+  return exit_done;
+}
+
+int export_command(const std::string& results, const std::string& format, std::ostream& out,
+                   std::ostream& err) {
+  if (format != "csv") throw input_error("--to", fmt::format("\"{}\": expected csv", format));
+  const ExportResult result = export_csv(results);
+  if (result.truncated)
+    err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
+  out << "tables: " << result.folder.string() << '\n';
+  return exit_done;
+}
+
+int schema_command(const std::string& format, std::ostream& out) {
+  const TableInfo& info = fields_of(static_cast<const Experiment*>(nullptr)).info();
+  out << (format == "json" ? write_json(json_schema(info), 2) + "\n" : markdown_reference(info));
+  return exit_done;
+}
+
+}  // namespace flexura

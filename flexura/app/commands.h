@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flexura {
+
+/// The program's exit statuses (docs/command-line.md).
+enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit_system_failure = 3 };
+
+/// What `flexura run` is told.
+struct RunArguments {
+  std::string experiment;
+  std::string out;  ///< "" for the default.
+  std::vector<std::string> sets;
+  std::optional<std::int64_t> seed;
+  bool json = false;
+};
+
+// Each command writes its result to `out` and what is for people's eyes to `err`, returns an exit status, and
+// throws InputError for bad input and other exceptions for failures of the system.
+
+int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
+int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out);
+int export_command(const std::string& results, const std::string& format, std::ostream& out,
+                   std::ostream& err);
+int schema_command(const std::string& format, std::ostream& out);
+
+}  // namespace flexura

@@ -1,0 +1,106 @@
+#include "flexura/app/forward.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_config.h"
+#include "flexura/model/backbone.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+
+namespace {
+
+/// A line of input. The shape's fields stand beside `at`, not in a table of their own.
+struct ForwardRequest {
+  std::optional<std::vector<double>> cord_angles;
+  std::optional<std::vector<double>> archings;
+  std::optional<std::vector<std::array<double, 2>>> bends;
+  std::optional<std::vector<double>> stretches;
+  std::optional<std::vector<double>> at;  ///< Arc lengths along the backbone as it stands, m.
+
+  [[nodiscard]] ShapeConfig shape() const { return {cord_angles, archings, bends, stretches}; }
+};
+
+const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
+  static const auto table =
+      Table<ForwardRequest>("fk request", "A shape of the arm, and where along it to answer.")
+          .field("cord_angles", &ForwardRequest::cord_angles,
+                 {.meaning = "cords' angles from +X", .unit = Unit::radian, .range = angle_range})
+          .field("archings", &ForwardRequest::archings,
+                 {.meaning = "archings", .unit = Unit::radian, .range = angle_range})
+          .field("bends", &ForwardRequest::bends,
+                 {.meaning = "bend vectors", .unit = Unit::radian, .range = angle_range})
+          .field("stretches", &ForwardRequest::stretches,
+                 {.meaning = "factors on the sections' lengths", .range = above_up_to(0, 100)})
+          .field("at", &ForwardRequest::at,
+                 {.meaning = "arc lengths", .unit = Unit::metre, .range = at_least(0), .count = {0, 100000}});
+  return table;
+}
+
+Node answer(const Arm& arm, const ForwardRequest& request) {
+  const Backbone backbone(arm, arm_state(arm, request.shape()));
+  Node::Array bases;
+  for (const Arc& arc : backbone.arcs()) bases.push_back(point_node(arc.X_WS.position));
+  bases.push_back(point_node(backbone.tip().position));
+  Node::Table members{{"tip", {}, pose_node(backbone.tip())}, {"bases", {}, {std::move(bases), {}}}};
+  if (request.at) {
+    Node::Array poses;
+    for (const double s : *request.at) poses.push_back(pose_node(backbone.pose(s)));
+    members.push_back({"at", {}, {std::move(poses), {}}});
+  }
+  return {std::move(members), {}};
+}
+
+ForwardRequest read_request(const Arm& arm, std::string_view line) {
+  const Node document = parse_json(line, "");
+  Reader reader;
+  ForwardRequest request;
+  const bool read = fields_of(static_cast<const ForwardRequest*>(nullptr)).read(document, reader, request);
+  if (read) {
+    const ShapeConfig shape = request.shape();
+    check_shape(shape, arm.kind, arm.sections.size(), "", reader);
+    if (!shape.cord_angles && !shape.archings && !shape.bends && !shape.stretches) {
+      reader.problem("says no shape: expected cord_angles, archings, bends or stretches");
+    }
+  }
+  if (request.at && reader.problems().empty()) {
+    const double length = Backbone(arm, arm_state(arm, request.shape())).length();
+    for (std::size_t i = 0; i < request.at->size(); ++i) {
+      if ((*request.at)[i] <= length) continue;
+      reader.problem_at(fmt::format("at[{}]", i),
+                        fmt::format("{} is beyond the tip: expected at most {} m", (*request.at)[i], length));
+    }
+  }
+  reader.throw_if_any();
+  return request;
+}
+
+// A line's problems in one line; the place is the line itself, which the asker knows.
+std::string joined(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) {
+    const std::string column =
+        problem.where.column > 1 ? fmt::format("column {}: ", problem.where.column) : "";
+    text += (text.empty() ? "" : "; ") + column + problem.what;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string answer_forward(const Arm& arm, std::string_view line) {
+  try {
+    return write_json(answer(arm, read_request(arm, line)));
+  } catch (const InputError& error) {
+    return write_json({Node::Table{{"error", {}, {joined(error.problems()), {}}}}, {}});
+  }
+}
+
+}  // namespace flexura

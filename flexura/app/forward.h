@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// Answers one line of `flexura fk`: a JSON object {"cord_angles":[...]}, {"archings":[...]} (planar) or
+/// {"bends":[[bx,by],...],"stretches":[...]} with an optional "at":[s,...], angles in rad and lengths in m.
+/// The answer is one line of JSON without its line end:
+/// {"tip":{"position":[x,y,z],"rotation":[w,x,y,z]},"bases":[[x,y,z],...],"at":[...]} in world axes, `bases`
+/// holding each section's base point and, last, the tip; or {"error":"..."} for a line that cannot be
+/// answered. Never throws on account of the line.
+[[nodiscard]] std::string answer_forward(const Arm& arm, std::string_view line);
+
+}  // namespace flexura

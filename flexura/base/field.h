@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flexura/base/unit.h"
+
+namespace flexura {
+
+struct TableInfo;
+
+/// The numbers a field takes, in base units. The default takes every finite number.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool open_min = false;  ///< min itself is out.
+
+  [[nodiscard]] bool contains(double value) const {
+    return (open_min ? value > min : value >= min) && value <= max;
+  }
+  /// "above 0 m", "at least 0 rad", "from 0 to 1"; in the unit of a spelling. "" when everything is in.
+  [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
+};
+
+[[nodiscard]] inline Range above(double min) { return {.min = min, .open_min = true}; }
+[[nodiscard]] inline Range at_least(double min) { return {.min = min}; }
+[[nodiscard]] inline Range between(double min, double max) { return {.min = min, .max = max}; }
+[[nodiscard]] inline Range above_up_to(double min, double max) {
+  return {.min = min, .max = max, .open_min = true};
+}
+
+/// How many entries an array takes.
+struct Count {
+  std::size_t min = 0;
+  std::size_t max = std::numeric_limits<std::size_t>::max();
+};
+
+/// What the table of fields says about one field, beside the member it fills.
+struct Spec {
+  std::string meaning;
+  Unit unit = Unit::none;
+  Range range = {};
+  Count count = {};  ///< Of the outermost array.
+  bool required = false;
+  bool one_for_all = false;  ///< An array of fixed size may be written as one number, meant for every entry.
+  std::string default_text = {};  ///< What leaving it out means, where the default's value does not say it.
+};
+
+/// The shape of a field's value.
+struct Type {
+  enum class Kind { boolean, integer, number, text, choice, array, table, one_of };
+  Kind kind = Kind::number;
+  std::vector<std::string> choices = {};            ///< choice
+  std::shared_ptr<const Type> item = {};            ///< array
+  Count count = {};                                 ///< array of a size fixed by its type
+  const TableInfo* table = nullptr;                 ///< table
+  std::vector<const TableInfo*> alternatives = {};  ///< one_of: told apart by the key "kind"
+};
+
+/// A field without its member: all that a schema or a reference page needs.
+struct FieldInfo {
+  std::string name;
+  Type type;
+  Spec spec;
+  std::string default_text;  ///< As it would be written; "" when required.
+};
+
+/// A table of fields without its struct.
+struct TableInfo {
+  std::string name;
+  std::string meaning;
+  std::vector<FieldInfo> fields;
+
+  [[nodiscard]] const FieldInfo* find(std::string_view field_name) const;
+};
+
+}  // namespace flexura

@@ -1,0 +1,99 @@
+#include "flexura/base/node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+struct BriefVisitor {
+  std::string operator()(std::monostate) const { return "nothing"; }
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+  std::string operator()(double value) const { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
+  std::string operator()(const std::string& value) const {
+    constexpr std::size_t longest = 40;
+    std::string shown;
+    for (const char c : value.substr(0, longest)) shown += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    return fmt::format("\"{}{}\"", shown, value.size() > longest ? "..." : "");
+  }
+  std::string operator()(const Node::Array& value) const {
+    return value.empty() ? "an empty array" : fmt::format("an array of {}", value.size());
+  }
+  std::string operator()(const Node::Table&) const { return "a table"; }
+  std::string operator()(const Node::Other& value) const { return value.name; }
+};
+
+// One step of a path into `node`: a key of a table (made when missing) or an index of an array.
+std::string step_into(Node*& node, std::string_view part, const SourcePosition& where) {
+  if (auto* array = node->as<Node::Array>()) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+    if (error != std::errc{} || end != part.data() + part.size()) {
+      return fmt::format("\"{}\" stands for one of an array: expected a number counted from 0", part);
+    }
+    if (index >= array->size())
+      return fmt::format("index {} is outside an array of {}", index, array->size());
+    node = &(*array)[index];
+    return {};
+  }
+  auto* table = node->as<Node::Table>();
+  if (table == nullptr) return fmt::format("nothing named \"{}\" inside {}", part, node->brief());
+  Node* found = node->find(part);
+  if (found == nullptr) {
+    table->push_back({std::string(part), where, {Node::Table{}, where}});
+    found = &table->back().node;
+  }
+  node = found;
+  return {};
+}
+
+}  // namespace
+
+const Node* Node::find(std::string_view key) const {
+  const auto* table = as<Table>();
+  if (table == nullptr) return nullptr;
+  const auto found = std::ranges::find(*table, key, &Member::key);
+  return found == table->end() ? nullptr : &found->node;
+}
+
+Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
+
+std::string Node::brief() const { return std::visit(BriefVisitor{}, value); }
+
+void merge(Node& under, Node over) {
+  auto* below = under.as<Node::Table>();
+  auto* above = over.as<Node::Table>();
+  if (below == nullptr || above == nullptr) {
+    under = std::move(over);
+    return;
+  }
+  for (Node::Member& member : *above) {
+    if (Node* found = under.find(member.key)) {
+      merge(*found, std::move(member.node));
+    } else {
+      below->push_back(std::move(member));
+    }
+  }
+}
+
+std::string set_at_path(Node& root, std::string_view path, Node value) {
+  Node* node = &root;
+  for (std::string_view rest = path;;) {
+    const std::size_t dot = rest.find('.');
+    const std::string_view part = rest.substr(0, dot);
+    if (part.empty())
+      return fmt::format("\"{}\" is no path: expected names and numbers joined by dots", path);
+    if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
+    if (dot == std::string_view::npos) break;
+    rest.remove_prefix(dot + 1);
+  }
+  *node = std::move(value);
+  return {};
+}
+
+}  // namespace flexura

@@ -1,0 +1,192 @@
+#include "flexura/base/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+
+Reader::Scope::Scope(Reader& reader, std::string_view name, const SourcePosition& where)
+    : Scope(reader, name, name, where) {}
+
+Reader::Scope::Scope(Reader& reader, std::string_view name, std::string_view key, const SourcePosition& where)
+    : reader_(reader), path_size_(reader.path_.size()) {
+  if (key != name) reader_.written_.insert_or_assign(reader_.below(name), where);
+  reader_.path_ = reader_.below(key);
+  reader_.written_.insert_or_assign(reader_.path_, where);
+}
+
+Reader::Scope::Scope(Reader& reader, std::size_t index, const SourcePosition& where)
+    : reader_(reader), path_size_(reader.path_.size()) {
+  reader_.path_ += fmt::format("[{}]", index);
+  reader_.written_.insert_or_assign(reader_.path_, where);
+}
+
+Reader::Scope::~Scope() { reader_.path_.resize(path_size_); }
+
+std::string Reader::below(std::string_view name) const {
+  const bool joined = path_.empty() || name.empty() || name.front() == '[';
+  return fmt::format("{}{}{}", path_, joined ? "" : ".", name);
+}
+
+void Reader::problem(std::string what) { problem_at("", std::move(what)); }
+
+void Reader::problem_at(std::string_view path, std::string what) {
+  const std::string whole = below(path);
+  std::string place = whole;
+  auto found = written_.find(place);
+  while (found == written_.end() && !place.empty()) {
+    const std::size_t cut = place.find_last_of(".[");
+    place.resize(cut == std::string::npos ? 0 : cut);
+    found = written_.find(place);
+  }
+  const SourcePosition where = found == written_.end() ? SourcePosition{} : found->second;
+  problems_.push_back({where, whole.empty() ? std::move(what) : whole + ": " + what});
+}
+
+void Reader::unexpected(const Node& node, std::string_view expected) {
+  const bool is_whole = node.as<Node::Array>() != nullptr || node.as<Node::Table>() != nullptr;
+  const std::string what = fmt::format("{} {}: expected {}", is_whole ? "is" : "=", node.brief(), expected);
+  problems_.push_back({node.where, path_.empty() ? what : path_ + " " + what});
+}
+
+void Reader::throw_if_any() const {
+  if (!problems_.empty()) throw InputError(problems_);
+}
+
+bool Reader::number(const Node& node, const Spec& spec, double& value) {
+  const std::string range = spec.range.text(spelling);
+  const std::string unit = spelling.symbol.empty() ? "" : fmt::format(" in {}", spelling.symbol);
+  const std::string expected = range.empty() ? "a finite number" + unit : "a number " + range;
+  double written = 0;
+  if (const auto* whole = node.as<std::int64_t>()) {
+    written = static_cast<double>(*whole);
+  } else if (const auto* real = node.as<double>()) {
+    written = *real;
+  } else {
+    unexpected(node, expected);
+    return false;
+  }
+  const double scaled = written * spelling.factor;
+  if (!std::isfinite(scaled) || !spec.range.contains(scaled)) {
+    unexpected(node, expected);
+    return false;
+  }
+  value = scaled;
+  return true;
+}
+
+bool Reader::integer(const Node& node, const Spec& spec, std::int64_t& value) {
+  const auto* whole = node.as<std::int64_t>();
+  if (whole == nullptr || !spec.range.contains(static_cast<double>(*whole))) {
+    const std::string range = spec.range.text(spelling);
+    unexpected(node, range.empty() ? "a whole number" : "a whole number " + range);
+    return false;
+  }
+  value = *whole;
+  return true;
+}
+
+const Node::Array* Reader::array(const Node& node, const Count& count) {
+  const auto* entries = node.as<Node::Array>();
+  if (entries != nullptr && entries->size() >= count.min && entries->size() <= count.max) return entries;
+  constexpr std::size_t no_bound = std::numeric_limits<std::size_t>::max();
+  if (count.min == count.max) {
+    unexpected(node, fmt::format("an array of {}", count.min));
+  } else if (count.max == no_bound) {
+    unexpected(node, count.min == 0 ? "an array" : fmt::format("an array of at least {}", count.min));
+  } else {
+    unexpected(node, fmt::format("an array of {} to {}", count.min, count.max));
+  }
+  return nullptr;
+}
+
+namespace {
+
+bool has_suffix(const FieldInfo& field, std::string_view key, UnitSpelling& spelling) {
+  if (!key.starts_with(field.name)) return false;
+  const std::string_view suffix = key.substr(field.name.size());
+  const auto known = spellings(field.spec.unit);
+  const auto found = std::ranges::find(known, suffix, &UnitSpelling::suffix);
+  if (found == known.end()) return false;
+  spelling = *found;
+  return true;
+}
+
+std::string ways_to_write(const FieldInfo& field) {
+  std::string ways;
+  for (const UnitSpelling& way : spellings(field.spec.unit)) {
+    ways += fmt::format("{}{}{}{}", ways.empty() ? "" : ", ", field.name, way.suffix,
+                        way.symbol.empty() ? "" : fmt::format(" ({})", way.symbol));
+  }
+  return ways;
+}
+
+// "did you mean ...", for a key that no field of the table has.
+std::string unknown_key(std::string_view key, const TableInfo& table, std::string_view tag) {
+  for (const FieldInfo& field : table.fields) {
+    if (!key.starts_with(field.name)) continue;
+    if (std::ranges::count(all_unit_suffixes(), key.substr(field.name.size())) > 0) {
+      return field.spec.unit == Unit::none
+                 ? fmt::format("unknown key: {} has no unit, write {}", field.name, field.name)
+                 : fmt::format("wrong unit: expected {}", ways_to_write(field));
+    }
+  }
+  std::vector<std::string> names;
+  for (const FieldInfo& field : table.fields) {
+    for (const UnitSpelling& way : spellings(field.spec.unit))
+      names.push_back(field.name + std::string(way.suffix));
+  }
+  if (!tag.empty()) names.emplace_back(tag);
+  if (const std::string_view near = nearest_name(key, names); !near.empty()) {
+    return fmt::format("unknown key; did you mean \"{}\"?", near);
+  }
+  std::string known;
+  for (const FieldInfo& field : table.fields) known += (known.empty() ? "" : ", ") + field.name;
+  return fmt::format("unknown key; expected one of: {}", known);
+}
+
+}  // namespace
+
+std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Reader& reader,
+                                    std::string_view tag) {
+  std::vector<FoundField> found(table.fields.size());
+  const auto* members = node.as<Node::Table>();
+  if (members == nullptr) {
+    reader.unexpected(node, "a table");
+    return {};
+  }
+  for (const Node::Member& member : *members) {
+    if (!tag.empty() && member.key == tag) continue;
+    const std::string shown_key = Node{member.key, {}}.brief();
+    UnitSpelling spelling{};
+    const auto field = std::ranges::find_if(table.fields, [&](const FieldInfo& candidate) {
+      return has_suffix(candidate, member.key, spelling);
+    });
+    if (field == table.fields.end()) {
+      const Reader::Scope scope(reader, std::string_view(shown_key).substr(1, shown_key.size() - 2),
+                                member.where);
+      reader.problem(unknown_key(member.key, table, tag));
+      continue;
+    }
+    FoundField& slot = found[static_cast<std::size_t>(field - table.fields.begin())];
+    if (slot.member != nullptr) {
+      const Reader::Scope scope(reader, member.key, member.where);
+      reader.problem(fmt::format("written twice: {} stands in line {} already", slot.member->key,
+                                 slot.member->where.line));
+      continue;
+    }
+    slot = {&member, spelling};
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].member == nullptr && table.fields[i].spec.required) {
+      reader.problem_at(table.fields[i].name,
+                        fmt::format("missing: expected {}", table.fields[i].spec.meaning));
+    }
+  }
+  return found;
+}
+
+}  // namespace flexura

@@ -1,0 +1,300 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/field.h"
+#include "flexura/base/node.h"
+#include "flexura/base/reader.h"
+
+namespace flexura {
+
+/// How a member's type is read from a document, written back, and described. Specialised per type; a struct
+/// gets its codec from its table of fields, an enum from its names (below).
+template <class T>
+struct Codec;
+
+/// The table of fields of a struct: each member's name, unit, range, default and meaning, said once. From it
+/// come the typed reader, the errors, the writer, the schema and the reference page.
+///
+/// A struct S has a table when `const Table<S>& fields_of(const S*)` is found beside it. Defaults are the
+/// members of a default-constructed S.
+template <class S>
+class Table {
+ public:
+  Table(std::string name, std::string meaning) {
+    info_.name = std::move(name), info_.meaning = std::move(meaning);
+  }
+
+  /// Adds a field that fills `member`.
+  template <class M>
+  Table& field(std::string name, M S::* member, Spec spec) {
+    FieldInfo info{std::move(name), Codec<M>::type(), std::move(spec), {}};
+    if (!info.spec.required) {
+      const Node written = Codec<M>::write(S{}.*member);
+      info.default_text = info.spec.default_text.empty() ? written.brief() : info.spec.default_text;
+    }
+    info_.fields.push_back(std::move(info));
+    bindings_.push_back({[member](const Node& node, const Spec& s, Reader& reader, S& value) {
+                           return Codec<M>::read(node, s, reader, value.*member);
+                         },
+                         [member](const S& value) { return Codec<M>::write(value.*member); }});
+    return *this;
+  }
+
+  /// Adds a check across fields, run when every field was read without a problem; it reports to the reader.
+  Table& check(std::function<void(const S&, Reader&)> rule) {
+    checks_.push_back(std::move(rule));
+    return *this;
+  }
+
+  [[nodiscard]] const TableInfo& info() const { return info_; }
+
+  /// Fills `value` from a table; false when a problem was reported.
+  bool read(const Node& node, Reader& reader, S& value, std::string_view tag = {}) const {
+    const std::size_t problems_before = reader.problems().size();
+    const std::vector<FoundField> found = find_fields(node, info_, reader, tag);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].member == nullptr) continue;
+      const Reader::Scope scope(reader, info_.fields[i].name, found[i].member->key, found[i].member->where);
+      reader.spelling = found[i].spelling;
+      bindings_[i].read(found[i].member->node, info_.fields[i].spec, reader, value);
+      reader.spelling = {"", 1.0, ""};
+    }
+    if (reader.problems().size() == problems_before) {
+      for (const auto& rule : checks_) rule(value, reader);
+    }
+    return reader.problems().size() == problems_before;
+  }
+
+  /// Every field that says something, in the table's order and in base units.
+  [[nodiscard]] Node write(const S& value) const {
+    Node::Table members;
+    for (std::size_t i = 0; i < bindings_.size(); ++i) {
+      Node node = bindings_[i].write(value);
+      if (!node.empty()) members.push_back({info_.fields[i].name, {}, std::move(node)});
+    }
+    return {std::move(members), {}};
+  }
+
+ private:
+  struct Binding {
+    std::function<bool(const Node&, const Spec&, Reader&, S&)> read;
+    std::function<Node(const S&)> write;
+  };
+  TableInfo info_;
+  std::vector<Binding> bindings_;
+  std::vector<std::function<void(const S&, Reader&)>> checks_;
+};
+
+/// Reads a whole document as an S; throws InputError with every problem found.
+template <class S>
+[[nodiscard]] S read_as(const Node& document) {
+  Reader reader;
+  S value{};
+  const Reader::Scope scope(reader, std::string_view{}, document.where);
+  fields_of(static_cast<const S*>(nullptr)).read(document, reader, value);
+  reader.throw_if_any();
+  return value;
+}
+
+template <class T>
+concept HasFields = requires(const T* null) { fields_of(null); };
+
+/// An enum with `names_of(const E*)`, a vector of its values' names in the order of their numbers from 0.
+template <class E>
+concept HasNames = std::is_enum_v<E> && requires(const E* null) { names_of(null); };
+
+template <>
+struct Codec<double> {
+  static Type type() { return {.kind = Type::Kind::number}; }
+  static bool read(const Node& node, const Spec& spec, Reader& reader, double& value) {
+    return reader.number(node, spec, value);
+  }
+  /// An infinite bound is none: it is left out.
+  static Node write(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
+};
+
+template <>
+struct Codec<std::int64_t> {
+  static Type type() { return {.kind = Type::Kind::integer}; }
+  static bool read(const Node& node, const Spec& spec, Reader& reader, std::int64_t& value) {
+    return reader.integer(node, spec, value);
+  }
+  static Node write(std::int64_t value) { return {value, {}}; }
+};
+
+template <>
+struct Codec<bool> {
+  static Type type() { return {.kind = Type::Kind::boolean}; }
+  static bool read(const Node& node, const Spec&, Reader& reader, bool& value) {
+    const bool* written = node.as<bool>();
+    if (written == nullptr) return reader.unexpected(node, "true or false"), false;
+    value = *written;
+    return true;
+  }
+  static Node write(bool value) { return {value, {}}; }
+};
+
+template <>
+struct Codec<std::string> {
+  static Type type() { return {.kind = Type::Kind::text}; }
+  static bool read(const Node& node, const Spec&, Reader& reader, std::string& value) {
+    const auto* written = node.as<std::string>();
+    if (written == nullptr) return reader.unexpected(node, "a text in quotes"), false;
+    value = *written;
+    return true;
+  }
+  static Node write(const std::string& value) { return {value, {}}; }
+};
+
+template <HasNames E>
+struct Codec<E> {
+  static const std::vector<std::string>& names() { return names_of(static_cast<const E*>(nullptr)); }
+  static Type type() { return {.kind = Type::Kind::choice, .choices = names()}; }
+  static bool read(const Node& node, const Spec&, Reader& reader, E& value) {
+    const auto* written = node.as<std::string>();
+    for (std::size_t i = 0; written != nullptr && i < names().size(); ++i) {
+      if (names()[i] == *written) return value = static_cast<E>(i), true;
+    }
+    return reader.unexpected(node, fmt::format("one of \"{}\"", fmt::join(names(), "\", \""))), false;
+  }
+  static Node write(E value) { return {names()[static_cast<std::size_t>(value)], {}}; }
+};
+
+/// Not written at all when left out.
+template <class T>
+struct Codec<std::optional<T>> {
+  static Type type() { return Codec<T>::type(); }
+  static bool read(const Node& node, const Spec& spec, Reader& reader, std::optional<T>& value) {
+    T inner{};
+    if (!Codec<T>::read(node, spec, reader, inner)) return false;
+    value = std::move(inner);
+    return true;
+  }
+  static Node write(const std::optional<T>& value) { return value ? Codec<T>::write(*value) : Node{}; }
+};
+
+namespace codec_detail {
+
+// Reads the entries of an array into values[0..]; every bad entry is reported.
+template <class T, class Values>
+bool read_entries(const Node::Array& entries, const Spec& spec, Reader& reader, Values& values) {
+  bool all_read = true;
+  Spec entry_spec = spec;
+  entry_spec.count = {};
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Reader::Scope scope(reader, i, entries[i].where);
+    all_read = Codec<T>::read(entries[i], entry_spec, reader, values[i]) && all_read;
+  }
+  return all_read;
+}
+
+template <class Values>
+Node write_entries(const Values& values) {
+  Node::Array entries;
+  for (const auto& value : values) entries.push_back(Codec<std::decay_t<decltype(value)>>::write(value));
+  return {std::move(entries), {}};
+}
+
+}  // namespace codec_detail
+
+template <class T>
+struct Codec<std::vector<T>> {
+  static Type type() {
+    return {.kind = Type::Kind::array, .item = std::make_shared<const Type>(Codec<T>::type())};
+  }
+  static bool read(const Node& node, const Spec& spec, Reader& reader, std::vector<T>& value) {
+    const Node::Array* entries = reader.array(node, spec.count);
+    if (entries == nullptr) return false;
+    value.assign(entries->size(), T{});
+    return codec_detail::read_entries<T>(*entries, spec, reader, value);
+  }
+  static Node write(const std::vector<T>& value) { return codec_detail::write_entries(value); }
+};
+
+template <class T, std::size_t n>
+struct Codec<std::array<T, n>> {
+  static Type type() {
+    return {
+        .kind = Type::Kind::array, .item = std::make_shared<const Type>(Codec<T>::type()), .count = {n, n}};
+  }
+  static bool read(const Node& node, const Spec& spec, Reader& reader, std::array<T, n>& value) {
+    if (spec.one_for_all && node.as<Node::Array>() == nullptr) {
+      T one{};
+      if (!Codec<T>::read(node, spec, reader, one)) return false;
+      value.fill(one);
+      return true;
+    }
+    const Node::Array* entries = reader.array(node, {n, n});
+    return entries != nullptr && codec_detail::read_entries<T>(*entries, spec, reader, value);
+  }
+  static Node write(const std::array<T, n>& value) { return codec_detail::write_entries(value); }
+};
+
+template <HasFields S>
+struct Codec<S> {
+  static const Table<S>& table() { return fields_of(static_cast<const S*>(nullptr)); }
+  static Type type() { return {.kind = Type::Kind::table, .table = &table().info()}; }
+  static bool read(const Node& node, const Spec&, Reader& reader, S& value) {
+    return table().read(node, reader, value);
+  }
+  static Node write(const S& value) { return table().write(value); }
+};
+
+/// One of several tables, told apart by the key "kind", which holds the table's name.
+template <HasFields... S>
+struct Codec<std::variant<S...>> {
+  using Value = std::variant<S...>;
+  static constexpr std::string_view tag = "kind";
+
+  static Type type() { return {.kind = Type::Kind::one_of, .alternatives = {&Codec<S>::table().info()...}}; }
+
+  static bool read(const Node& node, const Spec&, Reader& reader, Value& value) {
+    if (node.as<Node::Table>() == nullptr) return reader.unexpected(node, "a table"), false;
+    const std::vector<std::string> kinds{Codec<S>::table().info().name...};
+    const std::string expected = fmt::format("one of \"{}\"", fmt::join(kinds, "\", \""));
+    const Node* kind = node.find(tag);
+    if (kind == nullptr)
+      return reader.problem(fmt::format("{} is missing: expected {}", tag, expected)), false;
+    const auto* name = kind->as<std::string>();
+    bool known = false;
+    bool read_well = false;
+    const auto try_one = [&]<class One>(std::type_identity<One>) {
+      if (name == nullptr || *name != Codec<One>::table().info().name) return;
+      known = true;
+      read_well = Codec<One>::table().read(node, reader, value.template emplace<One>(), tag);
+    };
+    (try_one(std::type_identity<S>{}), ...);
+    if (!known) {
+      const Reader::Scope scope(reader, tag, kind->where);
+      reader.unexpected(*kind, expected);
+    }
+    return read_well;
+  }
+
+  static Node write(const Value& value) {
+    return std::visit(
+        []<class One>(const One& one) {
+          Node node = Codec<One>::table().write(one);
+          auto& members = *node.template as<Node::Table>();
+          members.insert(members.begin(), {std::string(tag), {}, {Codec<One>::table().info().name, {}}});
+          return node;
+        },
+        value);
+  }
+};
+
+}  // namespace flexura

@@ -1,0 +1,38 @@
+#include "flexura/base/unit.h"
+
+#include <array>
+#include <numbers>
+
+namespace flexura {
+
+std::span<const UnitSpelling> spellings(Unit unit) {
+  using std::numbers::pi;
+  static constexpr std::array<UnitSpelling, 1> none{{{"", 1.0, ""}}};
+  static constexpr std::array<UnitSpelling, 2> metre{{{"", 1.0, "m"}, {"_mm", 1e-3, "mm"}}};
+  static constexpr std::array<UnitSpelling, 2> second{{{"", 1.0, "s"}, {"_ms", 1e-3, "ms"}}};
+  static constexpr std::array<UnitSpelling, 3> radian{
+      {{"", 1.0, "rad"}, {"_deg", pi / 180.0, "deg"}, {"_pi", pi, "pi rad"}}};
+  static constexpr std::array<UnitSpelling, 3> radian_per_second{
+      {{"", 1.0, "rad/s"}, {"_deg", pi / 180.0, "deg/s"}, {"_pi", pi, "pi rad/s"}}};
+  switch (unit) {
+    case Unit::none:
+      break;
+    case Unit::metre:
+      return metre;
+    case Unit::second:
+      return second;
+    case Unit::radian:
+      return radian;
+    case Unit::radian_per_second:
+      return radian_per_second;
+  }
+  return none;
+}
+
+std::span<const std::string_view> all_unit_suffixes() {
+  static constexpr std::array<std::string_view, 9> suffixes{"_deg", "_pi", "_mm", "_ms", "_rad",
+                                                            "_m",   "_s",  "_cm", "_hz"};
+  return suffixes;
+}
+
+}  // namespace flexura

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/model/arm_config.h"
+
+namespace flexura {
+
+/// `kind = "move"`: the arm goes from where it is to another shape, every bend and stretch linearly in time.
+/// In a plane that is the same motion in cord angles, archings or bends, which depend linearly on each other.
+struct MoveTask {
+  std::string name;
+  double duration = 1.0;  ///< s
+  ShapeConfig to;
+};
+
+/// `kind = "hold"`: the arm stays as it is.
+struct HoldTask {
+  std::string name;
+  double duration = 1.0;  ///< s
+};
+
+using TaskConfig = std::variant<MoveTask, HoldTask>;
+
+/// The table [clock]: how time runs.
+struct ClockConfig {
+  double step = 0.02;  ///< s between two states of the experiment.
+};
+
+/// The table [record]: what is kept of a run.
+struct RecordConfig {
+  std::int64_t every = 1;  ///< Steps from one state in the log to the next; the last one is always kept.
+  bool report = true;      ///< Write report.html and figures/.
+};
+
+/// An experiment file: a rig and the tasks it does, one after another.
+struct Experiment {
+  std::string flexura;  ///< Version that ran it; written into results.
+  std::string title;
+  std::int64_t seed = 1;
+  std::vector<std::string> include;  ///< Resolved by the file reader; empty from then on.
+  ClockConfig clock;
+  RecordConfig record;
+  ArmConfig arm;
+  std::vector<TaskConfig> task;
+};
+
+const Table<MoveTask>& fields_of(const MoveTask*);
+const Table<HoldTask>& fields_of(const HoldTask*);
+const Table<ClockConfig>& fields_of(const ClockConfig*);
+const Table<RecordConfig>& fields_of(const RecordConfig*);
+const Table<Experiment>& fields_of(const Experiment*);
+
+[[nodiscard]] double duration(const TaskConfig& task);        ///< s
+[[nodiscard]] std::string task_name(const TaskConfig& task);  ///< Its name, else its kind.
+[[nodiscard]] std::string_view task_kind(const TaskConfig& task);
+
+/// What the command line changes in a file before it is read.
+struct Overrides {
+  std::vector<std::string> sets;  ///< "path=value" each, in TOML ("arm.section.0.length=2.5").
+  std::optional<std::int64_t> seed;
+};
+
+/// Reads and checks an experiment (or an arm alone: a file without tasks). Throws InputError with every
+/// problem found.
+[[nodiscard]] Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides = {});
+
+/// The same from TOML text, without includes; `source` names it in errors.
+[[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source);
+
+/// The experiment as a TOML file, every value and default in base units.
+[[nodiscard]] std::string experiment_toml(const Experiment& experiment);
+
+}  // namespace flexura

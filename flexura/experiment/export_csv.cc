@@ -1,0 +1,115 @@
+#include "flexura/experiment/export_csv.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/store/csv.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "flexura/store/text_file.h"
+
+namespace flexura {
+namespace {
+
+// "base_1_x" and so on: sections are counted from 1, as people count them.
+void name_columns(CsvText& csv, std::string_view stem, std::size_t count) {
+  for (std::size_t i = 1; i <= count; ++i) csv.cell(fmt::format("{}_{}", stem, i));
+}
+
+void name_columns(CsvText& csv, const ArmStateMessage& state) {
+  const std::size_t sections = state.bends.size();
+  csv.cell("time");
+  if (state.archings) name_columns(csv, "arching", sections);
+  if (state.cord_angles) name_columns(csv, "cord_angle", sections);
+  for (std::size_t i = 1; i <= sections; ++i) {
+    csv.cell(fmt::format("bend_x_{}", i));
+    csv.cell(fmt::format("bend_y_{}", i));
+  }
+  name_columns(csv, "stretch", sections);
+  for (std::size_t i = 0; i <= sections; ++i) {
+    const std::string stem = i < sections ? fmt::format("base_{}", i + 1) : "tip";
+    for (const char axis : {'x', 'y', 'z'}) csv.cell(fmt::format("{}_{}", stem, axis));
+  }
+  for (const char part : {'w', 'x', 'y', 'z'}) csv.cell(fmt::format("tip_q{}", part));
+  csv.end_row();
+}
+
+void add_row(CsvText& csv, const ArmStateMessage& state, const PosesMessage& poses) {
+  csv.cell(state.time);
+  if (state.archings) csv.cells(*state.archings);
+  if (state.cord_angles) csv.cells(*state.cord_angles);
+  for (const auto& bend : state.bends) csv.cells(bend);
+  csv.cells(state.stretches);
+  for (const PoseMessage& pose : poses.poses)
+    csv.cells(std::array{pose.position.x, pose.position.y, pose.position.z});
+  const QuaternionMessage& q = poses.poses.back().orientation;
+  csv.cells(std::array{q.w, q.x, q.y, q.z});
+  csv.end_row();
+}
+
+// A column is a number of the arm; one log has one arm.
+void check_sizes(const ArmStateMessage& state, std::size_t sections, const PosesMessage& poses) {
+  const bool fits = state.bends.size() == sections && state.stretches.size() == sections &&
+                    (!state.archings || state.archings->size() == sections) &&
+                    (!state.cord_angles || state.cord_angles->size() == sections) &&
+                    poses.poses.size() == sections + 1;
+  if (!fits)
+    throw std::runtime_error(fmt::format("the log's state at {} s does not fit its arm", state.time));
+}
+
+struct Tables {
+  CsvText states;
+  CsvText events;
+};
+
+Tables tables_of(const McapReader& log, const std::string& name) {
+  Tables tables;
+  for (const char* title : {"time", "level", "name", "message"}) tables.events.cell(std::string_view(title));
+  tables.events.end_row();
+  std::optional<ArmStateMessage> state;  // waiting for its poses, which follow it
+  std::optional<std::size_t> sections;
+  for (const McapMessage& message : log.messages()) {
+    const std::string& topic = message.channel->topic;
+    if (topic == arm_state_topic) {
+      state = read_as<ArmStateMessage>(parse_json(message.text(), name));
+      if (!sections) name_columns(tables.states, *state);
+      sections = sections.value_or(state->bends.size());
+    } else if (topic == arm_poses_topic && state) {
+      const auto poses = read_as<PosesMessage>(parse_json(message.text(), name));
+      check_sizes(*state, *sections, poses);
+      add_row(tables.states, *state, poses);
+      state.reset();
+    } else if (topic == events_topic) {
+      const auto event = read_as<EventMessage>(parse_json(message.text(), name));
+      tables.events.cell(static_cast<double>(message.log_time) * 1e-9);
+      tables.events.cell(event.level == 2 ? "info" : event.level == 3 ? "warning" : "error");
+      tables.events.cell(event.name);
+      tables.events.cell(event.message);
+      tables.events.end_row();
+    }
+  }
+  return tables;
+}
+
+}  // namespace
+
+ExportResult export_csv(const std::filesystem::path& results) {
+  const auto file = results / log_file_name;
+  if (!std::filesystem::exists(file)) {
+    throw input_error(results.string(),
+                      fmt::format("holds no {}: expected a folder made by `flexura run`", log_file_name));
+  }
+  const McapReader log(file);
+  const Tables tables = tables_of(log, file.string());
+  ExportResult result{make_new_folder(results / "csv"), log.truncated()};
+  write_new_file(result.folder / "states.csv", tables.states.text());
+  write_new_file(result.folder / "events.csv", tables.events.text());
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace flexura {
+
+/// What an export made of a run's log.
+struct ExportResult {
+  std::filesystem::path folder;
+  bool truncated = false;  ///< The run was cut short: its log ended without a summary.
+};
+
+/// Writes a run's log as tables into the new folder RESULTS/csv (csv-2, ... when it exists): states.csv with
+/// a row a state (time; archings and cord angles of planar arms; bends, stretches; base points and tip) and
+/// events.csv. Throws InputError when `results` holds no log, std::runtime_error when the log is corrupt or a
+/// file not writable.
+ExportResult export_csv(const std::filesystem::path& results);
+
+}  // namespace flexura

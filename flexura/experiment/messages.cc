@@ -1,0 +1,95 @@
+#include "flexura/experiment/messages.h"
+
+#include <cmath>
+
+namespace flexura {
+
+const Table<TimeMessage>& fields_of(const TimeMessage*) {
+  static const auto table = Table<TimeMessage>("foxglove.Time", "Time since the experiment's start.")
+                                .field("sec", &TimeMessage::sec, {.meaning = "Whole seconds."})
+                                .field("nsec", &TimeMessage::nsec, {.meaning = "Nanoseconds beyond them."});
+  return table;
+}
+
+const Table<ArmStateMessage>& fields_of(const ArmStateMessage*) {
+  static const auto table =
+      Table<ArmStateMessage>("flexura.ArmState", "What changes when the arm moves.")
+          .field("time", &ArmStateMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("bends", &ArmStateMessage::bends,
+                 {.meaning = "Each section's bend (bend_x, bend_y), rad, base first."})
+          .field("stretches", &ArmStateMessage::stretches,
+                 {.meaning = "The factor on each section's length."})
+          .field("archings", &ArmStateMessage::archings, {.meaning = "Planar arms: the archings, rad."})
+          .field("cord_angles", &ArmStateMessage::cord_angles,
+                 {.meaning = "Planar arms: the cords' angles from +X, rad."});
+  return table;
+}
+
+const Table<VectorMessage>& fields_of(const VectorMessage*) {
+  static const auto table = Table<VectorMessage>("foxglove.Vector3", "A vector in the frame named.")
+                                .field("x", &VectorMessage::x, {.meaning = "m"})
+                                .field("y", &VectorMessage::y, {.meaning = "m"})
+                                .field("z", &VectorMessage::z, {.meaning = "m"});
+  return table;
+}
+
+const Table<QuaternionMessage>& fields_of(const QuaternionMessage*) {
+  static const auto table = Table<QuaternionMessage>("foxglove.Quaternion", "A rotation, w >= 0.")
+                                .field("x", &QuaternionMessage::x, {})
+                                .field("y", &QuaternionMessage::y, {})
+                                .field("z", &QuaternionMessage::z, {})
+                                .field("w", &QuaternionMessage::w, {});
+  return table;
+}
+
+const Table<PoseMessage>& fields_of(const PoseMessage*) {
+  static const auto table = Table<PoseMessage>("foxglove.Pose", "A frame's place and orientation.")
+                                .field("position", &PoseMessage::position, {})
+                                .field("orientation", &PoseMessage::orientation, {});
+  return table;
+}
+
+const Table<PosesMessage>& fields_of(const PosesMessage*) {
+  static const auto table =
+      Table<PosesMessage>("foxglove.PosesInFrame", "Each section's base frame and, last, the tip.")
+          .field("timestamp", &PosesMessage::timestamp, {})
+          .field("frame_id", &PosesMessage::frame_id, {.meaning = "The frame the poses are in."})
+          .field("poses", &PosesMessage::poses, {});
+  return table;
+}
+
+const Table<EventMessage>& fields_of(const EventMessage*) {
+  static const auto table =
+      Table<EventMessage>("foxglove.Log", "Something that happened.")
+          .field("timestamp", &EventMessage::timestamp, {})
+          .field("level", &EventMessage::level, {.meaning = "2 info, 3 warning, 4 error."})
+          .field("message", &EventMessage::message, {})
+          .field("name", &EventMessage::name, {.meaning = "What speaks."})
+          .field("file", &EventMessage::file, {})
+          .field("line", &EventMessage::line, {});
+  return table;
+}
+
+std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(time * 1e9)); }
+
+TimeMessage time_message(std::uint64_t nanoseconds) {
+  constexpr std::uint64_t a_second = 1'000'000'000;
+  return {static_cast<std::int64_t>(nanoseconds / a_second),
+          static_cast<std::int64_t>(nanoseconds % a_second)};
+}
+
+PoseMessage pose_message(const Pose& X_WP) {
+  const Eigen::Vector4d q = quaternion_wxyz(X_WP.rotation);
+  return {{X_WP.position.x(), X_WP.position.y(), X_WP.position.z()}, {q[1], q[2], q[3], q[0]}};
+}
+
+Node point_node(const Eigen::Vector3d& p) { return {Node::Array{{p.x(), {}}, {p.y(), {}}, {p.z(), {}}}, {}}; }
+
+Node pose_node(const Pose& X_WP) {
+  const Eigen::Vector4d q = quaternion_wxyz(X_WP.rotation);
+  return {Node::Table{{"position", {}, point_node(X_WP.position)},
+                      {"rotation", {}, {Node::Array{{q[0], {}}, {q[1], {}}, {q[2], {}}, {q[3], {}}}, {}}}},
+          {}};
+}
+
+}  // namespace flexura

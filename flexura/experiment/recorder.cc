@@ -1,0 +1,70 @@
+#include "flexura/experiment/recorder.h"
+
+#include <utility>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_writer.h"
+#include "flexura/store/schema.h"
+
+namespace flexura {
+
+struct Recorder::Channels {
+  explicit Channels(const std::filesystem::path& file)
+      : log(file),
+        state(add<ArmStateMessage>(arm_state_topic)),
+        poses(add<PosesMessage>(arm_poses_topic)),
+        events(add<EventMessage>(events_topic)) {}
+
+  template <class M>
+  std::uint16_t add(std::string_view topic) {
+    const TableInfo& info = fields_of(static_cast<const M*>(nullptr)).info();
+    return log.add_channel({.topic = std::string(topic),
+                            .schema = {.name = info.name, .data = write_json(json_schema(info))},
+                            .metadata = {}});
+  }
+
+  template <class M>
+  void write(std::uint16_t channel, std::uint64_t time, const M& message) {
+    log.write(channel, time, write_json(Codec<M>::write(message)));
+  }
+
+  McapWriter log;
+  std::uint16_t state;
+  std::uint16_t poses;
+  std::uint16_t events;
+};
+
+Recorder::Recorder(const std::filesystem::path& file, const Arm& arm)
+    : channels_(std::make_unique<Channels>(file)), arm_(arm) {}
+
+Recorder::~Recorder() = default;
+
+void Recorder::state(double time, const ArmState& state, const Backbone& backbone) {
+  const std::uint64_t log_time = nanoseconds(time);
+  ArmStateMessage message{
+      .time = time, .bends = {}, .stretches = state.stretches, .archings = {}, .cord_angles = {}};
+  for (const Eigen::Vector2d& bend : state.bends) message.bends.push_back({bend.x(), bend.y()});
+  if (arm_.kind == ArmKind::planar) {
+    message.archings = archings(state);
+    message.cord_angles = cord_angles(arm_, state);
+  }
+  channels_->write(channels_->state, log_time, message);
+
+  PosesMessage poses{time_message(log_time), "world", {}};
+  for (const Arc& arc : backbone.arcs()) poses.poses.push_back(pose_message(arc.X_WS));
+  poses.poses.push_back(pose_message(backbone.tip()));
+  channels_->write(channels_->poses, log_time, poses);
+}
+
+void Recorder::event(double time, Level level, std::string_view source, std::string_view text) {
+  const std::uint64_t log_time = nanoseconds(time);
+  channels_->write(channels_->events, log_time,
+                   EventMessage{time_message(log_time), static_cast<std::int64_t>(level), std::string(text),
+                                std::string(source), "", 0});
+}
+
+void Recorder::close() { channels_->log.close(); }
+
+}  // namespace flexura

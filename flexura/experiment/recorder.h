@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+
+/// Writes a run's log.mcap: the arm's state, the poses of its sections, and events (docs/log-format.md).
+/// Times are the experiment's, in s from its start.
+class Recorder {
+ public:
+  /// Starts a new log; std::runtime_error when the file exists or cannot be written.
+  Recorder(const std::filesystem::path& file, const Arm& arm);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void state(double time, const ArmState& state, const Backbone& backbone);
+  enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< foxglove.Log's numbers.
+  void event(double time, Level level, std::string_view source, std::string_view text);
+
+  /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
+  void close();
+
+ private:
+  struct Channels;
+  std::unique_ptr<Channels> channels_;
+  Arm arm_;
+};
+
+}  // namespace flexura

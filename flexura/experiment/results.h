@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+namespace flexura {
+
+/// Makes the new folder `wanted`, or `wanted`-2, -3, ... when that exists: results never overwrite. Makes
+/// missing folders above it. Returns the folder made; std::runtime_error with the path when the system
+/// refuses.
+[[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& wanted);
+
+/// Where an experiment's results go when nothing else is said: results/NAME, where NAME is the file's, or its
+/// folder's for a file called experiment.toml.
+[[nodiscard]] std::filesystem::path default_results_folder(const std::filesystem::path& experiment_file);
+
+// What a run writes into its folder.
+inline constexpr const char* experiment_file_name = "experiment.toml";
+inline constexpr const char* log_file_name = "log.mcap";
+inline constexpr const char* summary_file_name = "summary.json";
+inline constexpr const char* timing_file_name = "timing.json";
+inline constexpr const char* report_file_name = "report.html";
+inline constexpr const char* figures_folder_name = "figures";
+
+}  // namespace flexura

@@ -1,0 +1,192 @@
+#include "flexura/model/arm_config.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+namespace flexura {
+namespace {
+
+// More than any robot has; keeps a mistaken file from filling the memory.
+constexpr std::size_t max_sections = 1000;
+constexpr double quaternion_norm_tolerance = 1e-3;
+
+double norm(const std::array<double, 4>& q) {
+  return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+}
+
+void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
+  if (given == sections) return;
+  reader.problem_at(path, fmt::format("{} given: expected {}, one for each section", given, sections));
+}
+
+void check_arm(const ArmConfig& config, Reader& reader) {
+  const bool is_planar = config.kind == ArmKind::planar;
+  if (is_planar && config.base.rotation) {
+    reader.problem_at("base.rotation", "is for spatial arms: expected base.tangent_deg for a planar one");
+  }
+  if (!is_planar && config.base.tangent) {
+    reader.problem_at("base.tangent", "is for planar arms: expected base.rotation for a spatial one");
+  }
+  check_shape(config.initial, config.kind, config.section.size(), "initial", reader);
+}
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const ArmKind*) {
+  static const std::vector<std::string> names{"planar", "spatial"};
+  return names;
+}
+
+const Table<Section>& fields_of(const Section*) {
+  static const auto table =
+      Table<Section>("section", "One independently bent part of the arm, base first.")
+          .field("length", &Section::length,
+                 {.meaning = "Arc length of the section's centreline when not stretched.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e6),
+                  .required = true})
+          .field("radius", &Section::radius,
+                 {.meaning = "Radius of the tube; two numbers for a taper, at the section's base and end.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e6),
+                  .one_for_all = true})
+          .field("max_bend", &Section::max_bend,
+                 {.meaning = "Largest bend angle of the section (twice the arching).",
+                  .unit = Unit::radian,
+                  .range = above(0),
+                  .default_text = "no limit"})
+          .field("max_bend_rate", &Section::max_bend_rate,
+                 {.meaning = "Fastest change of the bend.",
+                  .unit = Unit::radian_per_second,
+                  .range = above(0),
+                  .default_text = "no limit"})
+          .field("stretch_limits", &Section::stretch_limits,
+                 {.meaning = "Smallest and largest factor on the length.", .range = above_up_to(0, 100)})
+          .check([](const Section& section, Reader& reader) {
+            if (section.stretch_limits[0] > section.stretch_limits[1]) {
+              reader.problem_at("stretch_limits", "expected the smaller factor first");
+            }
+          });
+  return table;
+}
+
+const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
+  static const auto table =
+      Table<ShapeConfig>("shape",
+                         "A shape of the arm: its bends in one of three ways, and its stretches. "
+                         "What is left out is straight and unstretched.")
+          .field("cord_angles", &ShapeConfig::cord_angles,
+                 {.meaning = "Planar arms: the angle of each section's cord from +X, counter-clockwise.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .default_text = "not set"})
+          .field("archings", &ShapeConfig::archings,
+                 {.meaning = "Planar arms: each section's arching, half its bend, counter-clockwise.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .default_text = "not set"})
+          .field("bends", &ShapeConfig::bends,
+                 {.meaning =
+                      "Each section's bend vector: the bend towards the x and the y of its own base frame.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .default_text = "not set"})
+          .field("stretches", &ShapeConfig::stretches,
+                 {.meaning = "The factor on each section's length.",
+                  .range = above_up_to(0, 100),
+                  .default_text = "1 each"});
+  return table;
+}
+
+const Table<BaseConfig>& fields_of(const BaseConfig*) {
+  static const auto table =
+      Table<BaseConfig>("base", "Where the arm stands in the world: by default in the origin, along +Y.")
+          .field(
+              "position", &BaseConfig::position,
+              {.meaning = "Where the arm starts: X, Y, Z.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+          .field("tangent", &BaseConfig::tangent,
+                 {.meaning = "Planar arms: the angle of the straight arm from +X, counter-clockwise.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .default_text = "pi/2"})
+          .field(
+              "rotation", &BaseConfig::rotation,
+              {.meaning =
+                   "Spatial arms: unit quaternion (w, x, y, z) that turns the base's axes into the world's; "
+                   "the straight arm runs along the base's z.",
+               .range = between(-2, 2),
+               .default_text = "z along +Y, x along +X"})
+          .check([](const BaseConfig& base, Reader& reader) {
+            if (base.rotation && std::abs(norm(*base.rotation) - 1.0) > quaternion_norm_tolerance) {
+              reader.problem_at("rotation",
+                                fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)",
+                                            norm(*base.rotation)));
+            }
+          });
+  return table;
+}
+
+const Table<ArmConfig>& fields_of(const ArmConfig*) {
+  static const auto table =
+      Table<ArmConfig>("arm",
+                       "The arm: what it is made of, where it stands, and the shape in which it starts.")
+          .field("kind", &ArmConfig::kind,
+                 {.meaning =
+                      "Whether the arm bends in the XOY plane only, as the paper's, or in any direction."})
+          .field("base", &ArmConfig::base, {.meaning = "Where the arm stands."})
+          .field("initial", &ArmConfig::initial, {.meaning = "The shape in which the arm starts."})
+          .field("section", &ArmConfig::section,
+                 {.meaning = "the arm's sections, base first, as tables [[arm.section]]",
+                  .count = {1, max_sections},
+                  .required = true})
+          .check(check_arm);
+  return table;
+}
+
+void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, const std::string& path,
+                 Reader& reader) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  const int ways = (shape.cord_angles ? 1 : 0) + (shape.archings ? 1 : 0) + (shape.bends ? 1 : 0);
+  if (ways > 1) {
+    reader.problem_at(path,
+                      "says the bends in more than one way: expected one of cord_angles, archings, bends");
+  }
+  for (const auto& [name, values] :
+       {std::pair{"cord_angles", &shape.cord_angles}, std::pair{"archings", &shape.archings}}) {
+    if (!*values) continue;
+    const std::string place = prefix + name;
+    if (kind == ArmKind::spatial)
+      reader.problem_at(place, "is for planar arms: expected bends for a spatial one");
+    check_count((*values)->size(), sections, place, reader);
+  }
+  if (shape.bends) {
+    check_count(shape.bends->size(), sections, prefix + "bends", reader);
+    for (std::size_t i = 0; kind == ArmKind::planar && i < shape.bends->size(); ++i) {
+      if ((*shape.bends)[i][1] == 0.0) continue;
+      reader.problem_at(fmt::format("{}bends[{}]", prefix, i),
+                        "leaves the plane: expected bend_y = 0 for a planar arm");
+    }
+  }
+  if (shape.stretches) check_count(shape.stretches->size(), sections, prefix + "stretches", reader);
+}
+
+Arm ArmConfig::arm() const {
+  Arm arm;
+  arm.kind = kind;
+  arm.sections = section;
+  arm.X_WB.position = Eigen::Vector3d(base.position[0], base.position[1], base.position[2]);
+  if (kind == ArmKind::planar && base.tangent) {
+    const double c = std::cos(*base.tangent);
+    const double s = std::sin(*base.tangent);
+    // The columns are B's axes: z along the tangent, x to its right in the plane, y along -Z.
+    arm.X_WB.rotation << s, 0, c, -c, 0, s, 0, -1, 0;
+  } else if (base.rotation) {
+    const auto& q = *base.rotation;
+    arm.X_WB.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  }
+  return arm;
+}
+
+}  // namespace flexura

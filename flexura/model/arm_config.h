@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// The angles that files and requests take, rad: many turns, and small enough that their sums stay exact.
+inline constexpr Range angle_range = {.min = -1e4, .max = 1e4};
+
+/// A shape of the arm as a person writes it: one of three ways to say the bends, and the stretches. What it
+/// means for a given arm is `kinematics/shape.h`'s to say. Nothing written is the straight, unstretched arm.
+struct ShapeConfig {
+  std::optional<std::vector<double>> cord_angles;           ///< rad, from +X; planar arms.
+  std::optional<std::vector<double>> archings;              ///< rad, counter-clockwise; planar arms.
+  std::optional<std::vector<std::array<double, 2>>> bends;  ///< rad, (bend_x, bend_y) each.
+  std::optional<std::vector<double>> stretches;             ///< Factors on the sections' lengths.
+};
+
+/// Where the arm stands.
+struct BaseConfig {
+  std::array<double, 3> position = {0, 0, 0};  ///< p_WB, m.
+  std::optional<double>
+      tangent;  ///< Planar arms: angle of the base's tangent from +X, rad; pi/2 when left out.
+  std::optional<std::array<double, 4>> rotation;  ///< Spatial arms: quaternion (w, x, y, z) of R_WB.
+};
+
+/// The table [arm] of a file.
+struct ArmConfig {
+  ArmKind kind = ArmKind::planar;
+  BaseConfig base;
+  ShapeConfig initial;
+  std::vector<Section> section;
+
+  /// The arm it describes.
+  [[nodiscard]] Arm arm() const;
+};
+
+const std::vector<std::string>& names_of(const ArmKind*);
+const Table<Section>& fields_of(const Section*);
+const Table<ShapeConfig>& fields_of(const ShapeConfig*);
+const Table<BaseConfig>& fields_of(const BaseConfig*);
+const Table<ArmConfig>& fields_of(const ArmConfig*);
+
+/// Reports to `reader` what keeps the shape at `path` ("initial"; "" is the current place) from fitting an
+/// arm of this kind and number of sections: two ways at once, wrong counts, planar words for a spatial arm,
+/// bends out of the plane.
+void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, const std::string& path,
+                 Reader& reader);
+
+}  // namespace flexura

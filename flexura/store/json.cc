@@ -1,0 +1,131 @@
+#include "flexura/store/json.h"
+
+#include <fmt/format.h>
+
+// Only this file sees nlohmann/json (docs/architecture.md, "Heavy headers").
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/source.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t max_depth = 64;
+
+SourcePosition position_of(std::string_view text, std::size_t byte,
+                           const std::shared_ptr<const std::string>& source) {
+  const std::size_t at = std::min(byte, text.size());
+  const std::string_view before = text.substr(0, at);
+  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+  return {source, static_cast<int>(std::ranges::count(before, '\n')) + 1,
+          static_cast<int>(at - line_start) + 1};
+}
+
+// Builds nodes from nlohmann's events, which, unlike its documents, show a key given twice. The events carry
+// no positions, so what is wrong later is named by its path; the document's own position is its start.
+class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  NodeBuilder(std::string_view text, const std::string& source)
+      : text_(text), source_(std::make_shared<const std::string>(source)) {}
+
+  bool null() override { return add({}); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(std::int64_t value) override { return add(value); }
+  bool number_unsigned(std::uint64_t value) override {
+    if (std::in_range<std::int64_t>(value)) return add(static_cast<std::int64_t>(value));
+    return add(static_cast<double>(value));
+  }
+  bool number_float(double value, const std::string&) override { return add(value); }
+  bool string(std::string& value) override { return add(std::move(value)); }
+  bool binary(nlohmann::json::binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Node::Table{}); }
+  bool start_array(std::size_t) override { return open(Node::Array{}); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(std::string& name) override {
+    if (open_.back()->find(name) != nullptr)
+      throw InputError({{start(), fmt::format("key \"{}\" is given twice", name)}});
+    open_.back()->as<Node::Table>()->push_back({std::move(name), start(), {}});
+    return true;
+  }
+  bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception& error) override {
+    // nlohmann's text: "[json.exception.parse_error.101] parse error at line 1, column 5: ...".
+    std::string_view what = error.what();
+    if (const auto colon = what.find(": "); colon != std::string_view::npos) what.remove_prefix(colon + 2);
+    throw InputError(
+        {{position_of(text_, byte == 0 ? 0 : byte - 1, source_), fmt::format("not JSON: {}", what)}});
+  }
+
+  Node take() { return std::move(root_); }
+
+ private:
+  [[nodiscard]] SourcePosition start() const { return {source_, 1, 1}; }
+
+  Node* place(Node node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return &root_;
+    }
+    if (auto* entries = open_.back()->as<Node::Array>()) return &entries->emplace_back(std::move(node));
+    Node& slot = open_.back()->as<Node::Table>()->back().node;
+    slot = std::move(node);
+    return &slot;
+  }
+  bool add(Node::Value value) { return place({std::move(value), start()}) != nullptr; }
+  bool open(Node::Value value) {
+    if (open_.size() == max_depth) {
+      throw InputError({{start(), fmt::format("nested more than {} deep", max_depth)}});
+    }
+    // Pointers to the open nodes stay valid: a container grows only while its last entry is complete.
+    open_.push_back(place({std::move(value), start()}));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::string_view text_;
+  std::shared_ptr<const std::string> source_;
+  Node root_;
+  std::vector<Node*> open_;
+};
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Node& node) {
+  if (const auto* value = node.as<bool>()) return *value;
+  if (const auto* value = node.as<std::int64_t>()) return *value;
+  if (const auto* value = node.as<double>()) return *value;
+  if (const auto* value = node.as<std::string>()) return *value;
+  if (const auto* entries = node.as<Node::Array>()) {
+    Json array = Json::array();
+    for (const Node& entry : *entries) array.push_back(to_json(entry));
+    return array;
+  }
+  if (const auto* members = node.as<Node::Table>()) {
+    Json object = Json::object();
+    for (const Node::Member& member : *members) object[member.key] = to_json(member.node);
+    return object;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Node parse_json(std::string_view text, const std::string& source) {
+  NodeBuilder builder(text, source);
+  nlohmann::json::sax_parse(text, &builder);
+  return builder.take();
+}
+
+std::string write_json(const Node& node, int indent) {
+  // Bytes that are not UTF-8 (a file name, say) are shown as U+FFFD rather than lost as an exception.
+  return to_json(node).dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace flexura

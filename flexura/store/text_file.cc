@@ -1,0 +1,56 @@
+#include "flexura/store/text_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "flexura/base/source.h"
+
+namespace flexura {
+
+std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw input_error(file.string(), "no such file");
+  if (std::filesystem::is_directory(status)) throw input_error(file.string(), "is a folder: expected a file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
+  // Read in pieces up to the bound: what is no regular file (a pipe, /dev/zero) does not tell its size.
+  std::string text;
+  std::string piece(std::size_t{64} << 10, '\0');
+  while (stream && text.size() <= max_bytes) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) throw input_error(file.string(), "cannot be read to its end");
+  if (text.size() > max_bytes) {
+    throw input_error(file.string(),
+                      fmt::format("is larger than {} MiB: expected a smaller file", max_bytes >> 20));
+  }
+  return text;
+}
+
+void write_new_file(const std::filesystem::path& file, std::string_view text) {
+  const auto fail = [&] {
+    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+  };
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (descriptor < 0) fail();
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      ::close(descriptor);
+      fail();
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::close(descriptor) != 0) fail();
+}
+
+}  // namespace flexura

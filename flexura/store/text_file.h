@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace flexura {
+
+/// The bytes of a file. Throws InputError when it cannot be read, is no regular file or holds more than
+/// `max_bytes`.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+/// Writes a new file whole; std::runtime_error with the path when it exists already or cannot be written.
+void write_new_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace flexura

@@ -1,0 +1,157 @@
+#include "flexura/store/toml.h"
+
+#include <fmt/format.h>
+
+// Only this file sees toml++ (docs/architecture.md, "Heavy headers").
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml_depth.h"
+
+namespace flexura {
+namespace {
+
+using Source = std::shared_ptr<const std::string>;
+
+SourcePosition position(const Source& source, const toml::source_position& at) {
+  return {source, static_cast<int>(at.line), static_cast<int>(at.column)};
+}
+
+template <class T>
+Node::Other other(const char* kind, const T& value) {
+  std::ostringstream text;
+  text << value;
+  return {fmt::format("the {} {}", kind, text.str())};
+}
+
+Node convert(const toml::node& node, const Source& source) {
+  Node result{{}, position(source, node.source().begin)};
+  if (const auto* table = node.as_table()) {
+    Node::Table members;
+    members.reserve(table->size());
+    for (const auto& [key, value] : *table) {
+      members.push_back(
+          {std::string(key.str()), position(source, key.source().begin), convert(value, source)});
+    }
+    // toml++ keeps keys in alphabetical order; a person reads errors in the order of the file.
+    std::ranges::stable_sort(members, [](const Node::Member& a, const Node::Member& b) {
+      return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
+    });
+    result.value = std::move(members);
+  } else if (const auto* array = node.as_array()) {
+    Node::Array entries;
+    entries.reserve(array->size());
+    for (const auto& value : *array) entries.push_back(convert(value, source));
+    result.value = std::move(entries);
+  } else if (const auto* boolean = node.as_boolean()) {
+    result.value = boolean->get();
+  } else if (const auto* whole = node.as_integer()) {
+    result.value = whole->get();
+  } else if (const auto* real = node.as_floating_point()) {
+    result.value = real->get();
+  } else if (const auto* text = node.as_string()) {
+    result.value = text->get();
+  } else if (const auto* date = node.as_date()) {
+    result.value = other("date", date->get());
+  } else if (const auto* time = node.as_time()) {
+    result.value = other("time", time->get());
+  } else if (const auto* date_time = node.as_date_time()) {
+    result.value = other("date", date_time->get());
+  }
+  return result;
+}
+
+constexpr int max_include_depth = 8;
+
+void lay_upon_includes(Node& document, const std::filesystem::path& file, int depth);
+
+Node read_with_includes(const std::filesystem::path& file, int depth) {
+  Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string());
+  lay_upon_includes(document, file, depth);
+  return document;
+}
+
+// The file an include names, checked to lie under `folder` once links are resolved.
+std::filesystem::path included_file(const Node& entry, const std::filesystem::path& folder) {
+  const auto fail = [&](const std::string& what) { throw InputError({{entry.where, "include: " + what}}); };
+  const auto* name = entry.as<std::string>();
+  if (name == nullptr || name->empty()) fail("expected file names in quotes");
+  if (name->find('\0') != std::string::npos) fail("a file name holds no zero byte");
+  std::error_code error;
+  const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
+  const auto target = std::filesystem::weakly_canonical(root / *name, error);
+  if (error) fail(fmt::format("cannot read \"{}\": {}", *name, error.message()));
+  const auto from_root = target.lexically_relative(root);
+  if (from_root.empty() || *from_root.begin() == "..") {
+    fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", *name));
+  }
+  if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("no file \"{}\"", *name));
+  return folder / *name;
+}
+
+void lay_upon_includes(Node& document, const std::filesystem::path& file, int depth) {
+  const Node* include = document.find("include");
+  if (include == nullptr) return;
+  const auto* names = include->as<Node::Array>();
+  if (names == nullptr) throw InputError({{include->where, "include: expected an array of file names"}});
+  if (depth == max_include_depth) {
+    throw InputError(
+        {{include->where,
+          fmt::format("include: more than {} files deep; does a file include itself?", max_include_depth)}});
+  }
+  Node below{Node::Table{}, document.where};
+  for (const Node& name : *names) {
+    merge(below, read_with_includes(included_file(name, file.parent_path()), depth + 1));
+  }
+  auto& members = *document.as<Node::Table>();
+  std::erase_if(members, [](const Node::Member& member) { return member.key == "include"; });
+  merge(below, std::move(document));
+  document = std::move(below);
+}
+
+}  // namespace
+
+Node parse_toml(std::string_view text, const std::string& source) {
+  check_toml_depth(text, source);
+  try {
+    const toml::table table = toml::parse(text, source);
+    Node document = convert(table, std::make_shared<const std::string>(source));
+    document.where.line = document.where.column = 1;
+    return document;
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    throw input_error(source, std::string(error.description()), static_cast<int>(at.line),
+                      static_cast<int>(at.column));
+  }
+}
+
+Node parse_toml_value(std::string_view text, const std::string& source, int line, int column) {
+  const SourcePosition where{std::make_shared<const std::string>(source), line, column};
+  const bool is_word =
+      !text.empty() &&
+      std::ranges::all_of(text, [](unsigned char c) { return std::isalpha(c) || c == '_' || c == '-'; }) &&
+      text != "true" && text != "false" && text != "inf" && text != "nan" && text != "-inf" && text != "-nan";
+  if (is_word) return {std::string(text), where};
+  Node document;
+  try {
+    document = parse_toml(fmt::format("value = {}", text), source);
+  } catch (const InputError& error) {
+    throw InputError({{where, error.problems().front().what}});
+  }
+  const auto* members = document.as<Node::Table>();
+  if (members->size() != 1) throw InputError({{where, "expected one value"}});
+  Node value = members->front().node;
+  value.where = where;
+  return value;
+}
+
+Node read_toml_file(const std::filesystem::path& file) { return read_with_includes(file, 0); }
+
+}  // namespace flexura

@@ -19,9 +19,7 @@ struct Pose {
     return position + rotation * p_BP;
   }
   /// X_BA.
-  [[nodiscard]] Pose inverse() const {
-    return {rotation.transpose(), -(rotation.transpose() * position)};
-  }
+  [[nodiscard]] Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
 };
 
 /// The unit quaternion (w, x, y, z) of a rotation matrix, with w >= 0 (q and -q are the same rotation).

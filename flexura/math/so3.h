@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace flexura {
+
+/// [w]x: skew(w) * v is w cross v.
+[[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& w);
+
+/// The rotation by |w| rad about w (Rodrigues), smooth through w = 0.
+[[nodiscard]] Eigen::Matrix3d so3_exp(const Eigen::Vector3d& w);
+
+/// The rotation vector of `rotation`, rad, of norm at most pi; of the two at a half turn, the one whose first
+/// component that is not zero is positive.
+[[nodiscard]] Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
+
+/// J with omega = J * dw/dt, where omega is the angular velocity of so3_exp(w) in the fixed frame
+/// (left Jacobian: I + (1 - cos t)/t^2 [w]x + (t - sin t)/t^3 [w]x^2, t = |w|).
+[[nodiscard]] Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& w);
+
+}  // namespace flexura

@@ -1,0 +1,71 @@
+#include "flexura/model/backbone.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "flexura/math/series.h"
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+void require_one_entry_a_section(const Arm& arm, const ArmState& state) {
+  const std::size_t count = arm.sections.size();
+  if (count == 0) throw std::invalid_argument("an arm needs at least one section");
+  if (state.bends.size() == count && state.stretches.size() == count) return;
+  throw std::invalid_argument(fmt::format("an arm of {} sections cannot take {} bends and {} stretches",
+                                          count, state.bends.size(), state.stretches.size()));
+}
+
+void require_usable(const Arc& arc, std::size_t index) {
+  if (!arc.bend.allFinite()) {
+    throw std::invalid_argument(
+        fmt::format("section {}: the bend ({}, {}) is not finite", index, arc.bend.x(), arc.bend.y()));
+  }
+  if (!(arc.length > 0.0) || !std::isfinite(arc.length)) {
+    throw std::invalid_argument(
+        fmt::format("section {}: the stretched length {} is not a positive number", index, arc.length));
+  }
+}
+
+}  // namespace
+
+Pose arc_pose(const Eigen::Vector2d& bend, double length) {
+  const double t = bend.norm();
+  const double across = length * cosc(t);
+  return {so3_exp({-bend.y(), bend.x(), 0.0}), {across * bend.x(), across * bend.y(), length * sinc(t)}};
+}
+
+Pose Arc::pose(double distance) const { return X_WS * arc_pose(bend * (distance / length), distance); }
+
+Backbone::Backbone(const Arm& arm, const ArmState& state) : X_WT_(arm.X_WB) {
+  require_one_entry_a_section(arm, state);
+  arcs_.reserve(arm.sections.size());
+  double s = 0.0;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const Arc& arc =
+        arcs_.emplace_back(Arc{X_WT_, s, arm.sections[i].length * state.stretches[i], state.bends[i]});
+    require_usable(arc, i);
+    X_WT_ = arc.pose(arc.length);
+    s += arc.length;
+  }
+}
+
+double Backbone::length() const { return arcs_.back().s + arcs_.back().length; }
+
+Pose Backbone::pose(double s) const {
+  const double tolerance = 1e-12 * length();
+  if (!(s >= -tolerance && s <= length() + tolerance)) {
+    throw std::out_of_range(fmt::format("arc length {} is outside [0, {}]", s, length()));
+  }
+  if (s <= 0.0) return arcs_.front().X_WS;
+  if (s >= length()) return X_WT_;
+  const auto next = std::ranges::upper_bound(arcs_, s, {}, &Arc::s);
+  const Arc& arc = *(next - 1);
+  return arc.pose(s - arc.s);
+}
+
+}  // namespace flexura

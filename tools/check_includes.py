@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Checks that every folder of flexura/ includes and links only folders on a strictly lower floor.
+
+usage: check_includes.py [ROOT]
+
+ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
+an include or a link that goes up or sideways or past the list, a folder that the list lacks, and a
+folder of the list without its flexura_folder(NAME ...).
+"""
+
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+LINK = re.compile(r"\bflexura::(\w+)")
+
+
+def read_floors(path):
+    """The floor of each folder in a floors.txt, by folder."""
+    floors = {}
+    for line in path.read_text().splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            floor, folder = words
+            floors[folder] = int(floor)
+    return floors
+
+
+def may_lean_on(floors, folder, other):
+    return other == folder or (other in floors and floors[other] < floors[folder])
+
+
+def check_source(root, floors, folder, source):
+    for number, line in enumerate(source.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match or match[1].startswith("embedded/"):
+            continue
+        if match[1].startswith("tests/") and source.stem.endswith(("_test", "_fuzz")):
+            continue
+        where = f"{source.relative_to(root)}:{number}"
+        parts = match[1].split("/")
+        if parts[0] != "flexura" or len(parts) < 3:
+            yield f'{where}: "{match[1]}" is not written "flexura/FOLDER/FILE"'
+        elif parts[1] not in floors:
+            yield f"{where}: {parts[1]} is not in flexura/floors.txt"
+        elif not may_lean_on(floors, folder, parts[1]):
+            yield (f"{where}: {folder} (floor {floors[folder]}) may not include "
+                   f"{parts[1]} (floor {floors[parts[1]]})")
+
+
+def check_target(root, floors, folder):
+    path = root / "flexura" / folder / "CMakeLists.txt"
+    text = path.read_text() if path.exists() else ""
+    call = re.search(rf"\bflexura_folder\(\s*{folder}\b([^)]*)\)", text)
+    if not call:
+        yield f"{path.relative_to(root)}: flexura_folder({folder} ...) is missing"
+        return
+    for other in LINK.findall(call[1]):
+        if not may_lean_on(floors, folder, other):
+            yield f"{path.relative_to(root)}: {folder} may not link {other}"
+
+
+def problems(root):
+    """What is wrong in the tree at `root`, a line each."""
+    floors = read_floors(root / "flexura/floors.txt")
+    for folder in sorted(entry.name for entry in (root / "flexura").iterdir() if entry.is_dir()):
+        if folder not in floors:
+            yield f"flexura/{folder} is not in flexura/floors.txt"
+    for folder in floors:
+        yield from check_target(root, floors, folder)
+        for source in sorted((root / "flexura" / folder).rglob("*")):
+            if source.suffix in (".cc", ".h"):
+                yield from check_source(root, floors, folder, source)
+
+
+def main():
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+    found = list(problems(root))
+    print(*found, sep="\n", end="\n" if found else "")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

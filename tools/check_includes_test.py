@@ -1,0 +1,73 @@
+"""Tests of check_includes.py on a made-up tree."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import check_includes
+
+
+class CheckIncludes(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        self.write("flexura/floors.txt", "# floor folder\n0 base\n1 left\n1 right\n2 top\n")
+        self.write("flexura/base/CMakeLists.txt", "flexura_folder(base LINKS fmt::fmt)")
+        self.write("flexura/left/CMakeLists.txt", "flexura_folder(left LINKS flexura::base)")
+        self.write("flexura/right/CMakeLists.txt", "flexura_folder(right LINKS flexura::base)")
+        self.write("flexura/top/CMakeLists.txt", "flexura_folder(top LINKS flexura::left\n  flexura::base)")
+        self.write("flexura/base/a.h", "#include <vector>\n")
+        self.write("flexura/left/b.cc", '#include "flexura/left/b.h"\n#include "flexura/base/a.h"\n')
+        self.write("flexura/top/c_test.cc", '#include "flexura/left/b.h"\n#include "tests/support/folder.h"\n')
+
+    def write(self, path, text):
+        target = self.root / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text)
+
+    def problems(self):
+        return list(check_includes.problems(self.root))
+
+    def test_a_tree_that_only_looks_down_passes(self):
+        self.assertEqual(self.problems(), [])
+
+    def test_an_include_upwards_is_found_with_its_line(self):
+        self.write("flexura/base/a.h", '\n#include "flexura/top/c.h"\n')
+        self.assertEqual(self.problems(), ["flexura/base/a.h:2: base (floor 0) may not include top (floor 2)"])
+
+    def test_an_include_sideways_is_found_in_a_subfolder_too(self):
+        self.write("flexura/left/deep/d.h", '#  include "flexura/right/e.h"\n')
+        self.assertEqual(
+            self.problems(), ["flexura/left/deep/d.h:1: left (floor 1) may not include right (floor 1)"])
+
+    def test_an_include_relative_to_the_file_is_found(self):
+        self.write("flexura/left/b.cc", '#include "../right/e.h"\n')
+        self.assertEqual(
+            self.problems(), ['flexura/left/b.cc:1: "../right/e.h" is not written "flexura/FOLDER/FILE"'])
+
+    def test_what_the_tests_share_stays_out_of_the_library(self):
+        self.write("flexura/top/c.cc", '#include "tests/support/folder.h"\n')
+        self.assertEqual(self.problems(), [
+            'flexura/top/c.cc:1: "tests/support/folder.h" is not written "flexura/FOLDER/FILE"'])
+
+    def test_an_unlisted_folder_is_found_and_so_is_its_use(self):
+        self.write("flexura/top/c_test.cc", '#include "flexura/cellar/x.h"\n')
+        self.write("flexura/cellar/x.h", "")
+        self.assertEqual(self.problems(), [
+            "flexura/cellar is not in flexura/floors.txt",
+            "flexura/top/c_test.cc:1: cellar is not in flexura/floors.txt",
+        ])
+
+    def test_a_listed_folder_without_its_target_is_found(self):
+        self.write("flexura/right/CMakeLists.txt", "add_library(right right.cc)")
+        self.assertEqual(
+            self.problems(), ["flexura/right/CMakeLists.txt: flexura_folder(right ...) is missing"])
+
+    def test_a_link_sideways_is_found(self):
+        self.write("flexura/left/CMakeLists.txt", "flexura_folder(left LINKS\n flexura::base flexura::right)")
+        self.assertEqual(self.problems(), ["flexura/left/CMakeLists.txt: left may not link right"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -10,6 +10,7 @@ files named by the hash of all that, under $FLEXURA_TIDY_CACHE (default ~/.cache
 """
 
 import argparse
+import functools
 import hashlib
 import json
 import os
@@ -45,10 +46,15 @@ def reached(source, folders):
     return files
 
 
+@functools.cache
+def tidy_version():
+    return subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout
+
+
 def key(command, files):
     """Names what clang-tidy's answer depends on, the same wherever the project lies."""
     digest = hashlib.sha256()
-    digest.update(subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout)
+    digest.update(tidy_version())
     digest.update(command.replace(str(ROOT), "").encode())
     for file in [ROOT / ".clang-tidy", *sorted(files)]:
         digest.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")

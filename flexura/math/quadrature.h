@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace flexura {
+
+/// Nodes and weights of a rule on [-1, 1].
+struct Quadrature {
+  std::vector<double> nodes;
+  std::vector<double> weights;
+};
+
+/// The Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1;
+/// std::invalid_argument for fewer than one.
+[[nodiscard]] Quadrature gauss_legendre(int points);
+
+/// The integral of f over [a, b], cut into `panels` >= 1 equal parts with `rule` in each. f takes a double
+/// and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).
+template <typename Function>
+[[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {
+  const double half = 0.5 * (b - a) / panels;
+  decltype(f(a)) sum = 0.0 * f(a);
+  for (int panel = 0; panel < panels; ++panel) {
+    const double middle = a + (2 * panel + 1) * half;
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      sum += half * rule.weights[i] * f(middle + half * rule.nodes[i]);
+    }
+  }
+  return sum;
+}
+
+}  // namespace flexura

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace flexura {
+
+/// Random numbers for tests, the same on every platform (the distributions of <random> are not).
+class TestRandom {
+ public:
+  explicit TestRandom(std::uint64_t seed) : engine_(seed) {}
+
+  /// In [low, high).
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+  /// In [low, high], both included.
+  int integer(int low, int high) {
+    return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  /// Each component in [low, high).
+  template <int n>
+  Eigen::Vector<double, n> vector(double low, double high) {
+    Eigen::Vector<double, n> result;
+    for (double& component : result) component = uniform(low, high);
+    return result;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// The seed of a test's case: FNV-1a of the test's full name, plus the case's number.
+inline std::uint64_t case_seed(int index) {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : std::string(test->test_suite_name()) + "." + test->name()) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  }
+  return hash + static_cast<std::uint64_t>(index);
+}
+
+/// Calls body(TestRandom&) for `count` cases; stops at the first that fails, whose seed the failure shows.
+template <typename Body>
+void for_random_cases(int count, Body&& body) {
+  for (int index = 0; index < count && !testing::Test::HasFailure(); ++index) {
+    const std::uint64_t seed = case_seed(index);
+    SCOPED_TRACE("random case " + std::to_string(index) + ", seed " + std::to_string(seed));
+    TestRandom random(seed);
+    body(random);
+  }
+}
+
+}  // namespace flexura

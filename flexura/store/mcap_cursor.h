@@ -1,0 +1,55 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "flexura/store/mcap_records.h"
+
+namespace flexura {
+
+/// A stretch of a log that is read from its start. Every step is checked against the stretch's end, and
+/// throws std::runtime_error with the log's name and the byte in the log when it does not fit.
+class McapCursor {
+ public:
+  McapCursor(std::span<const std::byte> log, const std::string& name)
+      : log_(log), name_(&name), end_(log.size()) {}
+
+  /// From the log's start, in bytes.
+  [[nodiscard]] std::size_t position() const { return position_; }
+  [[nodiscard]] std::size_t remaining() const { return end_ - position_; }
+  [[nodiscard]] bool done() const { return remaining() == 0; }
+  /// What is left, unread.
+  [[nodiscard]] std::span<const std::byte> rest() const { return log_.subspan(position_, remaining()); }
+  /// The whole log from byte `from` up to here.
+  [[nodiscard]] std::span<const std::byte> since(std::size_t from) const {
+    return log_.subspan(from, position_ - from);
+  }
+
+  template <std::unsigned_integral T>
+  T take() {
+    std::uint64_t value = 0;
+    const auto bytes = take_bytes(sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T); ++i) value |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+    return static_cast<T>(value);
+  }
+  std::span<const std::byte> take_bytes(std::uint64_t count) { return take_part(count).rest(); }
+  /// The next `count` bytes, as a stretch of their own.
+  McapCursor take_part(std::uint64_t count);
+  /// A text after its length.
+  std::string take_text();
+
+  /// Throws the error `what` at the current position, or at another.
+  [[noreturn]] void fail(const std::string& what) const { fail(what, position_); }
+  [[noreturn]] void fail(const std::string& what, std::size_t at) const;
+
+ private:
+  std::span<const std::byte> log_;
+  const std::string* name_;
+  std::size_t position_ = 0;
+  std::size_t end_;
+};
+
+}  // namespace flexura

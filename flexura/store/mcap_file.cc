@@ -1,0 +1,85 @@
+#include "flexura/store/mcap_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+[[noreturn]] void fail(int error, const std::string& what, const std::filesystem::path& path) {
+  throw std::system_error(error, std::generic_category(), what + " " + path.string());
+}
+
+/// Closes a descriptor when it goes out of sight.
+struct Descriptor {
+  int value;
+  explicit Descriptor(int descriptor) : value(descriptor) {}
+  ~Descriptor() {
+    if (value >= 0) ::close(value);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+};
+
+}  // namespace
+
+AppendFile::AppendFile(std::filesystem::path path) : path_(std::move(path)) {
+  constexpr mode_t everyone_but_the_umask = 0666;
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, everyone_but_the_umask);
+  if (descriptor_ < 0) fail(errno, "cannot create", path_);
+}
+
+AppendFile::~AppendFile() {
+  if (is_open()) ::close(descriptor_);
+}
+
+void AppendFile::append(std::span<const std::byte> bytes) {
+  if (!is_open()) fail(EBADF, "cannot write to", path_);
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count = ::write(descriptor_, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const int error = count < 0 ? errno : ENOSPC;
+      // A reader could live with the torn end (it looks like a killed writer's); without it the file is
+      // cleaner.
+      [[maybe_unused]] const int tried = ::ftruncate(descriptor_, static_cast<off_t>(size_));
+      ::close(std::exchange(descriptor_, -1));
+      fail(error, "cannot write to", path_);
+    }
+    written += static_cast<std::size_t>(count);
+  }
+  size_ += bytes.size();
+}
+
+void AppendFile::close() {
+  if (is_open() && ::close(std::exchange(descriptor_, -1)) != 0) fail(errno, "cannot close", path_);
+}
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  // A pipe without a writer would keep a blocking open waiting for ever.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.value < 0) fail(errno, "cannot read", path);
+  struct stat status{};
+  if (::fstat(file.value, &status) != 0) fail(errno, "cannot read", path);
+  if (S_ISDIR(status.st_mode)) fail(EISDIR, "cannot read", path);
+  if (!S_ISREG(status.st_mode)) fail(EINVAL, "not a regular file:", path);
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return;  // mmap refuses a length of zero.
+  void* const start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.value, 0);
+  if (start == MAP_FAILED) fail(errno, "cannot read", path);
+  bytes_ = {static_cast<const std::byte*>(start), size};
+}
+
+MappedFile::~MappedFile() {
+  if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+}  // namespace flexura

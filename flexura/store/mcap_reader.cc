@@ -1,0 +1,249 @@
+#include "flexura/store/mcap_reader.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "flexura/store/mcap_cursor.h"
+
+namespace flexura {
+namespace {
+
+/// Each channel holds a copy of its schema. A small log with a big schema and many channels on it, which
+/// nobody writes in earnest, must not take all the memory there is.
+constexpr std::size_t max_copied_schemas = std::size_t{64} << 20;
+
+/// A record's kind, where it starts and its content.
+struct Record {
+  McapOp op;
+  std::size_t start;
+  McapCursor content;
+};
+
+bool starts_with(std::span<const std::byte> bytes, std::string_view text) {
+  const auto expected = std::as_bytes(std::span(text));
+  return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), expected);
+}
+
+/// Foreign text for an error message: short, and harmless on a terminal.
+std::string shown(std::string text) {
+  constexpr std::size_t enough = 32;
+  if (text.size() > enough) text = text.substr(0, enough) + "...";
+  const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+  std::ranges::replace_if(text, [&](char c) { return !printable(c); }, '?');
+  return '"' + text + '"';
+}
+
+/// Kinds that have no place after the data section.
+bool is_data(McapOp op) {
+  static constexpr auto kinds = {McapOp::message,    McapOp::chunk,    McapOp::message_index,
+                                 McapOp::attachment, McapOp::metadata, McapOp::data_end};
+  return std::ranges::find(kinds, op) != kinds.end();
+}
+
+/// Whether the log was closed properly. Then a record that does not fit is damage, and not where a writer
+/// stopped.
+bool has_end(std::span<const std::byte> log) {
+  return log.size() >= 2 * mcap_magic.size() && starts_with(log.last(mcap_magic.size()), mcap_magic);
+}
+
+}  // namespace
+
+/// One pass over a log, filling a reader.
+class McapScan {
+ public:
+  McapScan(std::span<const std::byte> log, const std::string& name, McapCheck check, McapReader& to)
+      : cursor_(log, name), check_(check), has_end_(has_end(log)), to_(to) {}
+
+  void run() {
+    to_.truncated_ = true;  // Until the end is seen.
+    if (!take_magic("not an MCAP log")) return;
+    for (bool first = true; auto record = next(cursor_); first = false) {
+      if (first != (record->op == McapOp::header)) {
+        cursor_.fail("a log begins with its header, and has one", record->start);
+      }
+      if (record->op == McapOp::footer) return finish(*record);
+      take_top(*record);
+    }
+  }
+
+ private:
+  /// False when the log breaks off inside the magic bytes.
+  bool take_magic(const char* otherwise) {
+    const std::size_t length = std::min(cursor_.remaining(), mcap_magic.size());
+    if (!starts_with(cursor_.rest(), mcap_magic.substr(0, length))) cursor_.fail(otherwise);
+    cursor_.take_bytes(length);
+    return length == mcap_magic.size();
+  }
+
+  /// The next record; nothing where the log breaks off.
+  std::optional<Record> next(McapCursor& in) const {
+    const std::size_t start = in.position();
+    McapCursor ahead = in;
+    const bool header_fits = in.remaining() >= mcap_record_header;
+    if (header_fits) {
+      const auto op = McapOp{ahead.take<std::uint8_t>()};
+      const auto length = ahead.take<std::uint64_t>();
+      if (op == McapOp{0}) in.fail("no record has the kind 0");
+      if (length <= ahead.remaining()) {
+        in = ahead;
+        return Record{op, start, in.take_part(length)};
+      }
+    }
+    if (has_end_) in.fail("a record reaches past its end");
+    return std::nullopt;
+  }
+
+  void take_top(Record& record) {
+    if (data_end_ && is_data(record.op)) cursor_.fail("the data go on after their end", record.start);
+    switch (record.op) {
+      case McapOp::header:
+        record.content.take_text();  // The profile.
+        to_.library_ = record.content.take_text();
+        break;
+      case McapOp::chunk:
+        take_chunk(record.content);
+        break;
+      case McapOp::data_end:
+        take_data_end(record);
+        break;
+      default:
+        take_inner(record);  // Indexes and statistics are not needed; unknown kinds belong to others.
+    }
+  }
+
+  /// Whether the record is of a kind that chunks hold as well; then it is taken.
+  bool take_inner(Record& record) {
+    switch (record.op) {
+      case McapOp::schema:
+        take_schema(record);
+        return true;
+      case McapOp::channel:
+        take_channel(record);
+        return true;
+      case McapOp::message:
+        take_message(record);
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  void take_chunk(McapCursor& in) {
+    in.take_bytes(2 * sizeof(std::uint64_t));  // The times of the first and the last message.
+    const auto size = in.take<std::uint64_t>();
+    const auto crc = in.take<std::uint32_t>();
+    const std::size_t compression_at = in.position();
+    const std::string compression = in.take_text();
+    if (!compression.empty()) {
+      in.fail("a chunk is compressed (" + shown(compression) + "); only plain chunks are read",
+              compression_at);
+    }
+    McapCursor records = in.take_part(in.take<std::uint64_t>());
+    if (records.remaining() != size) in.fail("a plain chunk gives two sizes", records.position());
+    check_crc(crc, records.rest(), records, "a chunk's");
+    while (!records.done()) {
+      const std::size_t start = records.position();
+      const auto op = McapOp{records.take<std::uint8_t>()};
+      Record record{op, start, records.take_part(records.take<std::uint64_t>())};
+      if (!take_inner(record) && op <= McapOp::data_end) in.fail("no place for this in a chunk", start);
+    }
+  }
+
+  void take_schema(Record& record) {
+    McapCursor& in = record.content;
+    const auto id = in.take<std::uint16_t>();
+    McapSchema schema;
+    schema.name = in.take_text();
+    schema.encoding = in.take_text();
+    schema.data = in.take_text();
+    if (id == 0) return;  // Invalid, and to be ignored.
+    const auto [known, is_new] = schemas_.try_emplace(id, schema);
+    if (!is_new && known->second != schema) in.fail("a schema is defined twice, differently", record.start);
+  }
+
+  void take_channel(Record& record) {
+    McapCursor& in = record.content;
+    const auto id = in.take<std::uint16_t>();
+    const auto schema_id = in.take<std::uint16_t>();
+    McapChannel channel;
+    channel.topic = in.take_text();
+    channel.encoding = in.take_text();
+    McapCursor metadata = in.take_part(in.take<std::uint32_t>());
+    while (!metadata.done()) {
+      std::string key = metadata.take_text();
+      channel.metadata[std::move(key)] = metadata.take_text();
+    }
+    const auto schema = schemas_.find(schema_id);
+    if (schema != schemas_.end()) {
+      copied_schemas_ += schema->second.data.size();
+      if (copied_schemas_ > max_copied_schemas) in.fail("the channels' schemas take too much", record.start);
+      channel.schema = schema->second;
+    } else if (schema_id != 0) {
+      in.fail("a channel has an unknown schema, " + std::to_string(schema_id), record.start);
+    }
+    const auto [known, is_new] = to_.channels_.try_emplace(id, channel);
+    if (!is_new && known->second != channel) in.fail("a channel is defined twice, differently", record.start);
+  }
+
+  void take_message(Record& record) {
+    McapCursor& in = record.content;
+    const auto id = in.take<std::uint16_t>();
+    const auto sequence = in.take<std::uint32_t>();
+    const auto log_time = in.take<std::uint64_t>();
+    in.take_bytes(sizeof(std::uint64_t));  // When it was published.
+    const auto channel = to_.channels_.find(id);
+    if (channel == to_.channels_.end()) {
+      in.fail("a message is on an unknown channel, " + std::to_string(id), record.start);
+    }
+    to_.messages_.push_back({&channel->second, log_time, sequence, in.rest()});
+  }
+
+  void take_data_end(Record& record) {
+    const auto crc = record.content.take<std::uint32_t>();
+    McapCursor whole = cursor_;
+    data_end_ = cursor_.position();
+    check_crc(crc, whole.since(0).first(record.start), record.content, "the data section's");
+  }
+
+  void finish(Record& record) {
+    McapCursor& in = record.content;
+    if (!data_end_) in.fail("the log ends before its data do", record.start);
+    if (in.remaining() != mcap_footer_length) in.fail("a footer has 20 bytes", record.start);
+    const auto summary_start = in.take<std::uint64_t>();
+    if (summary_start != 0 && summary_start != *data_end_) {
+      in.fail("the footer does not know where the summary starts", record.start);
+    }
+    in.take_bytes(sizeof(std::uint64_t));  // Where the summary's offsets start.
+    const auto summary = in.since(*data_end_);
+    check_crc(in.take<std::uint32_t>(), summary, in, "the summary's");
+    if (!take_magic("the log's last bytes are wrong")) return;
+    if (!cursor_.done()) cursor_.fail("the log goes on after its end");
+    to_.truncated_ = false;
+  }
+
+  void check_crc(std::uint32_t expected, std::span<const std::byte> bytes, const McapCursor& where,
+                 const std::string& whose) const {
+    constexpr std::uint32_t not_given = 0;
+    if (check_ == McapCheck::structure || expected == not_given) return;
+    if (mcap_crc(0, bytes) != expected) where.fail(whose + " CRC is wrong");
+  }
+
+  McapCursor cursor_;
+  McapCheck check_;
+  bool has_end_;
+  std::optional<std::size_t> data_end_;  ///< Where the data section's last record ends.
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::size_t copied_schemas_ = 0;  ///< Bytes.
+  McapReader& to_;
+};
+
+McapReader::McapReader(const std::filesystem::path& path, McapCheck check)
+    : file_(std::make_unique<const MappedFile>(path)) {
+  McapScan(file_->bytes(), path.string(), check, *this).run();
+}
+
+McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check) {
+  McapScan(bytes, name, check, *this).run();
+}
+
+}  // namespace flexura

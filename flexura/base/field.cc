@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-std::string Range::text(const UnitSpelling& spelling) const {
+std::string NumberRange::text(const UnitSpelling& spelling) const {
   const auto shown = [&](double bound) {
     return fmt::format("{:.12g}{}{}", bound / spelling.factor, spelling.symbol.empty() ? "" : " ",
                        spelling.symbol);

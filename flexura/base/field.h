@@ -13,7 +13,7 @@ namespace flexura {
 struct TableInfo;
 
 /// The numbers a field takes, in base units. The default takes every finite number.
-struct Range {
+struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool open_min = false;  ///< min itself is out.
@@ -25,10 +25,10 @@ struct Range {
   [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
 };
 
-[[nodiscard]] inline Range above(double min) { return {.min = min, .open_min = true}; }
-[[nodiscard]] inline Range at_least(double min) { return {.min = min}; }
-[[nodiscard]] inline Range between(double min, double max) { return {.min = min, .max = max}; }
-[[nodiscard]] inline Range above_up_to(double min, double max) {
+[[nodiscard]] inline NumberRange above(double min) { return {.min = min, .open_min = true}; }
+[[nodiscard]] inline NumberRange at_least(double min) { return {.min = min}; }
+[[nodiscard]] inline NumberRange between(double min, double max) { return {.min = min, .max = max}; }
+[[nodiscard]] inline NumberRange above_up_to(double min, double max) {
   return {.min = min, .max = max, .open_min = true};
 }
 
@@ -40,9 +40,9 @@ struct Count {
 
 /// What the table of fields says about one field, beside the member it fills.
 struct Spec {
-  std::string meaning;
+  std::string meaning = {};
   Unit unit = Unit::none;
-  Range range = {};
+  NumberRange range = {};
   Count count = {};  ///< Of the outermost array.
   bool required = false;
   bool one_for_all = false;  ///< An array of fixed size may be written as one number, meant for every entry.
@@ -71,7 +71,7 @@ struct FieldInfo {
 /// A table of fields without its struct.
 struct TableInfo {
   std::string name;
-  std::string meaning;
+  std::string meaning = {};
   std::vector<FieldInfo> fields;
 
   [[nodiscard]] const FieldInfo* find(std::string_view field_name) const;

@@ -65,6 +65,15 @@ Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(
 
 std::string Node::brief() const { return std::visit(BriefVisitor{}, value); }
 
+std::string Node::literal() const {
+  if (as<Table>() != nullptr) return "its fields' defaults";
+  const auto* entries = as<Array>();
+  if (entries == nullptr) return brief();
+  std::string text;
+  for (const Node& entry : *entries) text += (text.empty() ? "" : ", ") + entry.literal();
+  return "[" + text + "]";
+}
+
 void merge(Node& under, Node over) {
   auto* below = under.as<Node::Table>();
   auto* above = over.as<Node::Table>();

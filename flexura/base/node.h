@@ -42,6 +42,9 @@ struct Node {
 
   /// Short text for messages: the value itself, or what kind of value it is ("an array", "a table").
   [[nodiscard]] std::string brief() const;
+  /// The value as one writes it, arrays in full: "[0.02, 0.02]". A table is "its fields' defaults", as this
+  /// serves the description of defaults.
+  [[nodiscard]] std::string literal() const;
 };
 
 struct Node::Member {

@@ -44,7 +44,7 @@ class Table {
     FieldInfo info{std::move(name), Codec<M>::type(), std::move(spec), {}};
     if (!info.spec.required) {
       const Node written = Codec<M>::write(S{}.*member);
-      info.default_text = info.spec.default_text.empty() ? written.brief() : info.spec.default_text;
+      info.default_text = info.spec.default_text.empty() ? written.literal() : info.spec.default_text;
     }
     info_.fields.push_back(std::move(info));
     bindings_.push_back({[member](const Node& node, const Spec& s, Reader& reader, S& value) {

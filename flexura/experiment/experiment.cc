@@ -14,7 +14,7 @@ namespace flexura {
 namespace {
 
 constexpr double max_duration = 1e6;  // s
-constexpr double max_steps = 1e7;
+constexpr double max_steps = 1e6;
 constexpr std::size_t max_tasks = 10000;
 
 void check_experiment(const Experiment& experiment, Reader& reader) {

@@ -134,12 +134,14 @@ void write_report(const std::filesystem::path& folder, const ReportData& data) {
 RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder, Progress& progress) {
   Experiment experiment = as_read;
   experiment.flexura = version();
-  if (experiment.task.empty()) throw InputError({{{}, "nothing to do: expected at least one [[task]]"}});
+  if (experiment.task.empty())
+    throw InputError(std::vector<Problem>{{{}, "nothing to do: expected at least one [[task]]"}});
   write_new_file(folder / experiment_file_name, experiment_toml(experiment));
 
   const Arm arm = experiment.arm.arm();
   const Schedule schedule(experiment);
-  RunResult result{.folder = folder};
+  RunResult result;
+  result.folder = folder;
   Witness witness(folder, arm, schedule);
   for (const Violation& violation : schedule.violations(arm)) {
     result.outcome = Outcome::unsafe;

@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// The angles that files and requests take, rad: many turns, and small enough that their sums stay exact.
-inline constexpr Range angle_range = {.min = -1e4, .max = 1e4};
+inline constexpr NumberRange angle_range = {.min = -1e4, .max = 1e4};
 
 /// A shape of the arm as a person writes it: one of three ways to say the bends, and the stretches. What it
 /// means for a given arm is `kinematics/shape.h`'s to say. Nothing written is the straight, unstretched arm.

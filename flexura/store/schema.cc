@@ -21,7 +21,7 @@ Node object() { return {Node::Table{}, {}}; }
 
 Node table_schema(const TableInfo& info, bool tagged);
 
-void add_range(Node& schema, const Range& range, double factor) {
+void add_range(Node& schema, const NumberRange& range, double factor) {
   if (std::isfinite(range.min)) {
     add(schema, range.open_min ? "exclusiveMinimum" : "minimum", {range.min / factor, {}});
   }

@@ -1,0 +1,146 @@
+// Bad experiment files: each gets clear lines that say where, what, and what was expected.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flexura/base/source.h"
+#include "flexura/experiment/experiment.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* good = R"([arm]
+kind = "planar"
+[[arm.section]]
+length = 2.0
+[[arm.section]]
+length = 1.0
+[[task]]
+kind = "move"
+duration = 2.0
+to.archings_pi = [0.1, 0.2]
+)";
+
+std::string error_of(const std::string& text) {
+  try {
+    (void)parse_experiment(text, "x.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// The good file with the first `from` replaced.
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = good;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+struct BadFile {
+  const char* what;
+  std::string text;
+  std::string error;
+};
+
+TEST(BadFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of(good), "no error"); }
+
+TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
+  const std::vector<BadFile> files{
+      {"empty", "", "x.toml:1:1: arm: missing: expected the arm, as a table [arm]"},
+      {"blank", "\n\n# nothing\n", "x.toml:1:1: arm: missing"},
+      {"no sections", "[arm]\nkind = 'planar'\n",
+       "x.toml:1:2: arm.section: missing: expected the arm's sections"},
+      {"empty arm", "[arm]\nsection = []\n",
+       "x.toml:2:11: arm.section is an empty array: expected an array of 1 to 1000"},
+      {"no length", with("length = 2.0\n", ""), "x.toml:3:1: arm.section[0].length: missing: expected"},
+      {"negative length", with("2.0", "-2.0"),
+       "x.toml:4:10: arm.section[0].length = -2: expected a number above 0 m"},
+      {"zero length", with("2.0", "0"),
+       "x.toml:4:10: arm.section[0].length = 0: expected a number above 0 m"},
+      {"huge length", with("2.0", "1e300"),
+       "x.toml:4:10: arm.section[0].length = 1e+300: expected a number above 0 m"},
+      {"NaN", with("2.0", "nan"), "x.toml:4:10: arm.section[0].length = nan: expected a number above 0 m"},
+      {"infinity", with("2.0", "-inf"), "x.toml:4:10: arm.section[0].length = -inf: expected"},
+      {"text for a number", with("2.0", "'2.0'"),
+       "x.toml:4:10: arm.section[0].length = \"2.0\": expected a number"},
+      {"number for a text", with("\"planar\"", "3"),
+       "x.toml:2:8: arm.kind = 3: expected one of \"planar\", \"spatial\""},
+      {"table for an array", with("[0.1, 0.2]", "{a = 1}"),
+       "task[0].to.archings_pi is a table: expected an array"},
+      {"array for a table", with("[arm]\nkind = \"planar\"\n[[arm.section]]", "[[arm]]\n[[arm.section]]"),
+       "x.toml:1:1: arm is an array of 1: expected a table"},
+      {"date for a number", with("2.0", "2026-01-01"),
+       "arm.section[0].length = the date 2026-01-01: expected a number"},
+      {"misspelt key", with("length = 2.0", "lenght = 2.0"),
+       "x.toml:4:1: arm.section[0].lenght: unknown key; did you mean \"length\"?"},
+      {"misspelt table", with("[arm]", "[arms]\n[arm]"),
+       "x.toml:1:2: arms: unknown key; did you mean \"arm\"?"},
+      {"wrong unit", with("length = 2.0", "length_deg = 2.0"),
+       "x.toml:4:1: arm.section[0].length_deg: wrong unit: expected length (m), length_mm (mm)"},
+      {"two units", with("length = 2.0", "length = 2.0\nlength_mm = 2000"),
+       "x.toml:5:1: arm.section[0].length_mm: written twice: length stands in line 4 already"},
+      {"duplicate key", with("length = 2.0", "length = 2.0\nlength = 3.0"), "x.toml:5:1: "},
+      {"unclosed text", with("\"planar\"", "\"planar"), "x.toml:2:"},
+      {"unknown kind of task", with("\"move\"", "\"jump\""),
+       "x.toml:8:8: task[0].kind = \"jump\": expected one of \"move\", \"hold\""},
+      {"task without a kind", with("kind = \"move\"\n", ""),
+       "x.toml:7:1: task[0]: kind is missing: expected one of"},
+      {"negative duration", with("duration = 2.0", "duration = -2.0"),
+       "x.toml:9:12: task[0].duration = -2: expected a number above 0 s"},
+      {"no target", with("to.archings_pi = [0.1, 0.2]\n", ""),
+       "x.toml:7:1: task[0].to: missing: expected the shape to reach"},
+      {"too few angles", with("[0.1, 0.2]", "[0.1]"),
+       "x.toml:10:4: task[0].to.archings: 1 given: expected 2, one for each section"},
+      {"bad angle", with("0.2]", "true]"),
+       "x.toml:10:24: task[0].to.archings_pi[1] = true: expected a number from"},
+      {"two ways", with("to.archings_pi", "to.cord_angles = [1, 2]\nto.archings_pi"),
+       "task[0].to: says the bends in more than one way"},
+      {"out of the plane", with("archings_pi = [0.1, 0.2]", "bends = [[0.1, 0.2], [0.1, 0]]"),
+       "task[0].to.bends[0]: leaves the plane: expected bend_y = 0 for a planar arm"},
+      {"planar words for a spatial arm", with("planar", "spatial"),
+       "x.toml:10:4: task[0].to.archings: is for planar arms: expected bends for a spatial one"},
+      {"bends that are no pairs", with("archings_pi = [0.1, 0.2]", "bends = [[0.1], [0.1, 0, 0]]"),
+       "task[0].to.bends[1] is an array of 3: expected an array of 2"},
+      {"a quaternion that is none",
+       with("[arm]\nkind = \"planar\"", "[arm]\nkind = \"spatial\"\nbase.rotation = [1, 1, 0, 0]"),
+       "x.toml:3:6: arm.base.rotation: has the norm 1.41421: expected a unit quaternion"},
+      {"rotation for a planar arm", with("[arm]", "[arm]\nbase.rotation = [1, 0, 0, 0]"),
+       "arm.base.rotation: is for spatial arms: expected base.tangent_deg for a planar one"},
+      {"limits the wrong way round", with("length = 2.0", "length = 2.0\nstretch_limits = [2, 1]"),
+       "x.toml:5:1: arm.section[0].stretch_limits: expected the smaller factor first"},
+      {"steps without end", with("[arm]", "clock.step = 1e-6\n[arm]"),
+       "x.toml:1:7: clock.step: makes 2e+06 steps of 2 s: expected at most 1e+06"},
+      {"negative seed", "seed = -1\n" + std::string(good),
+       "x.toml:1:8: seed = -1: expected a whole number from 0 to"},
+      {"a number too large for TOML", with("2.0", "99999999999999999999"), "x.toml:4:"},
+      {"not text",
+       std::string("\x7f"
+                   "ELF\x02\x01\x01\0\0\0",
+                   10),
+       "x.toml:1:1: "},
+  };
+  for (const BadFile& file : files) EXPECT_THAT(error_of(file.text), HasSubstr(file.error)) << file.what;
+}
+
+TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
+  EXPECT_EQ(
+      error_of("[arm]\nknid = 'planar'\n[[arm.section]]\nlength = -1\nradius = 0\n[[arm.section]]\n"),
+      "x.toml:2:1: arm.knid: unknown key; did you mean \"kind\"?\n"
+      "x.toml:4:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m\n"
+      "x.toml:5:10: arm.section[0].radius = 0: expected a number above 0 m and at most 1000000 m\n"
+      "x.toml:6:1: arm.section[1].length: missing: expected Arc length of the section's centreline when not "
+      "stretched.");
+}
+
+TEST(BadFiles, AHundredThousandSectionsAreTooMany) {
+  std::string text = "[arm]\nsection = [";
+  for (int i = 0; i < 100000; ++i) text += "{length=1},";
+  EXPECT_THAT(error_of(text + "]\n"),
+              HasSubstr("arm.section is an array of 100000: expected an array of 1 to 1000"));
+}
+
+}  // namespace
+}  // namespace flexura

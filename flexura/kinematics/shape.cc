@@ -1,0 +1,59 @@
+#include "flexura/kinematics/shape.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "flexura/kinematics/planar.h"
+
+namespace flexura {
+
+double base_tangent_angle(const Arm& arm) {
+  const Eigen::Vector3d tangent_W = arm.X_WB.rotation.col(2);
+  return std::atan2(tangent_W.y(), tangent_W.x());
+}
+
+ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {
+  const std::size_t count = arm.sections.size();
+  ArmState state = ArmState::straight(count);
+  const auto require_count = [count](std::size_t given) {
+    if (given != count) throw std::invalid_argument("arm_state: one value a section is needed");
+  };
+  if (shape.bends) {
+    require_count(shape.bends->size());
+    for (std::size_t i = 0; i < count; ++i) state.bends[i] = {(*shape.bends)[i][0], (*shape.bends)[i][1]};
+  } else if (shape.archings || shape.cord_angles) {
+    const std::vector<double> archings =
+        shape.archings ? *shape.archings
+                       : archings_from_cord_angles(*shape.cord_angles, base_tangent_angle(arm));
+    require_count(archings.size());
+    for (std::size_t i = 0; i < count; ++i) state.bends[i] = bend_from_arching(archings[i]);
+  }
+  if (shape.stretches) {
+    require_count(shape.stretches->size());
+    state.stretches = *shape.stretches;
+  }
+  return state;
+}
+
+std::vector<double> archings(const ArmState& state) {
+  std::vector<double> result;
+  for (const Eigen::Vector2d& bend : state.bends) result.push_back(arching_from_bend(bend));
+  return result;
+}
+
+std::vector<double> cord_angles(const Arm& arm, const ArmState& state) {
+  return cord_angles_from_archings(archings(state), base_tangent_angle(arm));
+}
+
+ArmState interpolate(const ArmState& from, const ArmState& to, double fraction) {
+  if (fraction <= 0) return from;
+  if (fraction >= 1) return to;
+  ArmState state = from;
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    state.bends[i] = (1 - fraction) * from.bends[i] + fraction * to.bends[i];
+    state.stretches[i] = (1 - fraction) * from.stretches[i] + fraction * to.stretches[i];
+  }
+  return state;
+}
+
+}  // namespace flexura

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "flexura/model/arm.h"
+#include "flexura/model/arm_config.h"
+
+namespace flexura {
+
+/// Angle of the straight arm (the base's z axis) from +X in the XOY plane, counter-clockwise, rad: the
+/// paper's alpha_Ox^0 of eq. 5.
+[[nodiscard]] double base_tangent_angle(const Arm& arm);
+
+/// The state of `arm` that `shape` means; what is left out is straight and unstretched. `shape` fits the arm
+/// (check_shape); std::invalid_argument otherwise.
+[[nodiscard]] ArmState arm_state(const Arm& arm, const ShapeConfig& shape);
+
+/// Each section's arching of a planar arm, rad, counter-clockwise.
+[[nodiscard]] std::vector<double> archings(const ArmState& state);
+
+/// Each section's cord's angle from +X of a planar arm, rad, counter-clockwise.
+[[nodiscard]] std::vector<double> cord_angles(const Arm& arm, const ArmState& state);
+
+/// The state `fraction` in [0, 1] of the way from one to another, bends and stretches changing linearly: the
+/// paper's "linear interpolation algorithm" (section 4). Exactly `from` at 0 and `to` at 1.
+[[nodiscard]] ArmState interpolate(const ArmState& from, const ArmState& to, double fraction);
+
+}  // namespace flexura

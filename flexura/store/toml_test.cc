@@ -1,0 +1,141 @@
+#include "flexura/store/toml.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "flexura/base/source.h"
+#include "flexura/store/json.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(std::string_view text) {
+  try {
+    (void)parse_toml(text, "x.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ParseToml, KeepsValuesTheirOrderAndTheirPlaces) {
+  const Node node = parse_toml("z = 1\na = [2.5, true]\n[t]\ns = 'x'\n", "x.toml");
+  EXPECT_EQ(write_json(node), R"({"z":1,"a":[2.5,true],"t":{"s":"x"}})");
+  EXPECT_EQ(node.find("a")->as<Node::Array>()->at(1).where.text(), "x.toml:2:11");
+  EXPECT_EQ(node.find("t")->find("s")->where.text(), "x.toml:4:5");
+}
+
+TEST(ParseToml, ReportsWhatIsNotToml) {
+  EXPECT_THAT(error_of("a = 1\na = 2\n"), HasSubstr("x.toml:2:"));
+  EXPECT_THAT(error_of("a = "), HasSubstr("x.toml:1:"));
+  EXPECT_THAT(error_of("a = 1\nb = \xff\xfe\n"), HasSubstr("x.toml:2:"));
+  EXPECT_THAT(error_of(std::string_view("\0\1\2binary", 9)), HasSubstr("x.toml:1:"));
+}
+
+TEST(ParseToml, NamesDatesSoThatNoFieldTakesThem) {
+  EXPECT_EQ(parse_toml("a = 2026-01-02", "x.toml").find("a")->brief(), "the date 2026-01-02");
+}
+
+TEST(ParseToml, RefusesNestingThatWouldOverflowTheStack) {
+  std::string dotted = "a";
+  for (int i = 0; i < 1000000; ++i) dotted += ".a";
+  EXPECT_THAT(error_of(dotted + " = 1"), HasSubstr("a dotted key nested more than 32 deep"));
+  EXPECT_THAT(error_of("[" + dotted + "]"), HasSubstr("dotted key"));
+  EXPECT_THAT(error_of("x = [\"\"\"q\"\"\"\", {" + dotted + " = 1}]"), HasSubstr("dotted key"))
+      << "a text with quotes of its own hides nothing";
+  EXPECT_THAT(error_of("b = " + std::string(100000, '[')), HasSubstr("brackets nested more than 32 deep"));
+}
+
+TEST(ParseToml, CountsDotsInTextsAndCommentsAsNothing) {
+  const std::string dots(100, '.');
+  EXPECT_EQ(error_of("a = \"" + dots + "\" # " + dots + "\nb = '" + dots + "'\nc = \"\"\"" + dots + "\"\"\"\n"), "");
+  EXPECT_EQ(error_of("a = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,"
+                     "1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]"),
+            "");
+}
+
+TEST(ParseTomlValue, ReadsAValueOrABareWord) {
+  const auto value = [](std::string_view text) { return write_json(parse_toml_value(text, "--set", 1, 3)); };
+  EXPECT_EQ(value("2.5"), "2.5");
+  EXPECT_EQ(value("[1, 2]"), "[1,2]");
+  EXPECT_EQ(value("'a b'"), R"("a b")");
+  EXPECT_EQ(value("spatial"), R"("spatial")");
+  EXPECT_EQ(value("true"), "true");
+  EXPECT_THROW(value(""), InputError);
+  EXPECT_THROW(value("1\nb = 2"), InputError);
+}
+
+class TomlFile : public ::testing::Test {
+ protected:
+  void write(const std::string& name, std::string_view text) {
+    std::filesystem::create_directories((folder_.path() / name).parent_path());
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
+  }
+  Node read(const std::string& name) { return read_toml_file(folder_.path() / name); }
+  std::string error(const std::string& name) {
+    try {
+      (void)read(name);
+    } catch (const InputError& caught) {
+      return caught.what();
+    }
+    return "";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(TomlFile, IsLaidUponTheFilesItIncludes) {
+  write("sub/rig.toml", "a = 1\n[t]\nx = 1\ny = 2\n");
+  write("x.toml", "include = ['sub/rig.toml']\n[t]\ny = 3\n");
+  EXPECT_EQ(write_json(read("x.toml")), R"({"a":1,"t":{"x":1,"y":3}})");
+}
+
+TEST_F(TomlFile, IncludesNothingOutsideItsFolder) {
+  write("secret.toml", "a = 1");
+  write("sub/x.toml", "include = ['../secret.toml']");
+  write("sub/y.toml", "include = ['" + (folder_.path() / "secret.toml").string() + "']");
+  std::filesystem::create_symlink("../secret.toml", folder_.path() / "sub/link.toml");
+  write("sub/z.toml", "include = ['link.toml']");
+  for (const char* name : {"sub/x.toml", "sub/y.toml", "sub/z.toml"}) {
+    EXPECT_THAT(error(name), HasSubstr("lies outside the experiment's folder")) << name;
+    EXPECT_THAT(error(name), HasSubstr(":1:12: include:")) << name;
+  }
+}
+
+TEST_F(TomlFile, RefusesBadIncludesWithALine) {
+  write("circle.toml", "include = ['circle.toml']");
+  write("missing.toml", "include = ['nothing.toml']");
+  write("number.toml", "include = [3]");
+  write("word.toml", "include = 'circle.toml'");
+  write("folder.toml", "include = ['.']");
+  EXPECT_THAT(error("circle.toml"), HasSubstr("does a file include itself?"));
+  EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));
+  EXPECT_THAT(error("number.toml"), HasSubstr("expected file names in quotes"));
+  EXPECT_THAT(error("word.toml"), HasSubstr("expected an array of file names"));
+  EXPECT_THAT(error("folder.toml"), HasSubstr("no file \".\""));
+}
+
+TEST_F(TomlFile, MustExistBeAFileAndOfBoundedSize) {
+  EXPECT_THAT(error("none.toml"), HasSubstr("none.toml: no such file"));
+  EXPECT_THAT(error("."), HasSubstr("is a folder"));
+  write("huge.toml", std::string(max_toml_bytes + 1, '\n'));
+  EXPECT_THAT(error("huge.toml"), HasSubstr("is larger than 16 MiB"));
+}
+
+TEST(WriteToml, ParsesBackToTheSame) {
+  const char* text =
+      "title = \"a \\\"b\\\" \\\\ \\n \\u0001 \\u007f é\"\nwhole = 2\nreal = 2.0\nsmall = 1e-300\nthird = 0.3333333333333333\n"
+      "yes = true\nmixed = [1, \"x\", [2.5], { a = 1 }]\nnone = []\n\"odd key\" = 1\n[t]\nx = 1\n[t.u]\ny = 1\n[[r]]\na = 1\n[[r]]\n"
+      "[[r.s]]\nb = 1\n";
+  const Node node = parse_toml(text, "x.toml");
+  const std::string written = write_toml(node, {});
+  EXPECT_EQ(write_json(parse_toml(written, "written.toml")), write_json(node)) << written;
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "flexura/kinematics/spatial.h"
+#include "flexura/math/pose.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// 6 x 3n for an arm of n sections: column 3i + 0, 1, 2 is the twist of a point P of the backbone, relative
+/// to and expressed in W, per unit rate of section i's bend_x, bend_y (rad/s) and stretch (1/s). Rows: [v;
+/// w], the velocity of P itself (m/s) and the angular velocity of the backbone's frame there (rad/s).
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// The analytic Jacobians of one state of an arm, for as many points as asked for, without allocation after
+/// the constructor. P is a point of the arm's material, so that stretch carries it along; columns of sections
+/// after P's are zero. Smooth through every straight section.
+class BackboneJacobian {
+ public:
+  /// `state` must fit the arm, else std::invalid_argument.
+  BackboneJacobian(const Arm& arm, const ArmState& state);
+
+  /// X_WS at `point`.
+  [[nodiscard]] Pose pose(const MaterialPoint& point) const;
+  /// Writes the Jacobian of `point` into J, 6 x 3n (else std::invalid_argument).
+  void at(const MaterialPoint& point, Eigen::Ref<Jacobian> J) const;
+  /// Writes the Jacobian of the tip into J.
+  void tip(Eigen::Ref<Jacobian> J) const { at({parts_.size() - 1, 1.0}, J); }
+
+ private:
+  using Columns = Eigen::Matrix<double, 6, 3>;
+  struct Part {
+    Pose X_WS;             // The section's base.
+    Eigen::Vector2d bend;  // rad.
+    double rest_length;    // Not stretched, m.
+    double stretch;
+    Columns V_end;          // Twist of the section's end at the section's own rates, in W.
+    Eigen::Vector3d p_end;  // The section's end, in W.
+  };
+  static Columns own_columns(const Part& part, double fraction);
+
+  std::vector<Part> parts_;
+};
+
+/// The tip's Jacobian, 6 x 3n.
+[[nodiscard]] Jacobian tip_jacobian(const Arm& arm, const ArmState& state);
+
+/// The whole backbone's: one Jacobian a point, in the order given.
+[[nodiscard]] std::vector<Jacobian> backbone_jacobians(const Arm& arm, const ArmState& state,
+                                                       std::span<const MaterialPoint> points);
+
+}  // namespace flexura

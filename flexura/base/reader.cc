@@ -148,6 +148,16 @@ std::string unknown_key(std::string_view key, const TableInfo& table, std::strin
   return fmt::format("unknown key; expected one of: {}", known);
 }
 
+std::string missing(const FieldInfo& field) {
+  const NumberRange& range = field.spec.range;
+  const std::string bounds = range.text(spellings(field.spec.unit).front());
+  std::string expected = "a value";
+  if (field.type.kind == Type::Kind::number) expected = bounds.empty() ? "a number" : "a number " + bounds;
+  if (field.type.kind == Type::Kind::table) expected = "a table";
+  if (field.type.kind == Type::Kind::array) expected = "an array";
+  return fmt::format("missing: expected {} ({})", expected, field.spec.meaning);
+}
+
 }  // namespace
 
 std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Reader& reader,
@@ -182,8 +192,7 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].member == nullptr && table.fields[i].spec.required) {
-      reader.problem_at(table.fields[i].name,
-                        fmt::format("missing: expected {}", table.fields[i].spec.meaning));
+      reader.problem_at(table.fields[i].name, missing(table.fields[i]));
     }
   }
   return found;

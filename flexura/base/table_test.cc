@@ -40,7 +40,7 @@ const Table<Wheel>& fields_of(const Wheel*) {
   static const auto table =
       Table<Wheel>("wheel", "Turns.")
           .field("radius", &Wheel::radius,
-                 {.meaning = "its radius", .unit = Unit::metre, .range = above(0), .required = true})
+                 {.meaning = "Its radius.", .unit = Unit::metre, .range = above(0), .required = true})
           .field("width", &Wheel::width, {.unit = Unit::metre, .one_for_all = true});
   return table;
 }
@@ -159,8 +159,9 @@ TEST(Table, RefusesNumbersThatAreNotFinite) {
 }
 
 TEST(Table, SaysWhereSomethingIsMissing) {
-  EXPECT_THAT(problems_of({member("wheel", Node::Array{{Node::Table{}, at(5, 1)}})}),
-              ElementsAre("cart.toml:5:1: wheel[0].radius: missing: expected its radius"));
+  EXPECT_THAT(
+      problems_of({member("wheel", Node::Array{{Node::Table{}, at(5, 1)}})}),
+      ElementsAre("cart.toml:5:1: wheel[0].radius: missing: expected a number above 0 m (Its radius.)"));
   EXPECT_THAT(problems_of({member("part", Node::Array{{Node::Table{}, at(5, 1)}})}),
               ElementsAre("cart.toml:5:1: part[0]: kind is missing: expected one of \"wheel\", \"bell\""));
 }

@@ -66,7 +66,7 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                   .unit = Unit::second,
                   .range = above_up_to(0, max_duration)})
           .field("to", &MoveTask::to,
-                 {.meaning = "the shape to reach, as `to.archings_deg = [...]`", .required = true});
+                 {.meaning = "The shape to reach, as `to.archings_deg = [...]`.", .required = true});
   return table;
 }
 
@@ -118,7 +118,7 @@ const Table<Experiment>& fields_of(const Experiment*) {
                   .default_text = "none"})
           .field("clock", &Experiment::clock, {.meaning = "How time runs."})
           .field("record", &Experiment::record, {.meaning = "What is kept of a run."})
-          .field("arm", &Experiment::arm, {.meaning = "the arm, as a table [arm]", .required = true})
+          .field("arm", &Experiment::arm, {.meaning = "The arm.", .required = true})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);

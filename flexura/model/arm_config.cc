@@ -138,7 +138,7 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
           .field("base", &ArmConfig::base, {.meaning = "Where the arm stands."})
           .field("initial", &ArmConfig::initial, {.meaning = "The shape in which the arm starts."})
           .field("section", &ArmConfig::section,
-                 {.meaning = "the arm's sections, base first, as tables [[arm.section]]",
+                 {.meaning = "The sections, base first, as tables [[arm.section]].",
                   .count = {1, max_sections},
                   .required = true})
           .check(check_arm);

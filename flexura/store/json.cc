@@ -115,6 +115,40 @@ Json to_json(const Node& node) {
   return nullptr;
 }
 
+bool holds_containers(const Node& node) {
+  const auto is_container = [](const Node& inner) {
+    return inner.as<Node::Array>() != nullptr || inner.as<Node::Table>() != nullptr;
+  };
+  if (const auto* entries = node.as<Node::Array>()) return std::ranges::any_of(*entries, is_container);
+  if (const auto* members = node.as<Node::Table>())
+    return std::ranges::any_of(*members, is_container, &Node::Member::node);
+  return false;
+}
+
+// Indented as a person would: what holds only plain values stays on its line.
+void lay_out(const Node& node, int indent, int level, std::string& out) {
+  const auto* entries = node.as<Node::Array>();
+  const auto* members = node.as<Node::Table>();
+  const bool top_table = level == 0 && members != nullptr && !members->empty();
+  if (!top_table && !holds_containers(node)) {
+    out += write_json(node);
+    return;
+  }
+  const auto new_line = [&](int depth) {
+    out += '\n' + std::string(static_cast<std::size_t>(indent * depth), ' ');
+  };
+  out += entries != nullptr ? '[' : '{';
+  const std::size_t count = entries != nullptr ? entries->size() : members->size();
+  for (std::size_t i = 0; i < count; ++i) {
+    new_line(level + 1);
+    if (members != nullptr) out += write_json({(*members)[i].key, {}}) + ": ";
+    lay_out(entries != nullptr ? (*entries)[i] : (*members)[i].node, indent, level + 1, out);
+    if (i + 1 < count) out += ',';
+  }
+  new_line(level);
+  out += entries != nullptr ? ']' : '}';
+}
+
 }  // namespace
 
 Node parse_json(std::string_view text, const std::string& source) {
@@ -124,8 +158,13 @@ Node parse_json(std::string_view text, const std::string& source) {
 }
 
 std::string write_json(const Node& node, int indent) {
+  if (indent >= 0) {
+    std::string out;
+    lay_out(node, indent, 0, out);
+    return out;
+  }
   // Bytes that are not UTF-8 (a file name, say) are shown as U+FFFD rather than lost as an exception.
-  return to_json(node).dump(indent, ' ', false, Json::error_handler_t::replace);
+  return to_json(node).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace flexura

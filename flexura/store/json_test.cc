@@ -47,12 +47,19 @@ TEST(ParseJson, RefusesDeepNesting) {
 }
 
 TEST(WriteJson, PrintsDoublesThatReadBackExactly) {
-  for (const double value : {0.1, 1.0 / 3, 1e-310, -0.0, 1e22, 123456789.123456789, std::numeric_limits<double>::max()}) {
+  for (const double value :
+       {0.1, 1.0 / 3, 1e-310, -0.0, 1e22, 123456789.123456789, std::numeric_limits<double>::max()}) {
     const Node again = parse_json(write_json({value, {}}), "line");
     ASSERT_NE(again.as<double>(), nullptr) << value;
     EXPECT_EQ(*again.as<double>(), value);
     EXPECT_EQ(std::signbit(*again.as<double>()), std::signbit(value));
   }
+}
+
+TEST(WriteJson, IndentsTablesAndKeepsShortThingsOnALine) {
+  EXPECT_EQ(write_json(parse_json(R"({"a":1,"b":[1,2],"c":{"d":[3]},"e":[],"f":[{"g":1}]})", "line"), 2),
+            "{\n  \"a\": 1,\n  \"b\": [1,2],\n  \"c\": {\n    \"d\": [3]\n  },\n  \"e\": [],\n  \"f\": [\n   "
+            " {\"g\":1}\n  ]\n}");
 }
 
 TEST(WriteJson, ReplacesBytesThatAreNotUtf8) { EXPECT_EQ(write_json({"a\xff", {}}), "\"a\xEF\xBF\xBD\""); }

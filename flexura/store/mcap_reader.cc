@@ -61,7 +61,10 @@ class McapScan {
       if (first != (record->op == McapOp::header)) {
         cursor_.fail("a log begins with its header, and has one", record->start);
       }
-      if (record->op == McapOp::footer) return finish(*record);
+      if (record->op == McapOp::footer) {
+        finish(*record);
+        return;
+      }
       take_top(*record);
     }
   }

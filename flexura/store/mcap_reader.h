@@ -28,7 +28,7 @@ struct McapMessage {
 };
 
 /// Whether checksums are looked at. A damaged log read without them gives what its structure still holds.
-enum class McapCheck { crc, structure };
+enum class McapCheck : std::uint8_t { crc, structure };
 
 /// Reads a whole log, ours or another program's, by its data section from start to end. Memory grows with the
 /// number of messages only; their data stay in the file's pages.

@@ -43,9 +43,9 @@ inline constexpr std::size_t mcap_footer_length = 20;
 
 /// What a channel's messages look like.
 struct McapSchema {
-  std::string name{};
-  std::string encoding{};  ///< "jsonschema", ...; empty: there is no schema.
-  std::string data{};
+  std::string name;
+  std::string encoding;  ///< "jsonschema", ...; empty: there is no schema.
+  std::string data;
 
   bool operator==(const McapSchema&) const = default;
 };
@@ -55,7 +55,8 @@ struct McapChannel {
   std::string topic;
   std::string encoding = "json";
   McapSchema schema{};
-  std::map<std::string, std::string> metadata{};
+  // The braces spare those who leave it out GCC's -Wmissing-field-initializers.
+  std::map<std::string, std::string> metadata{};  // NOLINT(readability-redundant-member-init)
 
   bool operator==(const McapChannel&) const = default;
 };

@@ -43,7 +43,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, Config config)
 McapWriter::~McapWriter() {
   try {
     close();
-  } catch (...) {  // A destructor has nobody to tell.
+  } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor has nobody to tell.
   }
 }
 

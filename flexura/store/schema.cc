@@ -21,11 +21,20 @@ Node object() { return {Node::Table{}, {}}; }
 
 Node table_schema(const TableInfo& info, bool tagged);
 
+// A bound in the unit of a spelling, without the digits that the conversion's rounding makes.
+Node bound(double value, double factor) {
+  const double shown = std::stod(fmt::format("{:.12g}", value / factor));
+  constexpr double largest_whole = 9007199254740992.0;
+  if (std::abs(shown) <= largest_whole && shown == std::trunc(shown))
+    return {static_cast<std::int64_t>(shown), {}};
+  return {shown, {}};
+}
+
 void add_range(Node& schema, const NumberRange& range, double factor) {
   if (std::isfinite(range.min)) {
-    add(schema, range.open_min ? "exclusiveMinimum" : "minimum", {range.min / factor, {}});
+    add(schema, range.open_min ? "exclusiveMinimum" : "minimum", bound(range.min, factor));
   }
-  if (std::isfinite(range.max)) add(schema, "maximum", {range.max / factor, {}});
+  if (std::isfinite(range.max)) add(schema, "maximum", bound(range.max, factor));
 }
 
 void add_count(Node& schema, const Count& count) {
@@ -146,9 +155,13 @@ std::string type_text(const Type& type, const Spec& spec, const Count& count) {
   }
   const Count& bounds = type.count.min > 0 ? type.count : count;
   const std::string item = type_text(*type.item, spec, {});
-  const std::string size = bounds.min == bounds.max ? fmt::format(" of {}", bounds.min) : std::string(" of");
-  return fmt::format("{}array{} {}", spec.one_for_all ? item + ", or " : "", size,
-                     item == "table" ? "tables" : item + "s");
+  const std::string size = bounds.min == bounds.max ? fmt::format(" {}", bounds.min) : std::string();
+  // "array of 2 numbers", "array of arrays of 2 numbers"
+  const std::size_t first_word = std::min(item.find(' '), item.size());
+  const std::string items = item.ends_with("whole number")
+                                ? item + "s"
+                                : item.substr(0, first_word) + "s" + item.substr(first_word);
+  return fmt::format("{}array of{} {}", spec.one_for_all ? item + ", or " : "", size, items);
 }
 
 void add_table_section(const TableInfo& info, const std::string& path, const std::string& heading,

@@ -28,8 +28,8 @@ const Table<Lamp>& fields_of(const Lamp*) {
   return table;
 }
 const Table<Room>& fields_of(const Room*) {
-  static const auto table = Table<Room>("room", "A room.").field("thing", &Room::thing,
-                                                                 {.meaning = "What is in it.", .count = {1, 5}});
+  static const auto table = Table<Room>("room", "A room.")
+                                .field("thing", &Room::thing, {.meaning = "What is in it.", .count = {1, 5}});
   return table;
 }
 
@@ -39,10 +39,10 @@ TEST(JsonSchema, DescribesKindsUnitsRangesAndCounts) {
       R"({"$schema":"http://json-schema.org/draft-07/schema#","title":"room","type":"object","description":"A room.",)"
       R"("properties":{"thing":{"type":"array","items":{"anyOf":[{"type":"object","description":"Gives light.",)"
       R"("properties":{"kind":{"const":"lamp"},)"
-      R"("height":{"type":"number","exclusiveMinimum":0.0,"description":"How high it is. [m]"},)"
-      R"("height_mm":{"type":"number","exclusiveMinimum":0.0,"description":"How high it is. [mm]"},)"
-      R"("reach":{"anyOf":[{"type":"number","minimum":0.0},)"
-      R"({"type":"array","items":{"type":"number","minimum":0.0},"minItems":2,"maxItems":2}],)"
+      R"("height":{"type":"number","exclusiveMinimum":0,"description":"How high it is. [m]"},)"
+      R"("height_mm":{"type":"number","exclusiveMinimum":0,"description":"How high it is. [mm]"},)"
+      R"("reach":{"anyOf":[{"type":"number","minimum":0},)"
+      R"({"type":"array","items":{"type":"number","minimum":0},"minItems":2,"maxItems":2}],)"
       R"("description":"How far. Default: [1, 2]."}},)"
       R"("additionalProperties":false,"required":["kind"],)"
       R"("allOf":[{"anyOf":[{"required":["height"]},{"required":["height_mm"]}]}]}]},)"
@@ -54,8 +54,11 @@ TEST(MarkdownReference, HasASectionATableAndARowAField) {
   const std::string page = markdown_reference(fields_of(static_cast<const Room*>(nullptr)).info());
   EXPECT_THAT(page, HasSubstr("# room\n\nA room.\n"));
   EXPECT_THAT(page, HasSubstr("## `[[thing]]`, `kind = \"lamp\"`\n\nGives light.\n"));
-  EXPECT_THAT(page, HasSubstr("| `height`, `height_mm` | number | m, mm | above 0 m | required | How high it is. |\n"));
-  EXPECT_THAT(page, HasSubstr("| `reach` | number, or array of 2 numbers |  | at least 0 | [1, 2] | How far. |\n"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("| `height`, `height_mm` | number | m, mm | above 0 m | required | How high it is. |\n"));
+  EXPECT_THAT(page,
+              HasSubstr("| `reach` | number, or array of 2 numbers |  | at least 0 | [1, 2] | How far. |\n"));
 }
 
 }  // namespace

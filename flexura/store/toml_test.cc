@@ -54,10 +54,14 @@ TEST(ParseToml, RefusesNestingThatWouldOverflowTheStack) {
 
 TEST(ParseToml, CountsDotsInTextsAndCommentsAsNothing) {
   const std::string dots(100, '.');
-  EXPECT_EQ(error_of("a = \"" + dots + "\" # " + dots + "\nb = '" + dots + "'\nc = \"\"\"" + dots + "\"\"\"\n"), "");
-  EXPECT_EQ(error_of("a = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,"
-                     "1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]"),
-            "");
+  EXPECT_EQ(
+      error_of("a = \"" + dots + "\" # " + dots + "\nb = '" + dots + "'\nc = \"\"\"" + dots + "\"\"\"\n"),
+      "");
+  EXPECT_EQ(
+      error_of(
+          "a = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,"
+          "1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]"),
+      "");
 }
 
 TEST(ParseTomlValue, ReadsAValueOrABareWord) {
@@ -129,8 +133,10 @@ TEST_F(TomlFile, MustExistBeAFileAndOfBoundedSize) {
 
 TEST(WriteToml, ParsesBackToTheSame) {
   const char* text =
-      "title = \"a \\\"b\\\" \\\\ \\n \\u0001 \\u007f é\"\nwhole = 2\nreal = 2.0\nsmall = 1e-300\nthird = 0.3333333333333333\n"
-      "yes = true\nmixed = [1, \"x\", [2.5], { a = 1 }]\nnone = []\n\"odd key\" = 1\n[t]\nx = 1\n[t.u]\ny = 1\n[[r]]\na = 1\n[[r]]\n"
+      "title = \"a \\\"b\\\" \\\\ \\n \\u0001 \\u007f é\"\nwhole = 2\nreal = 2.0\nsmall = 1e-300\nthird = "
+      "0.3333333333333333\n"
+      "yes = true\nmixed = [1, \"x\", [2.5], { a = 1 }]\nnone = []\n\"odd key\" = 1\n[t]\nx = 1\n[t.u]\ny = "
+      "1\n[[r]]\na = 1\n[[r]]\n"
       "[[r.s]]\nb = 1\n";
   const Node node = parse_toml(text, "x.toml");
   const std::string written = write_toml(node, {});

@@ -1,0 +1,142 @@
+// The program as a user starts it: exit statuses, what goes to stdout and what to stderr, and being killed.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "flexura/base/version.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string program = FLEXURA_BINARY_DIR "/bin/flexura";
+const std::string paper_arm = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+
+struct Ended {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+class Program : public ::testing::Test {
+ protected:
+  // Starts the program in the test's folder; arguments are given as a person types them, without quoting.
+  pid_t start(const std::string& arguments, const std::string& out) {
+    const std::string err = path("err");
+    const pid_t child = fork();
+    if (child == 0) {
+      const std::string command = "cd " + folder_.path().string() + " && exec " + program + " " + arguments +
+                                  " >" + out + " 2>" + err + " </dev/null";
+      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    return child;
+  }
+  Ended wait(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            read_text_file(path("out"), 1 << 24), read_text_file(path("err"), 1 << 24)};
+  }
+  Ended run(const std::string& arguments) { return wait(start(arguments, path("out"))); }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
+  const Ended ended = run("run " + paper_arm);
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.out, "end effector: (-10.738, 5.201)\nresults: results/01_paper_arm\n");
+  EXPECT_THAT(ended.err, IsEmpty()) << "no progress line in a pipe";
+  for (const char* file :
+       {"experiment.toml", "log.mcap", "summary.json", "timing.json", "report.html", "figures/arm-end.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(path("results/01_paper_arm/") + file)) << file;
+  }
+  EXPECT_THAT(run("run " + paper_arm).out, HasSubstr("results: results/01_paper_arm-2\n"));
+}
+
+TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
+  const Ended ended = run("run " + paper_arm + " --json --out elsewhere --seed 5");
+  EXPECT_EQ(ended.status, 0);
+  const Node summary = parse_json(ended.out, "stdout");
+  EXPECT_EQ(*summary.find("seed")->as<std::int64_t>(), 5);
+  EXPECT_EQ(ended.err, "results: elsewhere\n");
+  EXPECT_EQ(read_text_file(path("elsewhere/summary.json"), 1 << 20), ended.out);
+}
+
+TEST_F(Program, EndsWithOneWhenALimitWouldBeBroken) {
+  const Ended ended = run("run " + paper_arm + " --set arm.section.1.max_bend_deg=3");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, HasSubstr("unsafe: 0 s to 5 s: section 2: bend 18 deg, limit 3 deg\n"));
+}
+
+TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
+  for (const char* arguments :
+       {"", "fly", "run", "run none.toml", "run . ", "run --seed -1 x.toml", "run --seed x x.toml",
+        "export . --to csv", "export", "export . --to pdf", "schema --format yaml", "fk none.toml"}) {
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 2) << arguments;
+    EXPECT_THAT(ended.out, IsEmpty()) << arguments;
+    EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << arguments << ": " << ended.err;
+  }
+  EXPECT_EQ(run("run " + paper_arm + " --set arm.section.0.length=nan").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("results")));
+}
+
+TEST_F(Program, EndsWithThreeWhenTheSystemFails) {
+  EXPECT_EQ(run("run " + paper_arm + " --out /proc/here").status, 3);
+  std::ofstream(path("out")) << "";
+  EXPECT_EQ(wait(start("schema", "/dev/full")).status, 3);
+}
+
+TEST_F(Program, TellsItsVersionAndHelp) {
+  EXPECT_EQ(run("--version").out, std::string(version()) + "\n");
+  for (const char* command : {"", "run", "fk", "export", "schema"}) {
+    const Ended ended = run(std::string(command) + " --help");
+    EXPECT_EQ(ended.status, 0) << command;
+    EXPECT_THAT(ended.out, HasSubstr("OPTIONS")) << command;
+  }
+}
+
+TEST_F(Program, LeavesALogThatReadsWhenKilled) {
+  std::ofstream(path("long.toml"))
+      << "record.report = false\nclock.step = 1e-3\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'move'\n"
+         "duration = 900\nto.archings = [1]\n";
+  const pid_t child = start("run long.toml", path("out"));
+  const auto log = path("results/long/log.mcap");
+  const auto big_enough = [&] {
+    return std::filesystem::exists(log) && std::filesystem::file_size(log) > 1'500'000;
+  };
+  for (int i = 0; i < 3000 && !big_enough(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(big_enough());
+  kill(child, SIGKILL);
+  EXPECT_EQ(wait(child).status, 128 + SIGKILL);
+  const Ended ended = run("export results/long --to csv");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("the run was cut short"));
+  const std::string states = read_text_file(path("results/long/csv/states.csv"), std::size_t{1} << 30);
+  EXPECT_GT(std::ranges::count(states, '\n'), 1000);
+}
+
+TEST_F(Program, ReferencePageIsTheOneItPrints) {
+  EXPECT_EQ(read_text_file(FLEXURA_SOURCE_DIR "/docs/experiment-file.md", 1 << 20),
+            run("schema --format markdown").out)
+      << "make it anew: flexura schema --format markdown >docs/experiment-file.md";
+}
+
+}  // namespace
+}  // namespace flexura

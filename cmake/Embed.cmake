@@ -1,5 +1,9 @@
 # flexura_embed(TARGET FILE...) makes each file's text available to TARGET as a string_view:
-# FILE "report.css" is declared in the generated header "embedded/report_css.h" as flexura::embedded::report_css.
+# FILE "report.css" is declared in the generated header "embedded/report_css.h" as flexura::embedded::report_css,
+# and beside it report_css_sha256, the text's hash in hexadecimal.
+# The target "embedded" makes all these headers and nothing else, for tools that only read the sources.
+add_custom_target(embedded)
+
 function(flexura_embed target)
   foreach(file ${ARGN})
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
@@ -10,7 +14,10 @@ function(flexura_embed target)
       COMMAND ${CMAKE_COMMAND} -DINPUT=${file} -DOUTPUT=${header} -DSYMBOL=${symbol}
               -P ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake
       DEPENDS ${file} ${PROJECT_SOURCE_DIR}/cmake/EmbedFile.cmake VERBATIM)
-    target_sources(${target} PRIVATE ${header})
+    list(APPEND headers ${header})
   endforeach()
+  target_sources(${target} PRIVATE ${headers})
+  add_custom_target(${target}_embedded DEPENDS ${headers})
+  add_dependencies(embedded ${target}_embedded)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()

@@ -15,6 +15,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -62,6 +63,9 @@ def key(command, files):
 
 
 def git(*arguments):
+    """The lines that a git command prints, or None where there is no git or no repository."""
+    if not shutil.which("git"):
+        return None
     done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=False)
     return done.stdout.split("\n") if done.returncode == 0 else None
 

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Checks that what the documents say can be done can be done, and that their links lead somewhere.
+
+usage: check_docs.py [--root ROOT] [--bin BIN --prefix PREFIX]
+
+BIN is the folder of the built programs, PREFIX an installed Flexura; without them only links and the blocks'
+form are checked. Each document has a scratch folder of its own, holding a copy of examples/. Its fenced blocks, in
+order:
+  console    each line "$ COMMAND" is run there with BIN in PATH (a trailing \\ continues it). The lines after it, if
+             any, are what it prints: "..." stands for any text, a line "..." for any lines. It has to succeed, or to
+             end as its comment "# exit status N" says. "./dev ..." is not run: the command has to exist.
+  cpp        a whole program is compiled against PREFIX and run; what it prints is in its comments "// prints: ..."
+  any other  no check but these two, which hold for every language:
+             a first line with "file: NAME" writes the block to NAME in the scratch folder;
+             a first line with "from: PATH" says that the rest stands in PATH, word for word.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+FENCE = re.compile(r"^(\s*)```(\w*)\s*$")
+LINK = re.compile(r'\]\(([^)\s]+)(?:\s+"[^"]*")?\)|<img[^>]*\bsrc="([^"]+)"')
+HEADER = re.compile(r"^(?:#|//|<!--|--)\s*(file|from):\s*(\S+)")
+PROGRAM = """cmake_minimum_required(VERSION 3.25)
+project(program LANGUAGES CXX)
+find_package(flexura REQUIRED)
+add_executable(program program.cc)
+target_link_libraries(program PRIVATE flexura::flexura)
+"""
+
+
+@dataclass
+class Block:
+    language: str
+    line: int
+    lines: list
+
+
+def split(text):
+    """A document's fenced blocks and, with them blanked out, its prose."""
+    blocks, prose, block, indent = [], [], None, ""
+    for number, line in enumerate(text.splitlines(), 1):
+        fence = FENCE.match(line)
+        if block is None and fence:
+            indent, block = fence[1], Block(fence[2], number, [])
+        elif block is not None and fence and not fence[2]:
+            blocks.append(block)
+            block = None
+        elif block is not None:
+            block.lines.append(line.removeprefix(indent))
+        prose.append("" if block is not None or fence else line)
+    return blocks, prose
+
+
+def commands(block):
+    """(line number, command, expected lines) for each command of a console block."""
+    found, continued = [], False
+    for number, line in enumerate(block.lines, block.line + 1):
+        if continued:
+            found[-1][1] += "\n" + line.removeprefix("> ")
+        elif line.startswith("$ "):
+            found.append([number, line[2:], []])
+        elif found:
+            found[-1][2].append(line)
+        continued = (continued or line.startswith("$ ")) and line.endswith("\\")
+    for command in found:
+        while command[2] and not command[2][-1].strip():
+            command[2].pop()
+    return found
+
+
+def matches(expected, output):
+    """Whether the text `output` is what the lines `expected` describe."""
+    pattern = ""
+    for line in expected:
+        if line.strip() == "...":
+            pattern += r"(?:.*\n)*?"
+        else:
+            pattern += ".*".join(re.escape(part) for part in line.rstrip().split("...")) + r"[ \t]*\n"
+    return re.fullmatch(pattern, output.rstrip("\n") + "\n" if output.strip() else "") is not None
+
+
+def anchors(text):
+    """The fragments that a document's headings can be reached by."""
+    titles = [line.lstrip("#").strip() for line in split(text)[1] if re.match(r"#+ ", line)]
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def broken_links(document):
+    for number, line in enumerate(split(document.read_text())[1], 1):
+        for match in LINK.finditer(re.sub(r"`[^`]*`", "", line)):
+            target = match[1] or match[2]
+            if re.match(r"[a-z]+:", target):
+                continue
+            name, _, fragment = target.partition("#")
+            path = document.parent / name if name else document
+            if not path.exists():
+                yield number, f"the link {target} leads nowhere"
+            elif fragment and path.suffix == ".md" and fragment not in anchors(path.read_text()):
+                yield number, f"the link {target} leads to no heading"
+
+
+class Runner:
+    """Runs one document's blocks in a scratch folder."""
+
+    def __init__(self, root, scratch, programs, prefix):
+        self.root, self.scratch, self.prefix = root, scratch, prefix
+        self.environment = {
+            **os.environ,
+            "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+            "CMAKE_PREFIX_PATH": str(prefix),
+            "CMAKE_GENERATOR": "Ninja",
+            "LC_ALL": "C.UTF-8",
+        }
+        if (root / "examples").exists():
+            shutil.copytree(root / "examples", scratch / "examples")
+
+    def call(self, command, **options):
+        """The exit status and output of a command run in the scratch folder."""
+        done = subprocess.run(command, cwd=self.scratch, env=self.environment, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
+                              check=False, **options)
+        return done.returncode, done.stdout
+
+    def run(self, block):
+        """Yields (line, what is wrong) for one block."""
+        header = HEADER.match(block.lines[0]) if block.lines else None
+        if header and header[1] == "from":
+            yield from self.compare(block, header[2])
+        elif header:
+            target = self.scratch / header[2]
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text("\n".join(block.lines[1:]) + "\n")
+        elif block.language == "console":
+            for number, command, expected in commands(block):
+                yield from self.run_command(number, command, expected)
+        elif block.language == "cpp":
+            yield from self.run_program(block)
+        elif block.language in ("sh", "bash", "shell"):
+            yield block.line, "a block of commands is a console block"
+
+    def compare(self, block, name):
+        path = self.root / name
+        if not path.exists():
+            yield block.line, f"there is no {name}"
+        elif "\n".join(block.lines[1:]).strip("\n") not in path.read_text():
+            yield block.line, f"this does not stand in {name}"
+
+    def run_command(self, number, command, expected):
+        if command.startswith("./dev"):
+            words = command.split()
+            usage = subprocess.run([self.root / "dev", "help"], capture_output=True, text=True, check=True).stdout
+            if len(words) < 2 or not re.search(rf"^  {re.escape(words[1])}\b", usage, re.MULTILINE):
+                yield number, f"./dev help does not know {command}"
+            return
+        if command.startswith(("git clone ", "cd ")):
+            return
+        status, output = self.call(["bash", "-o", "pipefail", "-c", command])
+        said = re.search(r"# exit status (\d+)", command)
+        if status != (int(said[1]) if said else 0):
+            yield number, f"exit status {status}: {command}\n{output}"
+        elif expected and not matches(expected, output):
+            yield number, f"this is printed instead: {command}\n{output}"
+
+    def run_program(self, block):
+        text = "\n".join(block.lines) + "\n"
+        if "int main" not in text:
+            yield block.line, "a cpp block is a whole program, or quotes a file (// from: PATH)"
+            return
+        folder = self.scratch / f".program-{block.line}"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(PROGRAM)
+        (folder / "program.cc").write_text(text)
+        build = f"cmake -S {folder} -B {folder}/build && cmake --build {folder}/build"
+        status, output = self.call(["bash", "-c", build])
+        if status != 0:
+            yield block.line, f"this does not compile\n{output}"
+            return
+        status, output = self.call([folder / "build/program"])
+        expected = re.findall(r"// prints: (.*)", text)
+        if status != 0 or (expected and not matches(expected, output)):
+            yield block.line, f"this is printed instead (exit status {status})\n{output}"
+
+
+def documents(root):
+    return sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/**/*.md")])
+
+
+def problems(root, programs, prefix):
+    """What is wrong in the documents at `root`, one text each."""
+    for document in documents(root):
+        found = list(broken_links(document))
+        if programs:
+            with tempfile.TemporaryDirectory() as scratch:
+                runner = Runner(root, Path(scratch), programs, prefix)
+                for block in split(document.read_text())[0]:
+                    found.extend(runner.run(block))
+        for line, text in found:
+            yield f"{document.relative_to(root)}:{line}: {text}"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--root", type=Path, default=Path(__file__).parent.parent)
+    parser.add_argument("--bin", type=Path)
+    parser.add_argument("--prefix", type=Path)
+    arguments = parser.parse_args()
+    root = arguments.root.resolve()
+    programs = arguments.bin and arguments.bin.resolve()
+    count = 0
+    for problem in problems(root, programs, arguments.prefix and arguments.prefix.resolve()):
+        print(problem, flush=True)
+        count += 1
+    print(f"{len(documents(root))} documents, {count} problems")
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

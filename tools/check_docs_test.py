@@ -1,0 +1,82 @@
+"""Tests of check_docs.py on made-up documents."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import check_docs
+
+
+class CheckDocs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        (self.root / "examples").mkdir()
+        (self.root / "examples/arm.toml").write_text("length = 2\nradius = 1\n")
+        dev = self.root / "dev"
+        dev.write_text("#!/bin/sh\nprintf 'usage: ./dev\\n\\n  test [quick]  build and test\\n'\n")
+        dev.chmod(0o755)
+
+    def problems(self, text, name="README.md"):
+        (self.root / name).parent.mkdir(exist_ok=True)
+        (self.root / name).write_text(text)
+        return list(check_docs.problems(self.root, self.root, self.root))
+
+    def console(self, text):
+        return self.problems(f"```console\n{text}\n```\n")
+
+    def test_a_command_that_does_what_it_says_passes(self):
+        self.assertEqual(self.console("$ echo one; echo two\none\ntwo\n\n$ true"), [])
+
+    def test_other_output_is_found_at_its_line(self):
+        found = self.console("$ true\n$ echo one\ntwo")
+        self.assertEqual(len(found), 1)
+        self.assertTrue(found[0].startswith("README.md:3: this is printed instead: echo one\none"), found)
+
+    def test_dots_stand_for_text_and_for_lines(self):
+        self.assertEqual(self.console("$ printf 'a 17 b\\nx\\ny\\nend\\n'\na ... b\n...\nend"), [])
+        self.assertEqual(len(self.console("$ printf 'a 17 c\\nend\\n'\na ... b\nend")), 1)
+
+    def test_a_failing_command_is_found_unless_its_status_is_said(self):
+        self.assertEqual(len(self.console("$ sh -c 'exit 2'")), 1)
+        self.assertEqual(self.console("$ sh -c 'exit 2'  # exit status 2"), [])
+        self.assertEqual(len(self.console("$ true  # exit status 2")), 1)
+
+    def test_a_failure_inside_a_pipe_is_found(self):
+        self.assertEqual(len(self.console("$ false | cat")), 1)
+
+    def test_a_command_may_go_on_over_lines(self):
+        self.assertEqual(self.console("$ echo one \\\n    two\none two"), [])
+
+    def test_commands_share_the_scratch_folder_with_the_examples_and_written_files(self):
+        text = "```toml\n# file: mine/b.toml\nb = 1\n```\n```console\n$ cat mine/b.toml examples/arm.toml\n"
+        self.assertEqual(self.problems(text + "b = 1\nlength = 2\n...\n```\n"), [])
+
+    def test_a_quoted_file_has_to_hold_the_quotation(self):
+        self.assertEqual(self.problems("```toml\n# from: examples/arm.toml\nradius = 1\n```\n"), [])
+        found = self.problems("```toml\n# from: examples/arm.toml\nradius = 2\n```\n")
+        self.assertEqual(found, ["README.md:1: this does not stand in examples/arm.toml"])
+
+    def test_a_dev_command_has_to_exist(self):
+        self.assertEqual(self.console("$ ./dev test quick"), [])
+        self.assertEqual(len(self.console("$ ./dev tes")), 1)
+
+    def test_commands_outside_console_blocks_and_parts_of_programs_are_refused(self):
+        self.assertEqual(len(self.problems("```bash\nls\n```\n")), 1)
+        self.assertEqual(len(self.problems("```cpp\nint a;\n```\n")), 1)
+
+    def test_a_link_has_to_lead_to_a_file_and_a_heading(self):
+        good = "# The `arm`, moved\n[a](examples/arm.toml) [b](#the-arm-moved) [c](https://example.org/x)\n"
+        self.assertEqual(self.problems(good), [])
+        self.assertEqual(self.problems("\n[a](gone.md)\n"), ["README.md:2: the link gone.md leads nowhere"])
+        self.assertEqual(len(self.problems("# A\n[a](#b)\n")), 1)
+        self.assertEqual(len(self.problems('<img width="3" src="gone.png">\n')), 1)
+
+    def test_documents_below_docs_are_read(self):
+        self.assertEqual(self.problems("[x](../examples/arm.toml)\n", "docs/a.md"), [])
+        self.assertEqual(len(self.problems("[x](arm.toml)\n", "docs/a.md")), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,49 @@
+#include "flexura/math/quadrature.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace flexura {
+namespace {
+
+TEST(Quadrature, HasTheTabulatedThreePointRule) {
+  const Quadrature rule = gauss_legendre(3);
+  ASSERT_EQ(rule.nodes.size(), 3u);
+  EXPECT_DOUBLE_EQ(rule.nodes[0], -std::sqrt(0.6));
+  EXPECT_NEAR(rule.nodes[1], 0.0, 1e-16);
+  EXPECT_DOUBLE_EQ(rule.nodes[2], std::sqrt(0.6));
+  EXPECT_DOUBLE_EQ(rule.weights[0], 5.0 / 9.0);
+  EXPECT_DOUBLE_EQ(rule.weights[1], 8.0 / 9.0);
+  EXPECT_DOUBLE_EQ(rule.weights[2], 5.0 / 9.0);
+}
+
+TEST(Quadrature, IsExactForPolynomialsUpToItsDegreeAndNotBeyond) {
+  for (const int points : {1, 2, 5, 10, 20}) {
+    const Quadrature rule = gauss_legendre(points);
+    const auto monomial_integral = [&](int degree) {
+      return integrate(rule, [degree](double x) { return std::pow(x, degree); }, 0.0, 1.0);
+    };
+    const int top = 2 * points - 1;
+    EXPECT_NEAR(monomial_integral(top), 1.0 / (top + 1), 1e-15);
+    if (points <= 5) {
+      EXPECT_GT(std::abs(monomial_integral(top + 1) - 1.0 / (top + 2)), 1e-8);
+    }
+  }
+}
+
+TEST(Quadrature, IntegratesVectorsOverPanels) {
+  const Quadrature rule = gauss_legendre(10);
+  const auto circle = [](double t) { return Eigen::Vector2d(std::cos(t), std::sin(t)); };
+  const Eigen::Vector2d integral = integrate(rule, circle, 0.0, 7.0, 4);
+  EXPECT_NEAR(integral.x(), std::sin(7.0), 1e-14);
+  EXPECT_NEAR(integral.y(), 1.0 - std::cos(7.0), 1e-14);
+}
+
+TEST(Quadrature, RefusesARuleWithoutPoints) { EXPECT_THROW((void)gauss_legendre(0), std::invalid_argument); }
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <numbers>
+
+#include "flexura/math/so3.h"
+#include "flexura/model/arm.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+
+/// The paper's arm (section 3.2) with its lengths, at rest along +Y.
+inline Arm paper_arm() {
+  Arm arm;
+  for (const double length : {2.0, 3.0, 1.0, 2.0, 4.0, 2.0, 1.0, 1.0}) {
+    Section& section = arm.sections.emplace_back();
+    section.length = length;
+  }
+  return arm;
+}
+
+/// Its final cord angles from +X, rad.
+inline std::array<double, 8> paper_cord_angles() {
+  std::array<double, 8> angles = {.55, .65, .8, 1., 1.15, .9, .8, .65};
+  for (double& angle : angles) angle *= std::numbers::pi;
+  return angles;
+}
+
+/// Its final state: archings / pi .05 .05 .1 .1 .05 -.3 .2 -.35.
+inline ArmState paper_state() {
+  ArmState state = ArmState::straight(8);
+  const std::array<double, 8> archings = {.05, .05, .1, .1, .05, -.3, .2, -.35};
+  for (std::size_t i = 0; i < 8; ++i) state.bends[i].x() = -2.0 * archings[i] * std::numbers::pi;
+  return state;
+}
+
+/// One to six spatial sections on a base anywhere.
+inline Arm random_arm(TestRandom& random) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  arm.X_WB = {so3_exp(random.vector<3>(-2.0, 2.0)), random.vector<3>(-1.0, 1.0)};
+  const int count = random.integer(1, 6);
+  for (int i = 0; i < count; ++i) {
+    Section& section = arm.sections.emplace_back();
+    section.length = random.uniform(0.2, 2.0);
+  }
+  return arm;
+}
+
+/// Bends of every size: straight, 1e-12, up to 0.1, up to a turn and a half; stretches from 0.7 to 1.4.
+inline ArmState random_state(TestRandom& random, const Arm& arm) {
+  ArmState state = ArmState::straight(arm.sections.size());
+  for (Eigen::Vector2d& bend : state.bends) {
+    constexpr std::array<double, 4> scales = {0.0, 1e-12, 0.1, 9.4};
+    const double scale = scales[static_cast<std::size_t>(random.integer(0, 3))];
+    bend = scale * random.uniform(0.0, 1.0) * random.vector<2>(-1.0, 1.0).normalized();
+  }
+  for (double& stretch : state.stretches) stretch = random.uniform(0.7, 1.4);
+  return state;
+}
+
+}  // namespace flexura

@@ -1,0 +1,205 @@
+#include "flexura/report/arm_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace flexura {
+namespace {
+
+constexpr double thinnest_tube = 5.0;  // Of a tube, page units.
+
+std::string moment(const ReportMotion& motion, std::size_t i) {
+  return "t = " + fixed(motion.times[i], 3) + " s";
+}
+
+// The arm's foot: a line across the tube with hatching on the side the arm does not grow to.
+void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm& arm) {
+  const Eigen::Vector2d at = frame.page(seen(view, arm.X_WB.position));
+  const Eigen::Vector2d tangent = seen(view, arm.X_WB.rotation.col(2));
+  const double turn =
+      tangent.norm() < 1e-6 ? 0.0 : std::atan2(tangent.x(), tangent.y()) * 180.0 / std::numbers::pi;
+  svg.leaf("path", {{"class", "base"},
+                    {"transform", fmt::format("translate({}) rotate({})", page_point(at), page_number(turn))},
+                    {"d", "M-14 0H14M-12 0l-5 6M-5 0l-5 6M2 0l-5 6M9 0l-5 6"}});
+}
+
+void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
+               const Arc& arc, std::size_t section) {
+  const bool exact = motion.in_plane && scene.views[v] == PlotView::xoy;
+  const std::string colour = fmt::format("s{}", section % 8);
+  std::array<double, 2> radius = motion.arm.sections[section].radius;
+  for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2);
+  if (radius[0] == radius[1]) {
+    svg.leaf("path", {{"class", "tube " + colour},
+                      {"stroke-width", page_number(2 * radius[0])},
+                      {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
+    return;
+  }
+  svg.leaf("path",
+           {{"class", "taper " + colour}, {"d", taper_path(arc, scene.views[v], scene.frames[v], radius)}});
+}
+
+// How near the middle of an arc is to the view's camera.
+double nearness(PlotView view, const Arc& arc) {
+  const Eigen::Vector3d middle = arc.pose(arc.length / 2).position;
+  return view == PlotView::xoy ? middle.z() : -middle.x();
+}
+
+// The arm's sections, the farthest first.
+std::vector<std::size_t> back_to_front(PlotView view, const Backbone& backbone) {
+  std::vector<std::size_t> order(backbone.arcs().size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    return nearness(view, backbone.arcs()[a]) < nearness(view, backbone.arcs()[b]);
+  });
+  return order;
+}
+
+void draw_joints(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Backbone& backbone) {
+  for (const Arc& arc : backbone.arcs().subspan(1)) {
+    const Eigen::Vector2d at = scene.frames[v].page(seen(scene.views[v], arc.X_WS.position));
+    svg.leaf("circle",
+             {{"class", "joint"}, {"cx", page_number(at.x())}, {"cy", page_number(at.y())}, {"r", "2.8"}});
+  }
+}
+
+void draw_dot(XmlWriter& svg, const Eigen::Vector2d& at, const std::string& css_class,
+              const std::string& radius) {
+  svg.leaf("circle",
+           {{"class", css_class}, {"cx", page_number(at.x())}, {"cy", page_number(at.y())}, {"r", radius}});
+}
+
+std::vector<Eigen::Vector2d> tip_points(const ReportMotion& motion, const PlotFrame& frame, PlotView view) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(motion.count());
+  for (std::size_t i = 0; i < motion.count(); ++i) points.push_back(frame.page(seen(view, motion.tip(i))));
+  return points;
+}
+
+std::string backbone_path(const PlotScene& scene, std::size_t v, const ReportMotion& motion, std::size_t i) {
+  std::string path;
+  for (const Arc& arc : motion.backbones[i].arcs()) {
+    path +=
+        arc_path(arc, scene.views[v], scene.frames[v], motion.in_plane && scene.views[v] == PlotView::xoy);
+  }
+  return path;
+}
+
+// Labels the tip in a view where the arm and the base leave room.
+void label_tip(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
+               std::size_t i, std::string_view content) {
+  LabelPlacer placer(scene.frames[v]);
+  const Backbone& backbone = motion.backbones[i];
+  for (const Arc& arc : backbone.arcs()) {
+    for (int k = 0; k <= 10; ++k) {
+      placer.avoid(scene.frames[v].page(seen(scene.views[v], arc.pose(arc.length * k / 10).position)), 100.0);
+    }
+  }
+  placer.place(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), content);
+}
+
+// Names for the start, the middle and the end of the tip's path; one name where they fall together.
+std::vector<std::pair<std::size_t, std::string>> named_tips(const ReportMotion& motion) {
+  std::vector<std::pair<std::size_t, std::string>> names;
+  const std::pair<std::size_t, const char*> all[] = {
+      {0, "start"}, {motion.middle, "middle"}, {motion.end(), "end"}};
+  for (const auto& [i, name] : all) {
+    const auto same = std::ranges::find_if(names, [&, at = i](const auto& other) {
+      return (motion.tip(other.first) - motion.tip(at)).norm() < 1e-3 * motion.arm.length();
+    });
+    if (same == names.end()) {
+      names.emplace_back(i, name);
+    } else {
+      same->second += std::string(", ") + name;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string section_class(std::size_t index) {
+  const std::size_t dash = index / 8 % 4;
+  return dash == 0 ? fmt::format("s{}", index % 8) : fmt::format("s{} dash{}", index % 8, dash);
+}
+
+Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
+                    std::string_view when) {
+  const std::string tip = motion.tip_text(i);
+  const bool one_view = scene.views.size() == 1;
+  const std::string heading = fmt::format("{}, {}{}", when, moment(motion, i), one_view ? "" : ": " + tip);
+  XmlWriter svg;
+  draw_scene_axes(svg, scene, heading);
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    const Backbone& backbone = motion.backbones[i];
+    draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
+    for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
+      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k);
+    }
+    if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
+      draw_joints(svg, scene, v, backbone);
+    draw_dot(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), "tip", "5");
+    label_tip(svg, scene, v, motion, i, one_view ? tip : "E");
+  }
+  return {scene.width, scene.height,
+          fmt::format("The arm at the {}, {}, with its end effector at {} m", when, moment(motion, i), tip),
+          svg.text()};
+}
+
+Drawing tip_path_picture(const ReportMotion& motion) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < motion.count(); ++i) box.extend(motion.tip(i));
+  const PlotScene scene = scene_of(box, motion.in_plane, 0.02 * motion.arm.length());
+  XmlWriter svg;
+  draw_scene_axes(svg, scene, "path of the end effector");
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    const std::vector<Eigen::Vector2d> path =
+        simplified(tip_points(motion, scene.frames[v], scene.views[v]), 0.05);
+    svg.leaf("path", {{"class", "path"}, {"d", polyline_path(path)}});
+    LabelPlacer placer(scene.frames[v]);
+    for (const Eigen::Vector2d& point : path) placer.avoid(point, 0.1);
+    const auto tips = named_tips(motion);
+    const auto page = [&](std::size_t i) {
+      return scene.frames[v].page(seen(scene.views[v], motion.tip(i)));
+    };
+    for (const auto& [i, name] : tips) {
+      draw_dot(svg, page(i), "tip", "5");
+      placer.avoid(page(i), 100.0);
+    }
+    for (const auto& [i, name] : tips) placer.place(svg, page(i), name);
+  }
+  return {scene.width, scene.height,
+          fmt::format("The end effector's path from {} to {} m", motion.tip_text(0),
+                      motion.tip_text(motion.end())),
+          svg.text()};
+}
+
+Drawing player_picture(const ReportMotion& motion, const PlotScene& scene) {
+  XmlWriter svg;
+  draw_scene_axes(svg, scene, "");
+  const bool joints = scene.has_room_for_joints(motion.arm.length(), motion.arm.sections.size());
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    const PlotFrame& frame = scene.frames[v];
+    for (const std::size_t i : {std::size_t{0}, motion.end()}) {
+      svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion, i)}});
+    }
+    draw_base(svg, frame, scene.views[v], motion.arm);
+    const Eigen::Vector2d origin = frame.page({0.0, 0.0});
+    svg.open("g", {{"class", "view"},
+                   {"data-view", scene.views[v] == PlotView::xoy ? "xoy" : "zoy"},
+                   {"data-x", fmt::format("{:.9g}", origin.x())},
+                   {"data-y", fmt::format("{:.9g}", origin.y())},
+                   {"data-joints", joints ? "yes" : "no"},
+                   {"data-scale", fmt::format("{:.9g}", scene.scale())}});
+    svg.close();
+  }
+  return {scene.width, scene.height, "The arm in motion, between its start and its end", svg.text()};
+}
+
+}  // namespace flexura

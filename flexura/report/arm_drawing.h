@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "flexura/report/motion.h"
+#include "flexura/report/scene.h"
+#include "flexura/report/svg.h"
+
+namespace flexura {
+
+/// The style classes of section `index`: its colour, and from the ninth on a dash to tell it from the earlier
+/// ones.
+[[nodiscard]] std::string section_class(std::size_t index);
+
+/// The arm at state i with its end effector's coordinates, as in the paper's Figs. 6 to 8. `when` names the
+/// state: "start", "middle", "end".
+[[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
+                                  std::string_view when);
+
+/// The tip's way from start to end.
+[[nodiscard]] Drawing tip_path_picture(const ReportMotion& motion);
+
+/// What the player draws into: axes, start and end as ghosts, the tip's path, and for each view an empty
+/// group with the class "view" that says how to come from metres to the page: x = data-x + data-scale X, y =
+/// data-y - data-scale Y.
+[[nodiscard]] Drawing player_picture(const ReportMotion& motion, const PlotScene& scene);
+
+}  // namespace flexura

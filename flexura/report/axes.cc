@@ -1,0 +1,122 @@
+#include "flexura/report/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flexura {
+namespace {
+
+// Page units between ticks, at least, so that labels keep apart.
+constexpr double tick_pitch_x = 56.0;
+constexpr double tick_pitch_y = 34.0;
+constexpr double tick_character_width = 7.2;
+
+int most_ticks(double size, double pitch) { return std::clamp(static_cast<int>(size / pitch), 2, 10); }
+
+int power_of_ten(double value) { return static_cast<int>(std::floor(std::log10(value) + 1e-9)); }
+
+std::string tick_label(double value, double step, double largest) {
+  if (step < 1e-4 || largest >= 1e6) {
+    const int decimals = std::clamp(power_of_ten(largest) - power_of_ten(step), 0, 15);
+    return value == 0.0 ? "0" : fmt::format("{:.{}e}", value, decimals);
+  }
+  return fixed(value, std::max(0, -power_of_ten(step)));
+}
+
+}  // namespace
+
+void Interval::include(double value) {
+  low = std::min(low, value);
+  high = std::max(high, value);
+}
+
+Interval padded(Interval range, double least, double margin) {
+  const double noise =
+      64 * std::numeric_limits<double>::epsilon() * std::max(std::abs(range.low), std::abs(range.high));
+  const double wanted = std::max({least, 1e3 * noise, 1e-9});
+  if (range.extent() < wanted) {
+    const double middle = range.low + range.extent() / 2;
+    range = {middle - wanted / 2, middle + wanted / 2};
+  }
+  const double border = margin * range.extent();
+  return {range.low - border, range.high + border};
+}
+
+Ticks nice_ticks(Interval range, int most) {
+  const double slack = 1e-9;
+  double step = 0.0;
+  double first = 0.0;
+  double last = 0.0;
+  // A power of ten too small to do, then upwards until few enough ticks are left.
+  const int power = static_cast<int>(std::floor(std::log10(range.extent() / most))) - 1;
+  for (int i = 0;; ++i) {
+    const double factors[] = {1.0, 2.0, 5.0};
+    const int exponent = power + i / 3;
+    // Dividing keeps 0.1, 0.2, ... the nearest numbers to what their labels say.
+    const double ten = std::pow(10.0, std::abs(exponent));
+    step = exponent < 0 ? factors[i % 3] / ten : factors[i % 3] * ten;
+    first = std::ceil(range.low / step - slack);
+    last = std::floor(range.high / step + slack);
+    if (last - first < most) break;
+  }
+  Ticks ticks;
+  const double largest = std::max(std::abs(first), std::abs(last)) * step;
+  for (double i = first; i <= last; ++i) {
+    ticks.values.push_back(std::clamp(i * step, range.low, range.high) + 0.0);
+    ticks.labels.push_back(tick_label(i * step, step, std::max(largest, step)));
+  }
+  return ticks;
+}
+
+Eigen::Vector2d PlotFrame::page(const Eigen::Vector2d& data) const {
+  return {corner.x() + (data.x() - x.low) * scale().x(), bottom() - (data.y() - y.low) * scale().y()};
+}
+
+double left_of_axes(Interval y, double height) {
+  std::size_t longest = 1;
+  for (const std::string& label : nice_ticks(y, most_ticks(height, tick_pitch_y)).labels) {
+    longest = std::max(longest, label.size());
+  }
+  return 32.0 + tick_character_width * static_cast<double>(longest);
+}
+
+void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name) {
+  const Ticks x_ticks = nice_ticks(frame.x, most_ticks(frame.size.x(), tick_pitch_x));
+  const Ticks y_ticks = nice_ticks(frame.y, most_ticks(frame.size.y(), tick_pitch_y));
+  std::string grid;
+  for (const double value : x_ticks.values) {
+    const double x = frame.page({value, frame.y.low}).x();
+    grid +=
+        fmt::format("M{} {}V{}", page_number(x), page_number(frame.corner.y()), page_number(frame.bottom()));
+  }
+  for (const double value : y_ticks.values) {
+    const double y = frame.page({frame.x.low, value}).y();
+    grid +=
+        fmt::format("M{} {}H{}", page_number(frame.corner.x()), page_number(y), page_number(frame.right()));
+  }
+  svg.leaf("path", {{"class", "grid"}, {"d", grid}});
+  svg.leaf("rect", {{"class", "plot"},
+                    {"x", page_number(frame.corner.x())},
+                    {"y", page_number(frame.corner.y())},
+                    {"width", page_number(frame.size.x())},
+                    {"height", page_number(frame.size.y())}});
+  for (std::size_t i = 0; i < x_ticks.values.size(); ++i) {
+    const double x = frame.page({x_ticks.values[i], frame.y.low}).x();
+    svg.label({x, frame.bottom() + 17}, "tick middle", x_ticks.labels[i]);
+  }
+  for (std::size_t i = 0; i < y_ticks.values.size(); ++i) {
+    const double y = frame.page({frame.x.low, y_ticks.values[i]}).y();
+    svg.label({frame.corner.x() - 7, y + 4.5}, "tick end", y_ticks.labels[i]);
+  }
+  svg.label({frame.corner.x() + frame.size.x() / 2, frame.bottom() + 37}, "middle", x_name);
+  const Eigen::Vector2d side = {frame.corner.x() - left_of_axes(frame.y, frame.size.y()) + 15,
+                                frame.corner.y() + frame.size.y() / 2};
+  svg.leaf("text",
+           {{"class", "middle"}, {"transform", fmt::format("translate({}) rotate(-90)", page_point(side))}},
+           y_name);
+}
+
+}  // namespace flexura

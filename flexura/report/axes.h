@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexura/report/svg.h"
+
+namespace flexura {
+
+/// An interval of data, low <= high.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+
+  [[nodiscard]] double extent() const { return high - low; }
+  void include(double value);
+};
+
+/// The range grown about its middle to an extent of at least `least`, and then by `margin` of the extent at
+/// each end. An extent too small for its own numbers to tell apart counts as nothing, so the result has one
+/// that is > 0.
+[[nodiscard]] Interval padded(Interval range, double least, double margin);
+
+/// Where an axis is marked.
+struct Ticks {
+  std::vector<double> values;  ///< Ascending multiples of 1, 2 or 5 times a power of ten, inside the range.
+  std::vector<std::string> labels;  ///< One a value, all with the same number of decimals.
+};
+
+/// At most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
+[[nodiscard]] Ticks nice_ticks(Interval range, int most);
+
+/// A plot's place on the page and what it shows. Data's y goes up, the page's goes down.
+struct PlotFrame {
+  Interval x;
+  Interval y;
+  Eigen::Vector2d corner;  ///< Top left, page units.
+  Eigen::Vector2d size;    ///< Page units.
+
+  [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
+  /// The page point of a data point.
+  [[nodiscard]] Eigen::Vector2d page(const Eigen::Vector2d& data) const;
+  [[nodiscard]] double bottom() const { return corner.y() + size.y(); }
+  [[nodiscard]] double right() const { return corner.x() + size.x(); }
+};
+
+/// How far the axes drawn by draw_axes reach below the plot, page units.
+inline constexpr double space_below_axes = 44.0;
+
+/// How far they reach to the left of a plot `height` page units high that shows `y`.
+[[nodiscard]] double left_of_axes(Interval y, double height);
+
+/// Draws the plot's border, grid, ticks and the names of its axes.
+void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name);
+
+}  // namespace flexura

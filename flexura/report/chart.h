@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "flexura/report/svg.h"
+
+namespace flexura {
+
+/// One line of a chart.
+struct ChartSeries {
+  std::string name;            ///< Short and without spaces, for the legend: "3", "X".
+  std::string css_class;       ///< Its colour and dash.
+  std::vector<double> values;  ///< One a time.
+};
+
+/// Values over time.
+struct LineChart {
+  std::string name;         ///< "bends": names the file, and tells the page's script what it shows.
+  std::string heading;      ///< "bend of each section"
+  std::string value_label;  ///< "bend_x (deg)"
+  std::string legend;       ///< What the series are: "section"; may be empty.
+  double least = 1.0;       ///< The smallest extent of values that is not blown up.
+  std::vector<ChartSeries> series;
+};
+
+/// Draws the chart over `times` (s), with a fine vertical line at each of `event_times`. Its body is one
+/// group with the class "chart" that says where the plot is, for the page's script.
+[[nodiscard]] Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
+                                    const std::vector<double>& event_times);
+
+}  // namespace flexura

@@ -1,0 +1,117 @@
+#include "flexura/report/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "flexura/report/arm_curve.h"
+#include "flexura/report/svg.h"
+
+namespace flexura {
+namespace {
+
+// More events than this would hide what the charts show.
+constexpr std::size_t max_event_times = 40;
+
+std::size_t nearest_index(const std::vector<double>& times, double time) {
+  const auto next = std::ranges::lower_bound(times, time);
+  if (next == times.begin()) return 0;
+  if (next == times.end()) return times.size() - 1;
+  const auto index = static_cast<std::size_t>(next - times.begin());
+  return time - times[index - 1] <= times[index] - time ? index - 1 : index;
+}
+
+void keep_each_once(std::vector<std::size_t>& indices) {
+  std::ranges::sort(indices);
+  const auto repeated = std::ranges::unique(indices);
+  indices.erase(repeated.begin(), repeated.end());
+}
+
+// `most` (>= 2) of the numbers 0 to count - 1, first and last among them, evenly spaced.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> indices;
+  const std::size_t steps = std::min(count, most) - 1;
+  for (std::size_t i = 0; i <= steps; ++i) indices.push_back(steps == 0 ? 0 : i * (count - 1) / steps);
+  return indices;
+}
+
+void require_usable(const ReportData& data) {
+  if (data.times.empty() || data.times.size() != data.states.size()) {
+    throw std::invalid_argument(
+        fmt::format("a report needs one time for each of at least one state, not {} and {}",
+                    data.times.size(), data.states.size()));
+  }
+  for (std::size_t i = 0; i < data.times.size(); ++i) {
+    if (!std::isfinite(data.times[i]) || (i > 0 && data.times[i] < data.times[i - 1])) {
+      throw std::invalid_argument(fmt::format("time {} of a report is {}: not ascending", i, data.times[i]));
+    }
+  }
+}
+
+std::vector<double> event_times(const ReportData& data) {
+  std::vector<double> times;
+  for (const ReportData::Mark& event : data.events) {
+    if (event.time >= data.times.front() && event.time <= data.times.back()) times.push_back(event.time);
+  }
+  std::ranges::sort(times);
+  const auto repeated = std::ranges::unique(times);
+  times.erase(repeated.begin(), repeated.end());
+  return times;
+}
+
+}  // namespace
+
+std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& wanted,
+                                      std::size_t most) {
+  if (times.size() <= most) return evenly(times.size(), times.size());
+  std::vector<std::size_t> marked;
+  for (const double time : wanted) marked.push_back(nearest_index(times, time));
+  keep_each_once(marked);
+  const std::size_t most_marked = most / 2;
+  std::vector<std::size_t> kept;
+  if (marked.size() <= most_marked) {
+    kept = marked;
+  } else if (most_marked >= 2) {
+    for (const std::size_t i : evenly(marked.size(), most_marked)) kept.push_back(marked[i]);
+  }
+  const std::vector<std::size_t> rest = evenly(times.size(), most - std::min(kept.size(), most - 2));
+  kept.insert(kept.end(), rest.begin(), rest.end());
+  keep_each_once(kept);
+  return kept;
+}
+
+int ReportMotion::tip_coordinates() const {
+  return in_plane && std::abs(arm.X_WB.position.z()) < 1e-9 * arm.length() ? 2 : 3;
+}
+
+std::string ReportMotion::tip_text(std::size_t i) const {
+  std::string text = "E(";
+  for (int axis = 0; axis < tip_coordinates(); ++axis)
+    text += (axis == 0 ? "" : ", ") + fixed(tip(i)[axis], 3);
+  return text + ')';
+}
+
+ReportMotion motion_of(const ReportData& data) {
+  require_usable(data);
+  ReportMotion motion;
+  motion.arm = data.arm;
+  motion.in_plane = lies_in_xoy(data.arm);
+  motion.recorded = std::max(data.recorded, data.states.size());
+  const std::vector<double> marks = event_times(data);
+  if (marks.size() <= max_event_times) motion.event_times = marks;
+
+  const std::size_t numbers = 3 * std::max<std::size_t>(data.arm.sections.size(), 1);
+  const std::size_t most = std::clamp<std::size_t>(max_shown_numbers / numbers, 2, max_shown_states);
+  for (const std::size_t i : kept_indices(data.times, marks, most)) {
+    motion.times.push_back(data.times[i]);
+    motion.states.push_back(data.states[i]);
+    motion.backbones.emplace_back(data.arm, data.states[i]);
+    for (const double stretch : data.states[i].stretches) motion.stretches_change |= stretch != 1.0;
+  }
+  motion.middle = nearest_index(motion.times, (motion.times.front() + motion.times.back()) / 2);
+  return motion;
+}
+
+}  // namespace flexura

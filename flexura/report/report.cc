@@ -1,0 +1,169 @@
+#include "flexura/report/report.h"
+
+#include <fmt/format.h>
+
+#include "embedded/figure_css.h"
+#include "embedded/report_css.h"
+#include "embedded/report_html.h"
+#include "embedded/report_js.h"
+#include "flexura/report/arm_drawing.h"
+#include "flexura/report/charts.h"
+#include "flexura/report/page.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t max_listed_events = 1000;
+
+struct NamedDrawing {
+  std::string name;
+  Drawing drawing;
+};
+
+std::vector<NamedDrawing> arm_drawings(const ReportMotion& motion, const PlotScene& scene) {
+  return {{"arm-start", arm_picture(motion, scene, 0, "start")},
+          {"arm-middle", arm_picture(motion, scene, motion.middle, "middle")},
+          {"arm-end", arm_picture(motion, scene, motion.end(), "end")}};
+}
+
+std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
+  std::vector<NamedDrawing> drawings;
+  for (const LineChart& chart : charts_of(motion)) {
+    drawings.push_back({chart.name, chart_picture(chart, motion.times, motion.event_times)});
+  }
+  return drawings;
+}
+
+PlotScene motion_scene(const ReportMotion& motion) {
+  return scene_of(swept_box(motion), motion.in_plane, 0.1 * motion.arm.length());
+}
+
+std::string figures_html(const std::vector<NamedDrawing>& drawings) {
+  std::string html;
+  for (const NamedDrawing& named : drawings) {
+    html += fmt::format("<figure id=\"picture-{}\">\n{}</figure>\n", named.name, inline_svg(named.drawing));
+  }
+  return html;
+}
+
+std::string summary_html(const ReportMotion& motion) {
+  const std::size_t sections = motion.arm.sections.size();
+  const auto row = [](std::string_view name, std::string_view value) {
+    return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, xml_escape(value));
+  };
+  const auto moment = [&](std::string_view name, std::size_t i) {
+    return row(fmt::format("{} <small>t = {} s</small>", name, fixed(motion.times[i], 3)),
+               motion.tip_text(i));
+  };
+  return row("arm", motion.arm.kind == ArmKind::planar ? "planar" : "spatial") +
+         row("sections", fmt::format("{}", sections)) + row("length", fixed(motion.arm.length(), 3) + " m") +
+         row("duration", fixed(motion.times.back() - motion.times.front(), 3) + " s") + moment("start", 0) +
+         moment("middle", motion.middle) + moment("end", motion.end());
+}
+
+std::string sections_html(const ReportMotion& motion) {
+  const bool planar = motion.arm.kind == ArmKind::planar;
+  std::vector<std::pair<std::string_view, std::string_view>>
+      columns;  // What the script calls it, and its heading.
+  columns.emplace_back("bends-x", "bend_x");
+  columns.emplace_back(planar ? "archings" : "bends-y", planar ? "arching" : "bend_y");
+  if (motion.has_cord_angles()) columns.emplace_back("cord-angles", "cord angle");
+  if (motion.stretches_change) columns.emplace_back("stretches", "stretch");
+  std::string html = "<thead><tr><th scope=\"col\">section</th>";
+  for (const auto& [name, heading] : columns) {
+    html +=
+        fmt::format("<th scope=\"col\">{}{}</th>", heading, name == "stretches" ? "" : " <small>deg</small>");
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (std::size_t i = 0; i < motion.arm.sections.size(); ++i) {
+    html += fmt::format("<tr><th scope=\"row\"><i class=\"s{}\"></i>{}</th>", i % 8, i + 1);
+    for (const auto& [name, heading] : columns) html += fmt::format("<td data-value=\"{}\"></td>", name);
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n";
+}
+
+std::string events_html(const ReportData& data) {
+  if (data.events.empty()) return "<p>None.</p>\n";
+  std::string html =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Events\">\n<table>\n<thead><tr>"
+      "<th scope=\"col\">time <small>s</small></th><th scope=\"col\">kind</th><th "
+      "scope=\"col\">what</th></tr></thead>\n"
+      "<tbody>\n";
+  for (std::size_t i = 0; i < std::min(data.events.size(), max_listed_events); ++i) {
+    const ReportData::Mark& event = data.events[i];
+    html += fmt::format(
+        "<tr><td><button type=\"button\" class=\"jump\" data-time=\"{0:.9g}\">{1}</button></td>"
+        "<td>{2}</td><td>{3}</td></tr>\n",
+        event.time, fixed(event.time, 3), xml_escape(event.kind), xml_escape(event.text));
+  }
+  html += "</tbody>\n</table>\n</div>\n";
+  if (data.events.size() > max_listed_events) {
+    html += fmt::format("<p class=\"note\">The first {} of {} events; the log has all of them.</p>\n",
+                        max_listed_events, data.events.size());
+  }
+  return html;
+}
+
+std::string thinned_html(const ReportMotion& motion) {
+  if (motion.count() == motion.recorded) return "";
+  return fmt::format(
+      "<p class=\"note\">This page shows {} of the {} recorded states, evenly chosen and with those at "
+      "events; the log has all of them.</p>\n",
+      motion.count(), motion.recorded);
+}
+
+std::string policy() {
+  return fmt::format(
+      "default-src 'none'; img-src data:; script-src {}; style-src {} {}; base-uri 'none'; form-action "
+      "'none'",
+      csp_hash(embedded::report_js_sha256), csp_hash(embedded::figure_css_sha256),
+      csp_hash(embedded::report_css_sha256));
+}
+
+}  // namespace
+
+std::vector<Figure> report_figures(const ReportData& data) {
+  const ReportMotion motion = motion_of(data);
+  std::vector<NamedDrawing> drawings = arm_drawings(motion, motion_scene(motion));
+  drawings.push_back({"tip-path", tip_path_picture(motion)});
+  for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
+  std::vector<Figure> figures;
+  for (const NamedDrawing& named : drawings)
+    figures.push_back({named.name + ".svg", standalone_svg(named.drawing)});
+  return figures;
+}
+
+std::string report_html(const ReportData& data) {
+  const ReportMotion motion = motion_of(data);
+  const PlotScene scene = motion_scene(motion);
+  // An arm in XOY has three narrow pictures to a row, and its tip's path, as high as two charts, stands
+  // beside the last two. The wide pictures of a spatial arm come two to a row, and the path fills the fourth
+  // place.
+  std::vector<NamedDrawing> arms = arm_drawings(motion, scene);
+  std::vector<NamedDrawing> charts = chart_drawings(motion);
+  NamedDrawing path = {"tip-path", tip_path_picture(motion)};
+  if (motion.in_plane) {
+    charts.insert(charts.end() - 1, std::move(path));
+  } else {
+    arms.push_back(std::move(path));
+  }
+  return filled(embedded::report_html, {{"title", xml_escape(data.title)},
+                                        {"version", xml_escape(data.version)},
+                                        {"policy", policy()},
+                                        {"figure_css", std::string(embedded::figure_css)},
+                                        {"report_css", std::string(embedded::report_css)},
+                                        {"report_js", std::string(embedded::report_js)},
+                                        {"summary", summary_html(motion)},
+                                        {"thinned", thinned_html(motion)},
+                                        {"views", motion.in_plane ? "one" : "two"},
+                                        {"arms", figures_html(arms)},
+                                        {"player", inline_svg(player_picture(motion, scene))},
+                                        {"sections", sections_html(motion)},
+                                        {"charts", figures_html(charts)},
+                                        {"events", events_html(data)},
+                                        {"experiment", xml_escape(data.experiment_text)},
+                                        {"data", motion_json(motion)}});
+}
+
+}  // namespace flexura

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// What a finished run hands to its report.
+struct ReportData {
+  /// Something that happened: a task's start or end, an event.
+  struct Mark {
+    double time = 0.0;  ///< s
+    std::string kind;
+    std::string text;
+  };
+
+  std::string title;            ///< Any text.
+  std::string version;          ///< Flexura's.
+  std::string experiment_text;  ///< The experiment file as run, shown as it is.
+  Arm arm;
+  std::vector<double> times;     ///< s, ascending; one a state, at least one.
+  std::vector<ArmState> states;  ///< As run; finite.
+  std::vector<Mark> events;      ///< In the order of time.
+  std::size_t recorded = 0;      ///< States in the run's log, where they are more than those given here.
+};
+
+/// A picture as a file.
+struct Figure {
+  std::string file_name;  ///< "arm-start.svg"
+  std::string svg;        ///< The file's text.
+};
+
+/// The whole report as one HTML page that loads nothing and, by its content security policy, could not. What
+/// it embeds is bounded: of a long run it keeps some 2000 states, and says so. Throws std::invalid_argument
+/// when times and states do not match or do not fit the arm.
+[[nodiscard]] std::string report_html(const ReportData& data);
+
+/// The report's pictures: arm-start, arm-middle, arm-end, tip-path, bends (a spatial arm: bends-x and
+/// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip. Throws as
+/// report_html does.
+[[nodiscard]] std::vector<Figure> report_figures(const ReportData& data);
+
+}  // namespace flexura

@@ -1,0 +1,226 @@
+#include "flexura/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+namespace flexura {
+namespace {
+
+// The paper's arm (section 3.2), straight and then bent linearly to its final archings within 5 s.
+ReportData paper_run(std::size_t steps) {
+  const double lengths[] = {2, 3, 1, 2, 4, 2, 1, 1};
+  const double archings_pi[] = {0.05, 0.05, 0.1, 0.1, 0.05, -0.3, 0.2, -0.35};
+  ReportData data;
+  data.title = "The paper's arm";
+  data.version = "0.1.0";
+  data.experiment_text = "[arm]\n";
+  for (const double length : lengths) data.arm.sections.emplace_back().length = length;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const double part = steps == 0 ? 0.0 : static_cast<double>(i) / static_cast<double>(steps);
+    ArmState state = ArmState::straight(8);
+    for (std::size_t k = 0; k < 8; ++k) state.bends[k].x() = -2 * std::numbers::pi * archings_pi[k] * part;
+    data.times.push_back(5.0 * part);
+    data.states.push_back(state);
+  }
+  data.events = {{0.0, "start", "task 1"}, {5.0 * static_cast<double>(steps > 0), "end", "task 1"}};
+  return data;
+}
+
+ReportData spatial_run() {
+  ReportData data;
+  data.title = "spatial";
+  data.arm.kind = ArmKind::spatial;
+  data.arm.sections.resize(3);
+  data.arm.sections[1].radius = {0.05, 0.01};
+  for (int i = 0; i <= 50; ++i) {
+    const double angle = 0.1 * i;
+    ArmState state = ArmState::straight(3);
+    for (Eigen::Vector2d& bend : state.bends) bend = {angle * std::cos(angle), angle * std::sin(angle)};
+    state.stretches[2] = 1.0 + 0.01 * i;
+    data.times.push_back(0.1 * i);
+    data.states.push_back(state);
+  }
+  return data;
+}
+
+std::set<std::string> names_of(const std::vector<Figure>& figures) {
+  std::set<std::string> names;
+  for (const Figure& figure : figures) names.insert(figure.file_name);
+  return names;
+}
+
+const std::string& svg_of(const std::vector<Figure>& figures, const std::string& name) {
+  for (const Figure& figure : figures) {
+    if (figure.file_name == name) return figure.svg;
+  }
+  throw std::out_of_range(name);
+}
+
+// What is wrong with the nesting, the attributes' quotes or the references of an XML text; empty when nothing
+// is.
+std::string xml_fault(std::string_view xml) {
+  std::vector<std::string> open;
+  while (!xml.empty()) {
+    const std::size_t bracket = xml.find('<');
+    const std::string_view content = xml.substr(0, bracket);
+    if (content.find('>') != std::string_view::npos) return "a loose >";
+    for (std::size_t at = content.find('&'); at != std::string_view::npos; at = content.find('&', at + 1)) {
+      const std::string_view name = content.substr(at + 1, content.find(';', at) - at - 1);
+      if (!std::set<std::string_view>{"amp", "lt", "gt", "quot", "#39"}.contains(name)) return "a loose &";
+    }
+    if (bracket == std::string_view::npos) break;
+    const std::size_t close = xml.find('>', bracket);
+    if (close == std::string_view::npos) return "a tag without an end";
+    const std::string_view tag = xml.substr(bracket + 1, close - bracket - 1);
+    xml.remove_prefix(close + 1);
+    if (std::ranges::count(tag, '"') % 2 != 0 || tag.find('<') != std::string_view::npos) return "a bad tag";
+    const std::string name(tag.substr(0, tag.find_first_of(" /", 1)));
+    if (tag.front() == '/') {
+      if (open.empty() || "/" + open.back() != name) return "</> closes another element: " + name;
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.push_back(name);
+    }
+  }
+  return open.empty() ? "" : "not closed: " + open.back();
+}
+
+TEST(ReportFigures, AreWellFormedAndHaveNoMissingNumbers) {
+  for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
+    for (const Figure& figure : report_figures(data)) {
+      SCOPED_TRACE(figure.file_name);
+      EXPECT_EQ(xml_fault(figure.svg), "");
+      EXPECT_TRUE(figure.svg.starts_with("<svg xmlns="));
+      EXPECT_EQ(figure.svg.find("nan"), std::string::npos);
+      EXPECT_EQ(figure.svg.find("inf"), std::string::npos);
+    }
+  }
+}
+
+TEST(ReportFigures, OfThePapersArmShowItsEndEffector) {
+  const std::vector<Figure> figures = report_figures(paper_run(100));
+  EXPECT_EQ(names_of(figures),
+            (std::set<std::string>{"arm-start.svg", "arm-middle.svg", "arm-end.svg", "tip-path.svg",
+                                   "bends.svg", "archings.svg", "cord-angles.svg", "tip.svg"}));
+  EXPECT_NE(svg_of(figures, "arm-start.svg").find(">E(0.000, 16.000)<"), std::string::npos);
+  EXPECT_NE(svg_of(figures, "arm-middle.svg").find(">E(-7.925, 12.649)<"), std::string::npos);
+  EXPECT_NE(svg_of(figures, "arm-end.svg").find(">E(-10.738, 5.201)<"), std::string::npos);
+}
+
+// How many sections are drawn with SVG's circular arcs.
+int tubes_with_arcs(const std::string& svg) {
+  int count = 0;
+  for (std::size_t at = svg.find("class=\"tube"); at != std::string::npos;
+       at = svg.find("class=\"tube", at + 1)) {
+    const std::size_t path = svg.find(" d=\"", at);
+    count += svg.substr(path, svg.find('"', path + 4) - path).find('A') != std::string::npos;
+  }
+  return count;
+}
+
+TEST(ReportFigures, OfAnArmInXoyAreTrueArcs) {
+  const std::vector<Figure> figures = report_figures(paper_run(10));
+  EXPECT_EQ(tubes_with_arcs(svg_of(figures, "arm-end.svg")), 8);
+  EXPECT_EQ(tubes_with_arcs(svg_of(figures, "arm-start.svg")), 0) << "straight sections are lines";
+}
+
+TEST(ReportFigures, OfASpatialArmShowBothViewsAndStretches) {
+  const std::vector<Figure> figures = report_figures(spatial_run());
+  EXPECT_EQ(names_of(figures),
+            (std::set<std::string>{"arm-start.svg", "arm-middle.svg", "arm-end.svg", "tip-path.svg",
+                                   "bends-x.svg", "bends-y.svg", "stretches.svg", "tip.svg"}));
+  for (const char* name : {"arm-end.svg", "tip-path.svg"}) {
+    EXPECT_NE(svg_of(figures, name).find(">X (m)<"), std::string::npos);
+    EXPECT_NE(svg_of(figures, name).find(">Z (m)<"), std::string::npos);
+  }
+}
+
+// The numbers of every element with this attribute.
+std::vector<double> numbers_of(const std::string& svg, const std::string& attribute) {
+  std::vector<double> numbers;
+  const std::string key = " " + attribute + "=\"";
+  for (std::size_t at = svg.find(key); at != std::string::npos; at = svg.find(key, at + 1)) {
+    numbers.push_back(std::stod(svg.substr(at + key.size())));
+  }
+  return numbers;
+}
+
+TEST(ReportFigures, KeepEveryLabelAndDotOnThePage) {
+  for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
+    for (const Figure& figure : report_figures(data)) {
+      SCOPED_TRACE(figure.file_name);
+      const double width = numbers_of(figure.svg, "width").front();
+      const double height = numbers_of(figure.svg, "height").front();
+      for (const char* attribute : {"x", "cx"}) {
+        for (const double x : numbers_of(figure.svg, attribute)) EXPECT_TRUE(x >= 0.0 && x <= width) << x;
+      }
+      for (const char* attribute : {"y", "cy"}) {
+        for (const double y : numbers_of(figure.svg, attribute)) EXPECT_TRUE(y >= 0.0 && y <= height) << y;
+      }
+    }
+  }
+}
+
+TEST(ReportHtml, SaysWhereTheEndEffectorEnds) {
+  const std::string html = report_html(paper_run(100));
+  EXPECT_NE(html.find("<dd>E(-10.738, 5.201)</dd>"), std::string::npos);
+  EXPECT_NE(html.find("<dd>16.000 m</dd>"), std::string::npos);
+  EXPECT_NE(html.find("<dd>5.000 s</dd>"), std::string::npos);
+}
+
+TEST(ReportHtml, ShowsTextsAndRunsNoneOfThem) {
+  ReportData data = paper_run(10);
+  const std::string hostile =
+      "]]></pre></script><script>alert(1)</script><img src=x onerror=alert(2)>{{data}}";
+  data.title = data.version = data.experiment_text = hostile;
+  data.events.push_back({1.0, hostile, hostile});
+  const std::string html = report_html(data);
+  EXPECT_EQ(html.find("<script>alert"), std::string::npos);
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  std::size_t shown = 0;
+  const std::string escaped =
+      "]]&gt;&lt;/pre&gt;&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;&lt;img src=x "
+      "onerror=alert(2)&gt;{{data}}";
+  for (std::size_t at = html.find(escaped); at != std::string::npos; at = html.find(escaped, at + 1)) ++shown;
+  EXPECT_EQ(shown, 6u) << "title twice, version, experiment, and an event's kind and text";
+}
+
+TEST(ReportHtml, LoadsNothing) {
+  const std::string html = report_html(spatial_run());
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(html.find("unsafe-inline"), std::string::npos);
+  for (const char* text : {" src=", "url(", "@import", "href=\"http", "style=\""}) {
+    EXPECT_EQ(html.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(ReportHtml, StaysSmallForLongRunsAndSaysSo) {
+  ReportData data = paper_run(100'000);
+  data.events.resize(5000, {2.5, "event", "again"});
+  const std::string html = report_html(data);
+  EXPECT_LT(html.size(), 2'000'000u);
+  EXPECT_NE(html.find("of the 100001 recorded states"), std::string::npos);
+  EXPECT_NE(html.find("The first 1000 of 5000 events"), std::string::npos);
+  EXPECT_NE(html.find("E(-10.738, 5.201)"), std::string::npos);
+}
+
+TEST(ReportHtml, IsTheSameForTheSameRun) {
+  EXPECT_EQ(report_html(spatial_run()), report_html(spatial_run()));
+  EXPECT_EQ(report_figures(paper_run(7)).back().svg, report_figures(paper_run(7)).back().svg);
+}
+
+TEST(ReportHtml, ShowsARunOfOneState) {
+  const std::string html = report_html(paper_run(0));
+  EXPECT_NE(html.find("<dd>0.000 s</dd>"), std::string::npos);
+  EXPECT_NE(html.find("<dd>E(0.000, 16.000)</dd>"), std::string::npos);
+  EXPECT_NE(html.find("start, middle, end"), std::string::npos)
+      << "one name at the one point of the tip's path";
+}
+
+}  // namespace
+}  // namespace flexura

@@ -27,12 +27,14 @@
 #include <string_view>
 #include <vector>
 
+// NOLINTBEGIN(readability-identifier-naming,bugprone-reserved-identifier): others' names.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 // A sanitizer that has found something then raises SIGABRT, which is caught below.
 extern "C" const char* __asan_default_options() { return "abort_on_error=1"; }
 extern "C" const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
 extern "C" const char* __tsan_default_options() { return "abort_on_error=1:halt_on_error=1"; }
+// NOLINTEND(readability-identifier-naming,bugprone-reserved-identifier)
 
 namespace {
 
@@ -86,7 +88,7 @@ void handle(int signal, void (*handler)(int)) {
 }
 
 void watch_for_death() {
-  static std::array<std::uint8_t, 64 * 1024> stack;  // The usual one may be what overflowed.
+  static std::array<std::uint8_t, 65536> stack;  // The usual one may be what overflowed.
   stack_t other{};
   other.ss_sp = stack.data();
   other.ss_size = stack.size();
@@ -102,7 +104,7 @@ void watch_for_death() {
 /// Calls the target with the input in a block of its own size, so that a read past its end is seen.
 void run(const Input& input) {
   const std::unique_ptr<std::uint8_t[]> exact(new std::uint8_t[input.size()]);
-  std::copy(input.begin(), input.end(), exact.get());
+  std::ranges::copy(input, exact.get());
   current_data = exact.get();
   current_size = input.size();
   current_case = current_case + 1;
@@ -183,9 +185,9 @@ std::vector<Input> read_dictionary(const std::filesystem::path& path) {
     if (line.starts_with('#') || open == close) continue;
     Input token;
     for (std::size_t i = open + 1; i < close; ++i) {
-      if (line[i] != '\\') {
-        token.push_back(static_cast<std::uint8_t>(line[i]));
-      } else if (line[++i] == 'x') {
+      const bool escaped = line[i] == '\\';
+      if (escaped) ++i;
+      if (escaped && line[i] == 'x') {
         token.push_back(static_cast<std::uint8_t>(std::stoul(line.substr(i + 1, 2), nullptr, 16)));
         i += 2;
       } else {
@@ -282,7 +284,7 @@ class Mutator {
     const std::uint64_t value = random_.of(numbers) + random_.below(3) - 1;
     Input bytes(std::size_t{1} << random_.below(4));
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-    if (random_.below(2) == 0) std::reverse(bytes.begin(), bytes.end());
+    if (random_.below(2) == 0) std::ranges::reverse(bytes);
     return bytes;
   }
 
@@ -335,6 +337,7 @@ std::vector<Input> read_inputs(const Options& options) {
   }
   std::ranges::sort(files);
   std::vector<Input> inputs;
+  inputs.reserve(files.size());
   for (const auto& file : files) inputs.push_back(read_file(file));
   return inputs;
 }

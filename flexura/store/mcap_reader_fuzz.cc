@@ -17,12 +17,13 @@ void read(std::span<const std::byte> bytes, flexura::McapCheck check) {
       const auto channel = log.channels().begin()->second.topic.size();
       if (!inside || channel > bytes.size() || message.channel->topic.size() > bytes.size()) __builtin_trap();
     }
-  } catch (const std::runtime_error&) {  // Bad logs are refused so.
+  } catch (const std::runtime_error&) {  // NOLINT(bugprone-empty-catch): bad logs are refused so.
   }
 }
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span bytes(reinterpret_cast<const std::byte*>(data), size);
   read(bytes, flexura::McapCheck::crc);

@@ -132,7 +132,7 @@ TEST(McapReader, RefusesWhatIsNoLog) {
   EXPECT_THAT(refusal(small_log() + "x"), HasSubstr("the log goes on after its end"));
   const TestFolder folder;
   EXPECT_THROW(McapReader(folder / "none.mcap"), std::system_error);
-  EXPECT_THROW(McapReader(std::filesystem::temp_directory_path()), std::system_error);
+  EXPECT_THROW(McapReader(folder / ""), std::system_error) << "a folder";
   EXPECT_THROW(McapReader("/dev/zero"), std::system_error);
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_THROW(McapReader(folder / "pipe"), std::system_error);

@@ -23,7 +23,7 @@ class McapWriter {
   struct Config {
     /// A chunk is closed once its messages take this many bytes (1 to 2^30); a bigger message is a chunk of
     /// its own.
-    std::size_t chunk_size = 256U * 1024U;
+    std::size_t chunk_size = std::size_t{256} * 1024;
   };
 
   /// Creates the file; never overwrites one. Throws std::system_error with the path when it

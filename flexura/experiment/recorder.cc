@@ -20,9 +20,8 @@ struct Recorder::Channels {
   template <class M>
   std::uint16_t add(std::string_view topic) {
     const TableInfo& info = fields_of(static_cast<const M*>(nullptr)).info();
-    return log.add_channel({.topic = std::string(topic),
-                            .schema = {.name = info.name, .data = write_json(json_schema(info))},
-                            .metadata = {}});
+    return log.add_channel(
+        {std::string(topic), "json", {info.name, "jsonschema", write_json(json_schema(info))}, {}});
   }
 
   template <class M>

@@ -1,23 +1,25 @@
 // A project of its own that uses an installed Flexura: where does the paper's arm end?
+#include <cstddef>
 #include <cstdio>
 #include <numbers>
 #include <vector>
 
 #include "flexura/kinematics/planar.h"
-#include "flexura/model/backbone.h"
+#include "flexura/kinematics/spatial.h"
 
 int main() {
+  constexpr double pi = std::numbers::pi;
   const std::vector<double> lengths = {2, 3, 1, 2, 4, 2, 1, 1};
-  std::vector<double> cord_angles = {0.55, 0.65, 0.8, 1, 1.15, 0.9, 0.8, 0.65};
-  for (double& angle : cord_angles) angle *= std::numbers::pi;
+  const std::vector<double> cord_angles = {.55 * pi,  .65 * pi, .8 * pi, pi,
+                                           1.15 * pi, .9 * pi,  .8 * pi, .65 * pi};
 
+  const auto archings = flexura::archings_from_cord_angles(cord_angles, pi / 2);
   flexura::Arm arm;
-  for (const double length : lengths) arm.sections.push_back({.length = length});
-  const auto base_tangent = flexura::base_tangent_angle(arm.X_WB);
-  const auto bends =
-      flexura::bends_from_archings(flexura::archings_from_cord_angles(base_tangent, cord_angles));
-  const flexura::Backbone backbone(arm, {.bends = bends, .stretches = std::vector<double>(lengths.size(), 1)});
-
-  const auto& tip = backbone.tip().position;
+  flexura::ArmState state = flexura::ArmState::straight(lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    arm.sections.push_back({.length = lengths[i]});
+    state.bends[i] = flexura::bend_from_arching(archings[i]);
+  }
+  const auto tip = flexura::tip_pose(arm, state).position;
   std::printf("E = (%.3f, %.3f)\n", tip.x(), tip.y());
 }

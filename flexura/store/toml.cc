@@ -41,7 +41,7 @@ Node convert(const toml::node& node, const Source& source) {
           {std::string(key.str()), position(source, key.source().begin), convert(value, source)});
     }
     // toml++ keeps keys in alphabetical order; a person reads errors in the order of the file.
-    std::ranges::stable_sort(members, [](const Node::Member& a, const Node::Member& b) {
+    std::ranges::sort(members, [](const Node::Member& a, const Node::Member& b) {
       return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
     });
     result.value = std::move(members);

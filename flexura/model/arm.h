@@ -44,7 +44,6 @@ struct Arm {
   ArmKind kind = ArmKind::planar;
   Pose X_WB = default_base_pose();
   std::vector<Section> sections;
-  ArmState initial;  ///< One bend and stretch a section.
 
   /// Sum of the unstretched section lengths, m.
   [[nodiscard]] double length() const;

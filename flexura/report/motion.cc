@@ -67,6 +67,7 @@ std::vector<std::size_t> kept_indices(const std::vector<double>& times, const st
                                       std::size_t most) {
   if (times.size() <= most) return evenly(times.size(), times.size());
   std::vector<std::size_t> marked;
+  marked.reserve(wanted.size());
   for (const double time : wanted) marked.push_back(nearest_index(times, time));
   keep_each_once(marked);
   const std::size_t most_marked = most / 2;

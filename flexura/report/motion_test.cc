@@ -10,6 +10,7 @@ namespace {
 
 std::vector<double> clock_ticks(std::size_t count, double step) {
   std::vector<double> times;
+  times.reserve(count);
   for (std::size_t i = 0; i < count; ++i) times.push_back(static_cast<double>(i) * step);
   return times;
 }

@@ -34,7 +34,7 @@ std::string states_json(const ReportMotion& motion) {
     if (!motion.stretches_change) continue;
     for (const double stretch : state.stretches) stretches.add(stretch);
   }
-  return fmt::format("\"bends\":{},\"stretches\":{}", bends.text(), stretches.text());
+  return fmt::format(R"("bends":{},"stretches":{})", bends.text(), stretches.text());
 }
 
 }  // namespace

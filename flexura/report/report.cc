@@ -71,13 +71,13 @@ std::string sections_html(const ReportMotion& motion) {
   if (motion.stretches_change) columns.emplace_back("stretches", "stretch");
   std::string html = "<thead><tr><th scope=\"col\">section</th>";
   for (const auto& [name, heading] : columns) {
-    html +=
-        fmt::format("<th scope=\"col\">{}{}</th>", heading, name == "stretches" ? "" : " <small>deg</small>");
+    html += fmt::format(R"(<th scope="col">{}{}</th>)", heading,
+                        name == "stretches" ? "" : " <small>deg</small>");
   }
   html += "</tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < motion.arm.sections.size(); ++i) {
-    html += fmt::format("<tr><th scope=\"row\"><i class=\"s{}\"></i>{}</th>", i % 8, i + 1);
-    for (const auto& [name, heading] : columns) html += fmt::format("<td data-value=\"{}\"></td>", name);
+    html += fmt::format(R"(<tr><th scope="row"><i class="s{}"></i>{}</th>)", i % 8, i + 1);
+    for (const auto& [name, heading] : columns) html += fmt::format(R"(<td data-value="{}"></td>)", name);
     html += "</tr>\n";
   }
   return html + "</tbody>\n";
@@ -129,6 +129,7 @@ std::vector<Figure> report_figures(const ReportData& data) {
   drawings.push_back({"tip-path", tip_path_picture(motion)});
   for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
   std::vector<Figure> figures;
+  figures.reserve(drawings.size());
   for (const NamedDrawing& named : drawings)
     figures.push_back({named.name + ".svg", standalone_svg(named.drawing)});
   return figures;

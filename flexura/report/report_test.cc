@@ -118,7 +118,7 @@ int tubes_with_arcs(const std::string& svg) {
   for (std::size_t at = svg.find("class=\"tube"); at != std::string::npos;
        at = svg.find("class=\"tube", at + 1)) {
     const std::size_t path = svg.find(" d=\"", at);
-    count += svg.substr(path, svg.find('"', path + 4) - path).find('A') != std::string::npos;
+    if (svg.substr(path, svg.find('"', path + 4) - path).find('A') != std::string::npos) ++count;
   }
   return count;
 }

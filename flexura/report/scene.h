@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "flexura/report/arm_curve.h"
@@ -37,7 +38,7 @@ void draw_scene_axes(XmlWriter& svg, const PlotScene& scene, std::string_view he
 /// Places one-line labels beside points so that they stay in the plot and keep off what is drawn.
 class LabelPlacer {
  public:
-  explicit LabelPlacer(const PlotFrame& frame) : frame_(frame) {}
+  explicit LabelPlacer(PlotFrame frame) : frame_(std::move(frame)) {}
   /// Labels keep off this page point, the more the greater its weight.
   void avoid(const Eigen::Vector2d& point, double weight) { taken_.push_back({point, weight}); }
   /// Writes the label beside the page point `at`.

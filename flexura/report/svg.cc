@@ -14,16 +14,19 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
+// Number of bytes of a character that starts with `first`, 0 where none does.
+std::size_t bytes_announced(unsigned first) {
+  if (first < 0x80) return 1;
+  if (first < 0xC2 || first > 0xF4) return 0;
+  if (first < 0xE0) return 2;
+  return first < 0xF0 ? 3 : 4;
+}
+
 // Number of bytes of the valid UTF-8 character at the start of `text`; 0 when there is none.
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
-  const std::size_t size = first < 0x80   ? 1
-                           : first < 0xC2 ? 0
-                           : first < 0xE0 ? 2
-                           : first < 0xF0 ? 3
-                           : first < 0xF5 ? 4
-                                          : 0;
+  const std::size_t size = bytes_announced(first);
   if (size == 0 || size > text.size()) return 0;
   for (std::size_t i = 1; i < size; ++i) {
     if ((byte(i) & 0xC0U) != 0x80) return 0;
@@ -96,7 +99,7 @@ std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& poin
   while (!spans.empty()) {
     const auto [first, last] = spans.back();
     spans.pop_back();
-    const Eigen::Vector2d start = points[first];
+    const Eigen::Vector2d& start = points[first];
     const Eigen::Vector2d chord = points[last] - start;
     double farthest = tolerance;
     std::size_t split = first;

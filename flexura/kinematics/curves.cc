@@ -99,12 +99,12 @@ std::vector<CubicBezier> tangent_bezier(const Backbone& backbone) {
 }
 
 CurveDeviation deviation(std::span<const CubicBezier> curve, const Backbone& backbone) {
-  constexpr int kSamples = 256;
+  constexpr int samples = 256;
   const Quadrature rule = gauss_legendre(16);
   CurveDeviation result;
   for (const CubicBezier& piece : curve) {
-    for (int k = 0; k <= kSamples; ++k) {
-      const Eigen::Vector3d p_WP = piece.at(static_cast<double>(k) / kSamples);
+    for (int k = 0; k <= samples; ++k) {
+      const Eigen::Vector3d p_WP = piece.at(static_cast<double>(k) / samples);
       result.distance = std::max(result.distance, distance(backbone, p_WP));
     }
     result.length += integrate(rule, [&](double u) { return piece.velocity(u).norm(); }, 0.0, 1.0, 4);

@@ -28,7 +28,7 @@ TEST(CatmullRom, IsThePapersEquation11WithReflectedEnds) {
     const double tau = random.uniform(0.1, 1.0);
     std::vector<Eigen::Vector3d> extended = points;
     extended.insert(extended.begin(), 2.0 * points[0] - points[1]);
-    extended.push_back(2.0 * points.back() - points[points.size() - 2]);
+    extended.emplace_back(2.0 * points.back() - points[points.size() - 2]);
     const std::vector<CubicBezier> spline = catmull_rom(points, tau);
     ASSERT_EQ(spline.size(), points.size() - 1);
     for (std::size_t i = 0; i < spline.size(); ++i) {

@@ -25,10 +25,12 @@ class BackboneJacobian {
 
   /// X_WS at `point`.
   [[nodiscard]] Pose pose(const MaterialPoint& point) const;
+  // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
   /// Writes the Jacobian of `point` into J, 6 x 3n (else std::invalid_argument).
   void at(const MaterialPoint& point, Eigen::Ref<Jacobian> J) const;
   /// Writes the Jacobian of the tip into J.
   void tip(Eigen::Ref<Jacobian> J) const { at({parts_.size() - 1, 1.0}, J); }
+  // NOLINTEND(performance-unnecessary-value-param)
 
  private:
   using Columns = Eigen::Matrix<double, 6, 3>;

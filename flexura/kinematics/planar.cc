@@ -54,7 +54,7 @@ std::vector<Eigen::Vector2d> base_points(std::span<const double> lengths, std::s
   points.reserve(lengths.size() + 1);
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     const Eigen::Vector2d along(std::cos(cord_angles[i]), std::sin(cord_angles[i]));
-    points.push_back(points.back() + cord_length(lengths[i], archings[i]) * along);
+    points.emplace_back(points.back() + cord_length(lengths[i], archings[i]) * along);
   }
   return points;
 }

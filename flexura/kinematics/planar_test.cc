@@ -18,6 +18,7 @@ constexpr double pi = std::numbers::pi;
 
 std::vector<double> lengths(const Arm& arm) {
   std::vector<double> result;
+  result.reserve(arm.sections.size());
   for (const Section& section : arm.sections) result.push_back(section.length);
   return result;
 }

@@ -54,7 +54,8 @@ std::vector<Pose> poses_at(const Backbone& backbone, std::span<const double> s) 
 MaterialPoint material_point(const Arm& arm, double s) {
   const double length = arm.length();
   const double tolerance = 1e-12 * length;
-  if (!(s >= -tolerance && s <= length + tolerance)) {
+  const bool inside = s >= -tolerance && s <= length + tolerance;
+  if (!inside) {
     throw std::out_of_range("arc length " + std::to_string(s) + " is outside [0, " + std::to_string(length) +
                             "]");
   }

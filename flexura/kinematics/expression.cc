@@ -1,0 +1,88 @@
+#include "flexura/kinematics/expression.h"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t longest_expression = 1000;
+
+// muParser lets a formula assign to its variables ("t = 3"); here that is a slip for "==".
+std::size_t find_assignment(const std::string& text) {
+  for (std::size_t at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
+    const bool compares_before =
+        at > 0 && std::string_view("=<>!").find(text[at - 1]) != std::string_view::npos;
+    const bool compares_after = at + 1 < text.size() && text[at + 1] == '=';
+    if (!compares_before && !compares_after) return at;
+  }
+  return std::string::npos;
+}
+
+// Brackets and signs in a row are what muParser could be made to recurse on or to stack without end.
+void check_text(const std::string& text) {
+  if (text.size() > longest_expression) {
+    throw ExpressionError(fmt::format("is longer than {} characters", longest_expression),
+                          longest_expression);
+  }
+  const auto odd = std::ranges::find_if(text, [](unsigned char c) { return c < ' ' || c > '~'; });
+  if (odd != text.end()) {
+    throw ExpressionError("holds a character that no formula has",
+                          static_cast<std::size_t>(odd - text.begin()));
+  }
+  if (const std::size_t at = find_assignment(text); at != std::string::npos) {
+    throw ExpressionError("assigns a value: expected == to compare", at);
+  }
+}
+
+}  // namespace
+
+struct Expression::Parser {
+  mu::Parser parser;
+  double t = 0;
+  double T = 1;
+  double i = 1;
+};
+
+Expression::Expression(const std::string& text) : parser_(std::make_unique<Parser>()) {
+  check_text(text);
+  try {
+    parser_->parser.DefineConst("pi", std::numbers::pi);
+    parser_->parser.DefineVar("t", &parser_->t);
+    parser_->parser.DefineVar("T", &parser_->T);
+    parser_->parser.DefineVar("i", &parser_->i);
+    parser_->parser.SetExpr(text);
+    parser_->parser.Eval();
+    if (parser_->parser.GetNumResults() != 1)
+      throw ExpressionError("has several values: expected one", text.find(','));
+  } catch (const mu::ParserError& error) {
+    std::string message = error.GetMsg();
+    while (!message.empty() && (message.back() == '.' || message.back() == '\n')) message.pop_back();
+    // muParser gives no position (-1) for what is wrong with the whole.
+    const auto position = static_cast<std::size_t>(error.GetPos());
+    throw ExpressionError(message, position > text.size() ? 0 : position);
+  }
+}
+
+Expression::~Expression() = default;
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+
+double Expression::value(double t, double T, std::size_t section_number) const {
+  parser_->t = t;
+  parser_->T = T;
+  parser_->i = static_cast<double>(section_number);
+  try {
+    return parser_->parser.Eval();
+  } catch (const mu::ParserError&) {
+    // Some functions refuse arguments rather than return NaN.
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace flexura

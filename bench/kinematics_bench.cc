@@ -16,10 +16,10 @@ namespace flexura {
 namespace {
 
 // The paper's arm in its final position.
-constexpr std::array<double, 8> kLengths = {2., 3., 1., 2., 4., 2., 1., 1.};
+constexpr std::array<double, 8> paper_lengths = {2., 3., 1., 2., 4., 2., 1., 1.};
 constexpr double pi = std::numbers::pi;
-constexpr std::array<double, 8> kArchings = {.05 * pi, .05 * pi, .1 * pi, .1 * pi,
-                                             .05 * pi, -.3 * pi, .2 * pi, -.35 * pi};
+constexpr std::array<double, 8> paper_archings = {.05 * pi, .05 * pi, .1 * pi, .1 * pi,
+                                                  .05 * pi, -.3 * pi, .2 * pi, -.35 * pi};
 
 struct Case {
   Arm arm;
@@ -28,10 +28,10 @@ struct Case {
 
 Case paper_arm() {
   Case result;
-  result.state = ArmState::straight(kLengths.size());
-  for (std::size_t i = 0; i < kLengths.size(); ++i) {
-    result.arm.sections.emplace_back().length = kLengths[i];
-    result.state.bends[i] = bend_from_arching(kArchings[i]);
+  result.state = ArmState::straight(paper_lengths.size());
+  for (std::size_t i = 0; i < paper_lengths.size(); ++i) {
+    result.arm.sections.emplace_back().length = paper_lengths[i];
+    result.state.bends[i] = bend_from_arching(paper_archings[i]);
   }
   return result;
 }
@@ -49,7 +49,7 @@ Case spatial_arm() {
 
 void planar_forward_8_sections(benchmark::State& state) {
   for (auto _ : state) {
-    benchmark::DoNotOptimize(base_points(kLengths, kArchings, {0.0, 0.0}, pi / 2));
+    benchmark::DoNotOptimize(base_points(paper_lengths, paper_archings, {0.0, 0.0}, pi / 2));
   }
 }
 BENCHMARK(planar_forward_8_sections);
@@ -81,6 +81,7 @@ BENCHMARK(tip_jacobian_3_sections);
 void backbone_jacobians_3_sections(benchmark::State& state) {
   const Case c = spatial_arm();
   std::vector<MaterialPoint> points;
+  points.reserve(100);
   for (int i = 0; i < 100; ++i) points.push_back(material_point(c.arm, c.arm.length() * i / 99));
   Jacobian J(6, 9);
   for (auto _ : state) {

@@ -8,8 +8,8 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t kSteps = 8;
-constexpr double kShrink = 1.6;
+constexpr std::size_t steps = 8;
+constexpr double shrink = 1.6;
 
 Eigen::VectorXd central_difference(const VectorFunction& f, Eigen::VectorXd x, Eigen::Index column,
                                    double step) {
@@ -34,13 +34,13 @@ void keep_best(const Eigen::VectorXd& value, const Eigen::VectorXd& error, Eigen
 
 void fill_column(const VectorFunction& f, const Eigen::VectorXd& x, Eigen::Index column, double step,
                  NumericalJacobian& best) {
-  std::array<Eigen::VectorXd, kSteps> previous;  // Neville's tableau: the row of the step before, ...
-  std::array<Eigen::VectorXd, kSteps> current;   // ... and of this one, by rising order.
-  for (std::size_t i = 0; i < kSteps; ++i, step /= kShrink) {
+  std::array<Eigen::VectorXd, steps> previous;  // Neville's tableau: the row of the step before, ...
+  std::array<Eigen::VectorXd, steps> current;   // ... and of this one, by rising order.
+  for (std::size_t i = 0; i < steps; ++i, step /= shrink) {
     current[0] = central_difference(f, x, column, step);
     double factor = 1.0;
     for (std::size_t order = 1; order <= i; ++order) {
-      factor *= kShrink * kShrink;
+      factor *= shrink * shrink;
       current[order] = (factor * current[order - 1] - previous[order - 1]) / (factor - 1.0);
       const Eigen::VectorXd error = (current[order] - current[order - 1])
                                         .cwiseAbs()

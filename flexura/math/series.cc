@@ -8,25 +8,25 @@ namespace flexura {
 namespace {
 
 // Below this |t| the closed forms that cancel give way to their power series: there the closed forms still
-// hold to a few units in the last place, and kTerms terms leave a remainder under 1e-20.
-constexpr double kSwitch = 1.5;
-constexpr std::size_t kTerms = 13;
-using Coefficients = std::array<double, kTerms>;
+// hold to a few units in the last place, and terms terms leave a remainder under 1e-20.
+constexpr double series_limit = 1.5;
+constexpr std::size_t terms = 13;
+using Coefficients = std::array<double, terms>;
 
 constexpr double factorial(std::size_t n) { return n < 2 ? 1.0 : static_cast<double>(n) * factorial(n - 1); }
 constexpr double sign(std::size_t k) { return k % 2 == 0 ? 1.0 : -1.0; }
 
 // (t - sin t) / t^3 = sum (-1)^k t^2k / (2k + 3)!
-constexpr Coefficients kSincDeficit = [] {
+constexpr Coefficients sinc_deficit_series = [] {
   Coefficients c{};
-  for (std::size_t k = 0; k < kTerms; ++k) c[k] = sign(k) / factorial(2 * k + 3);
+  for (std::size_t k = 0; k < terms; ++k) c[k] = sign(k) / factorial(2 * k + 3);
   return c;
 }();
 
 // (t cos t - sin t) / t^3 = -sum (-1)^k (2k + 2) t^2k / (2k + 3)!
-constexpr Coefficients kSincSlope = [] {
+constexpr Coefficients sinc_slope_series = [] {
   Coefficients c{};
-  for (std::size_t k = 0; k < kTerms; ++k) {
+  for (std::size_t k = 0; k < terms; ++k) {
     c[k] = -sign(k) * static_cast<double>(2 * k + 2) / factorial(2 * k + 3);
   }
   return c;
@@ -35,7 +35,7 @@ constexpr Coefficients kSincSlope = [] {
 double even_series(const Coefficients& c, double t) {
   const double x = t * t;
   double sum = c.back();
-  for (std::size_t k = kTerms - 1; k-- > 0;) sum = c[k] + x * sum;
+  for (std::size_t k = terms - 1; k-- > 0;) sum = c[k] + x * sum;
   return sum;
 }
 
@@ -49,12 +49,12 @@ double cosc(double t) {
 }
 
 double sinc_deficit(double t) {
-  if (std::abs(t) < kSwitch) return even_series(kSincDeficit, t);
+  if (std::abs(t) < series_limit) return even_series(sinc_deficit_series, t);
   return (1.0 - sinc(t)) / (t * t);
 }
 
 double sinc_slope(double t) {
-  if (std::abs(t) < kSwitch) return even_series(kSincSlope, t);
+  if (std::abs(t) < series_limit) return even_series(sinc_slope_series, t);
   return (std::cos(t) - sinc(t)) / (t * t);
 }
 

@@ -57,8 +57,8 @@ std::vector<double> bends() {
 
 TEST(Series, SincAndCoscAreExactTo1em14RelativeForAllBends) {
   for (const double t : bends()) {
-    const double sinc_expected = static_cast<double>(reference_sinc(t));
-    const double cosc_expected = static_cast<double>(reference_cosc(t));
+    const auto sinc_expected = static_cast<double>(reference_sinc(t));
+    const auto cosc_expected = static_cast<double>(reference_cosc(t));
     ASSERT_LE(std::abs(sinc(t) - sinc_expected), 1e-15 * std::abs(sinc_expected)) << t;
     ASSERT_LE(std::abs(cosc(t) - cosc_expected), 1e-15 * std::abs(cosc_expected)) << t;
   }
@@ -66,7 +66,7 @@ TEST(Series, SincAndCoscAreExactTo1em14RelativeForAllBends) {
 
 TEST(Series, TheDeficitIsExactTo1em14RelativeForAllBends) {
   for (const double t : bends()) {
-    const double expected = static_cast<double>(reference_sinc_deficit(t));
+    const auto expected = static_cast<double>(reference_sinc_deficit(t));
     ASSERT_LE(std::abs(sinc_deficit(t) - expected), 2e-15 * expected) << t;
   }
 }
@@ -74,8 +74,8 @@ TEST(Series, TheDeficitIsExactTo1em14RelativeForAllBends) {
 // A slope crosses zero (near 4.49 and 7.73; 2 pi, 8.99 and 12.57): relative to its envelope there.
 TEST(Series, TheSlopesAreExactTo1em14RelativeUpToTheirZeros) {
   for (const double t : bends()) {
-    const double s = static_cast<double>(reference_sinc_slope(t));
-    const double c = static_cast<double>(reference_cosc_slope(t));
+    const auto s = static_cast<double>(reference_sinc_slope(t));
+    const auto c = static_cast<double>(reference_cosc_slope(t));
     const double s_scale = t < 3 ? std::abs(s) : 1 / (t * t);
     const double c_scale = t < 6 ? std::abs(c) : 1 / (t * t * t);
     ASSERT_LE(std::abs(sinc_slope(t) - s), 2e-15 * s_scale) << t;

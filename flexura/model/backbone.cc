@@ -58,7 +58,8 @@ double Backbone::length() const { return arcs_.back().s + arcs_.back().length; }
 
 Pose Backbone::pose(double s) const {
   const double tolerance = 1e-12 * length();
-  if (!(s >= -tolerance && s <= length() + tolerance)) {
+  const bool inside = s >= -tolerance && s <= length() + tolerance;
+  if (!inside) {
     throw std::out_of_range(fmt::format("arc length {} is outside [0, {}]", s, length()));
   }
   if (s <= 0.0) return arcs_.front().X_WS;

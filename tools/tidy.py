@@ -80,8 +80,11 @@ def changed_since_last_tag():
     return None if ROOT / ".clang-tidy" in files else files
 
 
-def check(build, source):
+def check(build, source, passed):
+    """clang-tidy's exit status and findings; a pass makes the file `passed`."""
     done = subprocess.run([TIDY, "-p", build, "--quiet", source], capture_output=True, text=True, check=False)
+    if done.returncode == 0:
+        passed.touch()
     return done.returncode, done.stdout + ("" if done.returncode == 0 else done.stderr)
 
 
@@ -101,17 +104,15 @@ def main():
         if changed is not None and not changed & files:
             continue
         sources += 1
-        name = key(entry["command"], files)
-        if not (cache / name).exists():
-            waiting[source] = name
+        passed = cache / key(entry["command"], files)
+        if not passed.exists():
+            waiting[source] = passed
 
     start, failed = time.monotonic(), 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        answers = pool.map(lambda source: check(arguments.build, source), waiting)
-        for (source, name), (status, output) in zip(waiting.items(), answers):
-            if status == 0:
-                (cache / name).touch()
-            else:
+        answers = pool.map(lambda item: check(arguments.build, *item), waiting.items())
+        for source, (status, output) in zip(waiting, answers):
+            if status != 0:
                 failed += 1
                 print(f"--- {source.relative_to(ROOT)}\n{output}", flush=True)
     print(f"clang-tidy: {sources} sources, {len(waiting)} of them checked now in "

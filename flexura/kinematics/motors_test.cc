@@ -1,0 +1,215 @@
+#include "flexura/kinematics/motors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "flexura/kinematics/tendons.h"
+#include "tests/support/arms.h"
+#include "tests/support/drives.h"
+
+namespace flexura {
+namespace {
+
+std::vector<double> reals(const std::vector<std::int64_t>& positions) {
+  return {positions.begin(), positions.end()};
+}
+
+// 300 * 10 microsteps a turn, gear 10, spool of 10 mm: 30000 microsteps for 62.8 mm of cable.
+Drive one_axis(double backlash = 0) {
+  Drive drive;
+  drive.tendons = {{}};
+  drive.axes = {
+      {.motor = {}, .spool = {.radius = 0.01, .gear = 10, .backlash = backlash}, .reversed = false}};
+  return drive;
+}
+
+constexpr double one_turn = 2 * std::numbers::pi * 0.01;  // m of cable
+
+TEST(Motors, CountSpoolTurnsThroughTheGear) {
+  Drive drive = one_axis();
+  EXPECT_DOUBLE_EQ(spool_turns(drive.axes[0], one_turn), 1);
+  EXPECT_DOUBLE_EQ(motor_positions(drive, {{one_turn / 4}})[0], 7500);
+  EXPECT_DOUBLE_EQ(drive.axes[0].microsteps_a_metre(), 30000 / one_turn);
+  drive.axes[0].reversed = true;
+  EXPECT_DOUBLE_EQ(motor_positions(drive, {{one_turn / 4}})[0], -7500);
+  EXPECT_DOUBLE_EQ(displacements_at(drive, std::vector{-7500.0}).pulled[0], one_turn / 4);
+}
+
+TEST(Motors, LimitsBoundTheCable) {
+  Axis axis = one_axis().axes[0];
+  EXPECT_EQ(axis.max_cable_speed(), std::numeric_limits<double>::infinity());
+  axis.motor.max_speed = 4 * std::numbers::pi;  // two turns a second, a fifth of a turn of the spool
+  EXPECT_DOUBLE_EQ(axis.max_cable_speed(), one_turn / 5);
+  axis.motor.max_step_rate = 3000;  // one turn a second
+  EXPECT_DOUBLE_EQ(axis.max_cable_speed(), one_turn / 10);
+  axis.motor.max_acceleration = 20 * std::numbers::pi;
+  EXPECT_DOUBLE_EQ(axis.max_cable_acceleration(), one_turn);
+}
+
+TEST(Motors, RoundTripsToHalfAMicrostepOverRandomArms) {
+  for_random_cases(300, [](TestRandom& random) {
+    const Arm arm = random_arm(random);
+    const Drive drive = random_scanty_drive(random, arm);
+    const ArmState state = random_state(random, arm);
+    ArmState inextensible = state;
+    std::ranges::fill(inextensible.stretches, 1.0);
+    const TendonDisplacements wanted = tendon_displacements(arm, drive, inextensible);
+    const MotorCommander commander(drive, wanted);
+    const std::vector<double> positions = reals(commander.positions());
+
+    const TendonFit fit = fit_state(arm, drive, displacements_at(drive, positions));
+    const TendonDisplacements found = tendon_displacements(arm, drive, fit.state);
+    const std::vector<double> back = motor_positions(drive, found);
+    const std::vector<double> exact = motor_positions(drive, wanted);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      EXPECT_LE(std::abs(positions[i] - exact[i]), 0.5 + 1e-6);
+      EXPECT_NEAR(back[i], positions[i], 1e-6);
+      EXPECT_LE(std::abs(found.pulled[i] - wanted.pulled[i]) * drive.axes[i].microsteps_a_metre(),
+                0.5 + 2e-6);
+    }
+    EXPECT_EQ(MotorCommander(drive, found).positions(), commander.positions());
+  });
+}
+
+// More tendons than needed cannot all be half a microstep away: what is fitted to rounded positions is then
+// the nearest state, and nearer to the wanted one than the rounding, as the root of the sum of squares.
+TEST(Motors, RoundTripWithMoreTendonsThanNeededStaysWithinTheRounding) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Arm arm = random_arm(random);
+    Drive drive = random_drive(random, arm);
+    for (Axis& axis : drive.axes) axis = drive.axes.front();
+    ArmState state = random_state(random, arm);
+    std::ranges::fill(state.stretches, 1.0);
+    const TendonDisplacements wanted = tendon_displacements(arm, drive, state);
+    const MotorCommander commander(drive, wanted);
+    const TendonFit fit = fit_state(arm, drive, displacements_at(drive, reals(commander.positions())));
+    const std::vector<double> exact = motor_positions(drive, wanted);
+    const std::vector<double> back = motor_positions(drive, tendon_displacements(arm, drive, fit.state));
+    double rounding = 0;
+    double error = 0;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      rounding += std::pow(static_cast<double>(commander.positions()[i]) - exact[i], 2);
+      error += std::pow(back[i] - exact[i], 2);
+    }
+    EXPECT_LE(std::sqrt(error), std::sqrt(rounding) + 1e-6);
+    EXPECT_LE(std::sqrt(error / static_cast<double>(exact.size())), 0.5 + 1e-6);
+  });
+}
+
+TEST(Motors, WithPlayTakenUpFollowToHalfAMicrostepWhateverTheWay) {
+  for_random_cases(100, [](TestRandom& random) {
+    Arm arm = random_arm(random);
+    const Drive drive = random_drive(random, arm);
+    TendonDisplacements wanted{std::vector<double>(drive.axes.size(), 0.0)};
+    MotorCommander commander(drive, wanted);
+    PlayModel mechanism(drive, commander.positions());
+    for (int step = 0; step < 300; ++step) {
+      for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+        // Steps of hundreds of microsteps and of fractions of one, in either direction, and rests.
+        const double size = std::pow(10.0, random.integer(-2, 3)) * random.integer(0, 1);
+        wanted.pulled[i] += random.uniform(-size, size) / drive.axes[i].microsteps_a_metre();
+      }
+      commander.follow(wanted);
+      mechanism.follow(commander.positions());
+      const TendonDisplacements made = mechanism.displacements();
+      for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+        EXPECT_LE(std::abs(made.pulled[i] - wanted.pulled[i]) * drive.axes[i].microsteps_a_metre(),
+                  0.5 + 3e-6)
+            << "step " << step << ", axis " << i;
+      }
+    }
+  });
+}
+
+TEST(Motors, TakeUpThePlayWhenATendonReverses) {
+  const double play = 100.25;  // microsteps
+  const Drive drive = one_axis(play / 30000 * 2 * std::numbers::pi);
+  const double microstep = one_turn / 30000;
+  EXPECT_NEAR(drive.axes[0].play(), play, 1e-12);
+  MotorCommander commander(drive, {{0}});
+  const auto positions_at = [&](double microsteps) {
+    commander.follow({{microsteps * microstep}});
+    return commander.positions()[0];
+  };
+  EXPECT_EQ(positions_at(50), 50);
+  EXPECT_EQ(positions_at(49), -51) << "49 - 100.25, and no sooner";
+  EXPECT_EQ(positions_at(-20), -120);
+  EXPECT_EQ(positions_at(-20), -120);
+  EXPECT_EQ(positions_at(-19), -19);
+}
+
+TEST(Motors, StayWhereTheyAreWhileTheArmHolds) {
+  const Drive drive = one_axis(0.01);
+  const double half_step = 0.5 * one_turn / 30000;
+  MotorCommander commander(drive, {{-20 * half_step}});
+  commander.follow({{-21 * half_step}});
+  const std::vector<std::int64_t> before = commander.positions();
+  // Rounding in what computes the displacement is no movement, even where it decides between two steps.
+  for (int i = 0; i < 10; ++i) {
+    commander.follow({{-21 * half_step * (1 + (i % 3 - 1) * 1e-15)}});
+    EXPECT_EQ(commander.positions(), before);
+  }
+}
+
+TEST(PlayModel, LagsByThePlayWhenItIsNotTakenUp) {
+  const Drive drive = one_axis(100.0 / 30000 * 2 * std::numbers::pi);
+  const double microstep = one_turn / 30000;
+  PlayModel mechanism(drive, std::vector<std::int64_t>{0});
+  const auto spool_at = [&](std::int64_t position) {
+    mechanism.follow(std::vector{position});
+    return mechanism.displacements().pulled[0] / microstep;
+  };
+  EXPECT_NEAR(spool_at(500), 500, 1e-9);
+  EXPECT_NEAR(spool_at(450), 500, 1e-9) << "in the play";
+  EXPECT_NEAR(spool_at(300), 400, 1e-9);
+  EXPECT_NEAR(spool_at(380), 400, 1e-9);
+  EXPECT_NEAR(spool_at(410), 410, 1e-9);
+}
+
+TEST(MotorWatch, FindsTheLargestRateAndAcceleration) {
+  Drive drive = one_axis();
+  MotorWatch watch(drive);
+  for (const auto& [time, position] : {std::pair{0.0, 0.0}, {1.0, 100.0}, {1.5, 200.0}, {2.0, 50.0}})
+    watch.add(time, std::vector{position});
+  const MotorPeaks& peaks = watch.peaks()[0];
+  EXPECT_DOUBLE_EQ(peaks.step_rate, 300);
+  EXPECT_DOUBLE_EQ(peaks.speed, 300 * 2 * std::numbers::pi / 3000);
+  EXPECT_DOUBLE_EQ(peaks.acceleration, (200 + 300) / 0.5 * 2 * std::numbers::pi / 3000);
+  EXPECT_THROW(watch.add(2.0, std::vector{0.0}), std::invalid_argument);
+  EXPECT_THROW(watch.add(3.0, std::vector{0.0, 1.0}), std::invalid_argument);
+}
+
+TEST(MotorWatch, OfOneSampleIsStill) {
+  Drive drive = one_axis();
+  MotorWatch watch(drive);
+  watch.add(0, std::vector{5.0});
+  EXPECT_EQ(watch.peaks()[0].step_rate, 0);
+  EXPECT_EQ(watch.peaks()[0].acceleration, 0);
+}
+
+TEST(Motors, RefuseWhatDoesNotFitOrCannotBeCounted) {
+  const Drive drive = one_axis();
+  EXPECT_THROW((void)motor_positions(drive, {{0, 0}}), std::invalid_argument);
+  EXPECT_THROW((void)displacements_at(drive, std::vector{0.0, 1.0}), std::invalid_argument);
+  MotorCommander commander(drive, {{0}});
+  EXPECT_THROW(commander.follow({{0, 0}}), std::invalid_argument);
+  EXPECT_THROW(commander.follow({{1e12}}), std::out_of_range);
+  EXPECT_THROW(commander.follow({{std::nan("")}}), std::out_of_range);
+  PlayModel mechanism(drive, commander.positions());
+  EXPECT_THROW(mechanism.follow(std::vector<std::int64_t>{0, 0}), std::invalid_argument);
+}
+
+TEST(Drive, NamesAxesByControllerAndAxis) {
+  Drive drive;
+  EXPECT_EQ(drive.axis_name(0), "1.1");
+  EXPECT_EQ(drive.axis_name(4), "2.1");
+  drive.axes_per_controller = 3;
+  EXPECT_EQ(drive.axis_name(5), "2.3");
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+
+#include "flexura/model/drive.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+
+/// Three to five tendons a section that determine its bend and stretch: spread around the arm, but unevenly,
+/// at different radii (mm to cm), on axes of different gears and senses.
+inline Drive random_drive(TestRandom& random, const Arm& arm) {
+  Drive drive;
+  for (std::size_t section = 0; section < arm.sections.size(); ++section) {
+    const int count = random.integer(3, 5);
+    const double turn = random.uniform(0, 2 * std::numbers::pi);
+    for (int i = 0; i < count; ++i) {
+      const double angle = turn + (i + random.uniform(-0.25, 0.25)) * 2 * std::numbers::pi / count;
+      drive.tendons.push_back({section, random.uniform(0.004, 0.03), angle});
+      Axis& axis = drive.axes.emplace_back();
+      axis.motor.steps = 100 * axis.motor.phases * random.integer(1, 2);
+      axis.motor.microsteps = random.integer(1, 16);
+      axis.spool = {random.uniform(0.005, 0.02), random.uniform(1, 20), random.uniform(0, 0.05)};
+      axis.reversed = random.integer(0, 1) == 1;
+    }
+  }
+  return drive;
+}
+
+/// Two tendons a section, which determine its bend and nothing else.
+inline Drive random_scanty_drive(TestRandom& random, const Arm& arm) {
+  Drive drive = random_drive(random, arm);
+  Drive scanty = drive;
+  scanty.tendons.clear(), scanty.axes.clear();
+  for (std::size_t i = 0; i < drive.tendons.size(); ++i) {
+    if (i >= 2 && drive.tendons[i - 2].section == drive.tendons[i].section) continue;
+    scanty.tendons.push_back(drive.tendons[i]);
+    scanty.axes.push_back(drive.axes[i]);
+  }
+  return scanty;
+}
+
+}  // namespace flexura

@@ -87,6 +87,19 @@ TEST(CurveDeviation, SeesACurveThatIsMovedAside) {
   EXPECT_NEAR(deviation(curve, backbone).distance, 0.25, 1e-5);
 }
 
+TEST(CurveDeviation, SeesACurveThatRunsOnPastTheBase) {
+  Arm arm;
+  arm.sections.resize(2);
+  ArmState state = ArmState::straight(2);
+  state.bends = {{1.0, 0.0}, {1.0, 0.0}};
+  const std::vector<CubicBezier> both = tangent_bezier(Backbone(arm, state));
+  arm.X_WB = Backbone(arm, state).arcs()[1].X_WS;
+  arm.sections.resize(1);
+  state = ArmState::straight(1);
+  state.bends[0] = {1.0, 0.0};
+  EXPECT_NEAR(deviation(both, Backbone(arm, state)).distance, 2.0 * std::sin(0.5), 1e-14);
+}
+
 TEST(TangentBezier, HasExactEndsTangentsAndMiddle) {
   for_random_cases(100, [](TestRandom& random) {
     const Arm arm = random_arm(random);

@@ -14,8 +14,7 @@ int pieces(const Arc& arc, double tolerance) {
   const double theta = arc.bend.norm();
   if (theta == 0.0) return 1;
   const double quarter_psi = std::asin(std::min(1.0, std::sqrt(0.5 * tolerance * (theta / arc.length))));
-  // A tiny bend's piece may underflow to none at all: that arc is as good as straight.
-  const double for_tolerance = quarter_psi > 0.0 ? theta / (4.0 * quarter_psi) : 1.0;
+  const double for_tolerance = theta / (4.0 * quarter_psi);
   return std::max(1, static_cast<int>(std::ceil(std::max(for_tolerance, theta / (0.5 * std::numbers::pi)))));
 }
 

@@ -181,6 +181,18 @@ TEST(Spatial, MaterialPointsStayWithTheirSection) {
   EXPECT_THROW((void)material_point(arm, 16.1), std::out_of_range);
 }
 
+TEST(Spatial, WhereSectionsMeetTheMaterialPointIsExactlyTheFirstOnesEnd) {
+  for_random_cases(50, [](TestRandom& random) {
+    const Arm arm = random_arm(random);
+    double s = 0.0;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      s += arm.sections[i].length;
+      EXPECT_EQ(material_point(arm, s).section, i);
+      EXPECT_EQ(material_point(arm, s).fraction, 1.0);
+    }
+  });
+}
+
 TEST(Spatial, RefusesWhatDoesNotFit) {
   std::vector<Pose> frames(8);
   EXPECT_THROW(section_frames(paper_arm(), paper_state(), frames), std::invalid_argument);

@@ -22,7 +22,8 @@ struct Pose {
   [[nodiscard]] Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
 };
 
-/// The unit quaternion (w, x, y, z) of a rotation matrix, with w >= 0 (q and -q are the same rotation).
+/// The unit quaternion (w, x, y, z) of a rotation matrix: of q and -q, the one with w > 0 or, at a half turn,
+/// with its first component that is not zero positive. No component is a negative zero.
 [[nodiscard]] Eigen::Vector4d quaternion_wxyz(const Eigen::Matrix3d& rotation);
 
 }  // namespace flexura

@@ -14,6 +14,8 @@ std::span<const UnitSpelling> spellings(Unit unit) {
       {{"", 1.0, "rad"}, {"_deg", pi / 180.0, "deg"}, {"_pi", pi, "pi rad"}}};
   static constexpr std::array<UnitSpelling, 3> radian_per_second{
       {{"", 1.0, "rad/s"}, {"_deg", pi / 180.0, "deg/s"}, {"_pi", pi, "pi rad/s"}}};
+  static constexpr std::array<UnitSpelling, 3> radian_per_second_squared{
+      {{"", 1.0, "rad/s^2"}, {"_deg", pi / 180.0, "deg/s^2"}, {"_pi", pi, "pi rad/s^2"}}};
   switch (unit) {
     case Unit::none:
       break;
@@ -25,6 +27,8 @@ std::span<const UnitSpelling> spellings(Unit unit) {
       return radian;
     case Unit::radian_per_second:
       return radian_per_second;
+    case Unit::radian_per_second_squared:
+      return radian_per_second_squared;
   }
   return none;
 }

@@ -1,0 +1,210 @@
+#include "flexura/model/drive_config.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace flexura {
+namespace {
+
+// Directions that differ by less than about this, rad, are one.
+constexpr double direction_tolerance = 1e-3;
+constexpr std::size_t max_tendons = 10000;
+// Doubles and the positions of a log count exactly up to here.
+constexpr double max_position = 9007199254740992.0;
+// What files may ask of a section: the ranges of ShapeConfig.
+constexpr double max_stretch = 100.0;
+
+bool stretches(const Section& section) { return section.stretch_limits[0] < section.stretch_limits[1]; }
+
+// A tendon that ends at a section feels the sum of the bends up to there, so the tendons of each section
+// determine one sum: no section can be helped by another's.
+void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
+                   Reader& reader) {
+  const bool planar = arm.kind == ArmKind::planar;
+  const bool stretching = stretches(arm.section[index]);
+  std::vector<Eigen::Vector2d> offsets;
+  double largest = 0;
+  for (const Tendon& tendon : drive.tendons) {
+    if (tendon.section != index) continue;
+    offsets.push_back(tendon.offset());
+    largest = std::max(largest, tendon.radius);
+  }
+  const Eigen::Index columns = (planar ? 1 : 2) + (stretching ? 1 : 0);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns, columns);
+  for (const Eigen::Vector2d& offset : offsets) {
+    Eigen::Vector3d row(offset.x(), planar ? largest : offset.y(), largest);
+    gram += row.head(columns) * row.head(columns).transpose();
+  }
+  const double determined = std::pow(direction_tolerance * largest, 2);
+  if (!offsets.empty() && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).eigenvalues()(0) > determined)
+    return;
+  const char* expected = planar && stretching ? "at least 2 on different sides of the arm"
+                         : planar             ? "at least 1 that is not at 90 or 270 deg"
+                         : stretching         ? "at least 3 that are not on one line"
+                                              : "at least 2 in different directions";
+  reader.problem_at(path,
+                    fmt::format("does not determine the {} of section {}, where {} tendon{}: expected {}",
+                                stretching ? "bend and the stretch" : "bend", index + 1, offsets.size(),
+                                offsets.size() == 1 ? " ends" : "s end", expected));
+}
+
+void check_positions(const Drive& drive, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  double length = 0;
+  for (const Section& section : arm.section) length += section.length * max_stretch;
+  const double turns = 2 * angle_range.max * static_cast<double>(arm.section.size());
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+    const double farthest = (length + turns * drive.tendons[i].radius) * drive.axes[i].microsteps_a_metre() +
+                            drive.axes[i].play();
+    if (farthest < max_position) continue;
+    reader.problem_at(fmt::format("{}[{}]", path, i),
+                      fmt::format("makes up to {:.1e} microsteps: expected less than {:.1e}, by a larger "
+                                  "spool.radius, a smaller gear, fewer steps or microsteps",
+                                  farthest, max_position));
+  }
+}
+
+Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
+  return table
+      .field("max_speed", &StepperMotor::max_speed,
+             {.meaning = "Fastest turning of the motor.",
+              .unit = Unit::radian_per_second,
+              .range = above(0),
+              .default_text = "no limit"})
+      .field("max_acceleration", &StepperMotor::max_acceleration,
+             {.meaning = "Largest acceleration of the motor.",
+              .unit = Unit::radian_per_second_squared,
+              .range = above(0),
+              .default_text = "no limit"})
+      .field("max_step_rate", &StepperMotor::max_step_rate,
+             {.meaning = "Most microsteps a second that the controller gives.",
+              .range = above(0),
+              .default_text = "no limit"});
+}
+
+}  // namespace
+
+const Table<StepperMotor>& fields_of(const StepperMotor*) {
+  static const auto table = [] {
+    Table<StepperMotor> motor("motor", "A stepper motor, as its controller drives it.");
+    motor
+        .field("phases", &StepperMotor::phases, {.meaning = "Phases of the motor.", .range = between(2, 100)})
+        .field("steps", &StepperMotor::steps,
+               {.meaning = "Full steps a turn, a multiple of the phases.", .range = between(2, 1e6)})
+        .field("microsteps", &StepperMotor::microsteps,
+               {.meaning = "Microsteps into which the controller divides a full step.",
+                .range = between(1, 1e5)});
+    add_limits(motor);
+    motor.check([](const StepperMotor& value, Reader& reader) {
+      if (value.steps % value.phases == 0) return;
+      reader.problem_at("steps", fmt::format("{} full steps a turn of a motor with {} phases: expected a "
+                                             "multiple of the phases",
+                                             value.steps, value.phases));
+    });
+    return motor;
+  }();
+  return table;
+}
+
+const Table<Spool>& fields_of(const Spool*) {
+  static const auto table =
+      Table<Spool>("spool", "The spool that winds a tendon's cable, and the gear between motor and spool.")
+          .field("radius", &Spool::radius,
+                 {.meaning = "From the spool's axis to the middle of the cable; it does not grow.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e3)})
+          .field("gear", &Spool::gear,
+                 {.meaning = "Turns of the motor for one turn of the spool.", .range = above_up_to(0, 1e6)})
+          .field("backlash", &Spool::backlash,
+                 {.meaning = "Play between motor and spool: what the motor turns in vain when it reverses, "
+                             "measured at the spool.",
+                  .unit = Unit::radian,
+                  .range = between(0, 10)});
+  return table;
+}
+
+const Table<TendonConfig>& fields_of(const TendonConfig*) {
+  static const auto table =
+      Table<TendonConfig>("tendon",
+                          "A cable, parallel to the backbone from the arm's base to the end of one section, "
+                          "and the axis that pulls it.")
+          .field("section", &TendonConfig::section,
+                 {.meaning = "The section at whose end it ends, counted from 1 at the base.",
+                  .range = between(1, 1e6),
+                  .required = true})
+          .field("angle", &TendonConfig::angle,
+                 {.meaning = "Where it lies around the backbone, from the section's x towards its y.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .required = true})
+          .field("radius", &TendonConfig::radius,
+                 {.meaning = "Distance from the backbone.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e3),
+                  .default_text = "the drive's"})
+          .field("reversed", &TendonConfig::reversed,
+                 {.meaning = "The motor's positive microsteps let the cable out instead of pulling it in."})
+          .field("motor", &TendonConfig::motor,
+                 {.meaning = "A motor of its own, described whole.", .default_text = "the drive's"})
+          .field("spool", &TendonConfig::spool,
+                 {.meaning = "A spool of its own, described whole.", .default_text = "the drive's"});
+  return table;
+}
+
+const Table<DriveConfig>& fields_of(const DriveConfig*) {
+  static const auto table =
+      Table<DriveConfig>("drive", "What moves the arm: tendons, wound on spools by stepper motors.")
+          .field("radius", &DriveConfig::radius,
+                 {.meaning = "Distance of the tendons from the backbone, where they have none of their own.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e3)})
+          .field("disks", &DriveConfig::disks,
+                 {.meaning = "Guide disks cut each section into this many equal pieces, and the tendons run "
+                             "straight between them.",
+                  .range = between(1, 1e6),
+                  .default_text = "none: a continuous channel"})
+          .field("axes_per_controller", &DriveConfig::axes_per_controller,
+                 {.meaning = "Motors on one controller: how the axes are named in command lists.",
+                  .range = between(1, 1000)})
+          .field("motor", &DriveConfig::motor, {.meaning = "The motors."})
+          .field("spool", &DriveConfig::spool, {.meaning = "The spools and gears."})
+          .field("tendon", &DriveConfig::tendon,
+                 {.meaning = "The tendons in the order of the axes that pull them, as tables "
+                             "[[drive.tendon]].",
+                  .count = {1, max_tendons},
+                  .required = true});
+  return table;
+}
+
+Drive DriveConfig::drive() const {
+  Drive result;
+  result.disks = disks;
+  result.axes_per_controller = static_cast<std::size_t>(axes_per_controller);
+  for (const TendonConfig& one : tendon) {
+    result.tendons.push_back(
+        {static_cast<std::size_t>(one.section - 1), one.radius.value_or(radius), one.angle});
+    result.axes.push_back({one.motor.value_or(motor), one.spool.value_or(spool), one.reversed});
+  }
+  return result;
+}
+
+void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  const auto sections = static_cast<std::int64_t>(arm.section.size());
+  const std::string tendons = path + ".tendon";
+  bool all_end = true;
+  for (std::size_t i = 0; i < config.tendon.size(); ++i) {
+    if (config.tendon[i].section <= sections) continue;
+    all_end = false;
+    reader.problem_at(fmt::format("{}[{}].section", tendons, i),
+                      fmt::format("ends at section {} of an arm of {}: expected 1 to {}",
+                                  config.tendon[i].section, sections, sections));
+  }
+  if (!all_end) return;
+  const Drive drive = config.drive();
+  for (std::size_t i = 0; i < arm.section.size(); ++i) check_section(drive, arm, i, tendons, reader);
+  check_positions(drive, arm, tendons, reader);
+}
+
+}  // namespace flexura

@@ -35,11 +35,14 @@ void add_run(CLI::App& app, Command& chosen) {
   });
 }
 
-void add_forward(CLI::App& app, Command& chosen) {
+// The commands that answer lines about an arm.
+void add_answers(CLI::App& app, Command& chosen, const std::string& name, const std::string& meaning,
+                 int (*command)(const std::string&, std::istream&, std::ostream&)) {
   auto file = std::make_shared<std::string>();
-  CLI::App* fk = app.add_subcommand("fk", "Forward kinematics: JSON lines in, JSON lines out");
-  fk->add_option("ARM", *file, "A file with [arm] (an experiment, or an arm alone)")->required();
-  fk->callback([&chosen, file] { chosen = [file] { return forward_command(*file, std::cin, std::cout); }; });
+  CLI::App* answers = app.add_subcommand(name, meaning + ": JSON lines in, JSON lines out");
+  answers->add_option("ARM", *file, "A file with [arm] (an experiment, or an arm alone)")->required();
+  answers->callback(
+      [&chosen, file, command] { chosen = [file, command] { return command(*file, std::cin, std::cout); }; });
 }
 
 void add_export(CLI::App& app, Command& chosen) {
@@ -71,7 +74,8 @@ int parse_and_run(int argc, const char* const* argv) {
   });
   Command chosen;
   add_run(app, chosen);
-  add_forward(app, chosen);
+  add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
+  add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
   add_export(app, chosen);
   add_schema(app, chosen);
   try {

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "flexura/app/forward.h"
+#include "flexura/app/inverse.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"
@@ -62,6 +63,20 @@ bool read_line(std::istream& in, std::string& line, bool& too_long) {
   return !line.empty();
 }
 
+// Answers every line of `in` about the arm in a file.
+int answer_lines(const std::string& arm_file, std::istream& in, std::ostream& out,
+                 std::string (*answer)(const Arm&, std::string_view)) {
+  const Arm arm = load_experiment(arm_file).arm.arm();
+  std::string line;
+  bool too_long = false;
+  while (read_line(in, line, too_long)) {
+    out << (too_long ? R"({"error":"the line is longer than 16 MiB"})" : answer(arm, line)) << '\n';
+    // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
+    if (in.rdbuf()->in_avail() <= 0) out.flush();
+  }
+  return exit_done;
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
@@ -87,15 +102,11 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
 }
 
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  const Arm arm = load_experiment(arm_file).arm.arm();
-  std::string line;
-  bool too_long = false;
-  while (read_line(in, line, too_long)) {
-    out << (too_long ? R"({"error":"the line is longer than 16 MiB"})" : answer_forward(arm, line)) << '\n';
-    // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
-    if (in.rdbuf()->in_avail() <= 0) out.flush();
-  }
-  return exit_done;
+  return answer_lines(arm_file, in, out, answer_forward);
+}
+
+int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
+  return answer_lines(arm_file, in, out, answer_inverse);
 }
 
 int export_command(const std::string& results, const std::string& format, std::ostream& out,

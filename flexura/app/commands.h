@@ -25,6 +25,7 @@ struct RunArguments {
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out);
+int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int export_command(const std::string& results, const std::string& format, std::ostream& out,
                    std::ostream& err);
 int schema_command(const std::string& format, std::ostream& out);

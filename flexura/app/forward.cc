@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/app/problems.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
@@ -80,17 +81,6 @@ ForwardRequest read_request(const Arm& arm, std::string_view line) {
   }
   reader.throw_if_any();
   return request;
-}
-
-// A line's problems in one line; the place is the line itself, which the asker knows.
-std::string joined(const std::vector<Problem>& problems) {
-  std::string text;
-  for (const Problem& problem : problems) {
-    const std::string column =
-        problem.where.column > 1 ? fmt::format("column {}: ", problem.where.column) : "";
-    text += (text.empty() ? "" : "; ") + column + problem.what;
-  }
-  return text;
 }
 
 }  // namespace

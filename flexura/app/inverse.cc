@@ -1,0 +1,212 @@
+#include "flexura/app/inverse.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "flexura/app/problems.h"
+#include "flexura/base/table.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/inverse.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_config.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+
+// Beside InverseWish, where the tables of fields look for it.
+static const std::vector<std::string>& names_of(const InverseWish*) {
+  static const std::vector<std::string> names{"none", "least_bending", "mid_range"};
+  return names;
+}
+
+namespace {
+
+using Triple = std::array<double, 3>;
+
+/// A line of input.
+struct InverseRequest {
+  std::optional<Triple> position;  ///< m.
+  std::optional<Triple> direction;
+  std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z).
+  std::optional<std::vector<Triple>> curve;       ///< m.
+  InverseWish wish = InverseWish::none;
+  bool all = false;
+  std::optional<ShapeConfig> start;
+};
+
+const Table<InverseRequest>& fields_of(const InverseRequest*) {
+  // Wider than the largest arm; keeps sums of squares finite.
+  constexpr double farthest = 1e10;
+  static const auto table =
+      Table<InverseRequest>("ik request", "Where the tip or the whole arm shall be.")
+          .field(
+              "position", &InverseRequest::position,
+              {.meaning = "the tip's position", .unit = Unit::metre, .range = between(-farthest, farthest)})
+          .field("direction", &InverseRequest::direction, {.meaning = "direction of the tip's z axis"})
+          .field("rotation", &InverseRequest::rotation,
+                 {.meaning = "quaternion (w, x, y, z) of the tip's frame", .range = between(-2, 2)})
+          .field("curve", &InverseRequest::curve,
+                 {.meaning = "points along the whole arm",
+                  .unit = Unit::metre,
+                  .range = between(-farthest, farthest),
+                  .count = {2, 10000}})
+          .field("wish", &InverseRequest::wish, {.meaning = "what to do with freedom that is left"})
+          .field("all", &InverseRequest::all, {.meaning = "whether all distinct solutions are wanted"})
+          .field("start", &InverseRequest::start, {.meaning = "the shape from which the search begins"});
+  return table;
+}
+
+Eigen::Vector3d vector(const Triple& triple) { return {triple[0], triple[1], triple[2]}; }
+
+void check_target(const InverseRequest& request, Reader& reader) {
+  constexpr double norm_tolerance = 1e-3;
+  if (request.position.has_value() == request.curve.has_value()) {
+    reader.problem("expected either position or curve");
+  }
+  if (request.curve) {
+    if (request.direction || request.rotation || request.all) {
+      reader.problem_at("curve", "stands alone: direction, rotation and all are for a position");
+    }
+    const auto& points = *request.curve;
+    if (std::ranges::all_of(points, [&](const Triple& point) { return point == points.front(); })) {
+      reader.problem_at("curve", "has no length");
+    }
+  }
+  if (request.direction && request.rotation) {
+    reader.problem("says the orientation twice: expected direction or rotation, not both");
+  }
+  if (request.direction && vector(*request.direction).isZero(0.0)) {
+    reader.problem_at("direction", "is zero: expected a direction");
+  }
+  if (request.rotation) {
+    const double norm = Eigen::Map<const Eigen::Vector4d>(request.rotation->data()).norm();
+    if (std::abs(norm - 1.0) > norm_tolerance) {
+      reader.problem_at("rotation",
+                        fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
+    }
+  }
+}
+
+InverseRequest read_request(const Arm& arm, std::string_view line) {
+  const Node document = parse_json(line, "");
+  Reader reader;
+  InverseRequest request;
+  if (fields_of(static_cast<const InverseRequest*>(nullptr)).read(document, reader, request)) {
+    check_target(request, reader);
+    if (request.start) check_shape(*request.start, arm.kind, arm.sections.size(), "start", reader);
+  }
+  reader.throw_if_any();
+  return request;
+}
+
+TipTarget tip_target(const InverseRequest& request) {
+  TipTarget target;
+  target.position = vector(*request.position);
+  if (request.direction) target.direction = vector(*request.direction);
+  if (request.rotation) {
+    const auto& [w, x, y, z] = *request.rotation;
+    target.rotation = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  }
+  return target;
+}
+
+std::string_view reason_of(InverseOutcome outcome) {
+  switch (outcome) {
+    case InverseOutcome::converged:
+      return "converged";
+    case InverseOutcome::not_reachable:
+      return "not_reachable";
+    case InverseOutcome::at_limit:
+      return "at_limit";
+    case InverseOutcome::no_convergence:
+      break;
+  }
+  return "no_convergence";
+}
+
+bool stretches(const Arm& arm) {
+  return std::ranges::any_of(
+      arm.sections, [](const Section& section) { return section.stretch_limits != std::array{1.0, 1.0}; });
+}
+
+// The state and its errors, as members of a solution or of the whole answer.
+void add_state(const Arm& arm, const InverseRequest& request, const InverseResult& result,
+               Node::Table& members) {
+  Node::Array bends;
+  for (const Eigen::Vector2d& bend : result.state.bends) {
+    // Adding zero turns a negative zero into a positive one.
+    if (arm.kind == ArmKind::planar) {
+      bends.push_back({-0.5 * bend.x() + 0.0, {}});
+    } else {
+      bends.push_back({Node::Array{{bend.x() + 0.0, {}}, {bend.y() + 0.0, {}}}, {}});
+    }
+  }
+  members.push_back({arm.kind == ArmKind::planar ? "archings" : "bends", {}, {std::move(bends), {}}});
+  if (stretches(arm)) {
+    Node::Array factors;
+    for (const double stretch : result.state.stretches) factors.push_back({stretch, {}});
+    members.push_back({"stretches", {}, {std::move(factors), {}}});
+  }
+  members.push_back({"position_error", {}, {result.position_error, {}}});
+  if (request.direction || request.rotation) {
+    members.push_back({"angle_error", {}, {result.angle_error, {}}});
+  }
+}
+
+Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResult& result) {
+  Node::Table members{{"converged", {}, {result.converged(), {}}},
+                      {"reason", {}, {std::string(reason_of(result.outcome)), {}}}};
+  add_state(arm, request, result, members);
+  if (!result.converged()) {
+    if (request.position) members.push_back({"nearest", {}, point_node(result.tip)});
+    members.push_back({"distance", {}, {result.position_error, {}}});
+    members.push_back({"proven", {}, {result.is_proven, {}}});
+  }
+  return {std::move(members), {}};
+}
+
+Node answer(const Arm& arm, const InverseRequest& request) {
+  InverseOptions options;
+  options.wish = request.wish;
+  if (request.start) options.start = arm_state(arm, *request.start);
+  if (request.curve) {
+    CurveTarget target;
+    for (const Triple& point : *request.curve) target.points.push_back(vector(point));
+    return answer_one(arm, request, solve_inverse(arm, target, options));
+  }
+  const TipTarget target = tip_target(request);
+  std::vector<InverseResult> solutions;
+  if (request.all) solutions = all_inverse_solutions(arm, target, options);
+  if (!request.all || solutions.empty()) {
+    Node node = answer_one(arm, request, solve_inverse(arm, target, options));
+    if (request.all) node.as<Node::Table>()->push_back({"solutions", {}, {Node::Array{}, {}}});
+    return node;
+  }
+  Node::Array list;
+  for (const InverseResult& solution : solutions) {
+    Node::Table members;
+    add_state(arm, request, solution, members);
+    list.push_back({std::move(members), {}});
+  }
+  Node node = answer_one(arm, request, solutions.front());
+  node.as<Node::Table>()->push_back({"solutions", {}, {std::move(list), {}}});
+  return node;
+}
+
+}  // namespace
+
+std::string answer_inverse(const Arm& arm, std::string_view line) {
+  try {
+    return write_json(answer(arm, read_request(arm, line)));
+  } catch (const InputError& error) {
+    return write_json({Node::Table{{"error", {}, {joined(error.problems()), {}}}}, {}});
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// Answers one line of `flexura ik`: a JSON object {"position":[x,y,z]} with an optional "direction":[x,y,z]
+/// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "wish", "start" and "all"
+/// (docs/command-line.md). The answer is one line of JSON without its line end:
+/// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..},
+/// with "archings" instead of "bends" for a planar arm, "nearest" and "distance" when not converged, or
+/// "solutions" when all are asked for; {"error":"..."} for a line that cannot be answered. Never throws on
+/// account of the line.
+[[nodiscard]] std::string answer_inverse(const Arm& arm, std::string_view line);
+
+}  // namespace flexura

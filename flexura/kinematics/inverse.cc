@@ -1,0 +1,188 @@
+#include "flexura/kinematics/inverse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/kinematics/inverse_check.h"
+#include "flexura/kinematics/inverse_search.h"
+#include "flexura/kinematics/inverse_wish.h"
+#include "flexura/kinematics/reach.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/kinematics/tip_problem.h"
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+constexpr int nearest_starts = 16;
+// Most questions are answered by the first descent or two, for less than it costs to look for a proof.
+constexpr int starts_before_proof = 2;
+// A bound counts as what holds a state from here on, of the residual's norm.
+constexpr double least_pressure = 1e-6;
+
+// A question in the base's frame, with all that its answer needs.
+struct Question {
+  Question(const Arm& arm_, const TipTarget& target_, const InverseOptions& options_)
+      : arm(arm_), target(target_), options(options_), variables(arm_), length(variables.max_length()) {
+    position_tolerance = options.position_tolerance.value_or(1e-9 * length);
+    X_BT.position = arm.X_WB.inverse() * target.position;
+    if (target.rotation) X_BT.rotation = arm.X_WB.rotation.transpose() * *target.rotation;
+    if (target.direction) {
+      const Eigen::Vector3d d = arm.X_WB.rotation.transpose() * target.direction->stableNormalized();
+      X_BT.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), d).toRotationMatrix();
+    }
+    if (options.start) start = variables.pack(*options.start);
+  }
+
+  [[nodiscard]] InverseStarts starts() const { return {variables, X_BT.position, start, options.seed}; }
+  [[nodiscard]] bool is_position_out_of_reach() const {
+    // Rounding leaves the bounds a few units in the last place of the arm's length and the target's distance.
+    const double rounding = 1e-14 * (length + X_BT.position.norm());
+    return least_distance(arm, X_BT.position) > position_tolerance + rounding;
+  }
+  [[nodiscard]] bool is_orientation_out_of_reach() const {
+    constexpr double rounding = 1e-13;
+    if (!target.direction && !target.rotation) return false;
+    const double angle = target.rotation ? least_angle(arm, X_BT.rotation)
+                                         : least_angle(arm, Eigen::Vector3d(X_BT.rotation.col(2)));
+    if (angle > options.angle_tolerance + rounding) return true;
+    // A direction that is a little off moves the far end by that much of the arm's length.
+    return least_distance_along(arm, X_BT) >
+           position_tolerance + (options.angle_tolerance + rounding) * (length + X_BT.position.norm());
+  }
+
+  const Arm& arm;
+  const TipTarget& target;
+  const InverseOptions& options;
+  ArmVariables variables;
+  double length;
+  double position_tolerance;
+  Pose X_BT;
+  std::optional<Eigen::VectorXd> start;
+};
+
+template <int Rows>
+TipProblem<Rows> problem_of(const Question& q) {
+  return {q.variables, q.X_BT, q.length, q.position_tolerance, q.options.angle_tolerance};
+}
+
+// What is said of a state, from the model's own forward kinematics.
+InverseResult describe(const Question& q, const Found& found) {
+  InverseResult result;
+  result.state = q.variables.state(found.x);
+  const Pose X_WT = tip_pose(q.arm, result.state);
+  result.tip = X_WT.position;
+  result.position_error = (X_WT.position - q.target.position).norm();
+  const Eigen::Vector3d z = X_WT.rotation.col(2);
+  if (q.target.direction) {
+    const Eigen::Vector3d d = q.target.direction->stableNormalized();
+    result.angle_error = std::atan2(z.cross(d).norm(), z.dot(d));
+  }
+  if (q.target.rotation) result.angle_error = so3_log(q.target.rotation->transpose() * X_WT.rotation).norm();
+  result.starts = found.starts;
+  return result;
+}
+
+// Why a settled state is no solution; memory is that of the state.
+template <class Problem>
+InverseOutcome reason(const Question& q, const Found& found, const DescentMemory<Problem>& memory) {
+  if (found.ended != Descent::stationary) return InverseOutcome::no_convergence;
+  const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
+  const double held = pressure(q.variables.bounds(), found.x, gradient);
+  return held > least_pressure * memory.r.norm() ? InverseOutcome::at_limit : InverseOutcome::not_reachable;
+}
+
+template <int Rows>
+InverseResult answer_out_of_reach(const Question& q) {
+  TipProblem<Rows> problem = problem_of<Rows>(q);
+  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+  InverseStarts starts = q.starts();
+  const Found found =
+      nearest(problem, q.variables, starts, std::min(nearest_starts, q.options.max_starts), memory);
+  InverseResult result = describe(q, found);
+  result.outcome = InverseOutcome::not_reachable;
+  result.is_proven = true;
+  result.iterations = memory.iterations;
+  return result;
+}
+
+template <int Rows>
+InverseResult answer(const Question& q) {
+  TipProblem<Rows> problem = problem_of<Rows>(q);
+  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+  InverseStarts starts = q.starts();
+  Found found;
+  search(problem, q.variables, starts, std::min(starts_before_proof, q.options.max_starts), memory, found);
+  if (!found.is_met()) {
+    if (q.is_position_out_of_reach()) return answer_out_of_reach<3>(q);
+    if (q.is_orientation_out_of_reach()) return answer_out_of_reach<Rows>(q);
+    search(problem, q.variables, starts, q.options.max_starts, memory, found);
+  }
+  if (!found.is_met()) settle(problem, q.variables, found, memory);
+  if (found.is_met() && q.options.wish != InverseWish::none) {
+    follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.options.wish), found.x, memory);
+  }
+  InverseResult result = describe(q, found);
+  if (found.is_met()) {
+    result.outcome = InverseOutcome::converged;
+  } else {
+    problem.linearise(found.x, memory.r, memory.J);
+    result.outcome = reason(q, found, memory);
+  }
+  result.iterations = memory.iterations;
+  return result;
+}
+
+// Nearer than this to a known solution (rad; factors of stretch) is the same one.
+constexpr double same_solution = 1e-4;
+
+template <int Rows>
+std::vector<InverseResult> all_answers(const Question& q) {
+  if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
+  TipProblem<Rows> problem = problem_of<Rows>(q);
+  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+  const InverseWish wish = q.options.wish == InverseWish::none ? InverseWish::least_bending : q.options.wish;
+  const WishScale scale(q.variables, wish);
+  InverseStarts starts = q.starts();
+  std::vector<Found> distinct;
+  for (int i = 0; i < q.options.max_starts; ++i) {
+    Found found;
+    search(problem, q.variables, starts, 1, memory, found);
+    if (!found.is_met()) continue;
+    follow_wish(problem, q.variables.bounds(), scale, found.x, memory);
+    const bool is_known = std::ranges::any_of(distinct, [&](const Found& other) {
+      return (other.x - found.x).template lpNorm<Eigen::Infinity>() < same_solution;
+    });
+    if (!is_known) distinct.push_back(std::move(found));
+  }
+  std::ranges::stable_sort(distinct, {}, [&](const Found& f) { return scale.relative(f.x).squaredNorm(); });
+  std::vector<InverseResult> results;
+  for (const Found& found : distinct) {
+    results.push_back(describe(q, found));
+    results.back().outcome = InverseOutcome::converged;
+  }
+  return results;
+}
+
+}  // namespace
+
+InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseOptions& options) {
+  check_question(target, options);
+  const Question question(arm, target, options);
+  if (target.rotation) return answer<6>(question);
+  if (target.direction) return answer<5>(question);
+  return answer<3>(question);
+}
+
+std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
+                                                 const InverseOptions& options) {
+  check_question(target, options);
+  const Question question(arm, target, options);
+  if (target.rotation) return all_answers<6>(question);
+  if (target.direction) return all_answers<5>(question);
+  return all_answers<3>(question);
+}
+
+}  // namespace flexura

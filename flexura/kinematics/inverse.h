@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "flexura/model/arm.h"
+
+// Inverse kinematics: the state that puts the tip, or the whole backbone, where it is wanted
+// (docs/inverse-kinematics.md). The same question has the same answer, bit for bit.
+namespace flexura {
+
+/// Where the tip shall be, in world axes.
+struct TipTarget {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
+  std::optional<Eigen::Vector3d> direction;            ///< Of the tip's z axis; not zero, of any length.
+  std::optional<Eigen::Matrix3d> rotation;             ///< R_WT; with it `direction` must be left out.
+};
+
+/// The curve along which the whole backbone shall lie, as a polyline in world axes, m: the backbone's point
+/// at a part f of its arc length belongs to the polyline's at a part f of its length.
+struct CurveTarget {
+  std::vector<Eigen::Vector3d> points;  ///< Two or more, not all the same.
+};
+
+/// What to do with freedom that the target leaves.
+enum class InverseWish {
+  none,           ///< Take the solution first found.
+  least_bending,  ///< Make the sum of squares of the bends (rad) and of the stretches' distances from 1
+                  ///< small.
+  mid_range,      ///< The same, each relative to its limit: a bend to max_bend (pi without one), a stretch to
+                  ///< half its range about the middle of it.
+};
+
+struct InverseOptions {
+  std::optional<ArmState>
+      start;  ///< Where the search begins; the straight arm, slightly bent, when left out.
+  InverseWish wish = InverseWish::none;
+  /// m; when left out 1e-9 of the arm's greatest length, and 1e-3 of it for curves.
+  std::optional<double> position_tolerance;
+  double angle_tolerance = 1e-9;  ///< rad.
+  int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.
+  std::uint64_t seed = 1;         ///< Of the starts after the first two.
+};
+
+enum class InverseOutcome {
+  converged,       ///< Within the tolerances.
+  not_reachable,   ///< Proven so (is_proven), or no limit is in the way and no state comes nearer.
+  at_limit,        ///< The best state found is held by a limit: without it the arm would come nearer.
+  no_convergence,  ///< Undecided.
+};
+
+struct InverseResult {
+  InverseOutcome outcome = InverseOutcome::no_convergence;
+  bool is_proven = false;       ///< The target is out of reach of every state within the limits.
+  ArmState state;               ///< Within the limits: the solution, or the nearest found.
+  Eigen::Vector3d tip;          ///< p_WT of `state`, m.
+  double position_error = 0.0;  ///< Of `state`, m: the tip's distance; the largest along the arm for a curve.
+  double angle_error = 0.0;     ///< Of `state`, rad, from the direction or rotation asked for; else 0.
+  int iterations = 0;           ///< Evaluations of the arm and its Jacobian.
+  int starts = 0;               ///< Descents made.
+
+  [[nodiscard]] bool converged() const { return outcome == InverseOutcome::converged; }
+};
+
+/// Finds a state of `arm` within its limits for the target. A target that is proven out of reach is always
+/// answered by not_reachable and the nearest state found: in position, when the position is out of reach.
+/// std::invalid_argument: a target or start that is not finite or does not fit, a direction of zero, both a
+/// direction and a rotation, a rotation that is not one, a curve without length, tolerances not positive.
+[[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
+                                          const InverseOptions& options = {});
+[[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
+                                          const InverseOptions& options = {});
+
+/// The distinct solutions that options.max_starts descents find, least bent first; empty when there is none.
+/// Where the target leaves freedom each is first led to the wish (least_bending when it is none), so that
+/// one is found for each valley of the wish; where a valley is a continuum, samples of it.
+[[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
+                                                               const InverseOptions& options = {});
+
+}  // namespace flexura

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "flexura/kinematics/inverse.h"
+
+namespace flexura {
+
+/// Throws std::invalid_argument for what inverse kinematics cannot be asked (inverse.h).
+void check_question(const TipTarget& target, const InverseOptions& options);
+void check_question(const CurveTarget& target, const InverseOptions& options);
+
+}  // namespace flexura

@@ -1,0 +1,82 @@
+#include <algorithm>
+
+#include "flexura/kinematics/curve_problem.h"
+#include "flexura/kinematics/inverse.h"
+#include "flexura/kinematics/inverse_check.h"
+#include "flexura/kinematics/inverse_search.h"
+#include "flexura/kinematics/reach.h"
+#include "flexura/kinematics/spatial.h"
+
+namespace flexura {
+namespace {
+
+constexpr DescentLimits curve_limits{.iterations = 100, .slope = 1e-7};
+// A curve says much about the arm: a few starts are enough, and each costs a whole backbone an iteration.
+constexpr int most_starts = 8;
+constexpr double least_pressure = 1e-6;
+
+std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
+  const Pose X_BW = arm.X_WB.inverse();
+  std::vector<Eigen::Vector3d> result;
+  for (const Eigen::Vector3d& p_WP : points) result.push_back(X_BW * p_WP);
+  return result;
+}
+
+// What no state can do for the curve's two ends is not to be had for the whole.
+bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points, double tolerance) {
+  const double rounding = 1e-14 * points.back().norm();
+  return points.front().norm() > tolerance + 1e-14 * points.front().norm() ||
+         least_distance(arm, points.back()) > tolerance + rounding;
+}
+
+}  // namespace
+
+InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseOptions& options) {
+  check_question(target, options);
+  const ArmVariables variables(arm);
+  const double length = variables.max_length();
+  const double tolerance = options.position_tolerance.value_or(1e-3 * length);
+  const std::vector<Eigen::Vector3d> points = in_base(arm, target.points);
+  CurveProblem problem(variables, points, length);
+  DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
+  std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
+  if (options.start) first = variables.pack(*options.start);
+  InverseStarts starts(variables, problem.end(), first, options.seed);
+
+  Found found;
+  Eigen::VectorXd x(variables.size());
+  double error = 0.0;
+  while (found.starts < std::min(options.max_starts, most_starts)) {
+    if (options.start && found.starts == 1) {
+      x = problem.start_along_tangents();
+    } else {
+      starts.next(x);
+    }
+    const Descent ended = descend(problem, variables.bounds(), curve_limits, x, memory);
+    found.keep_better(x, memory.r.squaredNorm(), ended);
+    ++found.starts;
+    problem.linearise(found.x, memory.r, memory.J);
+    error = problem.largest_error(memory.r);
+    if (error <= tolerance) break;
+  }
+
+  InverseResult result;
+  result.state = variables.state(found.x);
+  result.tip = tip_pose(arm, result.state).position;
+  result.position_error = error;
+  result.iterations = memory.iterations;
+  result.starts = found.starts;
+  if (error <= tolerance) {
+    result.outcome = InverseOutcome::converged;
+  } else if (is_out_of_reach(arm, points, tolerance)) {
+    result.outcome = InverseOutcome::not_reachable;
+    result.is_proven = true;
+  } else if (found.ended != Descent::exhausted) {
+    const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
+    const bool is_held = pressure(variables.bounds(), found.x, gradient) > least_pressure * memory.r.norm();
+    result.outcome = is_held ? InverseOutcome::at_limit : InverseOutcome::not_reachable;
+  }
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "flexura/kinematics/arm_variables.h"
+
+namespace flexura {
+
+/// Where the descents of inverse kinematics begin, always the same for the same question: the state given;
+/// the arm as one arc to the target; then states spread at random (SplitMix64) over the limits.
+class InverseStarts {
+ public:
+  /// `p_BT` is the wanted tip in the base's frame, m; `first` a packed state.
+  InverseStarts(const ArmVariables& variables, const Eigen::Vector3d& p_BT,
+                std::optional<Eigen::VectorXd> first, std::uint64_t seed);
+
+  /// Sets x to the next start, within the limits.
+  void next(Eigen::VectorXd& x);
+
+ private:
+  void one_arc(Eigen::VectorXd& x) const;
+  void anywhere(Eigen::VectorXd& x, double widest_start);
+  double random();
+
+  const ArmVariables& variables_;
+  Eigen::Vector3d p_BT_;
+  std::optional<Eigen::VectorXd> first_;
+  bool arc_is_next_ = true;
+  bool wide_is_next_ = false;
+  std::uint64_t random_state_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,21 @@
+#include "flexura/kinematics/inverse_wish.h"
+
+#include <algorithm>
+
+namespace flexura {
+
+WishScale::WishScale(const ArmVariables& variables, InverseWish wish)
+    : middle(Eigen::VectorXd::Zero(variables.size())), range(Eigen::VectorXd::Ones(variables.size())) {
+  const bool is_mid_range = wish == InverseWish::mid_range;
+  for (const ArmVariables::Part& part : variables.parts()) {
+    if (is_mid_range) {
+      range.segment(part.at, part.is_spatial ? 2 : 1).setConstant(std::min(part.max_bend, std::numbers::pi));
+    }
+    if (!part.is_stretchable) continue;
+    const auto [low, high] = part.stretch_limits;
+    middle[part.stretch_at()] = is_mid_range ? 0.5 * (low + high) : 1.0;
+    if (is_mid_range) range[part.stretch_at()] = 0.5 * (high - low);
+  }
+}
+
+}  // namespace flexura

@@ -81,7 +81,7 @@ TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
 TEST_F(Program, EndsWithOneWhenALimitWouldBeBroken) {
   const Ended ended = run("run " + paper_arm + " --set arm.section.1.max_bend_deg=3");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("unsafe: 0 s to 5 s: section 2: bend 18 deg, limit 3 deg\n"));
+  EXPECT_THAT(ended.err, HasSubstr("unsafe: 0.833333 s to 5 s: section 2: bend 18 deg, limit 3 deg\n"));
 }
 
 TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {

@@ -217,6 +217,10 @@ struct Codec<std::vector<T>> {
     return {.kind = Type::Kind::array, .item = std::make_shared<const Type>(Codec<T>::type())};
   }
   static bool read(const Node& node, const Spec& spec, Reader& reader, std::vector<T>& value) {
+    if (spec.one_for_all && node.as<Node::Array>() == nullptr) {
+      value.assign(1, T{});
+      return Codec<T>::read(node, spec, reader, value.front());
+    }
     const Node::Array* entries = reader.array(node, spec.count);
     if (entries == nullptr) return false;
     value.assign(entries->size(), T{});

@@ -5,31 +5,65 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
+#include "flexura/experiment/keyframes.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/store/csv_reader.h"
+#include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 
 namespace flexura {
 namespace {
 
-constexpr double max_duration = 1e6;  // s
 constexpr double max_steps = 1e6;
 constexpr std::size_t max_tasks = 10000;
 
 void check_experiment(const Experiment& experiment, Reader& reader) {
-  double total = 0;
+  if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
-    total += duration(experiment.task[i]);
-    if (const auto* move = std::get_if<MoveTask>(&experiment.task[i])) {
-      check_shape(move->to, experiment.arm.kind, experiment.arm.section.size(), fmt::format("task[{}].to", i),
-                  reader);
-    }
+    check_task(experiment.task[i], experiment.arm.kind, experiment.arm.section.size(),
+               fmt::format("task[{}]", i), reader);
   }
-  if (total / experiment.clock.step > max_steps) {
-    reader.problem_at("clock.step", fmt::format("makes {:.3g} steps of {:.6g} s: expected at most {:.0e}",
-                                                total / experiment.clock.step, total, max_steps));
+}
+
+// Reads the CSV file of a task of keyframes into the task.
+void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesystem::path& folder) {
+  std::filesystem::path file;
+  try {
+    file = file_inside(folder, task.file);
+  } catch (const InputError& error) {
+    throw input_error(task.file, "keyframes: " + error.problems().front().what);
   }
+  const std::string name = file.string();
+  NumberTable table = parse_csv(read_text_file(file, max_toml_bytes), name);
+  task.columns = std::move(table.columns);
+  task.rows = std::move(table.rows);
+  task.file.clear();
+  const auto source = std::make_shared<const std::string>(name);
+  std::vector<Problem> problems;
+  for (const KeyframeProblem& problem : keyframe_problems(task, arm.kind, arm.section.size())) {
+    const int line = problem.row < 0 ? 1 : table.lines[static_cast<std::size_t>(problem.row)];
+    Problem& told = problems.emplace_back();
+    told.where = {source, line, 1};
+    if (problem.row >= 0) told.what = fmt::format("column {}: ", task.columns[problem.column]);
+    told.what += problem.what;
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+// The checks that need every file read; reported at the places in `document`.
+void check_whole(const Experiment& experiment, const Node& document) {
+  const Schedule schedule(experiment);
+  if (schedule.duration() / experiment.clock.step <= max_steps) return;
+  const Node* clock = document.find("clock");
+  const Node* step = clock == nullptr ? nullptr : clock->find("step");
+  const SourcePosition where = step != nullptr    ? step->where
+                               : clock != nullptr ? clock->where
+                                                  : document.where;
+  throw InputError(std::vector<Problem>{
+      {where, fmt::format("clock.step: makes {:.3g} steps of {:.6g} s: expected at most {:.0e}",
+                          schedule.duration() / experiment.clock.step, schedule.duration(), max_steps)}});
 }
 
 Node resolved_overrides(Node document, const Overrides& overrides) {
@@ -52,34 +86,6 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
 }
 
 }  // namespace
-
-const Table<MoveTask>& fields_of(const MoveTask*) {
-  static const auto table =
-      Table<MoveTask>(
-          "move",
-          "The arm goes from where it is to another shape, every bend and stretch linearly in time. "
-          "In a plane that is the same motion in cord angles, archings and bends.")
-          .field("name", &MoveTask::name,
-                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field("duration", &MoveTask::duration,
-                 {.meaning = "How long the motion takes.",
-                  .unit = Unit::second,
-                  .range = above_up_to(0, max_duration)})
-          .field("to", &MoveTask::to,
-                 {.meaning = "The shape to reach, as `to.archings_deg = [...]`.", .required = true});
-  return table;
-}
-
-const Table<HoldTask>& fields_of(const HoldTask*) {
-  static const auto table =
-      Table<HoldTask>("hold", "The arm stays as it is.")
-          .field("name", &HoldTask::name,
-                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field(
-              "duration", &HoldTask::duration,
-              {.meaning = "How long it stays.", .unit = Unit::second, .range = above_up_to(0, max_duration)});
-  return table;
-}
 
 const Table<ClockConfig>& fields_of(const ClockConfig*) {
   static const auto table = Table<ClockConfig>("clock", "How time runs in the experiment.")
@@ -119,37 +125,38 @@ const Table<Experiment>& fields_of(const Experiment*) {
           .field("clock", &Experiment::clock, {.meaning = "How time runs."})
           .field("record", &Experiment::record, {.meaning = "What is kept of a run."})
           .field("arm", &Experiment::arm, {.meaning = "The arm.", .required = true})
+          .field("drive", &Experiment::drive,
+                 {.meaning = "What moves the arm; with it a run writes command lists.",
+                  .default_text = "none"})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);
   return table;
 }
 
-double duration(const TaskConfig& task) {
-  return std::visit([](const auto& one) { return one.duration; }, task);
-}
-
-std::string task_name(const TaskConfig& task) {
-  return std::visit(
-      [&](const auto& one) { return one.name.empty() ? std::string(task_kind(task)) : one.name; }, task);
-}
-
-std::string_view task_kind(const TaskConfig& task) {
-  return std::visit(
-      []<class T>(const T&) -> std::string_view {
-        return fields_of(static_cast<const T*>(nullptr)).info().name;
-      },
-      task);
-}
-
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
-  auto experiment = read_as<Experiment>(resolved_overrides(read_toml_file(file), overrides));
+  const Node document = resolved_overrides(read_toml_file(file), overrides);
+  auto experiment = read_as<Experiment>(document);
   if (experiment.title.empty()) experiment.title = file.stem().string();
+  for (TaskConfig& task : experiment.task) {
+    auto* keyframes = std::get_if<KeyframesTask>(&task);
+    if (keyframes != nullptr && !keyframes->file.empty())
+      read_keyframes(*keyframes, experiment.arm, file.parent_path());
+  }
+  check_whole(experiment, document);
   return experiment;
 }
 
 Experiment parse_experiment(std::string_view text, const std::string& source) {
-  return read_as<Experiment>(parse_toml(text, source));
+  const Node document = parse_toml(text, source);
+  auto experiment = read_as<Experiment>(document);
+  for (const TaskConfig& task : experiment.task) {
+    const auto* keyframes = std::get_if<KeyframesTask>(&task);
+    if (keyframes != nullptr && !keyframes->file.empty())
+      throw input_error(source, "a text alone cannot name a file of keyframes");
+  }
+  check_whole(experiment, document);
+  return experiment;
 }
 
 std::string experiment_toml(const Experiment& experiment) {

@@ -4,29 +4,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "flexura/experiment/task_config.h"
 #include "flexura/model/arm_config.h"
+#include "flexura/model/drive_config.h"
 
 namespace flexura {
-
-/// `kind = "move"`: the arm goes from where it is to another shape, every bend and stretch linearly in time.
-/// In a plane that is the same motion in cord angles, archings or bends, which depend linearly on each other.
-struct MoveTask {
-  std::string name;
-  double duration = 1.0;  ///< s
-  ShapeConfig to;
-};
-
-/// `kind = "hold"`: the arm stays as it is.
-struct HoldTask {
-  std::string name;
-  double duration = 1.0;  ///< s
-};
-
-using TaskConfig = std::variant<MoveTask, HoldTask>;
 
 /// The table [clock]: how time runs.
 struct ClockConfig {
@@ -48,18 +33,13 @@ struct Experiment {
   ClockConfig clock;
   RecordConfig record;
   ArmConfig arm;
+  std::optional<DriveConfig> drive;
   std::vector<TaskConfig> task;
 };
 
-const Table<MoveTask>& fields_of(const MoveTask*);
-const Table<HoldTask>& fields_of(const HoldTask*);
 const Table<ClockConfig>& fields_of(const ClockConfig*);
 const Table<RecordConfig>& fields_of(const RecordConfig*);
 const Table<Experiment>& fields_of(const Experiment*);
-
-[[nodiscard]] double duration(const TaskConfig& task);        ///< s
-[[nodiscard]] std::string task_name(const TaskConfig& task);  ///< Its name, else its kind.
-[[nodiscard]] std::string_view task_kind(const TaskConfig& task);
 
 /// What the command line changes in a file before it is read.
 struct Overrides {
@@ -71,7 +51,7 @@ struct Overrides {
 /// problem found.
 [[nodiscard]] Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides = {});
 
-/// The same from TOML text, without includes; `source` names it in errors.
+/// The same from TOML text, without includes and files of keyframes; `source` names it in errors.
 [[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source);
 
 /// The experiment as a TOML file, every value and default in base units.

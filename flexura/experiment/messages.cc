@@ -70,6 +70,18 @@ const Table<EventMessage>& fields_of(const EventMessage*) {
   return table;
 }
 
+const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*) {
+  static const auto table =
+      Table<DriveCommandsMessage>("flexura.DriveCommands", "Where the motors are to go.")
+          .field("time", &DriveCommandsMessage::time,
+                 {.meaning = "Time by which to be there, since the experiment's start, s."})
+          .field("positions", &DriveCommandsMessage::positions,
+                 {.meaning = "Each axis's position, microsteps from the straight arm."})
+          .field("rates", &DriveCommandsMessage::rates,
+                 {.meaning = "Each axis's mean step rate since the command before, microsteps/s."});
+  return table;
+}
+
 std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(time * 1e9)); }
 
 TimeMessage time_message(std::uint64_t nanoseconds) {

@@ -60,8 +60,16 @@ struct EventMessage {
   std::int64_t line = 0;
 };
 
+/// flexura.DriveCommands, on /drive/commands: the motors' command at one step of the clock.
+struct DriveCommandsMessage {
+  double time = 0;                      ///< s, by when the positions are to be reached.
+  std::vector<std::int64_t> positions;  ///< Microsteps, one an axis.
+  std::vector<double> rates;            ///< Microsteps/s, the mean since the command before.
+};
+
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
+inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
 
 const Table<TimeMessage>& fields_of(const TimeMessage*);
@@ -71,6 +79,7 @@ const Table<QuaternionMessage>& fields_of(const QuaternionMessage*);
 const Table<PoseMessage>& fields_of(const PoseMessage*);
 const Table<PosesMessage>& fields_of(const PosesMessage*);
 const Table<EventMessage>& fields_of(const EventMessage*);
+const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);

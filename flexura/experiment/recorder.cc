@@ -1,5 +1,6 @@
 #include "flexura/experiment/recorder.h"
 
+#include <optional>
 #include <utility>
 
 #include "flexura/experiment/messages.h"
@@ -33,6 +34,7 @@ struct Recorder::Channels {
   std::uint16_t state;
   std::uint16_t poses;
   std::uint16_t events;
+  std::optional<std::uint16_t> commands;
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Arm& arm)
@@ -62,6 +64,11 @@ void Recorder::event(double time, Level level, std::string_view source, std::str
   channels_->write(channels_->events, log_time,
                    EventMessage{time_message(log_time), static_cast<std::int64_t>(level), std::string(text),
                                 std::string(source), "", 0});
+}
+
+void Recorder::commands(const DriveCommandsMessage& message) {
+  if (!channels_->commands) channels_->commands = channels_->add<DriveCommandsMessage>(drive_commands_topic);
+  channels_->write(*channels_->commands, nanoseconds(message.time), message);
 }
 
 void Recorder::close() { channels_->log.close(); }

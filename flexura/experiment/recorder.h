@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "flexura/experiment/messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 
@@ -24,6 +25,9 @@ class Recorder {
   void state(double time, const ArmState& state, const Backbone& backbone);
   enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< foxglove.Log's numbers.
   void event(double time, Level level, std::string_view source, std::string_view text);
+
+  /// The first command opens the channel: logs of arms without a drive have none.
+  void commands(const DriveCommandsMessage& message);
 
   /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
   void close();

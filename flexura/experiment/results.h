@@ -16,6 +16,7 @@ namespace flexura {
 // What a run writes into its folder.
 inline constexpr const char* experiment_file_name = "experiment.toml";
 inline constexpr const char* log_file_name = "log.mcap";
+inline constexpr const char* commands_file_name = "commands.csv";
 inline constexpr const char* summary_file_name = "summary.json";
 inline constexpr const char* timing_file_name = "timing.json";
 inline constexpr const char* report_file_name = "report.html";

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "flexura/base/version.h"
+#include "flexura/experiment/drive_commands.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
@@ -26,13 +28,14 @@ Node task_nodes(const Experiment& experiment, const Arm& arm, const Schedule& sc
   Node::Array tasks;
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     const Leg& leg = schedule.legs()[i];
-    const double end = leg.start + leg.duration;
-    tasks.push_back({Node::Table{{"kind", {}, {leg.kind, {}}},
-                                 {"name", {}, {leg.name, {}}},
-                                 {"start", {}, {leg.start, {}}},
-                                 {"end", {}, {end, {}}},
-                                 {"tip", {}, pose_node(Backbone(arm, leg.to).tip())}},
-                     {}});
+    const double end = leg.end();
+    tasks.push_back(
+        {Node::Table{{"kind", {}, {leg.kind, {}}},
+                     {"name", {}, {leg.name, {}}},
+                     {"start", {}, {leg.start, {}}},
+                     {"end", {}, {end, {}}},
+                     {"tip", {}, pose_node(Backbone(arm, leg.motion->at(leg.motion->duration())).tip())}},
+         {}});
   }
   return {std::move(tasks), {}};
 }
@@ -80,11 +83,22 @@ class Witness {
   }
   void state(std::size_t step, double time, const ArmState& state) {
     recorder_.state(time, state, Backbone(arm_, state));
+    ++recorded_;
     if (step % kept_every_ != 0 && step != last_step_) return;
     times_.push_back(time);
     states_.push_back(state);
   }
-  void close() { recorder_.close(); }
+  void write_commands(const Drive& drive, const std::filesystem::path& file) {
+    commands_.emplace(arm_, drive, file);
+  }
+  // Takes every step, logged or not: a command list has no gaps.
+  void command(double time, const ArmState& state) {
+    if (commands_) commands_->step(time, state, recorder_);
+  }
+  void close() {
+    recorder_.close();
+    if (commands_) commands_->close();
+  }
 
   ReportData report_data(const Experiment& experiment) && {
     return {experiment.title, experiment.flexura, experiment_toml(experiment),
@@ -97,9 +111,11 @@ class Witness {
   static constexpr std::size_t max_kept_states = 10000;
 
   Recorder recorder_;
+  std::optional<DriveCommands> commands_;
   Arm arm_;
   std::size_t last_step_;
   std::size_t kept_every_;
+  std::size_t recorded_ = 0;
   std::vector<double> times_;
   std::vector<ArmState> states_;
   std::vector<ReportData::Mark> marks_;
@@ -114,7 +130,9 @@ void play(const Experiment& experiment, const Schedule& schedule, Witness& witne
       const Leg& leg = schedule.legs()[started];
       witness.event(leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind));
     }
-    if (step % every == 0 || step == schedule.steps()) witness.state(step, time, schedule.state_at(time));
+    const ArmState state = schedule.state_at(time);
+    if (step % every == 0 || step == schedule.steps()) witness.state(step, time, state);
+    witness.command(time, state);
     progress.update(schedule.duration() > 0 ? time / schedule.duration() : 1.0,
                     schedule.legs()[schedule.leg_at(time)].name);
   }
@@ -143,12 +161,14 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   RunResult result;
   result.folder = folder;
   Witness witness(folder, arm, schedule);
-  for (const Violation& violation : schedule.violations(arm)) {
+  const SafetyReport safety = schedule.check();
+  for (const Violation& violation : safety.violations) {
     result.outcome = Outcome::unsafe;
     result.reasons.push_back(violation.text());
     witness.event(0, Recorder::Level::error, "run", violation.text());
   }
   if (result.outcome == Outcome::done) {
+    if (experiment.drive) witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
     play(experiment, schedule, witness, progress);
   } else {
     witness.state(0, 0, schedule.state_at(0));

@@ -78,7 +78,7 @@ TEST_F(Run, PassesThroughThePapersIntermediatePoses) {
   const std::array<std::array<double, 3>, 3> expected{
       {{0.25, -4.343670, 15.116249}, {0.5, -7.924923, 12.648849}, {0.75, -10.152819, 9.106058}}};
   for (const auto& [fraction, x, y] : expected) {
-    const Backbone backbone(arm, schedule.state_at(fraction * duration(experiment.task[0])));
+    const Backbone backbone(arm, schedule.state_at(fraction * schedule.duration()));
     EXPECT_NEAR(backbone.tip().position.x(), x, 5e-7) << fraction;
     EXPECT_NEAR(backbone.tip().position.y(), y, 5e-7) << fraction;
   }
@@ -133,7 +133,7 @@ TEST_F(Run, GoesToALimitButNotBeyond) {
   RunResult result = run(experiment);
   EXPECT_EQ(result.outcome, Outcome::unsafe);
   ASSERT_THAT(result.reasons, SizeIs(1));
-  EXPECT_EQ(result.reasons[0], "0 s to 2 s: section 1: bend 62 deg, limit 60 deg");
+  EXPECT_EQ(result.reasons[0], "1.93548 s to 2 s: section 1: bend 62 deg, limit 60 deg");
 
   move.to.archings->at(0) = 0.1;
   move.to.stretches->at(0) = 0.8;

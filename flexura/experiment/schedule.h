@@ -5,29 +5,20 @@
 #include <vector>
 
 #include "flexura/experiment/experiment.h"
+#include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
+#include "flexura/safety/violation.h"
 
 namespace flexura {
 
-/// One task, placed in time: the arm goes linearly from one state to another.
+/// One task, placed in time.
 struct Leg {
   std::string name;
   std::string kind;
-  double start = 0;     ///< s
-  double duration = 0;  ///< s
-  ArmState from;
-  ArmState to;
-};
+  double start = 0;  ///< s
+  MotionPtr motion;
 
-/// A limit of the arm that a leg breaks.
-struct Violation {
-  double start = 0;  ///< s, from when
-  double end = 0;    ///< s, to when
-  std::size_t section = 0;
-  std::string what;  ///< "bend", "bend rate", "stretch"
-  double value = 0;  ///< The worst: rad, rad/s or a factor.
-  double limit = 0;
-  [[nodiscard]] std::string text() const;
+  [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };
 
 /// What an experiment is going to do: the arm's state at every time, known before anything moves.
@@ -44,11 +35,12 @@ class Schedule {
   [[nodiscard]] std::size_t leg_at(double time) const;
   /// The arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
-  /// Every limit broken, by leg and section. Exact: along a leg bends and stretches change linearly, so their
-  /// sizes are largest at an end and their rates are constant.
-  [[nodiscard]] std::vector<Violation> violations(const Arm& arm) const;
+  /// What would harm the arm, known before anything moves.
+  [[nodiscard]] SafetyReport check() const;
 
  private:
+  Arm arm_;
+  ArmState initial_;
   double step_ = 0;
   double duration_ = 0;
   std::size_t steps_ = 0;

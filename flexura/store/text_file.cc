@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "flexura/base/source.h"
 
@@ -33,6 +35,25 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
                       fmt::format("is larger than {} MiB: expected a smaller file", max_bytes >> 20));
   }
   return text;
+}
+
+std::filesystem::path file_inside(const std::filesystem::path& folder, const std::string& name) {
+  const auto fail = [](const std::string& what) {
+    std::vector<Problem> problems(1);
+    problems.front().what = what;
+    throw InputError(std::move(problems));
+  };
+  if (name.empty() || name.find('\0') != std::string::npos) fail("expected a file's name");
+  std::error_code error;
+  const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
+  const auto target = std::filesystem::weakly_canonical(root / name, error);
+  if (error) fail(fmt::format("cannot read \"{}\": {}", name, error.message()));
+  const auto from_root = target.lexically_relative(root);
+  if (from_root.empty() || *from_root.begin() == "..") {
+    fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", name));
+  }
+  if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("no file \"{}\"", name));
+  return folder / name;
 }
 
 void write_new_file(const std::filesystem::path& file, std::string_view text) {

@@ -11,6 +11,10 @@ namespace flexura {
 /// `max_bytes`.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 
+/// The file `name` in `folder` or below it, once links are resolved. Throws InputError, without a place, when
+/// it lies outside or is no file.
+[[nodiscard]] std::filesystem::path file_inside(const std::filesystem::path& folder, const std::string& name);
+
 /// Writes a new file whole; std::runtime_error with the path when it exists already or cannot be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 

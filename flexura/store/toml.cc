@@ -78,22 +78,15 @@ Node read_with_includes(const std::filesystem::path& file, int depth) {
   return document;
 }
 
-// The file an include names, checked to lie under `folder` once links are resolved.
 std::filesystem::path included_file(const Node& entry, const std::filesystem::path& folder) {
-  const auto fail = [&](const std::string& what) { throw InputError({{entry.where, "include: " + what}}); };
   const auto* name = entry.as<std::string>();
-  if (name == nullptr || name->empty()) fail("expected file names in quotes");
-  if (name->find('\0') != std::string::npos) fail("a file name holds no zero byte");
-  std::error_code error;
-  const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
-  const auto target = std::filesystem::weakly_canonical(root / *name, error);
-  if (error) fail(fmt::format("cannot read \"{}\": {}", *name, error.message()));
-  const auto from_root = target.lexically_relative(root);
-  if (from_root.empty() || *from_root.begin() == "..") {
-    fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", *name));
+  if (name == nullptr || name->empty())
+    throw InputError({{entry.where, "include: expected file names in quotes"}});
+  try {
+    return file_inside(folder, *name);
+  } catch (const InputError& error) {
+    throw InputError({{entry.where, "include: " + error.problems().front().what}});
   }
-  if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("no file \"{}\"", *name));
-  return folder / *name;
 }
 
 void lay_upon_includes(Node& document, const std::filesystem::path& file, int depth) {

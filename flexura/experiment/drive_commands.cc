@@ -1,0 +1,62 @@
+#include "flexura/experiment/drive_commands.h"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <string>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/tendons.h"
+
+namespace flexura {
+namespace {
+
+// Long lists go to the file in pieces, so that they need not fit the memory.
+constexpr std::size_t piece = std::size_t{256} << 10;
+
+}  // namespace
+
+DriveCommands::DriveCommands(const Arm& arm, const Drive& drive, const std::filesystem::path& file)
+    : arm_(arm), drive_(drive), file_(file) {
+  rows_.cell("time");
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) rows_.cell(drive.axis_name(i));
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) rows_.cell(drive.axis_name(i) + "_rate");
+  rows_.end_row();
+}
+
+void DriveCommands::step(double time, const ArmState& state, Recorder& recorder) {
+  const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
+  std::vector<std::int64_t> before;
+  if (commander_) {
+    before = commander_->positions();
+    commander_->follow(wanted);
+  } else {
+    commander_.emplace(drive_, wanted);
+    before = commander_->positions();
+    time_ = time;
+  }
+  DriveCommandsMessage message{time, commander_->positions(), {}};
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const auto moved = static_cast<double>(message.positions[i] - before[i]);
+    message.rates.push_back(time > time_ ? moved / (time - time_) : 0.0);
+  }
+  time_ = time;
+  recorder.commands(message);
+  rows_.cell(time);
+  for (const std::int64_t position : message.positions) rows_.cell(fmt::format("{}", position));
+  rows_.cells(message.rates);
+  rows_.end_row();
+  if (rows_.text().size() >= piece) write_rows();
+}
+
+void DriveCommands::write_rows() {
+  file_.append(std::as_bytes(std::span(rows_.text())));
+  rows_ = {};
+}
+
+void DriveCommands::close() {
+  write_rows();
+  file_.close();
+}
+
+}  // namespace flexura

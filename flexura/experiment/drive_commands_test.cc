@@ -1,0 +1,161 @@
+// Runs of an arm with a drive: the command list beside the log, and the mechanism that follows it.
+#include "flexura/experiment/drive_commands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/kinematics/tendons.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::filesystem::path laboratory_arm = FLEXURA_SOURCE_DIR "/examples/02_laboratory_arm/experiment.toml";
+
+struct Row {
+  double time = 0;
+  std::vector<std::int64_t> positions;
+  std::vector<double> rates;
+};
+
+class Quiet : public Progress {
+ public:
+  void update(double, std::string_view) override {}
+};
+
+class LaboratoryArm : public ::testing::Test {
+ protected:
+  RunResult run(const Experiment& experiment) {
+    Quiet progress;
+    return run_experiment(experiment, make_new_folder(folder_.path() / "results"), progress);
+  }
+  static std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file())
+        files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
+    }
+    return files;
+  }
+  static std::vector<Row> rows_of(const std::filesystem::path& results, std::size_t axes) {
+    std::istringstream table(read_text_file(results / commands_file_name, 1 << 26));
+    std::string line;
+    std::getline(table, line);
+    std::vector<Row> rows;
+    while (std::getline(table, line)) {
+      std::istringstream cells(line);
+      std::string cell;
+      std::getline(cells, cell, ',');
+      Row& row = rows.emplace_back(Row{std::stod(cell), {}, {}});
+      for (std::size_t i = 0; i < axes && std::getline(cells, cell, ','); ++i)
+        row.positions.push_back(std::stoll(cell));
+      while (std::getline(cells, cell, ',')) row.rates.push_back(std::stod(cell));
+    }
+    return rows;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(LaboratoryArm, RunsToTheSameBytesEachTimeAndFromItsOwnFile) {
+  const Experiment experiment = load_experiment(laboratory_arm);
+  const RunResult first = run(experiment);
+  EXPECT_EQ(first.outcome, Outcome::done) << (first.reasons.empty() ? "" : first.reasons[0]);
+  const auto files = files_in(first.folder);
+  EXPECT_TRUE(files.contains("commands.csv"));
+  EXPECT_EQ(files, files_in(run(experiment).folder));
+  EXPECT_EQ(files, files_in(run(load_experiment(first.folder / experiment_file_name)).folder));
+}
+
+TEST_F(LaboratoryArm, CommandsEveryStepOfTheClockWhateverIsLogged) {
+  Experiment experiment = load_experiment(laboratory_arm);
+  experiment.record.every = 100;
+  const Schedule schedule(experiment);
+  const RunResult result = run(experiment);
+  EXPECT_THAT(read_text_file(result.folder / commands_file_name, 1 << 26),
+              HasSubstr("time,1.1,1.2,1.3,1.4,2.1,2.2,2.3,2.4,3.1,1.1_rate,"));
+  const std::vector<Row> rows = rows_of(result.folder, 9);
+  ASSERT_EQ(rows.size(), schedule.steps() + 1);
+  for (std::size_t step = 0; step < rows.size(); ++step) {
+    ASSERT_EQ(rows[step].time, schedule.time_of_step(step));
+    ASSERT_EQ(rows[step].positions.size(), 9U);
+    ASSERT_EQ(rows[step].rates.size(), 9U);
+    for (std::size_t i = 0; step > 0 && i < 9; ++i) {
+      const auto moved = static_cast<double>(rows[step].positions[i] - rows[step - 1].positions[i]);
+      EXPECT_NEAR(rows[step].rates[i], moved / (rows[step].time - rows[step - 1].time), 1e-9);
+    }
+  }
+  EXPECT_THAT(rows.front().positions, ::testing::Each(0));
+}
+
+TEST_F(LaboratoryArm, FollowsItsCommandsToHalfAMicrostepThroughThePlay) {
+  const Experiment experiment = load_experiment(laboratory_arm);
+  const Schedule schedule(experiment);
+  const Arm arm = experiment.arm.arm();
+  const Drive drive = experiment.drive->drive();
+  const std::vector<Row> rows = rows_of(run(experiment).folder, 9);
+  PlayModel mechanism(drive, rows.front().positions);
+  for (const Row& row : rows) {
+    mechanism.follow(row.positions);
+    const ArmState wanted = schedule.state_at(row.time);
+    const TendonDisplacements needed = tendon_displacements(arm, drive, wanted);
+    const TendonDisplacements made = mechanism.displacements();
+    for (std::size_t i = 0; i < 9; ++i) {
+      ASSERT_LE(std::abs(made.pulled[i] - needed.pulled[i]) * drive.axes[i].microsteps_a_metre(), 0.5 + 3e-6)
+          << "axis " << i << " at " << row.time << " s";
+    }
+    // Half a microstep is a micrometre of cable, 14 mm from the backbone.
+    const ArmState found = fit_state(arm, drive, made).state;
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_LE((found.bends[i] - wanted.bends[i]).norm(), 1e-4);
+  }
+}
+
+TEST_F(LaboratoryArm, LogsTheCommandsOfItsTable) {
+  const RunResult result = run(load_experiment(laboratory_arm));
+  const std::vector<Row> rows = rows_of(result.folder, 9);
+  const McapReader log(result.folder / log_file_name);
+  std::size_t count = 0;
+  for (const McapMessage& message : log.messages()) {
+    if (message.channel->topic != drive_commands_topic) continue;
+    const auto command = read_as<DriveCommandsMessage>(parse_json(message.text(), "log"));
+    ASSERT_LT(count, rows.size());
+    EXPECT_EQ(command.time, rows[count].time);
+    EXPECT_EQ(command.positions, rows[count].positions);
+    EXPECT_EQ(command.rates, rows[count].rates);
+    ++count;
+  }
+  EXPECT_EQ(count, rows.size());
+}
+
+TEST_F(LaboratoryArm, WritesNoCommandsForAMotionThatIsUnsafeOrWithoutADrive) {
+  Experiment experiment = load_experiment(laboratory_arm);
+  experiment.arm.section[1].max_bend = 0.1;
+  const RunResult unsafe = run(experiment);
+  EXPECT_EQ(unsafe.outcome, Outcome::unsafe);
+  EXPECT_FALSE(std::filesystem::exists(unsafe.folder / commands_file_name));
+  experiment = load_experiment(laboratory_arm);
+  experiment.drive.reset();
+  const RunResult bare = run(experiment);
+  EXPECT_EQ(bare.outcome, Outcome::done);
+  EXPECT_FALSE(std::filesystem::exists(bare.folder / commands_file_name));
+  const McapReader log(bare.folder / log_file_name);
+  for (const McapMessage& message : log.messages())
+    ASSERT_NE(message.channel->topic, drive_commands_topic);
+}
+
+}  // namespace
+}  // namespace flexura

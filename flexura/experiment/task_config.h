@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/model/arm_config.h"
+
+namespace flexura {
+
+/// How a move goes in time (kinematics/profile.h).
+enum class MoveLaw { linear, minimum_jerk, trapezoid };
+
+/// `kind = "move"`: the arm goes from where it is to another shape, each section on a straight line in bend
+/// and stretch. In a plane that is a straight line in cord angles and archings too, which depend linearly on
+/// the bends.
+struct MoveTask {
+  std::string name;
+  std::optional<double> duration;                ///< s; 1 when left out. A trapezoid finds its own.
+  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One for all sections, or one each.
+  std::optional<double> max_rate;                ///< rad/s, of the section that bends most; trapezoid.
+  std::optional<double> max_acceleration;        ///< rad/s^2; trapezoid.
+  ShapeConfig to;
+};
+
+/// `kind = "hold"`: the arm stays as it is.
+struct HoldTask {
+  std::string name;
+  double duration = 1.0;  ///< s
+};
+
+/// `kind = "sine"`: every section swings about where it is.
+struct SineTask {
+  std::string name;
+  double duration = 1.0;              ///< s
+  double period = 1.0;                ///< s
+  ShapeConfig amplitude;              ///< Of cord angles, archings or bends; no stretches.
+  std::vector<double> phase = {0.0};  ///< rad; one for all sections, or one each.
+};
+
+/// `kind = "keyframes"`: the arm passes through shapes at times, from a CSV file or written in place.
+struct KeyframesTask {
+  std::string name;
+  std::string file;  ///< Beside the experiment; read into columns and rows with the experiment.
+  std::vector<std::string>
+      columns;  ///< "time", and per section "arching_1", "cord_angle_1_deg", "bend_x_1", ...
+  std::vector<std::vector<double>> rows;  ///< As the columns say.
+  Interpolation interpolation = Interpolation::linear;
+};
+
+/// `kind = "expression"`: a formula of t (s in the task), T (its duration) and i (the section's number from
+/// 1), one for all sections or one each (kinematics/expression.h).
+struct ExpressionTask {
+  std::string name;
+  double duration = 1.0;                                         ///< s
+  std::optional<std::vector<std::string>> cord_angles;           ///< rad
+  std::optional<std::vector<std::string>> archings;              ///< rad
+  std::optional<std::vector<std::array<std::string, 2>>> bends;  ///< rad
+  std::optional<std::vector<std::string>> stretches;
+};
+
+using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask>;
+
+const std::vector<std::string>& names_of(const MoveLaw*);
+const std::vector<std::string>& names_of(const Interpolation*);
+const Table<MoveTask>& fields_of(const MoveTask*);
+const Table<HoldTask>& fields_of(const HoldTask*);
+const Table<SineTask>& fields_of(const SineTask*);
+const Table<KeyframesTask>& fields_of(const KeyframesTask*);
+const Table<ExpressionTask>& fields_of(const ExpressionTask*);
+
+[[nodiscard]] std::string task_name(const TaskConfig& task);  ///< Its name, else its kind.
+[[nodiscard]] std::string_view task_kind(const TaskConfig& task);
+
+/// Reports what keeps the task at `path` ("task[2]") from fitting an arm of this kind and number of sections.
+void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, const std::string& path,
+                Reader& reader);
+
+/// The motion that a task (checked by check_task) is, for an arm that stands in `from`.
+[[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from);
+
+}  // namespace flexura

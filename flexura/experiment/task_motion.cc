@@ -1,0 +1,235 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "flexura/experiment/keyframes.h"
+#include "flexura/experiment/task_config.h"
+#include "flexura/kinematics/expression.h"
+#include "flexura/kinematics/planar.h"
+#include "flexura/kinematics/shape.h"
+
+namespace flexura {
+namespace {
+
+// One value for all sections, or one each.
+template <class T>
+const T& of_section(const std::vector<T>& values, std::size_t section) {
+  return values.size() == 1 ? values.front() : values[section];
+}
+
+void check_one_or_each(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
+  if (given == 1 || given == sections) return;
+  reader.problem_at(path,
+                    fmt::format("{} given: expected 1 for all sections, or {}, one each", given, sections));
+}
+
+void check_one(const HoldTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
+
+void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
+               Reader& reader) {
+  check_shape(task.to, kind, sections, path + ".to", reader);
+  check_one_or_each(task.law.size(), sections, path + ".law", reader);
+  const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
+  if (trapezoids == 0) {
+    if (task.max_rate) reader.problem_at(path + ".max_rate", "is for law = \"trapezoid\"");
+    if (task.max_acceleration) reader.problem_at(path + ".max_acceleration", "is for law = \"trapezoid\"");
+    return;
+  }
+  if (static_cast<std::size_t>(trapezoids) != task.law.size()) {
+    reader.problem_at(path + ".law",
+                      "mixes trapezoid with other laws: expected trapezoid for all sections or for none");
+  }
+  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: a trapezoid needs it");
+  if (!task.max_acceleration) reader.problem_at(path + ".max_acceleration", "missing: a trapezoid needs it");
+  if (task.duration) reader.problem_at(path + ".duration", "is found by the trapezoid: expected no duration");
+}
+
+void check_one(const SineTask& task, ArmKind kind, std::size_t sections, const std::string& path,
+               Reader& reader) {
+  check_shape(task.amplitude, kind, sections, path + ".amplitude", reader);
+  check_one_or_each(task.phase.size(), sections, path + ".phase", reader);
+  if (task.amplitude.stretches)
+    reader.problem_at(path + ".amplitude.stretches", "does not swing: expected angles only");
+}
+
+void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, const std::string& path,
+               Reader& reader) {
+  if (!task.file.empty()) {
+    if (!task.columns.empty() || !task.rows.empty()) {
+      reader.problem_at(path + ".file", "stands beside columns or rows: expected a file or those");
+    }
+    return;  // looked at once the file is read
+  }
+  for (const KeyframeProblem& problem : keyframe_problems(task, kind, sections)) {
+    const std::string place = problem.row < 0
+                                  ? fmt::format("{}.columns[{}]", path, problem.column)
+                                  : fmt::format("{}.rows[{}][{}]", path, problem.row, problem.column);
+    reader.problem_at(place, problem.what);
+  }
+}
+
+void check_formula(const std::string& text, const std::string& path, Reader& reader) {
+  try {
+    const Expression expression(text);
+  } catch (const ExpressionError& error) {
+    reader.problem_at(path, fmt::format("{} at character {} of {}", error.what(), error.position() + 1,
+                                        Node{text, {}}.brief()));
+  }
+}
+
+void check_formulas(const std::optional<std::vector<std::string>>& formulas, std::size_t sections,
+                    const std::string& path, Reader& reader) {
+  if (!formulas) return;
+  check_one_or_each(formulas->size(), sections, path, reader);
+  for (std::size_t i = 0; i < formulas->size(); ++i)
+    check_formula((*formulas)[i], fmt::format("{}[{}]", path, i), reader);
+}
+
+void check_one(const ExpressionTask& task, ArmKind kind, std::size_t sections, const std::string& path,
+               Reader& reader) {
+  const int ways = (task.cord_angles ? 1 : 0) + (task.archings ? 1 : 0) + (task.bends ? 1 : 0);
+  if (ways > 1)
+    reader.problem_at(path,
+                      "says the bends in more than one way: expected one of cord_angles, archings, bends");
+  if (ways == 0 && !task.stretches)
+    reader.problem_at(path, "says nothing: expected cord_angles, archings, bends or stretches");
+  if (kind == ArmKind::spatial && (task.cord_angles || task.archings)) {
+    reader.problem_at(path, "cord_angles and archings are for planar arms: expected bends for a spatial one");
+  }
+  check_formulas(task.cord_angles, sections, path + ".cord_angles", reader);
+  check_formulas(task.archings, sections, path + ".archings", reader);
+  check_formulas(task.stretches, sections, path + ".stretches", reader);
+  if (!task.bends) return;
+  check_one_or_each(task.bends->size(), sections, path + ".bends", reader);
+  for (std::size_t i = 0; i < task.bends->size(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k)
+      check_formula((*task.bends)[i][k], fmt::format("{}.bends[{}][{}]", path, i, k), reader);
+    if (kind == ArmKind::planar && (*task.bends)[i][1] != "0") {
+      reader.problem_at(fmt::format("{}.bends[{}]", path, i),
+                        "leaves the plane: expected \"0\" as bend_y of a planar arm");
+    }
+  }
+}
+
+// How far the section goes that goes farthest: rad of bend, and stretch as if 1 were 1 rad.
+double distance(const ArmState& from, const ArmState& to) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < from.bends.size(); ++i) {
+    farthest = std::max(
+        {farthest, (to.bends[i] - from.bends[i]).norm(), std::abs(to.stretches[i] - from.stretches[i])});
+  }
+  return farthest;
+}
+
+MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
+  return hold_motion(from, task.duration);
+}
+
+MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {
+  const ArmState to = arm_state(arm, task.to);
+  std::vector<Profile> profiles;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    switch (of_section(task.law, i)) {
+      case MoveLaw::linear:
+        profiles.push_back(Profile::linear(task.duration.value_or(1.0)));
+        break;
+      case MoveLaw::minimum_jerk:
+        profiles.push_back(Profile::minimum_jerk(task.duration.value_or(1.0)));
+        break;
+      case MoveLaw::trapezoid: {
+        const double farthest = distance(from, to);
+        if (farthest == 0) return hold_motion(from, 0);
+        profiles.push_back(Profile::trapezoid(farthest, *task.max_rate, *task.max_acceleration));
+        break;
+      }
+    }
+  }
+  return point_to_point_motion(from, to, std::move(profiles));
+}
+
+MotionPtr motion_of(const SineTask& task, const Arm& arm, const ArmState& from) {
+  std::vector<Eigen::Vector2d> amplitudes(arm.sections.size(), Eigen::Vector2d::Zero());
+  if (task.amplitude.cord_angles) {
+    // Swings of cord angles follow eq. 5 without its constant, the base's tangent angle.
+    const auto archings = archings_from_cord_angles(*task.amplitude.cord_angles, 0.0);
+    for (std::size_t i = 0; i < amplitudes.size(); ++i) amplitudes[i] = bend_from_arching(archings[i]);
+  } else {
+    amplitudes = arm_state(arm, task.amplitude).bends;
+  }
+  std::vector<double> phases;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) phases.push_back(of_section(task.phase, i));
+  return sine_motion(from, std::move(amplitudes), std::move(phases), task.period, task.duration);
+}
+
+MotionPtr motion_of(const KeyframesTask& task, const Arm& arm, const ArmState&) {
+  return keyframes_task_motion(task, arm);
+}
+
+// The formulas of one quantity, one for all sections or one each.
+class Formulas {
+ public:
+  explicit Formulas(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) formulas_.emplace_back(text);
+  }
+  [[nodiscard]] double value(double t, double T, std::size_t section) const {
+    return of_section(formulas_, section).value(t, T, section + 1);
+  }
+
+ private:
+  std::vector<Expression> formulas_;
+};
+
+std::vector<double> values_of(const Formulas& formulas, double t, double T, std::size_t sections) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < sections; ++i) values.push_back(formulas.value(t, T, i));
+  return values;
+}
+
+MotionPtr motion_of(const ExpressionTask& task, const Arm& arm, const ArmState& from) {
+  struct Law {
+    std::optional<Formulas> cord_angles, archings, bends_x, bends_y, stretches;
+  };
+  auto law = std::make_shared<Law>();
+  if (task.cord_angles) law->cord_angles.emplace(*task.cord_angles);
+  if (task.archings) law->archings.emplace(*task.archings);
+  if (task.stretches) law->stretches.emplace(*task.stretches);
+  if (task.bends) {
+    std::vector<std::string> x;
+    std::vector<std::string> y;
+    for (const auto& [bend_x, bend_y] : *task.bends) {
+      x.push_back(bend_x);
+      y.push_back(bend_y);
+    }
+    law->bends_x.emplace(x);
+    law->bends_y.emplace(y);
+  }
+  return function_motion(task.duration, [law, arm, from, T = task.duration](double t) {
+    const std::size_t n = arm.sections.size();
+    ShapeConfig shape;
+    if (law->cord_angles) shape.cord_angles = values_of(*law->cord_angles, t, T, n);
+    if (law->archings) shape.archings = values_of(*law->archings, t, T, n);
+    ArmState state = shape.cord_angles || shape.archings ? arm_state(arm, shape) : from;
+    state.stretches = from.stretches;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (law->bends_x) state.bends[i] = {law->bends_x->value(t, T, i), law->bends_y->value(t, T, i)};
+      if (law->stretches) state.stretches[i] = law->stretches->value(t, T, i);
+    }
+    return state;
+  });
+}
+
+}  // namespace
+
+void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, const std::string& path,
+                Reader& reader) {
+  std::visit([&](const auto& one) { check_one(one, kind, sections, path, reader); }, task);
+}
+
+MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from) {
+  return std::visit([&](const auto& one) { return motion_of(one, arm, from); }, task);
+}
+
+}  // namespace flexura

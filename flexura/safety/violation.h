@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flexura {
+
+/// What a motion can break.
+enum class Hazard : std::uint8_t {
+  bend,        ///< A section bends more than it may; rad.
+  bend_rate,   ///< A section bends faster than it may; rad/s.
+  stretch,     ///< A section is longer or shorter than it may be; factor.
+  folding,     ///< The inner side of the tube folds: curvature times radius reaches 1.
+  jump,        ///< The law asks for two states at one time; rad (or a factor).
+  not_finite,  ///< The law's formula has no finite value.
+};
+
+/// Something a motion would break, and when.
+struct Violation {
+  Hazard hazard = Hazard::bend;
+  double start = 0;                    ///< s
+  double end = 0;                      ///< s
+  std::optional<std::size_t> section;  ///< From 0.
+  double value = 0;                    ///< The worst in that time, in the hazard's unit.
+  double limit = 0;
+
+  /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg".
+  [[nodiscard]] std::string text() const;
+};
+
+/// What the check of a motion found.
+struct SafetyReport {
+  std::vector<Violation> violations;  ///< By time, then section.
+  /// Why the check of some time may have missed what happens between two steps: "sampled every 0.02 s from
+  /// ...".
+  std::vector<std::string> caveats;
+  std::vector<std::string> notes;  ///< Worth knowing, and no reason to refuse.
+
+  [[nodiscard]] bool is_safe() const { return violations.empty(); }
+};
+
+/// The hazard's name in reports: "bend", "bend rate", ...
+[[nodiscard]] const char* name_of(Hazard hazard);
+
+}  // namespace flexura

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flexura {
+
+/// A table of numbers with named columns.
+struct NumberTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;  ///< Finite; one entry a column.
+  std::vector<int> lines;                 ///< The line of the source that each row stands in, from 1.
+};
+
+/// Parses CSV (RFC 4180, "\n" or "\r\n"): a line of names, then lines of as many numbers; blank lines are
+/// skipped. Throws InputError (source:line:column, the column counting characters) with up to 20 problems: no
+/// header, an empty or repeated name, too few or too many values, what is no finite number, an unclosed
+/// quote, more than 10^6 rows.
+[[nodiscard]] NumberTable parse_csv(std::string_view text, const std::string& source);
+
+}  // namespace flexura

@@ -14,8 +14,8 @@ namespace flexura {
 /// Where the tip shall be, in world axes.
 struct TipTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
-  std::optional<Eigen::Vector3d> direction;            ///< Of the tip's z axis; not zero, of any length.
-  std::optional<Eigen::Matrix3d> rotation;             ///< R_WT; with it `direction` must be left out.
+  std::optional<Eigen::Vector3d> direction = {};       ///< Of the tip's z axis; not zero, of any length.
+  std::optional<Eigen::Matrix3d> rotation = {};        ///< R_WT; with it `direction` must be left out.
 };
 
 /// The curve along which the whole backbone shall lie, as a polyline in world axes, m: the backbone's point
@@ -34,11 +34,11 @@ enum class InverseWish {
 };
 
 struct InverseOptions {
-  std::optional<ArmState>
-      start;  ///< Where the search begins; the straight arm, slightly bent, when left out.
+  /// Where the search begins; one arc towards the target when left out.
+  std::optional<ArmState> start = {};
   InverseWish wish = InverseWish::none;
   /// m; when left out 1e-9 of the arm's greatest length, and 1e-3 of it for curves.
-  std::optional<double> position_tolerance;
+  std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< rad.
   int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.
   std::uint64_t seed = 1;         ///< Of the starts after the first two.

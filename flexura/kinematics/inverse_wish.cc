@@ -18,4 +18,13 @@ WishScale::WishScale(const ArmVariables& variables, InverseWish wish)
   }
 }
 
+Bounds WishScale::relative(Bounds bounds) const {
+  for (Bound& bound : bounds) {
+    // A disk's two variables share their range and have their middle at 0.
+    bound.low = (bound.low - middle[bound.at]) / range[bound.at];
+    bound.high = (bound.high - middle[bound.at]) / range[bound.at];
+  }
+  return bounds;
+}
+
 }  // namespace flexura

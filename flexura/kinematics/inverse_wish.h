@@ -19,6 +19,11 @@ struct WishScale {
   [[nodiscard]] Eigen::VectorXd relative(const Eigen::VectorXd& x) const {
     return (x - middle).cwiseQuotient(range);
   }
+  [[nodiscard]] Eigen::VectorXd absolute(const Eigen::VectorXd& y) const {
+    return middle + y.cwiseProduct(range);
+  }
+  /// Bounds of the relative values.
+  [[nodiscard]] Bounds relative(Bounds bounds) const;
 };
 
 /// Moves the solution x of `problem` along its solutions to where the wish is smallest nearby. Each step
@@ -30,15 +35,17 @@ void follow_wish(Problem& problem, const Bounds& bounds, const WishScale& scale,
                  DescentMemory<Problem>& memory) {
   constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
   constexpr double least_gain = 1e-10;
+  const Bounds relative_bounds = scale.relative(bounds);
+  const Eigen::VectorXd ideal = Eigen::VectorXd::Zero(x.size());
   double wish = scale.relative(x).squaredNorm();
-  Eigen::VectorXd relative(x.size());
   Eigen::VectorXd candidate(x.size());
   for (int i = 0; i < 100; ++i) {
     problem.linearise(x, memory.r, memory.J);
-    memory.held_J.noalias() = memory.J * scale.range.asDiagonal();
-    memory.trial_r.noalias() = memory.r - memory.held_J * scale.relative(x);
-    damped_step(memory.held_J, memory.trial_r, 1e-12, relative);
-    const Eigen::VectorXd direction = scale.middle + relative.cwiseProduct(scale.range) - x;
+    // In relative values: from the ideal, 0, the shortest step onto the linear problem's solutions.
+    memory.J *= scale.range.asDiagonal();
+    memory.r -= memory.J * scale.relative(x);
+    bounded_step(relative_bounds, ideal, 1e-12, memory);
+    const Eigen::VectorXd direction = scale.absolute(memory.trial) - x;
     double gained = 0.0;
     for (double part = 1.0; part > 1e-2 && gained == 0.0; part *= 0.5) {
       candidate = x + part * direction;

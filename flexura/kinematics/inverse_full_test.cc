@@ -20,8 +20,12 @@ void expect_solved_rate(TargetKind kind) {
     ++solved;
     const Pose X_WF = tip_pose(arm, result.state);
     EXPECT_LE((X_WF.position - X_WT.position).norm(), 2e-9 * arm.length());
-    if (kind == TargetKind::direction) EXPECT_LE((X_WF.rotation - X_WT.rotation).col(2).norm(), 2e-9);
-    if (kind == TargetKind::pose) EXPECT_LE((X_WF.rotation - X_WT.rotation).norm(), 4e-9);
+    if (kind == TargetKind::direction) {
+      EXPECT_LE((X_WF.rotation - X_WT.rotation).col(2).norm(), 2e-9);
+    }
+    if (kind == TargetKind::pose) {
+      EXPECT_LE((X_WF.rotation - X_WT.rotation).norm(), 4e-9);
+    }
   });
   EXPECT_GE(solved, 0.999 * count);
 }

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# inverse kinematics of random targets in and out of reach: ./dev study ik [TARGETS] [UNREACHABLE] [SEED]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+targets=${1:-100000}
+unreachable=${2:-10000}
+seed=${3:-1}
+page=docs/studies/ik.md
+build=${FLEXURA_STUDY_BUILD:-build/release}
+
+if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
+cmake --build "$build" --target ik_study
+mkdir -p docs/studies
+{
+  echo "# Inverse kinematics"
+  echo
+  echo "Random arms of three spatial sections of 0.15 to 0.4 m, their bends limited to an angle between 60 and 180"
+  echo "degrees, one for each arm; targets where a random state within the limits, evenly over the disks of bends,"
+  echo "has its tip. Solved from nothing, with the default tolerances (1e-9 of the arm's length; 1e-9 rad) and"
+  echo "starts. \"Wrong\" would be an answer that the model's own forward kinematics does not confirm to twice that."
+  echo "The targets out of reach are so by construction, without the code under test ([how](../../tests/support/inverse_targets.h))."
+  echo
+  echo '```console'
+  echo "\$ ./dev study ik $targets $unreachable $seed"
+  echo '```'
+  echo
+  "$build/bin/ik_study" "$targets" "$unreachable" "$seed"
+} >"$page.new"
+mv "$page.new" "$page"
+echo "wrote $page"

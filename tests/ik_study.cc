@@ -1,0 +1,132 @@
+// The numbers of docs/studies/ik.md: ik_study TARGETS UNREACHABLE SEED prints its tables.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "flexura/math/so3.h"
+#include "tests/support/inverse_targets.h"
+
+namespace flexura {
+namespace {
+
+struct Tally {
+  long asked = 0;
+  long converged = 0;
+  long at_first_start = 0;
+  long wrongly_proven = 0;
+  long outside_limits = 0;
+  long wrong = 0;  // Converged, but not by the model's own forward kinematics.
+  long iterations = 0;
+  double worst_position = 0.0;  // Of the arm's length.
+  double worst_angle = 0.0;     // rad.
+};
+
+void ask(Tally& tally, const Arm& arm, const Pose& X_WT, TargetKind kind) {
+  const InverseResult result = solve_inverse(arm, target_at(X_WT, kind));
+  ++tally.asked;
+  tally.iterations += result.iterations;
+  if (result.is_proven) ++tally.wrongly_proven;
+  if (!is_within_limits(arm, result.state)) ++tally.outside_limits;
+  if (!result.converged()) return;
+  ++tally.converged;
+  if (result.starts == 1) ++tally.at_first_start;
+  const Pose found = tip_pose(arm, result.state);
+  const double position = (found.position - X_WT.position).norm() / arm.length();
+  double angle = 0.0;
+  const Eigen::Vector3d z = X_WT.rotation.col(2);
+  if (kind == TargetKind::direction) angle = found.rotation.col(2).cross(z).norm();
+  if (kind == TargetKind::pose) angle = so3_log(X_WT.rotation.transpose() * found.rotation).norm();
+  if (position > 2e-9 || angle > 2e-9) ++tally.wrong;
+  tally.worst_position = std::max(tally.worst_position, position);
+  tally.worst_angle = std::max(tally.worst_angle, angle);
+}
+
+// `max_bend` 0: a limit of its own for each arm, from 60 degrees to a half turn.
+Tally reachable(TargetKind kind, double max_bend, long count, std::uint64_t seed) {
+  Tally tally;
+  TestRandom random(seed);
+  for (long i = 0; i < count; ++i) {
+    Arm arm = random_three_sections(random);
+    for (Section& section : arm.sections) {
+      if (max_bend > 0.0) section.max_bend = max_bend;
+    }
+    const ArmState state = random_state_within(random, arm);
+    ask(tally, arm, tip_pose(arm, state), kind);
+  }
+  return tally;
+}
+
+bool print_reachable(const char* name, TargetKind kind, double max_bend, long count, std::uint64_t seed) {
+  const Tally t = reachable(kind, max_bend, count, seed);
+  const auto asked = static_cast<double>(t.asked);
+  std::printf("| %s | %ld | %ld | %.3f %% | %.1f %% | %ld | %ld | %ld | %.1e | %.1e | %.1f |\n", name,
+              t.asked, t.converged, 100.0 * static_cast<double>(t.converged) / asked,
+              100.0 * static_cast<double>(t.at_first_start) / asked, t.wrong, t.outside_limits,
+              t.wrongly_proven, t.worst_position, t.worst_angle, static_cast<double>(t.iterations) / asked);
+  std::fflush(stdout);
+  return t.wrong == 0 && t.outside_limits == 0 && t.wrongly_proven == 0;
+}
+
+bool print_unreachable(const char* name, int way, long count, std::uint64_t seed) {
+  TestRandom random(seed);
+  long refused = 0;
+  long bounds_kept = 0;
+  long beaten = 0;
+  for (long i = 0; i < count; ++i) {
+    Arm arm = random_three_sections(random);
+    double at_least = 0.0;
+    const TipTarget target = unreachable_target(random, way, arm, at_least);
+    const InverseResult result = solve_inverse(arm, target);
+    if (result.outcome == InverseOutcome::not_reachable && result.is_proven) ++refused;
+    if (result.position_error >= at_least * (1 - 1e-12) && is_within_limits(arm, result.state)) ++bounds_kept;
+    // The nearest in position, where the position is out of reach: does chance find a nearer one?
+    bool is_beaten = false;
+    for (int k = 0; k < 1000 && way != 3; ++k) {
+      const Eigen::Vector3d p = tip_pose(arm, random_state_within(random, arm)).position;
+      is_beaten = is_beaten || (p - target.position).norm() < result.position_error * (1 - 1e-9);
+    }
+    if (is_beaten) ++beaten;
+  }
+  std::printf("| %s | %ld | %ld | %ld | %s |\n", name, count, refused, bounds_kept,
+              way == 3 ? "-" : std::to_string(beaten).c_str());
+  return refused == count && bounds_kept == count;
+}
+
+}  // namespace
+}  // namespace flexura
+
+int main(int count, char** arguments) {
+  using flexura::TargetKind;
+  if (count != 4) {
+    std::fprintf(stderr, "usage: ik_study TARGETS UNREACHABLE SEED\n");
+    return 2;
+  }
+  const long targets = std::atol(arguments[1]);
+  const long unreachable = std::atol(arguments[2]) / 4;
+  const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[3]));
+  constexpr double turn = 6.283185307179586;
+  std::puts(
+      "| target | asked | found | rate | first start | wrong | outside limits | wrongly refused | "
+      "worst position / length | worst angle, rad | iterations |");
+  std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+  bool is_good = true;
+  is_good &= flexura::print_reachable("position", TargetKind::position, 0, targets, seed);
+  is_good &= flexura::print_reachable("position and direction", TargetKind::direction, 0, targets, seed);
+  is_good &= flexura::print_reachable("full pose", TargetKind::pose, 0, targets, seed);
+  is_good &= flexura::print_reachable("full pose, bends up to 180 degrees", TargetKind::pose, turn / 2,
+                                      targets / 5, seed);
+  is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn,
+                                      targets / 20, seed);
+  std::puts(
+      "\n| out of reach | asked | refused with proof | as far as constructed or further | "
+      "nearest pose beaten by 1,000 random ones |");
+  std::puts("| --- | ---: | ---: | ---: | ---: |");
+  is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);
+  is_good &=
+      flexura::print_unreachable("behind an arm that turns less than 90 degrees", 1, unreachable, seed);
+  is_good &= flexura::print_unreachable("too near to the base", 2, unreachable, seed);
+  is_good &= flexura::print_unreachable("pointing too far round", 3, unreachable, seed);
+  return is_good ? 0 : 1;
+}

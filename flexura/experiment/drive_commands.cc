@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/tendons.h"
@@ -16,11 +17,11 @@ constexpr std::size_t piece = std::size_t{256} << 10;
 
 }  // namespace
 
-DriveCommands::DriveCommands(const Arm& arm, const Drive& drive, const std::filesystem::path& file)
-    : arm_(arm), drive_(drive), file_(file) {
+DriveCommands::DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file)
+    : arm_(std::move(arm)), drive_(std::move(drive)), file_(file) {
   rows_.cell("time");
-  for (std::size_t i = 0; i < drive.axes.size(); ++i) rows_.cell(drive.axis_name(i));
-  for (std::size_t i = 0; i < drive.axes.size(); ++i) rows_.cell(drive.axis_name(i) + "_rate");
+  for (std::size_t i = 0; i < drive_.axes.size(); ++i) rows_.cell(drive_.axis_name(i));
+  for (std::size_t i = 0; i < drive_.axes.size(); ++i) rows_.cell(drive_.axis_name(i) + "_rate");
   rows_.end_row();
 }
 

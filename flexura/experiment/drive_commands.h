@@ -20,7 +20,7 @@ namespace flexura {
 class DriveCommands {
  public:
   /// Starts the new table `file`; std::system_error when it exists or cannot be written.
-  DriveCommands(const Arm& arm, const Drive& drive, const std::filesystem::path& file);
+  DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file);
 
   /// The arm's state that the motors are to reach by `time` s, later than the one before.
   void step(double time, const ArmState& state, Recorder& recorder);

@@ -153,8 +153,7 @@ TEST_F(LaboratoryArm, WritesNoCommandsForAMotionThatIsUnsafeOrWithoutADrive) {
   EXPECT_EQ(bare.outcome, Outcome::done);
   EXPECT_FALSE(std::filesystem::exists(bare.folder / commands_file_name));
   const McapReader log(bare.folder / log_file_name);
-  for (const McapMessage& message : log.messages())
-    ASSERT_NE(message.channel->topic, drive_commands_topic);
+  for (const McapMessage& message : log.messages()) ASSERT_NE(message.channel->topic, drive_commands_topic);
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ std::vector<Passage> passages(const Arm& arm, const Drive& drive, const ArmState
 // Length to the end of each section when the arm is straight, m.
 std::vector<double> straight_lengths(const Arm& arm) {
   std::vector<double> sums;
+  sums.reserve(arm.sections.size());
   for (const Section& section : arm.sections)
     sums.push_back((sums.empty() ? 0.0 : sums.back()) + section.length);
   return sums;
@@ -170,6 +171,7 @@ TendonFit fit_state(const Arm& arm, const Drive& drive, const TendonDisplacement
                                             displacements.pulled.size()));
   }
   std::vector<Unknown> unknowns;
+  unknowns.reserve(arm.sections.size());
   for (const Section& section : arm.sections) unknowns.push_back({drive, section, arm.kind, {}, {}});
   for (std::size_t t = 0; t < drive.tendons.size(); ++t) {
     Unknown& unknown = unknowns[drive.tendons[t].section];

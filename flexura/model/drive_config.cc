@@ -19,6 +19,13 @@ constexpr double max_stretch = 100.0;
 
 bool stretches(const Section& section) { return section.stretch_limits[0] < section.stretch_limits[1]; }
 
+const char* tendons_needed(bool planar, bool stretching) {
+  if (planar && stretching) return "at least 2 on different sides of the arm";
+  if (planar) return "at least 1 that is not at 90 or 270 deg";
+  if (stretching) return "at least 3 that are not on one line";
+  return "at least 2 in different directions";
+}
+
 // A tendon that ends at a section feels the sum of the bends up to there, so the tendons of each section
 // determine one sum: no section can be helped by another's.
 void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
@@ -41,14 +48,10 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
   const double determined = std::pow(direction_tolerance * largest, 2);
   if (!offsets.empty() && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).eigenvalues()(0) > determined)
     return;
-  const char* expected = planar && stretching ? "at least 2 on different sides of the arm"
-                         : planar             ? "at least 1 that is not at 90 or 270 deg"
-                         : stretching         ? "at least 3 that are not on one line"
-                                              : "at least 2 in different directions";
   reader.problem_at(path,
                     fmt::format("does not determine the {} of section {}, where {} tendon{}: expected {}",
                                 stretching ? "bend and the stretch" : "bend", index + 1, offsets.size(),
-                                offsets.size() == 1 ? " ends" : "s end", expected));
+                                offsets.size() == 1 ? " ends" : "s end", tendons_needed(planar, stretching)));
 }
 
 void check_positions(const Drive& drive, const ArmConfig& arm, const std::string& path, Reader& reader) {

@@ -42,6 +42,6 @@ const Table<DriveConfig>& fields_of(const DriveConfig*);
 /// Reports to `reader` what keeps the drive at `path` from moving the arm: tendons that end at no section,
 /// sections whose bend (and stretch, where its limits let it stretch) the tendons that end there do not
 /// determine, and positions too fine to be counted.
-void check_drive(const DriveConfig& drive, const ArmConfig& arm, const std::string& path, Reader& reader);
+void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -39,23 +39,6 @@ function(flexura_folder name)
   endforeach()
 endfunction()
 
-# The code under test is optimized as always; the tests' own code compiles a fifth faster with less of it.
-set(FLEXURA_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
-
-# The precompiled headers of all tests, made once: they cost as much as they save in five sources.
-function(flexura_test_pch)
-  if(TARGET flexura_test_pch)
-    return()
-  endif()
-  set(source ${PROJECT_BINARY_DIR}/test_pch.cc)
-  file(CONFIGURE OUTPUT ${source} CONTENT "// Carries the precompiled headers.\n")
-  add_library(flexura_test_pch OBJECT ${source})
-  target_link_libraries(flexura_test_pch PRIVATE flexura_settings GTest::gmock Eigen3::Eigen fmt::fmt)
-  target_compile_options(flexura_test_pch PRIVATE ${FLEXURA_TEST_OPTIONS})
-  target_precompile_headers(flexura_test_pch PRIVATE
-    <gtest/gtest.h> <gmock/gmock.h> <Eigen/Dense> <filesystem> <functional>)
-endfunction()
-
 # One test executable for a folder and a size; nothing when there are no sources.
 function(flexura_test executable ctest_name label folder)
   if(NOT ARGN)
@@ -66,10 +49,10 @@ function(flexura_test executable ctest_name label folder)
     flexura::${folder} flexura_settings GTest::gtest_main GTest::gmock)
   target_compile_definitions(${executable} PRIVATE
     FLEXURA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FLEXURA_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  target_compile_options(${executable} PRIVATE ${FLEXURA_TEST_OPTIONS})
   if(FLEXURA_PCH)
-    flexura_test_pch()
-    target_precompile_headers(${executable} REUSE_FROM flexura_test_pch)
+    target_precompile_headers(${executable} PRIVATE <gtest/gtest.h> <gmock/gmock.h> <Eigen/Dense>)
+    target_include_directories(${executable} SYSTEM PRIVATE
+      $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
   endif()
   add_test(NAME ${ctest_name} COMMAND ${executable})
   set_tests_properties(${ctest_name} PROPERTIES LABELS ${label} TIMEOUT 600)

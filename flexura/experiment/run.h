@@ -14,7 +14,7 @@ namespace flexura {
 /// How a run ended.
 enum class Outcome {
   done,
-  unsafe,  ///< A task would break a limit of the arm or touch something; simulated to be looked at.
+  unsafe,  ///< A task would break a limit of the arm: nothing moved.
 };
 
 /// What a run says of itself at its end.

@@ -24,6 +24,8 @@ target_compile_options(flexura_settings INTERFACE
   # At -O3 GCC 12 sees overlaps, overruns and unset members in std::string and std::shared_ptr that are not there
   # (GCC bugs 105651, 105329, 105562); AddressSanitizer looks for the real ones.
   "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
+  # The stable_sort of libstdc++ 12 uses what it calls deprecated itself.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>
   $<$<BOOL:${CCACHE}>:$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>>)
 if(FLEXURA_SANITIZE)
   target_compile_options(flexura_settings INTERFACE

@@ -11,7 +11,7 @@ enum class Unit { none, metre, second, radian, radian_per_second, radian_per_sec
 /// A way to write a quantity: a value under the key NAME + suffix counts `factor` base units.
 struct UnitSpelling {
   std::string_view suffix;  ///< "" for the base unit, "_deg", "_pi", "_mm", ...
-  double factor;
+  double factor = 1.0;
   std::string_view symbol;  ///< "rad", "deg", "x pi rad", "mm", ...
 };
 

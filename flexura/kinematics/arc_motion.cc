@@ -38,10 +38,10 @@ double polynomial(const std::array<double, 7>& terms, double x) {
 Coefficients coefficients(double t_squared) {
   constexpr double series_end = 0.25;
   if (t_squared < series_end) {
-    static constexpr auto kC = alternating_factorials<3>();
-    static constexpr auto kD = alternating_factorials<4>();
-    const double C = polynomial(kC, t_squared);
-    const double D = polynomial(kD, t_squared);
+    static constexpr auto c_series = alternating_factorials<3>();
+    static constexpr auto d_series = alternating_factorials<4>();
+    const double C = polynomial(c_series, t_squared);
+    const double D = polynomial(d_series, t_squared);
     return {1.0 - t_squared * C, 0.5 - t_squared * D, C, D};
   }
   const double t = std::sqrt(t_squared);
@@ -59,16 +59,16 @@ ArcMotion arc_motion(const Eigen::Vector2d& bend, double length) {
   const double x = bend.x();
   const double y = bend.y();
   const auto [S, A, C, D] = coefficients(x * x + y * y);
-  const double S_slope = length * (C - A);
-  const double A_slope = length * (2.0 * D - C);
+  const double slope_S = length * (C - A);
+  const double slope_A = length * (2.0 * D - C);
   ArcMotion end;
   end.rotation << 1.0 - A * x * x, -A * x * y, S * x,  //
       -A * x * y, 1.0 - A * y * y, S * y,              //
       -S * x, -S * y, 1.0 - A * (x * x + y * y);
   end.position << length * A * x, length * A * y, length * S;
-  end.linear << length * A + A_slope * x * x, A_slope * x * y,  //
-      A_slope * x * y, length * A + A_slope * y * y,            //
-      S_slope * x, S_slope * y;
+  end.linear << length * A + slope_A * x * x, slope_A * x * y,  //
+      slope_A * x * y, length * A + slope_A * y * y,            //
+      slope_S * x, slope_S * y;
   end.angular << -C * x * y, C * x * x - 1.0,  //
       1.0 - C * y * y, C * x * y,              //
       -A * y, A * x;

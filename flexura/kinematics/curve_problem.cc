@@ -132,7 +132,9 @@ void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index
     }
     if (!part.is_stretchable) continue;
     auto column = J.block<3, 1>(row, part.stretch_at());
-    const double material = is_before ? 1.0 : i == section ? own_part : 0.0;
+    double material = 0.0;
+    if (is_before) material = 1.0;
+    if (i == section) material = own_part;
     column = tangent * (part.length * (fraction - material));
     if (is_before) column += (placed.end - placed.X_BS.position) / placed.stretch;
     if (i == section) column += along / placed.stretch;

@@ -24,7 +24,7 @@ class CurveProblem {
   [[nodiscard]] Eigen::Index row_count() const { return 3 * static_cast<Eigen::Index>(wanted_.size()); }
   void linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J);
   /// A curve is fitted as well as it can be: met only where nothing is left to gain.
-  [[nodiscard]] bool is_met(const Residual& r) const { return r.squaredNorm() < 1e-26; }
+  [[nodiscard]] static bool is_met(const Residual& r) { return r.squaredNorm() < 1e-26; }
   /// The largest distance in the residual `r`, m.
   [[nodiscard]] double largest_error(const Residual& r) const;
 
@@ -38,9 +38,9 @@ class CurveProblem {
   struct Placed {
     Pose X_BS;
     Eigen::Vector2d bend;
-    double stretch;
-    double s;       // Of its base, m.
-    double length;  // Stretched, m.
+    double stretch = 1.0;
+    double s = 0.0;       // Of its base, m.
+    double length = 0.0;  // Stretched, m.
     Eigen::Vector3d end;
     Eigen::Matrix<double, 3, 2> linear, angular;  // Of its end, per bend.
   };

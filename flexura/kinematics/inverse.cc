@@ -24,14 +24,18 @@ constexpr double least_pressure = 1e-6;
 
 // A question in the base's frame, with all that its answer needs.
 struct Question {
-  Question(const Arm& arm_, const TipTarget& target_, const InverseOptions& options_)
-      : arm(arm_), target(target_), options(options_), variables(arm_), length(variables.max_length()) {
+  Question(const Arm& the_arm, const TipTarget& the_target, const InverseOptions& the_options)
+      : arm(the_arm),
+        target(the_target),
+        options(the_options),
+        variables(the_arm),
+        length(variables.max_length()) {
     position_tolerance = options.position_tolerance.value_or(1e-9 * length);
     X_BT.position = arm.X_WB.inverse() * target.position;
     if (target.rotation) X_BT.rotation = arm.X_WB.rotation.transpose() * *target.rotation;
     if (target.direction) {
       const Eigen::Vector3d d = arm.X_WB.rotation.transpose() * target.direction->stableNormalized();
-      X_BT.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), d).toRotationMatrix();
+      X_BT.rotation = rotation_from_z(d);
     }
     if (options.start) start = variables.pack(*options.start);
   }

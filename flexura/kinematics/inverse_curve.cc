@@ -18,6 +18,7 @@ constexpr double least_pressure = 1e-6;
 std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
   const Pose X_BW = arm.X_WB.inverse();
   std::vector<Eigen::Vector3d> result;
+  result.reserve(points.size());
   for (const Eigen::Vector3d& p_WP : points) result.push_back(X_BW * p_WP);
   return result;
 }

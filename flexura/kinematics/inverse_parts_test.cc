@@ -110,8 +110,8 @@ TEST(CurveProblem, GivesTheDerivativeOfItsResidual) {
   for_random_cases(30, [](TestRandom& random) {
     const Arm arm = some_arm(random);
     const ArmVariables variables(arm);
-    std::vector<Eigen::Vector3d> points;
-    for (int i = 0; i < 7; ++i) points.push_back(random.vector<3>(-1.0, 1.0));
+    std::vector<Eigen::Vector3d> points(7);
+    for (Eigen::Vector3d& point : points) point = random.vector<3>(-1.0, 1.0);
     CurveProblem problem(variables, points, 1.0);
     Eigen::VectorXd r(problem.row_count());
     Eigen::MatrixXd J(problem.row_count(), variables.size());

@@ -226,7 +226,7 @@ MotionPtr sine_motion(ArmState from, std::vector<Eigen::Vector2d> amplitudes, st
                                             duration);
 }
 
-MotionPtr keyframe_motion(std::vector<double> times, std::vector<ArmState> states,
+MotionPtr keyframe_motion(std::vector<double> times, const std::vector<ArmState>& states,
                           Interpolation interpolation) {
   return std::make_shared<const KeyframeMotion>(std::move(times), states, interpolation);
 }

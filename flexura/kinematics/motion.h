@@ -53,7 +53,7 @@ using MotionPtr = std::shared_ptr<const Motion>;
 enum class Interpolation { linear, smooth };
 
 /// Through `states` at `times` (s, rising from 0, at least two; else std::invalid_argument).
-[[nodiscard]] MotionPtr keyframe_motion(std::vector<double> times, std::vector<ArmState> states,
+[[nodiscard]] MotionPtr keyframe_motion(std::vector<double> times, const std::vector<ArmState>& states,
                                         Interpolation interpolation);
 
 /// Any function of time, such as an expression a user wrote; it may do anything, so no rates are known.

@@ -37,6 +37,7 @@ ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {
 
 std::vector<double> archings(const ArmState& state) {
   std::vector<double> result;
+  result.reserve(state.bends.size());
   for (const Eigen::Vector2d& bend : state.bends) result.push_back(arching_from_bend(bend));
   return result;
 }

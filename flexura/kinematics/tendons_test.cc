@@ -267,9 +267,9 @@ TEST(Tendons, SpeedsStayBelowTheirBounds) {
     if (random.integer(0, 1) == 1) drive.disks = random.integer(1, 5);
     const ArmState from = random_state(random, arm);
     const ArmState to = random_state(random, arm);
-    std::vector<SectionRates> rates;
+    std::vector<SectionRates> rates(arm.sections.size());
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-      rates.push_back({(to.bends[i] - from.bends[i]).norm(), std::abs(to.stretches[i] - from.stretches[i])});
+      rates[i] = {(to.bends[i] - from.bends[i]).norm(), std::abs(to.stretches[i] - from.stretches[i])};
     }
     const std::vector<double> bounds = tendon_speed_bounds(arm, drive, rates);
     const Eigen::VectorXd direction = packed(to) - packed(from);

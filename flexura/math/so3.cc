@@ -27,6 +27,15 @@ Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
   return axis * (2.0 * std::atan2(sine, q[0]) / sine);
 }
 
+Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d d = direction.stableNormalized();
+  const Eigen::Vector3d axis(-d.y(), d.x(), 0.0);  // Z x d, as long as the angle's sine.
+  const double sine = axis.stableNorm();
+  if (sine == 0.0)
+    return Eigen::Vector3d(1.0, std::copysign(1.0, d.z()), std::copysign(1.0, d.z())).asDiagonal();
+  return so3_exp(axis * (std::atan2(sine, d.z()) / sine));
+}
+
 Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& w) {
   const double t = w.norm();
   const Eigen::Matrix3d W = skew(w);

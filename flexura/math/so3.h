@@ -14,6 +14,10 @@ namespace flexura {
 /// component that is not zero is positive.
 [[nodiscard]] Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
 
+/// A rotation that takes +Z to `direction`, of any length but 0, by the shortest way; half a turn about X for
+/// -Z.
+[[nodiscard]] Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& direction);
+
 /// J with omega = J * dw/dt, where omega is the angular velocity of so3_exp(w) in the fixed frame
 /// (left Jacobian: I + (1 - cos t)/t^2 [w]x + (t - sin t)/t^3 [w]x^2, t = |w|).
 [[nodiscard]] Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& w);

@@ -39,6 +39,21 @@ TEST(So3, ExpAgreesWithAngleAndAxis) {
   });
 }
 
+TEST(So3, ADirectionTakesZTheShortestWay) {
+  for_random_cases(200, [](TestRandom& random) {
+    const Eigen::Vector3d d = random.vector<3>(-1.0, 1.0).normalized();
+    const Eigen::Matrix3d R = rotation_from_z(1e-200 * d);
+    EXPECT_LE((R.col(2) - d).norm(), 1e-15);
+    EXPECT_NEAR(so3_log(R).norm(), std::acos(d.z()), 1e-7);
+    EXPECT_LE(std::abs(so3_log(R).z()), 1e-15);
+  });
+  EXPECT_EQ(rotation_from_z({0.0, 0.0, 2.0}), Eigen::Matrix3d::Identity());
+  EXPECT_LE((rotation_from_z({0.0, 0.0, -2.0}) * Eigen::Vector3d::UnitZ() + Eigen::Vector3d::UnitZ()).norm(),
+            0.0);
+  EXPECT_DOUBLE_EQ(rotation_from_z({0.0, 0.0, -2.0}).determinant(), 1.0);
+  EXPECT_LE((rotation_from_z({1e-12, 0.0, -1.0}).col(2) + Eigen::Vector3d::UnitZ()).norm(), 2e-12);
+}
+
 TEST(So3, LogUndoesExpFromTinyToAlmostHalfATurn) {
   for (const double angle :
        {0.0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 3.0, std::numbers::pi - 1e-9}) {

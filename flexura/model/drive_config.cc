@@ -39,14 +39,17 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
     offsets.push_back(tendon.offset());
     largest = std::max(largest, tendon.radius);
   }
-  const Eigen::Index columns = (planar ? 1 : 2) + (stretching ? 1 : 0);
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns, columns);
+  // Bend in one plane or two, and stretch; what the section cannot do counts as determined.
+  Eigen::Matrix3d gram = Eigen::Vector3d(0, planar ? 1 : 0, stretching ? 0 : 1).asDiagonal();
+  gram *= largest * largest;
   for (const Eigen::Vector2d& offset : offsets) {
-    Eigen::Vector3d row(offset.x(), planar ? largest : offset.y(), largest);
-    gram += row.head(columns) * row.head(columns).transpose();
+    const Eigen::Vector3d row(offset.x(), planar ? 0 : offset.y(), stretching ? largest : 0);
+    gram += row * row.transpose();
   }
   const double determined = std::pow(direction_tolerance * largest, 2);
-  if (!offsets.empty() && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram).eigenvalues()(0) > determined)
+  if (!offsets.empty() &&
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(gram, Eigen::EigenvaluesOnly).eigenvalues()(0) >
+          determined)
     return;
   reader.problem_at(path,
                     fmt::format("does not determine the {} of section {}, where {} tendon{}: expected {}",

@@ -96,13 +96,26 @@ const Table<ClockConfig>& fields_of(const ClockConfig*) {
   return table;
 }
 
+const std::vector<std::string>& names_of(const CurveKind*) {
+  static const std::vector<std::string> names = {"arcs", "catmull_rom", "bezier"};
+  return names;
+}
+
 const Table<RecordConfig>& fields_of(const RecordConfig*) {
   static const auto table =
       Table<RecordConfig>("record", "What is kept of a run.")
           .field("every", &RecordConfig::every,
                  {.meaning = "Steps from one state in the log to the next; the last one is always kept.",
                   .range = between(1, 1e9)})
-          .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."});
+          .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."})
+          .field(
+              "curve", &RecordConfig::curve,
+              {.meaning =
+                   "The line drawn along the arm in the report: its exact arcs (the arm itself), the paper's "
+                   "Catmull-Rom spline through the sections' base points (eq. 11), or one Bezier a section "
+                   "with exact tangents."})
+          .field("tension", &RecordConfig::tension,
+                 {.meaning = "Tension of the Catmull-Rom spline.", .range = between(0, 1)});
   return table;
 }
 

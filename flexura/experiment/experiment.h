@@ -8,6 +8,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/task_config.h"
+#include "flexura/kinematics/curves.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive_config.h"
 
@@ -22,6 +23,8 @@ struct ClockConfig {
 struct RecordConfig {
   std::int64_t every = 1;  ///< Steps from one state in the log to the next; the last one is always kept.
   bool report = true;      ///< Write report.html and figures/.
+  CurveKind curve = CurveKind::arcs;  ///< Drawn over the arm in the report.
+  double tension = 0.5;               ///< Of the Catmull-Rom curve.
 };
 
 /// An experiment file: a rig and the tasks it does, one after another.
@@ -37,6 +40,7 @@ struct Experiment {
   std::vector<TaskConfig> task;
 };
 
+const std::vector<std::string>& names_of(const CurveKind*);
 const Table<ClockConfig>& fields_of(const ClockConfig*);
 const Table<RecordConfig>& fields_of(const RecordConfig*);
 const Table<Experiment>& fields_of(const Experiment*);

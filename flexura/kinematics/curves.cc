@@ -98,6 +98,18 @@ std::vector<CubicBezier> tangent_bezier(const Backbone& backbone) {
   return curve;
 }
 
+std::vector<CubicBezier> drawn_curve(const Backbone& backbone, CurveKind kind, double tension) {
+  switch (kind) {
+    case CurveKind::catmull_rom:
+      return catmull_rom(backbone, 1, tension);
+    case CurveKind::bezier:
+      return tangent_bezier(backbone);
+    case CurveKind::arcs:
+      break;
+  }
+  return {};
+}
+
 CurveDeviation deviation(std::span<const CubicBezier> curve, const Backbone& backbone) {
   constexpr int samples = 256;
   const Quadrature rule = gauss_legendre(16);

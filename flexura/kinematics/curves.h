@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct CubicBezier {
 /// more than half a turn is drawn in the fewest equal pieces that bend no more: a single cubic's handles grow
 /// beyond bounds towards a full turn.
 [[nodiscard]] std::vector<CubicBezier> tangent_bezier(const Backbone& backbone);
+
+/// The curves an arm may be drawn with: its exact arcs, the paper's spline through the section base points,
+/// or one tangent-exact cubic a section.
+enum class CurveKind : std::uint8_t { arcs, catmull_rom, bezier };
+
+/// The cubics of a kind; none for `arcs`, which are drawn as they are. `tension` is the spline's.
+[[nodiscard]] std::vector<CubicBezier> drawn_curve(const Backbone& backbone, CurveKind kind, double tension);
 
 /// How a drawn curve differs from the backbone.
 struct CurveDeviation {

@@ -1,0 +1,14 @@
+#include "flexura/kinematics/arc_lanes.h"
+
+namespace flexura {
+namespace {
+
+using Lanes = double __attribute__((vector_size(16)));
+
+}  // namespace
+
+const SimdKernels* baseline_kernels() { return &kernels_for<Lanes>; }
+
+const SimdKernels* single_kernels() { return &kernels_for<double>; }
+
+}  // namespace flexura

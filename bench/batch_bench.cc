@@ -220,6 +220,7 @@ void jacobian_batch(benchmark::State& state, SimdPath path, bool stretches) {
 // ------------------------------------------------------------------------------
 
 // Each section as 12 universal joints, 24 revolute ones, in the middles of 12 equal rigid links: 72 joints.
+// Their two axes change places from one to the next, else the arm would twist.
 struct KdlCase {
   KDL::Chain chain;
   std::vector<KDL::JntArray> states;
@@ -236,17 +237,20 @@ KdlCase kdl_case() {
     const double own = sections[i].length / links;
     const double next = i + 1 < sections.size() ? sections[i + 1].length / links : 0.0;
     for (std::size_t k = 0; k < links; ++k) {
-      result.chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotY)));
       const double length = k + 1 < links ? own : 0.5 * (own + next);
-      result.chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotX), link(length)));
+      const KDL::Joint about_x(KDL::Joint::RotX), about_y(KDL::Joint::RotY);
+      const bool is_x_first = k % 2 == 1;
+      result.chain.addSegment(KDL::Segment(is_x_first ? about_x : about_y));
+      result.chain.addSegment(KDL::Segment(is_x_first ? about_y : about_x, link(length)));
     }
   }
   for (const ArmState& s : c.states) {
     KDL::JntArray& q = result.states.emplace_back(result.chain.getNrOfJoints());
     for (unsigned joint = 0; joint < q.rows(); joint += 2) {
       const Eigen::Vector2d& bend = s.bends[joint / (2 * links)];
-      q(joint) = bend.x() / links;
-      q(joint + 1) = -bend.y() / links;
+      const unsigned x_first = joint / 2 % 2;
+      q(joint + x_first) = bend.x() / links;
+      q(joint + 1 - x_first) = -bend.y() / links;
     }
   }
   return result;

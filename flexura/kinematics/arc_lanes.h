@@ -75,27 +75,13 @@ V bend_y_of(const BatchJob& job, std::size_t section, std::size_t arm) {
   return job.bend_y == nullptr ? V{} : load<V>(job.bend_y + section * job.bend_stride + arm);
 }
 
-// A section in its base frame: everything follows from the sine and cosine of half its bend t, with
-// half_sinc = sin(t/2)/t.
+// A section in its base frame, at the bend t = |(x, y)|; the slopes and sinc_deficit for Jacobians alone.
 template <typename V>
 struct ArcLanes {
-  V x, y;                        // The bend.
-  V cosine_of_bend, sinc, cosc;  // cos t, sin t/t, (1 - cos t)/t^2.
-  V half_sinc, half_cosine, inverse, square;
+  V x, y;                                  // The bend.
+  V cosine, sinc, cosc;                    // cos t, sin t/t, (1 - cos t)/t^2.
+  V sinc_slope, cosc_slope, sinc_deficit;  // As in math/series.h.
 };
-
-template <typename V>
-ArcLanes<V> arc_lanes(const V& x, const V& y) {
-  const V square = x * x + y * y;
-  const V t = square_root(square);
-  const auto [sine, cosine] = sine_and_cosine<V>(0.5 * t);
-  const Mask<V> is_straight = t == 0.0;
-  const V inverse = 1.0 / (is_straight ? all<V>(1.0) : t);
-  const V half_sinc = is_straight ? all<V>(0.5) : sine * inverse;
-  const V twice = 2.0 * half_sinc;
-  return {x,       y,     1.0 - 2.0 * (sine * sine), twice * cosine, twice * half_sinc, half_sinc, cosine,
-          inverse, square};
-}
 
 // sinc'(h)/h in powers of h^2: -(-1)^k (2k + 2)/(2k + 3)!; up to h = 1 nine terms leave 2e-18.
 struct SlopeTerms {
@@ -112,29 +98,78 @@ constexpr SlopeTerms slope_terms = [] {
   return terms;
 }();
 
-template <typename V>
-struct ArcSlopes {
-  V sinc_slope, cosc_slope, sinc_deficit;  // As in math/series.h, of t.
+// All from the sine and cosine of h = t/2, by the rules for double angles, which do not cancel near straight:
+// sinc'(t)/t = (cos h sinc'(h)/h - sinc(h)^2)/4, cosc'(t)/t = sinc(h) (sinc'(h)/h)/4.
+template <bool with_slopes, typename V>
+ArcLanes<V> arc_lanes(const V& x, const V& y) {
+  const V square = x * x + y * y;
+  const V t = square_root(square);
+  const auto [sine, cosine] = sine_and_cosine<V>(0.5 * t);
+  const V inverse = all<V>(1.0) / where_zero(t, 1.0, t);
+  const V half_sinc = where_zero(t, 0.5, sine * inverse);
+  const V sinc_h = 2.0 * half_sinc;
+  const V cosc = sinc_h * half_sinc;
+  ArcLanes<V> arc;
+  arc.x = x;
+  arc.y = y;
+  arc.cosine = 1.0 - 2.0 * (sine * sine);
+  arc.sinc = sinc_h * cosine;
+  arc.cosc = cosc;
+  if constexpr (with_slopes) {
+    const V h_squared = 0.25 * square;
+    const V closed = (cosine - sinc_h) * (4.0 * (inverse * inverse));
+    const V slope_h = where_less(h_squared, 1.0, polynomial(slope_terms.c, h_squared), closed);
+    arc.sinc_slope = 0.25 * (cosine * slope_h) - half_sinc * half_sinc;
+    arc.cosc_slope = 0.5 * (half_sinc * slope_h);
+    arc.sinc_deficit = cosc + arc.sinc_slope;
+  }
+  return arc;
+}
+
+// The arcs of `arm` and of those in the lanes after it, section by section.
+template <typename V, bool with_slopes>
+struct Arcs {
+  const BatchJob& job;
+  std::size_t arm;
+
+  ArcLanes<V> operator()(std::size_t i) {
+    return arc_lanes<with_slopes>(load<V>(job.bend_x + i * job.bend_stride + arm), bend_y_of<V>(job, i, arm));
+  }
 };
 
-// From those of h = t/2, by the rules for double angles, which do not cancel near straight:
-// sinc'(t)/t = (cos h sinc'(h)/h - sinc(h)^2)/4, cosc'(t)/t = sinc(h) (sinc'(h)/h)/4.
-template <typename V>
-ArcSlopes<V> arc_slopes(const ArcLanes<V>& arc) {
-  const V h_squared = 0.25 * arc.square;
-  const V series = polynomial(slope_terms.c, h_squared);
-  const V closed = (arc.half_cosine - 2.0 * arc.half_sinc) * (4.0 * arc.inverse * arc.inverse);
-  const V half_slope = h_squared < 1.0 ? series : closed;
-  const V sinc_slope = 0.25 * (arc.half_cosine * half_slope) - arc.half_sinc * arc.half_sinc;
-  return {sinc_slope, 0.5 * (arc.half_sinc * half_slope), arc.cosc + sinc_slope};
-}
+// Those of one arm: four sections at a time in place of as many arms, which takes hardly longer than one.
+template <bool with_slopes>
+struct Arcs<double, with_slopes> {
+  const BatchJob& job;
+  std::size_t arm;
+  static constexpr std::size_t group = 4;
+  static constexpr std::size_t fields = sizeof(ArcLanes<double>) / sizeof(double);
+  double numbers[fields * group] = {};
+
+  ArcLanes<double> operator()(std::size_t i) {
+    if (i % group == 0) fill(i);
+    const double* at = numbers + i % group;
+    return {at[0],         at[group],     at[2 * group], at[3 * group],
+            at[4 * group], at[5 * group], at[6 * group], at[7 * group]};
+  }
+
+  void fill(std::size_t first) {
+    double x[group] = {}, y[group] = {};
+    for (std::size_t k = 0; k < group && first + k < job.sections; ++k) {
+      x[k] = job.bend_x[(first + k) * job.bend_stride + arm];
+      y[k] = bend_y_of<double>(job, first + k, arm);
+    }
+    const auto arcs = arc_lanes<with_slopes>(load<FourLanes>(x), load<FourLanes>(y));
+    __builtin_memcpy(numbers, &arcs, sizeof arcs);
+  }
+};
 
 // Moves `frame` from a section's base to its end. `sideways` is the bend in W, x X + y Y; `cord` the way from
 // base to end over the length.
 template <typename V>
 void advance(const ArcLanes<V>& arc, const V& length, const Vector3<V>& sideways, const Vector3<V>& cord,
              Frame<V>& frame) {
-  const Vector3<V> z = arc.sinc * sideways + arc.cosine_of_bend * frame.z;
+  const Vector3<V> z = arc.sinc * sideways + arc.cosine * frame.z;
   frame.position = frame.position + length * cord;
   frame.x = frame.x - arc.x * cord;
   frame.y = frame.y - arc.y * cord;
@@ -144,10 +179,11 @@ void advance(const ArcLanes<V>& arc, const V& length, const Vector3<V>& sideways
 template <typename V>
 void spatial_frames(const BatchJob& job, std::size_t arm) {
   Frame<V> frame = base_frame<V>(job);
+  Arcs<V, false> arcs{job, arm};
   std::size_t index = 0;
   if (job.is_every_frame) store_frame(job, index++, arm, frame);
   for (std::size_t i = 0; i < job.sections; ++i) {
-    const auto arc = arc_lanes<V>(load<V>(job.bend_x + i * job.bend_stride + arm), bend_y_of<V>(job, i, arm));
+    const ArcLanes<V> arc = arcs(i);
     const Vector3<V> sideways = arc.x * frame.x + arc.y * frame.y;
     const Vector3<V> cord = arc.cosc * sideways + arc.sinc * frame.z;
     advance(arc, length_of<V>(job, i, arm), sideways, cord, frame);
@@ -180,8 +216,7 @@ void planar_frames(const BatchJob& job, std::size_t arm) {
   for (std::size_t i = 0; i < job.sections; ++i) {
     const V half = 0.5 * load<V>(job.bend_x + i * job.bend_stride + arm);
     const auto [sine, cosine] = sine_and_cosine<V>(half);
-    const Mask<V> is_straight = half == 0.0;
-    const V sinc = (is_straight ? all<V>(1.0) : sine) / (is_straight ? all<V>(1.0) : half);
+    const V sinc = where_zero(half, 1.0, sine) / where_zero(half, 1.0, half);
     const V cord = length_of<V>(job, i, arm) * sinc;
     const V cord_sine = at.sine * cosine + at.cosine * sine;
     const V cord_cosine = at.cosine * cosine - at.sine * sine;
@@ -202,20 +237,18 @@ struct SectionTwists {
 };
 
 template <typename V>
-SectionTwists<V> section_twists(const BatchJob& job, std::size_t i, std::size_t arm, Frame<V>& frame) {
-  const auto arc = arc_lanes<V>(load<V>(job.bend_x + i * job.bend_stride + arm), bend_y_of<V>(job, i, arm));
-  const auto slopes = arc_slopes(arc);
-  const V length = length_of<V>(job, i, arm);
+SectionTwists<V> section_twists(const ArcLanes<V>& arc, const V& length, double rest_length,
+                                Frame<V>& frame) {
   const Vector3<V> sideways = arc.x * frame.x + arc.y * frame.y;
   const Vector3<V> cord = arc.cosc * sideways + arc.sinc * frame.z;
-  const Vector3<V> growth = slopes.cosc_slope * sideways + slopes.sinc_slope * frame.z;
-  const Vector3<V> turn = slopes.sinc_deficit * sideways + arc.cosc * frame.z;
+  const Vector3<V> growth = arc.cosc_slope * sideways + arc.sinc_slope * frame.z;
+  const Vector3<V> turn = arc.sinc_deficit * sideways + arc.cosc * frame.z;
   SectionTwists<V> twists;
   twists.linear_x = length * (arc.cosc * frame.x + arc.x * growth);
   twists.linear_y = length * (arc.cosc * frame.y + arc.y * growth);
   twists.angular_x = frame.y - arc.y * turn;
   twists.angular_y = arc.x * turn - frame.x;
-  twists.along = all<V>(job.lengths[i]) * cord;
+  twists.along = all<V>(rest_length) * cord;
   advance(arc, length, sideways, cord, frame);
   twists.end = frame.position;
   return twists;
@@ -233,8 +266,9 @@ template <typename V>
 void tip_jacobian_lanes(const BatchJob& job, std::size_t arm) {
   constexpr std::size_t width = lanes_of<V>;
   Frame<V> frame = base_frame<V>(job);
+  Arcs<V, true> arcs{job, arm};
   for (std::size_t i = 0; i < job.sections; ++i) {
-    const SectionTwists<V> twists = section_twists(job, i, arm, frame);
+    const auto twists = section_twists<V>(arcs(i), length_of<V>(job, i, arm), job.lengths[i], frame);
     __builtin_memcpy(job.scratch + i * scratch_rows * width, &twists, sizeof twists);
   }
   store_frame(job, 0, arm, frame);
@@ -253,8 +287,9 @@ void tip_jacobian_lanes(const BatchJob& job, std::size_t arm) {
   }
 }
 
+// Flattened: a call would keep its arguments, many vectors, in memory.
 template <typename V>
-void frames_kernel(const BatchJob& job, std::size_t begin, std::size_t end) {
+[[gnu::flatten]] void frames_kernel(const BatchJob& job, std::size_t begin, std::size_t end) {
   const bool is_planar = job.bend_y == nullptr;
   for (std::size_t arm = begin; arm < end; arm += lanes_of<V>) {
     if (is_planar) {
@@ -266,13 +301,14 @@ void frames_kernel(const BatchJob& job, std::size_t begin, std::size_t end) {
 }
 
 template <typename V>
-void jacobians_kernel(const BatchJob& job, std::size_t begin, std::size_t end) {
+[[gnu::flatten]] void jacobians_kernel(const BatchJob& job, std::size_t begin, std::size_t end) {
   static_assert(sizeof(SectionTwists<V>) == scratch_rows * sizeof(V));
   for (std::size_t arm = begin; arm < end; arm += lanes_of<V>) tip_jacobian_lanes<V>(job, arm);
 }
 
 template <typename V>
-void sines_and_cosines_kernel(const double* angles, double* sines, double* cosines, std::size_t count) {
+[[gnu::flatten]] void sines_and_cosines_kernel(const double* angles, double* sines, double* cosines,
+                                               std::size_t count) {
   for (std::size_t i = 0; i < count; i += lanes_of<V>) {
     const SineCosine<V> result = sine_and_cosine(load<V>(angles + i));
     store(sines + i, result.sine);
@@ -281,8 +317,11 @@ void sines_and_cosines_kernel(const double* angles, double* sines, double* cosin
 }
 
 template <typename V>
-constexpr SimdKernels kernels_for = {lanes_of<V>, frames_kernel<V>, jacobians_kernel<V>,
-                                     sines_and_cosines_kernel<V>};
+constexpr LaneFunctions functions_for = {lanes_of<V>, frames_kernel<V>, jacobians_kernel<V>,
+                                         sines_and_cosines_kernel<V>};
+
+template <typename V>
+constexpr SimdKernels kernels_for = {functions_for<V>, functions_for<double>};
 
 }  // namespace
 }  // namespace flexura

@@ -66,12 +66,12 @@ BatchJob batch_job(std::span<const double> lengths, const std::array<double, 12>
 
 // The arms that do not fill a vector go one by one: a lane does not see its neighbours, so it is all the
 // same.
-void run(SimdPath path, void (*SimdKernels::*function)(const BatchJob&, std::size_t, std::size_t),
+void run(SimdPath path, void (*LaneFunctions::*function)(const BatchJob&, std::size_t, std::size_t),
          const BatchJob& job, std::size_t count) {
   const SimdKernels& kernels = kernels_of(path);
-  const std::size_t whole = count - count % kernels.lanes;
-  (kernels.*function)(job, 0, whole);
-  (single_kernels()->*function)(job, whole, count);
+  const std::size_t whole = count - count % kernels.many.lanes;
+  (kernels.many.*function)(job, 0, whole);
+  (kernels.one.*function)(job, whole, count);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ void BatchKinematics::fill_frames(const BatchStates& states, std::span<double> f
   BatchJob job = batch_job(lengths_, X_WB_, states, frames);
   job.frame_rows = rows;
   job.is_every_frame = every;
-  run(path_, &SimdKernels::frames, job, states.count);
+  run(path_, &LaneFunctions::frames, job, states.count);
 }
 
 void BatchKinematics::tips(const BatchStates& states, std::span<double> frames) const {
@@ -120,11 +120,11 @@ void BatchKinematics::tip_jacobians(const BatchStates& states, std::span<double>
   require_states(states);
   require_size("frames", frames.size(), 12 * states.count);
   require_size("jacobians", jacobians.size(), 6 * jacobian_columns(states) * states.count);
-  std::vector<double> scratch(scratch_rows * lengths_.size() * kernels_of(path_).lanes);
+  std::vector<double> scratch(scratch_rows * lengths_.size() * kernels_of(path_).many.lanes);
   BatchJob job = batch_job(lengths_, X_WB_, states, frames);
   job.jacobian = jacobians.data();
   job.scratch = scratch.data();
-  run(path_, &SimdKernels::jacobians, job, states.count);
+  run(path_, &LaneFunctions::jacobians, job, states.count);
 }
 
 void BatchKinematics::require_state(const ArmState& state) const {
@@ -135,7 +135,7 @@ void BatchKinematics::require_state(const ArmState& state) const {
 Pose BatchKinematics::tip(const ArmState& state) const {
   require_state(state);
   std::array<double, 12> tip;
-  single_kernels()->frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
+  kernels_of(path_).one.frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
   return unpacked(tip);
 }
 
@@ -150,7 +150,7 @@ Pose BatchKinematics::tip_jacobian(const ArmState& state, Eigen::Ref<Jacobian> J
   BatchJob job = single_job(lengths_, X_WB_, state, tip);
   job.jacobian = J.data();
   job.scratch = on_heap.empty() ? on_stack.data() : on_heap.data();
-  single_kernels()->jacobians(job, 0, 1);
+  kernels_of(path_).one.jacobians(job, 0, 1);
   return unpacked(tip);
 }
 

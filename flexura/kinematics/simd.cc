@@ -64,10 +64,10 @@ void sines_and_cosines(std::span<const double> angles, std::span<double> sines, 
                                 std::to_string(cosines.size()) + " cosines");
   }
   const SimdKernels& kernels = kernels_of(path);
-  const std::size_t whole = angles.size() - angles.size() % kernels.lanes;
-  kernels.sines_and_cosines(angles.data(), sines.data(), cosines.data(), whole);
-  single_kernels()->sines_and_cosines(angles.data() + whole, sines.data() + whole, cosines.data() + whole,
-                                      angles.size() - whole);
+  const std::size_t whole = angles.size() - angles.size() % kernels.many.lanes;
+  kernels.many.sines_and_cosines(angles.data(), sines.data(), cosines.data(), whole);
+  kernels.one.sines_and_cosines(angles.data() + whole, sines.data() + whole, cosines.data() + whole,
+                                angles.size() - whole);
 }
 
 }  // namespace flexura

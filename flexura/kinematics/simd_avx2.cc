@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-using Lanes = double __attribute__((vector_size(32)));
+using Lanes = Two<double __attribute__((vector_size(32)))>;
 
 }  // namespace
 

@@ -3,12 +3,10 @@
 namespace flexura {
 namespace {
 
-using Lanes = double __attribute__((vector_size(16)));
+using Lanes = Two<double __attribute__((vector_size(16)))>;
 
 }  // namespace
 
 const SimdKernels* baseline_kernels() { return &kernels_for<Lanes>; }
-
-const SimdKernels* single_kernels() { return &kernels_for<double>; }
 
 }  // namespace flexura

@@ -30,21 +30,23 @@ struct BatchJob {
 /// Of BatchJob::scratch.
 constexpr std::size_t scratch_rows = 18;
 
-/// One instruction set's functions. Each takes whole vectors: end - begin is a multiple of `lanes`.
-struct SimdKernels {
+/// The functions for `lanes` arms (or angles) at a time: end - begin (or count) is a multiple of it.
+struct LaneFunctions {
   std::size_t lanes;
   void (*frames)(const BatchJob& job, std::size_t begin, std::size_t end);
   void (*jacobians)(const BatchJob& job, std::size_t begin, std::size_t end);
   void (*sines_and_cosines)(const double* angles, double* sines, double* cosines, std::size_t count);
 };
 
+/// One instruction set's functions, for as many arms at a time as it can and for one.
+struct SimdKernels {
+  LaneFunctions many, one;
+};
+
 // None where the compiler did not build for the set.
 const SimdKernels* baseline_kernels();
 const SimdKernels* avx2_kernels();
 const SimdKernels* avx512_kernels();
-
-/// One arm at a time: the same routines with a vector of one.
-const SimdKernels* single_kernels();
 
 /// The kernels of a path; std::invalid_argument when it is not available.
 const SimdKernels& kernels_of(SimdPath path);

@@ -128,40 +128,52 @@ ArcLanes<V> arc_lanes(const V& x, const V& y) {
 
 // The arcs of `arm` and of those in the lanes after it, section by section.
 template <typename V, bool with_slopes>
-struct Arcs {
-  const BatchJob& job;
-  std::size_t arm;
+class Arcs {
+ public:
+  Arcs(const BatchJob& job, std::size_t arm) : job_(job), arm_(arm) {}
 
   ArcLanes<V> operator()(std::size_t i) {
-    return arc_lanes<with_slopes>(load<V>(job.bend_x + i * job.bend_stride + arm), bend_y_of<V>(job, i, arm));
+    const V x = load<V>(job_.bend_x + i * job_.bend_stride + arm_);
+    return arc_lanes<with_slopes>(x, bend_y_of<V>(job_, i, arm_));
   }
+
+ private:
+  const BatchJob& job_;
+  std::size_t arm_;
 };
 
 // Those of one arm: four sections at a time in place of as many arms, which takes hardly longer than one.
 template <bool with_slopes>
-struct Arcs<double, with_slopes> {
-  const BatchJob& job;
-  std::size_t arm;
-  static constexpr std::size_t group = 4;
-  static constexpr std::size_t fields = sizeof(ArcLanes<double>) / sizeof(double);
-  double numbers[fields * group] = {};
+class Arcs<double, with_slopes> {
+ public:
+  Arcs(const BatchJob& job, std::size_t arm) : job_(job), arm_(arm) {}
 
   ArcLanes<double> operator()(std::size_t i) {
-    if (i % group == 0) fill(i);
-    const double* at = numbers + i % group;
-    return {at[0],         at[group],     at[2 * group], at[3 * group],
-            at[4 * group], at[5 * group], at[6 * group], at[7 * group]};
+    const std::size_t lane = i % group;
+    if (lane == 0) fill(i);
+    return {number(0, lane), number(1, lane), number(2, lane), number(3, lane),
+            number(4, lane), number(5, lane), number(6, lane), number(7, lane)};
   }
+
+ private:
+  static constexpr std::size_t group = lanes_of<FourLanes>;
 
   void fill(std::size_t first) {
     double x[group] = {}, y[group] = {};
-    for (std::size_t k = 0; k < group && first + k < job.sections; ++k) {
-      x[k] = job.bend_x[(first + k) * job.bend_stride + arm];
-      y[k] = bend_y_of<double>(job, first + k, arm);
+    for (std::size_t k = 0; k < group && first + k < job_.sections; ++k) {
+      x[k] = job_.bend_x[(first + k) * job_.bend_stride + arm_];
+      y[k] = bend_y_of<double>(job_, first + k, arm_);
     }
-    const auto arcs = arc_lanes<with_slopes>(load<FourLanes>(x), load<FourLanes>(y));
-    __builtin_memcpy(numbers, &arcs, sizeof arcs);
+    ready_ = arc_lanes<with_slopes>(load<FourLanes>(x), load<FourLanes>(y));
   }
+
+  double number(std::size_t field, std::size_t lane) const {
+    return load<double>(reinterpret_cast<const double*>(&ready_) + field * group + lane);
+  }
+
+  const BatchJob& job_;
+  std::size_t arm_;
+  ArcLanes<FourLanes> ready_;
 };
 
 // Moves `frame` from a section's base to its end. `sideways` is the bend in W, x X + y Y; `cord` the way from
@@ -179,7 +191,7 @@ void advance(const ArcLanes<V>& arc, const V& length, const Vector3<V>& sideways
 template <typename V>
 void spatial_frames(const BatchJob& job, std::size_t arm) {
   Frame<V> frame = base_frame<V>(job);
-  Arcs<V, false> arcs{job, arm};
+  Arcs<V, false> arcs(job, arm);
   std::size_t index = 0;
   if (job.is_every_frame) store_frame(job, index++, arm, frame);
   for (std::size_t i = 0; i < job.sections; ++i) {
@@ -266,7 +278,7 @@ template <typename V>
 void tip_jacobian_lanes(const BatchJob& job, std::size_t arm) {
   constexpr std::size_t width = lanes_of<V>;
   Frame<V> frame = base_frame<V>(job);
-  Arcs<V, true> arcs{job, arm};
+  Arcs<V, true> arcs(job, arm);
   for (std::size_t i = 0; i < job.sections; ++i) {
     const auto twists = section_twists<V>(arcs(i), length_of<V>(job, i, arm), job.lengths[i], frame);
     __builtin_memcpy(job.scratch + i * scratch_rows * width, &twists, sizeof twists);

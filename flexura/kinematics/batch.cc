@@ -32,43 +32,38 @@ Pose unpacked(const std::array<double, 12>& numbers) {
 // One state's vectors as they lie in memory: a bend's x and y side by side.
 BatchJob single_job(std::span<const double> lengths, const std::array<double, 12>& X_WB,
                     const ArmState& state, std::array<double, 12>& tip) {
-  BatchJob job;
-  job.sections = lengths.size();
-  job.lengths = lengths.data();
-  job.X_WB = X_WB.data();
-  if (!state.bends.empty()) {
-    job.bend_x = state.bends.front().data();
-    job.bend_y = job.bend_x + 1;
-  }
-  job.bend_stride = 2;
-  job.stretch = state.stretches.data();
-  job.stretch_stride = 1;
-  job.frames = tip.data();
-  job.stride = 1;
-  return job;
+  const double* bends = state.bends.empty() ? nullptr : state.bends.front().data();
+  return {.sections = lengths.size(),
+          .lengths = lengths.data(),
+          .X_WB = X_WB.data(),
+          .bend_x = bends,
+          .bend_y = bends == nullptr ? nullptr : bends + 1,
+          .bend_stride = 2,
+          .stretch = state.stretches.data(),
+          .stretch_stride = 1,
+          .frames = tip.data(),
+          .stride = 1};
 }
 
 BatchJob batch_job(std::span<const double> lengths, const std::array<double, 12>& X_WB,
                    const BatchStates& states, std::span<double> frames) {
-  BatchJob job;
-  job.sections = lengths.size();
-  job.lengths = lengths.data();
-  job.X_WB = X_WB.data();
-  job.bend_x = states.bend_x.data();
-  job.bend_y = states.bend_y.data();
-  job.bend_stride = states.count;
-  job.stretch = states.stretch.data();
-  job.stretch_stride = states.count;
-  job.frames = frames.data();
-  job.stride = states.count;
-  return job;
+  return {.sections = lengths.size(),
+          .lengths = lengths.data(),
+          .X_WB = X_WB.data(),
+          .bend_x = states.bend_x.data(),
+          .bend_y = states.bend_y.data(),
+          .bend_stride = states.count,
+          .stretch = states.stretch.data(),
+          .stretch_stride = states.count,
+          .frames = frames.data(),
+          .stride = states.count};
 }
 
 // The arms that do not fill a vector go one by one: a lane does not see its neighbours, so it is all the
 // same.
-void run(SimdPath path, void (*LaneFunctions::*function)(const BatchJob&, std::size_t, std::size_t),
-         const BatchJob& job, std::size_t count) {
-  const SimdKernels& kernels = kernels_of(path);
+void run(const SimdKernels& kernels,
+         void (*LaneFunctions::*function)(const BatchJob&, std::size_t, std::size_t), const BatchJob& job,
+         std::size_t count) {
   const std::size_t whole = count - count % kernels.many.lanes;
   (kernels.many.*function)(job, 0, whole);
   (kernels.one.*function)(job, whole, count);
@@ -77,8 +72,7 @@ void run(SimdPath path, void (*LaneFunctions::*function)(const BatchJob&, std::s
 }  // namespace
 
 BatchKinematics::BatchKinematics(const Arm& arm, SimdPath path)
-    : is_planar_(arm.kind == ArmKind::planar), X_WB_(packed(arm.X_WB)), path_(path) {
-  (void)kernels_of(path);
+    : is_planar_(arm.kind == ArmKind::planar), X_WB_(packed(arm.X_WB)), kernels_(&kernels_of(path)) {
   for (const Section& section : arm.sections) lengths_.push_back(section.length);
 }
 
@@ -96,7 +90,7 @@ void BatchKinematics::fill_frames(const BatchStates& states, std::span<double> f
   BatchJob job = batch_job(lengths_, X_WB_, states, frames);
   job.frame_rows = rows;
   job.is_every_frame = every;
-  run(path_, &LaneFunctions::frames, job, states.count);
+  run(*kernels_, &LaneFunctions::frames, job, states.count);
 }
 
 void BatchKinematics::tips(const BatchStates& states, std::span<double> frames) const {
@@ -120,11 +114,11 @@ void BatchKinematics::tip_jacobians(const BatchStates& states, std::span<double>
   require_states(states);
   require_size("frames", frames.size(), 12 * states.count);
   require_size("jacobians", jacobians.size(), 6 * jacobian_columns(states) * states.count);
-  std::vector<double> scratch(scratch_rows * lengths_.size() * kernels_of(path_).many.lanes);
+  std::vector<double> scratch(scratch_rows * lengths_.size() * kernels_->many.lanes);
   BatchJob job = batch_job(lengths_, X_WB_, states, frames);
   job.jacobian = jacobians.data();
   job.scratch = scratch.data();
-  run(path_, &LaneFunctions::jacobians, job, states.count);
+  run(*kernels_, &LaneFunctions::jacobians, job, states.count);
 }
 
 void BatchKinematics::require_state(const ArmState& state) const {
@@ -135,7 +129,7 @@ void BatchKinematics::require_state(const ArmState& state) const {
 Pose BatchKinematics::tip(const ArmState& state) const {
   require_state(state);
   std::array<double, 12> tip;
-  kernels_of(path_).one.frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
+  kernels_->one.frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
   return unpacked(tip);
 }
 
@@ -150,7 +144,7 @@ Pose BatchKinematics::tip_jacobian(const ArmState& state, Eigen::Ref<Jacobian> J
   BatchJob job = single_job(lengths_, X_WB_, state, tip);
   job.jacobian = J.data();
   job.scratch = on_heap.empty() ? on_stack.data() : on_heap.data();
-  kernels_of(path_).one.jacobians(job, 0, 1);
+  kernels_->one.jacobians(job, 0, 1);
   return unpacked(tip);
 }
 

@@ -13,6 +13,8 @@
 
 namespace flexura {
 
+struct SimdKernels;
+
 /// Many states of one arm of n sections, as structure of arrays: a row of `count` numbers for each quantity,
 /// the number of arm j at row * count + j. The numbers belong to the caller.
 struct BatchStates {
@@ -61,7 +63,7 @@ class BatchKinematics {
   bool is_planar_;
   std::vector<double> lengths_;
   std::array<double, 12> X_WB_;
-  SimdPath path_;
+  const SimdKernels* kernels_;
 };
 
 }  // namespace flexura

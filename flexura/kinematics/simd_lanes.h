@@ -60,7 +60,12 @@ Two<V> operator*(double s, const Two<V>& v) {
   return {s * v.a, s * v.b};
 }
 
+// The narrowest that holds four lanes.
+#ifdef __AVX2__
+using FourLanes = double __attribute__((vector_size(32)));
+#else
 using FourLanes = Two<double __attribute__((vector_size(16)))>;
+#endif
 
 template <typename V>
 constexpr std::size_t lanes_of = sizeof(V) / sizeof(double);

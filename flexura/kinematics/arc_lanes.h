@@ -7,6 +7,8 @@
 
 // Forward kinematics and tip Jacobians of as many arms as V has lanes, for simd_*.cc alone. The mathematics
 // is docs/kinematic-model.md's; the names are those of math/series.h.
+// Vectors are left without a value where they get one in a moment.
+// NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
 namespace flexura {
 namespace {
 
@@ -212,10 +214,9 @@ struct PlanarLanes {
 };
 
 template <typename V>
-Frame<V> placed(const Frame<V>& base, const PlanarLanes<V>& in_plane) {
-  const auto& [along_x, along_z, sine, cosine] = in_plane;
-  return {base.position + (along_x * base.x + along_z * base.z), cosine * base.x - sine * base.z, base.y,
-          sine * base.x + cosine * base.z};
+Frame<V> placed(const Frame<V>& base, const PlanarLanes<V>& at) {
+  return {base.position + (at.along_x * base.x + at.along_z * base.z), at.cosine * base.x - at.sine * base.z,
+          base.y, at.sine * base.x + at.cosine * base.z};
 }
 
 // The paper's equations: half the bend to the cord, the other half to the end (docs/kinematic-model.md).
@@ -337,3 +338,4 @@ constexpr SimdKernels kernels_for = {functions_for<V>, functions_for<double>};
 
 }  // namespace
 }  // namespace flexura
+// NOLINTEND(cppcoreguidelines-pro-type-member-init)

@@ -128,7 +128,7 @@ void BatchKinematics::require_state(const ArmState& state) const {
 
 Pose BatchKinematics::tip(const ArmState& state) const {
   require_state(state);
-  std::array<double, 12> tip;
+  std::array<double, 12> tip{};
   kernels_->one.frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
   return unpacked(tip);
 }
@@ -137,10 +137,11 @@ Pose BatchKinematics::tip_jacobian(const ArmState& state, Eigen::Ref<Jacobian> J
   require_state(state);
   require_size("jacobian", static_cast<std::size_t>(J.size()), 18 * lengths_.size());
   constexpr std::size_t usual_sections = 16;
-  std::array<double, scratch_rows * usual_sections> on_stack;
+  std::array<double, scratch_rows * usual_sections>
+      on_stack;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   std::vector<double> on_heap;
   if (lengths_.size() > usual_sections) on_heap.resize(scratch_rows * lengths_.size());
-  std::array<double, 12> tip;
+  std::array<double, 12> tip{};
   BatchJob job = single_job(lengths_, X_WB_, state, tip);
   job.jacobian = J.data();
   job.scratch = on_heap.empty() ? on_stack.data() : on_heap.data();

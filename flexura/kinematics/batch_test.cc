@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -184,7 +185,7 @@ TEST(Batch, GivesOneStateTheSameBitsAsInABatch) {
 
 TEST(Batch, HoldsFromAlmostStraightToManyTurns) {
   for (const double bend : {0.0, 5e-324, 1e-300, 1e-160, 1e-154, 1e-12, 1e-8, 1e-4, 0.1, 1.9999, 2.0, 2.0001,
-                            3.1415926535897931, 6.2831853071795862, 9.0, 12.5, 1000.0}) {
+                            std::numbers::pi, 2 * std::numbers::pi, 9.0, 12.5, 1000.0}) {
     SCOPED_TRACE(bend);
     for_random_cases(5, [bend](TestRandom& random) {
       const Arm arm = random_arm(random);
@@ -249,6 +250,7 @@ TEST(Batch, KeepsWhatIsNotFiniteToItsOwnArm) {
 TEST(Batch, EndsThePapersArmWhereThePaperSays) {
   const ArmState state = paper_state();
   std::vector<double> bend_x;
+  bend_x.reserve(8);
   for (const Eigen::Vector2d& bend : state.bends) bend_x.push_back(bend.x());
   std::vector<double> points(27);
   BatchKinematics(paper_arm()).base_points({1, bend_x, {}, {}}, points);
@@ -275,7 +277,7 @@ TEST(Batch, RefusesSizesThatDoNotFit) {
   const BatchKinematics spatial(arm);
   const BatchKinematics planar(paper_arm());
   const std::vector<double> n16(16), n15(15);
-  std::vector<double> frames(24), wrong(25), jacobians(6 * 16 * 2);
+  std::vector<double> frames(24), wrong(25), jacobians(192);
   EXPECT_NO_THROW(spatial.tips({2, n16, n16, {}}, frames));
   EXPECT_NO_THROW(planar.tips({2, n16, {}, n16}, frames));
   EXPECT_THROW(spatial.tips({2, n15, n16, {}}, frames), std::invalid_argument);

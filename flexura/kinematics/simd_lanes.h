@@ -68,7 +68,7 @@ using FourLanes = Two<double __attribute__((vector_size(16)))>;
 #endif
 
 template <typename V>
-constexpr std::size_t lanes_of = sizeof(V) / sizeof(double);
+constexpr std::size_t lanes_of = sizeof(V) / 8;
 
 // Integers as wide as the lanes.
 template <typename V>

@@ -45,15 +45,20 @@ BatchJob single_job(std::span<const double> lengths, const std::array<double, 12
           .stride = 1};
 }
 
+// An empty vector's data need not be null.
+const double* data_or_none(std::span<const double> numbers) {
+  return numbers.empty() ? nullptr : numbers.data();
+}
+
 BatchJob batch_job(std::span<const double> lengths, const std::array<double, 12>& X_WB,
                    const BatchStates& states, std::span<double> frames) {
   return {.sections = lengths.size(),
           .lengths = lengths.data(),
           .X_WB = X_WB.data(),
           .bend_x = states.bend_x.data(),
-          .bend_y = states.bend_y.data(),
+          .bend_y = data_or_none(states.bend_y),
           .bend_stride = states.count,
-          .stretch = states.stretch.data(),
+          .stretch = data_or_none(states.stretch),
           .stretch_stride = states.count,
           .frames = frames.data(),
           .stride = states.count};
@@ -136,9 +141,15 @@ Pose BatchKinematics::tip(const ArmState& state) const {
 Pose BatchKinematics::tip_jacobian(const ArmState& state, Eigen::Ref<Jacobian> J) const {
   require_state(state);
   require_size("jacobian", static_cast<std::size_t>(J.size()), 18 * lengths_.size());
+  if (J.outerStride() != 6) {  // Part of a taller matrix; the kernels write one column right after another.
+    Jacobian own(6, J.cols());
+    const Pose X_WT = tip_jacobian(state, own);
+    J = own;
+    return X_WT;
+  }
   constexpr std::size_t usual_sections = 16;
-  std::array<double, scratch_rows * usual_sections>
-      on_stack;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  // Written before it is read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
+  std::array<double, scratch_rows * usual_sections> on_stack;
   std::vector<double> on_heap;
   if (lengths_.size() > usual_sections) on_heap.resize(scratch_rows * lengths_.size());
   std::array<double, 12> tip{};

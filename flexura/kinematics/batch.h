@@ -25,10 +25,11 @@ struct BatchStates {
 };
 
 /// Forward kinematics and tip Jacobians of many states of one arm at a time, several in each instruction, and
-/// of single ones without allocation. For one state the numbers are the same bits wherever it stands in a
-/// batch, on every path and alone; from those of section_frames and tip_jacobian they differ by no more than
-/// rounding (1e-14 of the arm's length). A state that is not finite gives results that are not, for its arm
-/// alone. An object is never written to after its construction: threads may share it.
+/// of single ones without allocation. A function gives one state the same bits wherever it stands in a batch
+/// and on every path, and a spatial arm's state the same alone; from those of section_frames and tip_jacobian
+/// they differ by no more than rounding (1e-14 of the arm's length). A state that is not finite gives results
+/// that are not, for its arm alone. An object is never written to after its construction: threads may share
+/// it.
 ///
 /// Frames are 12 rows each: position x, y, z in W, m, then the rotation column by column. All sizes have to
 /// fit, else std::invalid_argument.

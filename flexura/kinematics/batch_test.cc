@@ -271,6 +271,26 @@ TEST(Batch, TakesAnArmOfMoreSectionsThanUsual) {
   EXPECT_LE((J - tip_jacobian(arm, state)).cwiseAbs().maxCoeff(), 1e-13);
 }
 
+TEST(Batch, TakesAnEmptyVectorWithMemoryOfItsOwnForNone) {
+  const Arm arm = paper_arm();
+  std::vector<double> bend_x(8, 0.3), reserved(100, 9.0), expected(12), tip(12);
+  reserved.clear();
+  BatchKinematics(arm).tips({1, bend_x, {}, {}}, expected);
+  BatchKinematics(arm).tips({1, bend_x, reserved, reserved}, tip);
+  EXPECT_EQ(tip, expected);
+}
+
+TEST(Batch, WritesAJacobianIntoPartOfATallerMatrix) {
+  const BatchKinematics kinematics(paper_arm());
+  Jacobian expected(6, 24);
+  kinematics.tip_jacobian(paper_state(), expected);
+  Eigen::MatrixXd tall = Eigen::MatrixXd::Constant(9, 24, 7.0);
+  kinematics.tip_jacobian(paper_state(), tall.middleRows<6>(2));
+  EXPECT_EQ(Eigen::MatrixXd(tall.middleRows<6>(2)), Eigen::MatrixXd(expected));
+  EXPECT_EQ(tall.topRows<2>().minCoeff(), 7.0);
+  EXPECT_EQ(tall.bottomRows<1>().maxCoeff(), 7.0);
+}
+
 TEST(Batch, RefusesSizesThatDoNotFit) {
   Arm arm = paper_arm();
   arm.kind = ArmKind::spatial;

@@ -13,8 +13,8 @@ namespace {
 bool processor_has(SimdPath path) {
   if (path == SimdPath::baseline) return true;
 #if defined(__x86_64__) || defined(__i386__)
-  if (path == SimdPath::avx2) return static_cast<bool>(__builtin_cpu_supports("avx2"));
-  if (path == SimdPath::avx512) return static_cast<bool>(__builtin_cpu_supports("avx512f"));
+  if (path == SimdPath::avx2) return __builtin_cpu_supports("avx2");
+  if (path == SimdPath::avx512) return __builtin_cpu_supports("avx512f");
 #endif
   return false;
 }

@@ -131,9 +131,11 @@ void BatchKinematics::require_state(const ArmState& state) const {
   require_size("stretches", state.stretches.size(), lengths_.size());
 }
 
+// The kernels write all of these arrays before anyone reads them.
+// NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
 Pose BatchKinematics::tip(const ArmState& state) const {
   require_state(state);
-  std::array<double, 12> tip{};
+  std::array<double, 12> tip;
   kernels_->one.frames(single_job(lengths_, X_WB_, state, tip), 0, 1);
   return unpacked(tip);
 }
@@ -148,16 +150,16 @@ Pose BatchKinematics::tip_jacobian(const ArmState& state, Eigen::Ref<Jacobian> J
     return X_WT;
   }
   constexpr std::size_t usual_sections = 16;
-  // Written before it is read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
   std::array<double, scratch_rows * usual_sections> on_stack;
   std::vector<double> on_heap;
   if (lengths_.size() > usual_sections) on_heap.resize(scratch_rows * lengths_.size());
-  std::array<double, 12> tip{};
+  std::array<double, 12> tip;
   BatchJob job = single_job(lengths_, X_WB_, state, tip);
   job.jacobian = J.data();
   job.scratch = on_heap.empty() ? on_stack.data() : on_heap.data();
   kernels_->one.jacobians(job, 0, 1);
   return unpacked(tip);
 }
+// NOLINTEND(cppcoreguidelines-pro-type-member-init)
 
 }  // namespace flexura

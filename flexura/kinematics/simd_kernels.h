@@ -2,12 +2,12 @@
 
 #include <cstddef>
 
-#include "flexura/kinematics/simd.h"
-
 // What the sources compiled for one instruction set each (simd_*.cc) offer to the rest of the library. They
 // include nothing but this and simd_lanes.h, arc_lanes.h: an inline function of a header that others include
 // too could be compiled for AVX there, and the linker could pick that copy for everybody.
 namespace flexura {
+
+enum class SimdPath;
 
 /// States of arms, and where the results go. Quantity `row` of arm `arm` stands at row * stride + arm.
 struct BatchJob {

@@ -10,6 +10,7 @@
 #include "flexura/experiment/task_config.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive_config.h"
+#include "flexura/model/obstacle.h"
 
 namespace flexura {
 
@@ -34,6 +35,7 @@ struct Experiment {
   RecordConfig record;
   ArmConfig arm;
   std::optional<DriveConfig> drive;
+  std::vector<ObstacleConfig> obstacle;
   std::vector<TaskConfig> task;
 };
 

@@ -14,7 +14,7 @@ namespace flexura {
 /// How a run ended.
 enum class Outcome {
   done,
-  unsafe,  ///< A task would break a limit of the arm: nothing moved.
+  unsafe,  ///< A task would break a limit of the arm or touch something; simulated to be looked at.
 };
 
 /// What a run says of itself at its end.

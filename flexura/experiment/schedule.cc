@@ -10,6 +10,7 @@ namespace flexura {
 Schedule::Schedule(const Experiment& experiment)
     : arm_(experiment.arm.arm()),
       initial_(arm_state(arm_, experiment.arm.initial)),
+      obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {
   ArmState state = initial_;
   for (const TaskConfig& task : experiment.task) {
@@ -41,7 +42,7 @@ ArmState Schedule::state_at(double time) const {
 SafetyReport Schedule::check() const {
   std::vector<TimedMotion> motions;
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start});
-  return check_motions(arm_, initial_, motions, step_);
+  return check_motions(arm_, obstacles_, initial_, motions, step_);
 }
 
 }  // namespace flexura

@@ -7,6 +7,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/obstacle.h"
 #include "flexura/safety/violation.h"
 
 namespace flexura {
@@ -33,6 +34,8 @@ class Schedule {
   [[nodiscard]] double time_of_step(std::size_t step) const;  ///< s
   /// The leg under way at `time`; a leg owns its start, the last one its end too.
   [[nodiscard]] std::size_t leg_at(double time) const;
+  /// The state in which the arm starts.
+  [[nodiscard]] const ArmState& initial() const { return initial_; }
   /// The arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
   /// What would harm the arm, known before anything moves.
@@ -41,6 +44,7 @@ class Schedule {
  private:
   Arm arm_;
   ArmState initial_;
+  std::vector<Obstacle> obstacles_;
   double step_ = 0;
   double duration_ = 0;
   std::size_t steps_ = 0;

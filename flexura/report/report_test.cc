@@ -90,6 +90,27 @@ std::string xml_fault(std::string_view xml) {
   return open.empty() ? "" : "not closed: " + open.back();
 }
 
+TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
+  ReportData data = paper_run(50);
+  EXPECT_EQ(report_html(data).find("safety-title"), std::string::npos);
+  data.safety = {.violations = {{.start = 4.0, .end = 5.0, .sections = {1, 6}, .text = "section 2 < 7"}},
+                 .remarks = {"a note"}};
+  const std::string html = report_html(data);
+  for (const char* part : {"section 2 &lt; 7", "<li>a note</li>", R"("unsafe":[[4,5,1],[4,5,6]])"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  const std::vector<Figure> figures = report_figures(data);
+  const auto warnings = [&](const std::string& name) {
+    std::size_t count = 0;
+    const std::string& svg = svg_of(figures, name);
+    for (std::size_t at = svg.find("class=\"warning\""); at != std::string::npos;
+         at = svg.find("class=\"warning\"", at + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(warnings("arm-start.svg"), 0U);
+  EXPECT_EQ(warnings("arm-end.svg"), 2U);
+}
+
 TEST(ReportFigures, AreWellFormedAndHaveNoMissingNumbers) {
   for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
     for (const Figure& figure : report_figures(data)) {

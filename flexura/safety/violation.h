@@ -10,21 +10,25 @@ namespace flexura {
 
 /// What a motion can break.
 enum class Hazard : std::uint8_t {
-  bend,        ///< A section bends more than it may; rad.
-  bend_rate,   ///< A section bends faster than it may; rad/s.
-  stretch,     ///< A section is longer or shorter than it may be; factor.
-  folding,     ///< The inner side of the tube folds: curvature times radius reaches 1.
-  jump,        ///< The law asks for two states at one time; rad (or a factor).
-  not_finite,  ///< The law's formula has no finite value.
+  bend,          ///< A section bends more than it may; rad.
+  bend_rate,     ///< A section bends faster than it may; rad/s.
+  stretch,       ///< A section is longer or shorter than it may be; factor.
+  folding,       ///< The inner side of the tube folds: curvature times radius reaches 1.
+  jump,          ///< The law asks for two states at one time; rad (or a factor).
+  not_finite,    ///< The law's formula has no finite value, or no length above 0.
+  self_contact,  ///< The arm touches itself; m of depth.
+  obstacle,      ///< The arm touches an obstacle; m of depth.
 };
 
 /// Something a motion would break, and when.
 struct Violation {
   Hazard hazard = Hazard::bend;
-  double start = 0;                    ///< s
-  double end = 0;                      ///< s
-  std::optional<std::size_t> section;  ///< From 0.
-  double value = 0;                    ///< The worst in that time, in the hazard's unit.
+  double start = 0;                               ///< s
+  double end = 0;                                 ///< s
+  std::optional<std::size_t> section = {};        ///< From 0.
+  std::optional<std::size_t> other_section = {};  ///< From 0; which `section` touches.
+  std::string obstacle = {};                      ///< Its name.
+  double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
 
   /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg".

@@ -1,0 +1,152 @@
+#include "flexura/safety/contact_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "flexura/safety/limits.h"
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+constexpr double half_turn = std::numbers::pi;
+constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
+constexpr QuantityBounds in_contact{no_distance, no_distance};
+constexpr QuantityBounds undecided{-no_distance, no_distance};
+
+double largest_radius(const TubeArc& tube) { return std::max(tube.radius[0], tube.radius[1]); }
+
+double turn_between(const TubeArc& a, const TubeArc& b) { return b.turn + b.bend.norm() - a.turn; }
+
+// Distance between two sections' tubes that is surely there.
+double apart(const TubeArc& a, const Eigen::Vector3d& middle_a, const TubeArc& b,
+             const Eigen::Vector3d& middle_b) {
+  return (middle_a - middle_b).norm() - (a.length + b.length) / 2 - largest_radius(a) - largest_radius(b);
+}
+
+std::vector<Eigen::Vector3d> middles(const std::vector<TubeArc>& tubes) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(tubes.size());
+  for (const TubeArc& tube : tubes) points.push_back(tube.point(0.5));
+  return points;
+}
+
+}  // namespace
+
+// How far the arm may come from its state in the middle of an interval.
+struct ContactWatch::Reach {
+  std::vector<double> turn;     // of each section: change of its bend, rad
+  std::vector<double> length;   // the longest it gets, m
+  std::vector<double> stretch;  // change of its length, m
+
+  Reach(const Arm& arm, const Motion& motion, const ArmState& middle, double start, double end) {
+    const double half = (end - start) / 2;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const SectionRates rates = rates_of(motion, i, start, end);
+      turn.push_back(rates.bend * half);
+      stretch.push_back(rates.stretch * half * arm.sections[i].length);
+      length.push_back(arm.sections[i].length * middle.stretches[i] + stretch.back());
+    }
+  }
+
+  // Adds section j to a chain: how far its points may move in the frame at the chain's start. A section that
+  // bends by d turns what is beyond it by at most d, and moves its own points by at most d length / 2.
+  void extend(std::size_t j, double& moved, double& turned) const {
+    moved += turned * length[j] + turn[j] * length[j] / 2 + stretch[j];
+    turned += turn[j];
+  }
+};
+
+ContactWatch::ContactWatch(Arm arm) : arm_(std::move(arm)) {}
+ContactWatch::ContactWatch(Arm arm, Obstacle obstacle)
+    : arm_(std::move(arm)), obstacle_(std::move(obstacle)) {}
+
+Contact ContactWatch::contact(const ArmState& state) const {
+  if (!is_possible(state)) return {};
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, state);
+  return obstacle_ ? obstacle_contact(tubes) : self_contact(tubes);
+}
+
+WatchedQuantity ContactWatch::depth(const Motion& motion) const {
+  return {[this, &motion](double t) { return -contact(motion.at(t)).clearance; },
+          [this, &motion](double start, double end) { return bounds(motion, start, end); }};
+}
+
+QuantityBounds ContactWatch::bounds(const Motion& motion, double start, double end) const {
+  const ArmState middle = motion.at((start + end) / 2);
+  if (!is_possible(middle)) return undecided;
+  const Reach reach(arm_, motion, middle, start, end);
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, middle);
+  return obstacle_ ? obstacle_bounds(tubes, reach) : self_bounds(tubes, reach);
+}
+
+QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  bool is_free = true;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    double moved = 0;
+    double turned = 0;
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      reach.extend(j, moved, turned);
+      if (turn_between(tubes[i], tubes[j]) < half_turn - turned) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= moved) continue;
+      is_free = is_free && stay_apart(tubes[i], tubes[j], half_turn - turned, moved);
+      const double deepest = largest_radius(tubes[i]) + largest_radius(tubes[j]);
+      const double surely = -moved - contact_tolerance;
+      if (surely < -deepest) {
+        if (!is_free) return undecided;
+      } else if (come_within(tubes[i], tubes[j], half_turn + turned, surely)) {
+        return in_contact;
+      }
+    }
+  }
+  return is_free ? free_of_contact : undecided;
+}
+
+QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
+  bool is_free = true;
+  double moved = 0;
+  double turned = 0;
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    reach.extend(j, moved, turned);
+    const double surely = -moved - contact_tolerance;
+    const double found = obstacle_distance(tubes[j], ignored(j), *obstacle_, {moved, surely});
+    if (found < surely) return in_contact;
+    is_free = is_free && found >= moved;
+  }
+  return is_free ? free_of_contact : undecided;
+}
+
+Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes) const {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  Contact nearest;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= nearest.clearance) continue;
+      const double distance = tube_distance(tubes[i], tubes[j], half_turn, nearest.clearance);
+      if (distance < nearest.clearance) nearest = {distance, i, j};
+    }
+  }
+  return nearest;
+}
+
+Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes) const {
+  Contact nearest;
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double distance = obstacle_distance(tubes[j], ignored(j), *obstacle_, {.cap = nearest.clearance});
+    if (distance < nearest.clearance) nearest = {distance, j, std::nullopt};
+  }
+  return nearest;
+}
+
+// The fraction of a section that the obstacle does not count.
+double ContactWatch::ignored(std::size_t section) const {
+  double rest = obstacle_->ignore_base;
+  for (std::size_t i = 0; i < section; ++i) rest -= arm_.sections[i].length;
+  return std::max(0.0, rest / arm_.sections[section].length);
+}
+
+}  // namespace flexura

@@ -10,13 +10,20 @@ namespace {
 
 Node section_node(std::size_t section) { return {static_cast<std::int64_t>(section) + 1, {}}; }
 
+// What a violation's name is the name of.
+const char* name_key(Hazard hazard) {
+  if (hazard == Hazard::obstacle) return "obstacle";
+  return hazard == Hazard::workspace ? "task" : "axis";
+}
+
 Node violation_node(const Violation& violation) {
   Node::Table table{{"hazard", {}, {std::string(name_of(violation.hazard)), {}}},
                     {"start", {}, {violation.start, {}}},
                     {"end", {}, {violation.end, {}}}};
   if (violation.section) table.push_back({"section", {}, section_node(*violation.section)});
   if (violation.other_section) table.push_back({"other_section", {}, section_node(*violation.other_section)});
-  if (!violation.obstacle.empty()) table.push_back({"obstacle", {}, {violation.obstacle, {}}});
+  if (!violation.name.empty())
+    table.push_back({name_key(violation.hazard), {}, {violation.name, {}}});
   const bool has_value = violation.hazard != Hazard::not_finite && std::isfinite(violation.value);
   if (has_value) table.push_back({"value", {}, {violation.value, {}}});
   if (has_value && violation.hazard != Hazard::jump) table.push_back({"limit", {}, {violation.limit, {}}});

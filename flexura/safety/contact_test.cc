@@ -78,7 +78,7 @@ TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
   const SafetyReport report = check_motions(arm, {wall}, bent(1, 0), {{swing, 0}}, 0.5);
   ASSERT_EQ(report.violations.size(), 1u);
   EXPECT_EQ(report.violations[0].hazard, Hazard::obstacle);
-  EXPECT_EQ(report.violations[0].obstacle, "wall");
+  EXPECT_EQ(report.violations[0].name, "wall");
   EXPECT_NEAR(report.violations[0].value, 1 - std::cos(1) + 0.02 - 0.4, 1e-4);
   EXPECT_GT(report.violations[0].start, 0.1);
   EXPECT_LT(report.violations[0].end, 0.4);

@@ -26,6 +26,13 @@ double apart(const TubeArc& a, const Eigen::Vector3d& middle_a, const TubeArc& b
   return (middle_a - middle_b).norm() - (a.length + b.length) / 2 - largest_radius(a) - largest_radius(b);
 }
 
+// The tube with its radius changed by so much at its start and end.
+TubeArc grown(TubeArc tube, double at_start, double at_end) {
+  tube.radius[0] += at_start;
+  tube.radius[1] += at_end;
+  return tube;
+}
+
 std::vector<Eigen::Vector3d> middles(const std::vector<TubeArc>& tubes) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(tubes.size());
@@ -51,8 +58,9 @@ struct ContactWatch::Reach {
     }
   }
 
-  // Adds section j to a chain: how far its points may move in the frame at the chain's start. A section that
-  // bends by d turns what is beyond it by at most d, and moves its own points by at most d length / 2.
+  // Adds section j to a chain: how far its end may move in the frame at the chain's start (or anywhere in the
+  // chain's first section). A section that bends by d turns what is beyond it by at most d, and moves its own
+  // end by at most d length / 2; in between that is convex, so a line from start to end bounds it.
   void extend(std::size_t j, double& moved, double& turned) const {
     moved += turned * length[j] + turn[j] * length[j] / 2 + stretch[j];
     turned += turn[j];
@@ -63,14 +71,14 @@ ContactWatch::ContactWatch(Arm arm) : arm_(std::move(arm)) {}
 ContactWatch::ContactWatch(Arm arm, Obstacle obstacle)
     : arm_(std::move(arm)), obstacle_(std::move(obstacle)) {}
 
-Contact ContactWatch::contact(const ArmState& state) const {
-  if (!is_possible(state)) return {};
+Contact ContactWatch::contact(const ArmState& state, double cap) const {
+  if (!is_possible(state)) return {.clearance = cap};
   const std::vector<TubeArc> tubes = tube_arcs(arm_, state);
-  return obstacle_ ? obstacle_contact(tubes) : self_contact(tubes);
+  return obstacle_ ? obstacle_contact(tubes, cap) : self_contact(tubes, cap);
 }
 
 WatchedQuantity ContactWatch::depth(const Motion& motion) const {
-  return {[this, &motion](double t) { return -contact(motion.at(t)).clearance; },
+  return {[this, &motion](double t) { return -contact(motion.at(t), 0).clearance; },
           [this, &motion](double start, double end) { return bounds(motion, start, end); }};
 }
 
@@ -82,24 +90,21 @@ QuantityBounds ContactWatch::bounds(const Motion& motion, double start, double e
   return obstacle_ ? obstacle_bounds(tubes, reach) : self_bounds(tubes, reach);
 }
 
-QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
+QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) {
   const std::vector<Eigen::Vector3d> at = middles(tubes);
   bool is_free = true;
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     double moved = 0;
     double turned = 0;
     for (std::size_t j = i; j < tubes.size(); ++j) {
+      const double moved_before = moved;
       reach.extend(j, moved, turned);
       if (turn_between(tubes[i], tubes[j]) < half_turn - turned) continue;
       if (apart(tubes[i], at[i], tubes[j], at[j]) >= moved) continue;
-      is_free = is_free && stay_apart(tubes[i], tubes[j], half_turn - turned, moved);
-      const double deepest = largest_radius(tubes[i]) + largest_radius(tubes[j]);
-      const double surely = -moved - contact_tolerance;
-      if (surely < -deepest) {
-        if (!is_free) return undecided;
-      } else if (come_within(tubes[i], tubes[j], half_turn + turned, surely)) {
+      is_free = is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), half_turn - turned, 0);
+      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned,
+                      -contact_tolerance))
         return in_contact;
-      }
     }
   }
   return is_free ? free_of_contact : undecided;
@@ -110,18 +115,22 @@ QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, 
   double moved = 0;
   double turned = 0;
   for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double moved_before = moved;
     reach.extend(j, moved, turned);
-    const double surely = -moved - contact_tolerance;
-    const double found = obstacle_distance(tubes[j], ignored(j), *obstacle_, {moved, surely});
-    if (found < surely) return in_contact;
-    is_free = is_free && found >= moved;
+    const double from = ignored(j);
+    if (obstacle_distance(grown(tubes[j], moved_before, moved), from, *obstacle_, {0, 0}) >= 0) continue;
+    is_free = false;
+    const TubeArc sure = grown(tubes[j], -moved_before, -moved);
+    if (obstacle_distance(sure, from, *obstacle_, {-contact_tolerance, -contact_tolerance}) <
+        -contact_tolerance)
+      return in_contact;
   }
   return is_free ? free_of_contact : undecided;
 }
 
-Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes) const {
+Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap) {
   const std::vector<Eigen::Vector3d> at = middles(tubes);
-  Contact nearest;
+  Contact nearest{.clearance = cap};
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     for (std::size_t j = i; j < tubes.size(); ++j) {
       if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
@@ -133,8 +142,8 @@ Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes) const {
   return nearest;
 }
 
-Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes) const {
-  Contact nearest;
+Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const {
+  Contact nearest{.clearance = cap};
   for (std::size_t j = 0; j < tubes.size(); ++j) {
     const double distance = obstacle_distance(tubes[j], ignored(j), *obstacle_, {.cap = nearest.clearance});
     if (distance < nearest.clearance) nearest = {distance, j, std::nullopt};

@@ -34,20 +34,20 @@ class ContactWatch {
 
   [[nodiscard]] Hazard hazard() const { return obstacle_ ? Hazard::obstacle : Hazard::self_contact; }
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
-  /// The least clearance in a state that is possible; none elsewhere.
-  [[nodiscard]] Contact contact(const ArmState& state) const;
-  /// How deep the contact is, m (negative: the clearance), in a motion that knows its rates. Its bounds say
-  /// no more than whether an interval is surely free of contact or surely in contact.
+  /// The least clearance in a state that is possible, where it is below `cap`; otherwise `cap` stands for it.
+  [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
+  /// How deep the contact is, m (0 where there is none), in a motion that knows its rates. Its bounds say no
+  /// more than whether an interval is surely free of contact or surely in contact.
   [[nodiscard]] WatchedQuantity depth(const Motion& motion) const;
 
  private:
   struct Reach;
   [[nodiscard]] double ignored(std::size_t section) const;
   [[nodiscard]] QuantityBounds bounds(const Motion& motion, double start, double end) const;
-  [[nodiscard]] QuantityBounds self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const;
+  [[nodiscard]] static QuantityBounds self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach);
   [[nodiscard]] QuantityBounds obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const;
-  [[nodiscard]] Contact self_contact(const std::vector<TubeArc>& tubes) const;
-  [[nodiscard]] Contact obstacle_contact(const std::vector<TubeArc>& tubes) const;
+  [[nodiscard]] static Contact self_contact(const std::vector<TubeArc>& tubes, double cap);
+  [[nodiscard]] Contact obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const;
 
   Arm arm_;
   std::optional<Obstacle> obstacle_;

@@ -7,7 +7,6 @@
 namespace flexura {
 namespace {
 
-constexpr double limit_tolerance = 1e-9;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double largest_radius(const Section& section) { return std::max(section.radius[0], section.radius[1]); }

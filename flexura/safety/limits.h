@@ -10,6 +10,10 @@
 
 namespace flexura {
 
+/// What is above its limit by no more than this part of it is on it: limits are typed in degrees, and values
+/// computed in radians.
+inline constexpr double limit_tolerance = 1e-9;
+
 /// A quantity of one section that has a limit.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
@@ -20,8 +24,7 @@ struct LimitWatch {
   /// A bound on |d value/dt| anywhere in [start, end] of a motion that knows its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 
-  /// sign * value above this breaks the limit. Limits are typed in degrees and bends computed in radians: a
-  /// bend on its limit is not beyond it.
+  /// sign * value above this breaks the limit.
   [[nodiscard]] double threshold() const;
 };
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/jumps.h"
@@ -26,16 +25,15 @@ class SampledSpans {
  public:
   void sample(std::size_t step, double time, double value, bool is_bad) {
     if (!is_bad) return;
-    if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({{time, time}, value, time});
+    if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({{time, time}, value});
     last_step_ = step;
     Found& found = spans_.back();
     found.span.end = time;
-    if (value > found.worst) found.worst = value, found.worst_time = time;
+    found.worst = std::max(found.worst, value);
   }
   struct Found {
     Span span;
     double worst = 0;
-    double worst_time = 0;
   };
   [[nodiscard]] const std::vector<Found>& spans() const { return spans_; }
 
@@ -82,7 +80,7 @@ class MotionCheck {
     for (const ContactWatch& contact : contacts_) {
       const WatchedQuantity depth = contact.depth(motion_);
       for (const Span& span : spans_above(contact_tolerance, depth, whole(), contact_resolution))
-        add_contact(contact, span, worst_time(depth.value, span));
+        add_contact(contact, span);
     }
   }
 
@@ -104,7 +102,7 @@ class MotionCheck {
   }
 
  private:
-  static double limit_of_rate(double limit) { return limit * (1 + 1e-9); }
+  static double limit_of_rate(double limit) { return limit * (1 + limit_tolerance); }
   [[nodiscard]] Span whole() const { return {0, motion_.duration()}; }
   [[nodiscard]] std::size_t last_sample() const {
     return static_cast<std::size_t>(std::ceil(motion_.duration() / step_));
@@ -130,14 +128,26 @@ class MotionCheck {
                                   .limit = limit});
   }
 
-  void add_contact(const ContactWatch& contact, const Span& span, double time) {
-    const Contact worst = contact.contact(motion_.at(time));
+  // The deepest contact, of the span's ends and what lies evenly between.
+  [[nodiscard]] Contact worst_contact(const ContactWatch& contact, const Span& span) const {
+    constexpr int samples = 100;
+    Contact worst{.clearance = 0};
+    for (int k = 0; k <= samples; ++k) {
+      const double time = span.start + (span.end - span.start) * k / samples;
+      const Contact now = contact.contact(motion_.at(time), worst.clearance);
+      if (now.clearance < worst.clearance) worst = now;
+    }
+    return worst;
+  }
+
+  void add_contact(const ContactWatch& contact, const Span& span) {
+    const Contact worst = worst_contact(contact, span);
     report_.violations.push_back({.hazard = contact.hazard(),
                                   .start = start_ + span.start,
                                   .end = start_ + span.end,
                                   .section = worst.section,
                                   .other_section = worst.other_section,
-                                  .obstacle = contact.obstacle_name(),
+                                  .name = contact.obstacle_name(),
                                   .value = -worst.clearance,
                                   .limit = 0});
   }
@@ -160,7 +170,7 @@ class MotionCheck {
         rates[i].sample(k, t, rate, rate > limit_of_rate(arm_.sections[i].max_bend_rate));
       }
       for (std::size_t c = 0; c < contacts_.size(); ++c) {
-        const double depth = -contacts_[c].contact(state).clearance;
+        const double depth = -contacts_[c].contact(state, 0).clearance;
         contacts[c].sample(k, t, depth, depth > contact_tolerance);
       }
       before = state;
@@ -175,7 +185,7 @@ class MotionCheck {
         add_limit(Hazard::bend_rate, i, found.span, found.worst, arm_.sections[i].max_bend_rate);
     }
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      for (const auto& found : contacts[c].spans()) add_contact(contacts_[c], found.span, found.worst_time);
+      for (const auto& found : contacts[c].spans()) add_contact(contacts_[c], found.span);
     }
   }
 
@@ -229,8 +239,7 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
     before = motion.at(motion.duration());
     note_singular(arm, before, timed.start + motion.duration(), report);
   }
-  const auto order = [](const Violation& v) { return std::tuple(v.start, v.section.value_or(0), v.hazard); };
-  std::ranges::stable_sort(report.violations, {}, order);
+  report.sort();
   report.notes.erase(std::ranges::unique(report.notes).begin(), report.notes.end());
   return report;
 }

@@ -138,7 +138,8 @@ TEST_F(Run, GoesToALimitButNotBeyond) {
   move.to.archings->at(0) = 0.1;
   move.to.stretches->at(0) = 0.8;
   EXPECT_THAT(run(experiment).reasons.at(0), HasSubstr("stretch 0.8, limit 0.9"));
-  move.to = {.cord_angles = {}, .archings = {{0.5}}, .bends = {}, .stretches = {}};
+  move.to = {};
+  move.to.archings = {{0.5}};
   move.duration = 1.0;
   EXPECT_THAT(run(experiment).reasons.at(0), HasSubstr("bend rate 57.2958 deg/s, limit 40 deg/s"));
 }

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/report/obstacle_drawing.h"
+
 namespace flexura {
 namespace {
 
@@ -149,6 +151,7 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
   draw_scene_axes(svg, scene, heading);
   for (std::size_t v = 0; v < scene.views.size(); ++v) {
     const Backbone& backbone = motion.backbones[i];
+    draw_obstacles(svg, scene, v, motion);
     draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
       draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, motion.is_unsafe(k, i));
@@ -197,6 +200,7 @@ Drawing player_picture(const ReportMotion& motion, const PlotScene& scene) {
   const bool joints = scene.has_room_for_joints(motion.arm.length(), motion.arm.sections.size());
   for (std::size_t v = 0; v < scene.views.size(); ++v) {
     const PlotFrame& frame = scene.frames[v];
+    draw_obstacles(svg, scene, v, motion);
     for (const std::size_t i : {std::size_t{0}, motion.end()}) {
       svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion, i)}});
     }

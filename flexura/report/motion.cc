@@ -106,6 +106,7 @@ ReportMotion motion_of(const ReportData& data) {
   ReportMotion motion;
   motion.arm = data.arm;
   if (data.safety) motion.violations = data.safety->violations;
+  motion.obstacles = data.obstacles;
   motion.in_plane = lies_in_xoy(data.arm);
   motion.recorded = std::max(data.recorded, data.states.size());
   const std::vector<double> marks = event_times(data);

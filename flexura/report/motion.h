@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/model/backbone.h"
+#include "flexura/model/obstacle.h"
 #include "flexura/report/report.h"
 
 namespace flexura {
@@ -29,6 +30,7 @@ struct ReportMotion {
   std::size_t recorded = 0;         ///< States in the run.
   std::size_t middle = 0;           ///< Index of the state nearest to half time.
   std::vector<ReportData::Safety::Violation> violations;
+  std::vector<ObstacleConfig> obstacles;
   bool in_plane = false;          ///< The arm moves in a plane parallel to XOY.
   bool stretches_change = false;  ///< Some stretch is not 1 all the time.
 

@@ -8,6 +8,7 @@
 #include "embedded/report_js.h"
 #include "flexura/report/arm_drawing.h"
 #include "flexura/report/charts.h"
+#include "flexura/report/obstacle_drawing.h"
 #include "flexura/report/page.h"
 
 namespace flexura {
@@ -35,7 +36,8 @@ std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
 }
 
 PlotScene motion_scene(const ReportMotion& motion) {
-  return scene_of(swept_box(motion), motion.in_plane, 0.1 * motion.arm.length());
+  return scene_of(with_obstacles(swept_box(motion), motion.obstacles), motion.in_plane,
+                  0.1 * motion.arm.length());
 }
 
 std::string figures_html(const std::vector<NamedDrawing>& drawings) {

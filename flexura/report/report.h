@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/model/arm.h"
+#include "flexura/model/obstacle.h"
 
 namespace flexura {
 
@@ -39,6 +40,7 @@ struct ReportData {
   std::vector<Mark> events;      ///< In the order of time.
   std::size_t recorded = 0;      ///< States in the run's log, where they are more than those given here.
   std::optional<Safety> safety;  ///< Empty: not checked, not shown.
+  std::vector<ObstacleConfig> obstacles;
 };
 
 /// A picture as a file.

@@ -6,8 +6,6 @@
 
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/motion_check.h"
-#include "tests/support/arms.h"
-#include "tests/support/motions.h"
 
 namespace flexura {
 namespace {
@@ -97,49 +95,6 @@ TEST(Contact, TheBaseMayStandOnTheGround) {
   EXPECT_NEAR(clearance(), 1.45, 1e-6);
   plane.ignore_base = 3;
   EXPECT_EQ(clearance(), no_distance);
-}
-
-// Contacts of random motions against samples of the clearance.
-void compare_with_samples(TestRandom& random, int samples) {
-  Arm arm = random_arm(random);
-  for (Section& section : arm.sections) {
-    section.stretch_limits = {0.1, 10};
-    section.radius = {0.05, random.uniform(0.02, 0.05)};
-  }
-  const Eigen::Vector3d at = random.vector<3>(-1.5, 1.5) + arm.X_WB.position;
-  const std::vector<Obstacle> balls =
-      obstacles({SphereConfig{.center = {at.x(), at.y(), at.z()}, .radius = random.uniform(0.1, 0.5)}});
-  const ContactWatch itself(arm);
-  const ContactWatch ball(arm, balls.front());
-  for (const MotionPtr& motion : random_motions(random, arm)) {
-    const SafetyReport report = check_motions(arm, balls, motion->at(0), {{motion, 0}}, 0.02);
-    std::vector<bool> confirmed(report.violations.size(), false);
-    for (int k = 0; k <= samples; ++k) {
-      const double time = motion->duration() * k / samples;
-      const ArmState state = motion->at(time);
-      for (const ContactWatch* watch : {&itself, &ball}) {
-        const double clearance = watch->contact(state).clearance;
-        bool reported = clearance >= -1e-3;  // shallow ones may be shorter than the resolution
-        for (std::size_t i = 0; i < confirmed.size(); ++i) {
-          const Violation& v = report.violations[i];
-          if (v.hazard != watch->hazard() || time < v.start - 1e-4 || time > v.end + 1e-4) continue;
-          reported = true;
-          if (clearance < 0) confirmed[i] = true;
-        }
-        ASSERT_TRUE(reported) << name_of(watch->hazard()) << " at " << time << ": " << clearance;
-      }
-    }
-    for (std::size_t i = 0; i < confirmed.size(); ++i) {
-      const Violation& v = report.violations[i];
-      if (v.hazard != Hazard::self_contact && v.hazard != Hazard::obstacle) continue;
-      EXPECT_GT(v.value, 0);
-      EXPECT_TRUE(confirmed[i] || v.end - v.start < 2 * motion->duration() / samples) << v.text();
-    }
-  }
-}
-
-TEST(Contact, MissesNothingThatSamplingFinds) {
-  for_random_cases(4, [](TestRandom& random) { compare_with_samples(random, 100); });
 }
 
 }  // namespace

@@ -230,7 +230,7 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
     const Motion& motion = *timed.motion;
     MotionCheck check(arm, contacts, timed, step, report);
     const double jump = largest_change(before, motion.at(0));
-    if (jump > smallest_jump) check.add_jump({0, jump});
+    if (jump > smallest_jump && std::isfinite(jump)) check.add_jump({0, jump});
     if (motion.rates(0, 0, motion.duration())) {
       check.check_bounded();
     } else {

@@ -1,27 +1,19 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <iostream>
-#include <string>
-
 #include "tests/support/sampled_check.h"
 
 namespace flexura {
 namespace {
 
-// 5 motions a case. studies/safety.sh asks for more by these variables.
-std::size_t asked(const char* variable, std::size_t otherwise) {
-  const char* value = std::getenv(variable);
-  return value == nullptr ? otherwise : std::stoul(value);
-}
-
 TEST(MotionCheckFull, MissesNothingThatDenseSamplingFinds) {
-  const std::size_t cases = asked("FLEXURA_SAFETY_CASES", 20);
-  const SampledComparison found =
-      compare_with_samples(static_cast<int>(cases), asked("FLEXURA_SAFETY_SAMPLES", 100'000));
-  std::cout << "motions " << found.motions << "\nsamples " << found.samples << "\nspans " << found.spans
-            << "\nabove " << found.above << "\nmissed " << found.missed << "\nrefuted " << found.refuted
-            << '\n';
+  SampledComparison result;
+  for_random_cases(10, [&](TestRandom& random) {
+    compare_with_samples(random, 100'000, result);
+    EXPECT_EQ(result.missed, 0U);
+    EXPECT_EQ(result.refuted, 0U);
+    EXPECT_EQ(result.contacts_missed, 0U);
+  });
+  EXPECT_EQ(result.motions, 50U);
 }
 
 }  // namespace

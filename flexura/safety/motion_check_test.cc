@@ -29,7 +29,18 @@ SafetyReport check(const Arm& arm, MotionPtr motion, double step = 0.02) {
   return check_motions(arm, {}, initial, {{std::move(motion), 0}}, step);
 }
 
-TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) { compare_with_samples(20, 10'000); }
+TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
+  SampledComparison result;
+  for_random_cases(6, [&](TestRandom& random) {
+    compare_with_samples(random, 10'000, result);
+    EXPECT_EQ(result.missed, 0U);
+    EXPECT_EQ(result.refuted, 0U);
+    EXPECT_EQ(result.contacts_missed, 0U);
+  });
+  EXPECT_EQ(result.motions, 30U);
+  EXPECT_GT(result.above, 10'000U);
+  EXPECT_GT(result.contacts, 1000U);
+}
 
 TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
   Arm arm = one_section();

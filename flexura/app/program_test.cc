@@ -99,6 +99,26 @@ TEST_F(Program, ChecksWithoutRunning) {
   EXPECT_FALSE(std::filesystem::exists(path("results")));
 }
 
+TEST_F(Program, EndsWithOneWhenATargetIsOutsideTheWorkspace) {
+  std::ofstream(path("reach.toml")) << "[[arm.section]]\nlength = 1\n[[arm.section]]\nlength = 0.5\n"
+                                       "[[task]]\nkind = 'move'\nname = 'up'\nto.position = [0, 1.5, 0]\n";
+  EXPECT_EQ(run("check reach.toml").status, 0);
+  const Ended ended = run("check reach.toml --set task.0.to.position=[0,1.75,0]");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out,
+              HasSubstr("unsafe: 0 s to 1 s: up: target outside the workspace, 250 mm from the nearest "
+                        "pose\n"));
+  EXPECT_EQ(run("run reach.toml --set task.0.to.position=[0,1.75,0]").status, 1);
+}
+
+TEST_F(Program, SaysWhereAnObstacleIsWrong) {
+  std::ofstream(path("ball.toml")) << "[[arm.section]]\nlength = 1\n[[obstacle]]\nkind = 'sphere'\n"
+                                      "center = [0, 0, 0]\nradius = -0.1\n[[task]]\nkind = 'hold'\n";
+  const Ended ended = run("check ball.toml");
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("ball.toml:6:10: obstacle[0].radius = -0.1: expected"));
+}
+
 TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
   for (const char* arguments : {"", "fly", "run", "run none.toml", "run . ", "run --seed -1 x.toml",
                                 "run --seed x x.toml", "export . --to csv", "export", "export . --to pdf",

@@ -26,7 +26,7 @@ std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
     size = std::max(first, second);
     (first > second ? b : a) = std::move(middle);
     // A smooth law would have come down to some 1/64 by then.
-    if (n == few && size < whole / 4) return std::nullopt;
+    if (n == few && size < whole / 32) return std::nullopt;
   }
   if (size <= smallest_jump) return std::nullopt;
   return Jump{b.time, size};

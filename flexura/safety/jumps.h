@@ -21,7 +21,7 @@ struct Jump {
 
 /// The jumps of a law that changes somehow, looked for in every interval of `step` s: the interval is halved
 /// towards its larger change; a jump keeps its size, what is only fast does not. A jump is found when it is
-/// at least half of what the law changes in its step. Changes that are not finite are none.
+/// at least 1/32 of what the law changes in its step. Changes that are not finite are none.
 [[nodiscard]] std::vector<Jump> find_jumps(const Motion& motion, double step);
 
 }  // namespace flexura

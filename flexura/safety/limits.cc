@@ -19,6 +19,7 @@ double folding_rate(const Section& section, const Motion& motion, std::size_t i,
   const double half = (end - start) / 2;
   const double bend = middle.bends[i].norm() + rates.bend * half;
   const double stretch = middle.stretches[i] - rates.stretch * half;
+  if (middle.stretches[i] + rates.stretch * half <= 0) return 0;  // no length anywhere: infinite all along
   if (stretch <= 0) return infinity;
   const double scale = largest_radius(section) / section.length;
   return scale * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
@@ -38,6 +39,7 @@ void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>&
   watches.push_back({Hazard::stretch, i, section.stretch_limits[0], -1, stretch, stretch_rate});
   watches.push_back({Hazard::folding, i, 1, 1,
                      [i, section](const ArmState& state) {
+                       if (state.stretches[i] <= 0) return infinity;
                        return state.bends[i].norm() * largest_radius(section) /
                               (section.length * state.stretches[i]);
                      },

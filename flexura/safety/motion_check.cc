@@ -86,7 +86,7 @@ class MotionCheck {
 
   void check_sampled() {
     if (const auto t = first_impossible()) {
-      report_.violations.push_back({.hazard = Hazard::not_finite, .start = start_ + *t, .end = start_ + *t});
+      add_impossible(*t);
     } else {
       sample();
       for (const Jump& jump : find_jumps(motion_, step_)) add_jump(jump);
@@ -94,6 +94,11 @@ class MotionCheck {
     report_.caveats.push_back(
         fmt::format("{:.6g} s to {:.6g} s: sampled every {:.6g} s: the law has no bound on its rates", start_,
                     start_ + motion_.duration(), step_));
+  }
+
+  void add_impossible(double time) {
+    report_.violations.push_back(
+        {.hazard = Hazard::not_finite, .start = start_ + time, .end = start_ + time});
   }
 
   void add_jump(const Jump& jump) {
@@ -232,7 +237,11 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
     const double jump = largest_change(before, motion.at(0));
     if (jump > smallest_jump && std::isfinite(jump)) check.add_jump({0, jump});
     if (motion.rates(0, 0, motion.duration())) {
-      check.check_bounded();
+      if (is_possible(motion.at(0))) {
+        check.check_bounded();
+      } else {
+        check.add_impossible(0);
+      }
     } else {
       check.check_sampled();
     }

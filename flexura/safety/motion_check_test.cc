@@ -146,6 +146,19 @@ TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   EXPECT_EQ(check(one_section(), no_length, 0.1).violations.at(0).hazard, Hazard::not_finite);
 }
 
+TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {
+  // Smooth keyframes overshoot: the stretch goes below 0 for a while.
+  const auto state = [](double stretch) -> ArmState { return {{{0.5, 0}}, {stretch}}; };
+  const auto law = keyframe_motion(
+      {0, 1, 2, 3, 4}, {state(1), state(0.05), state(0.01), state(0.05), state(1)}, Interpolation::smooth);
+  ASSERT_LT(law->at(1.5).stretches[0], 0);
+  const SafetyReport report = check(one_section(), law);
+  ASSERT_FALSE(report.is_safe());
+  for (const Violation& violation : report.violations)
+    EXPECT_TRUE(violation.hazard == Hazard::stretch || violation.hazard == Hazard::folding)
+        << violation.text();
+}
+
 TEST(MotionCheck, ASingularPoseIsANoteOnly) {
   const Arm arm = paper_arm();
   const SafetyReport report = check(

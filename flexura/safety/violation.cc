@@ -19,18 +19,18 @@ struct HazardText {
 const HazardText& text_of(Hazard hazard) {
   constexpr double degrees = 180.0 / std::numbers::pi;
   static constexpr std::array<HazardText, 13> texts{{{"bend", degrees, " deg"},
-                                                    {"bend rate", degrees, " deg/s"},
-                                                    {"stretch", 1, ""},
-                                                    {"folding: curvature times radius", 1, ""},
-                                                    {"jump", 1, ""},
-                                                    {"no possible value", 1, ""},
-                                                    {"self-contact", 1000, " mm deep"},
-                                                    {"obstacle", 1000, " mm deep"},
-                                                    {"motor speed", degrees, " deg/s"},
-                                                    {"step rate", 1, " microsteps/s"},
-                                                    {"motor acceleration", 1, " rad/s^2"},
-                                                    {"motor position", 1, " microsteps"},
-                                                    {"target outside the workspace", 1000, " mm"}}};
+                                                     {"bend rate", degrees, " deg/s"},
+                                                     {"stretch", 1, ""},
+                                                     {"folding: curvature times radius", 1, ""},
+                                                     {"jump", 1, ""},
+                                                     {"no possible value", 1, ""},
+                                                     {"self-contact", 1000, " mm deep"},
+                                                     {"obstacle", 1000, " mm deep"},
+                                                     {"motor speed", degrees, " deg/s"},
+                                                     {"step rate", 1, " microsteps/s"},
+                                                     {"motor acceleration", 1, " rad/s^2"},
+                                                     {"motor position", 1, " microsteps"},
+                                                     {"target outside the workspace", 1000, " mm"}}};
   return texts.at(static_cast<std::size_t>(hazard));
 }
 

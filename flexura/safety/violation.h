@@ -10,16 +10,16 @@ namespace flexura {
 
 /// What a motion can break.
 enum class Hazard : std::uint8_t {
-  bend,          ///< A section bends more than it may; rad.
-  bend_rate,     ///< A section bends faster than it may; rad/s.
-  stretch,       ///< A section is longer or shorter than it may be; factor.
-  folding,       ///< The inner side of the tube folds: curvature times radius reaches 1.
-  jump,          ///< The law asks for two states at one time; rad (or a factor).
-  not_finite,    ///< The law's formula has no finite value, or no length above 0.
-  self_contact,  ///< The arm touches itself; m of depth.
-  obstacle,      ///< The arm touches an obstacle; m of depth.
-  motor_speed,   ///< A motor turns faster than it can; rad/s.
-  step_rate,     ///< Its controller gives more microsteps a second than it can; 1/s.
+  bend,                ///< A section bends more than it may; rad.
+  bend_rate,           ///< A section bends faster than it may; rad/s.
+  stretch,             ///< A section is longer or shorter than it may be; factor.
+  folding,             ///< The inner side of the tube folds: curvature times radius reaches 1.
+  jump,                ///< The law asks for two states at one time; rad (or a factor).
+  not_finite,          ///< The law's formula has no finite value, or no length above 0.
+  self_contact,        ///< The arm touches itself; m of depth.
+  obstacle,            ///< The arm touches an obstacle; m of depth.
+  motor_speed,         ///< A motor turns faster than it can; rad/s.
+  step_rate,           ///< Its controller gives more microsteps a second than it can; 1/s.
   motor_acceleration,  ///< A motor speeds up or slows down faster than it can; rad/s^2.
   motor_position,      ///< A motor goes farther than it may; microsteps.
   workspace,           ///< The tip's target is out of the arm's reach; m from the nearest place.

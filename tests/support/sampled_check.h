@@ -108,17 +108,17 @@ class SampledCheck {
   /// four times what any point of the arm moves in between, and are not reported as a contact there.
   void compare_contacts() {
     constexpr std::size_t coarse = 100;
-    std::vector<Eigen::Vector3d> points = SampledArm(arm_, motion_.at(0)).points();
+    std::vector<Eigen::Vector3d> points;
     std::vector<std::size_t> all(obstacles_.size() + 1);
     std::iota(all.begin(), all.end(), std::size_t{0});
-    count_contacts(0, all);
-    for (std::size_t k = coarse; k <= samples_; k += coarse) {
-      const SampledArm now(arm_, motion_.at(time_of(k)));
-      double moved = 0;
-      for (std::size_t i = 0; i < points.size(); ++i)
-        moved = std::max(moved, (now.points()[i] - points[i]).norm());
-      points = now.points();
+    for (std::size_t k = 0; k <= samples_; k += coarse) {
+      const ArmState state = motion_.at(time_of(k));
+      const std::vector<Eigen::Vector3d> before = std::move(points);
+      points = is_possible(state) ? SampledArm(arm_, state).points() : std::vector<Eigen::Vector3d>{};
       count_contacts(k, all);
+      if (before.empty() || points.empty()) continue;
+      double moved = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) moved = std::max(moved, (points[i] - before[i]).norm());
       std::vector<std::size_t> near = near_contact(k - coarse, 4 * moved);
       for (const std::size_t thing : near_contact(k, 4 * moved))
         if (std::ranges::count(near, thing) == 0) near.push_back(thing);
@@ -182,8 +182,11 @@ class SampledCheck {
     return near;
   }
 
+  // An arm without length has no clearances.
   void count_contacts(std::size_t k, const std::vector<std::size_t>& things) {
-    const SampledArm arm(arm_, motion_.at(time_of(k)));
+    const ArmState state = motion_.at(time_of(k));
+    if (!is_possible(state)) return;
+    const SampledArm arm(arm_, state);
     ++result_.contact_samples;
     for (const std::size_t thing : things) {
       if (clearance(arm, thing, 0) >= -2e-6) continue;  // less counts as none

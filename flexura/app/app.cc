@@ -37,7 +37,8 @@ void add_run(CLI::App& app, Command& chosen) {
 
 void add_check(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* check = app.add_subcommand("check", "Say what an experiment's motions would break or touch");
+  CLI::App* check =
+      app.add_subcommand("check", "Say what an experiment's motions would break, touch or not reach");
   check->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
   check->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
       ->type_name("PATH=VALUE")

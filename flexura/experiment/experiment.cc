@@ -126,11 +126,13 @@ const Table<Experiment>& fields_of(const Experiment*) {
           .field("clock", &Experiment::clock, {.meaning = "How time runs."})
           .field("record", &Experiment::record, {.meaning = "What is kept of a run."})
           .field("arm", &Experiment::arm, {.meaning = "The arm.", .required = true})
-          .field("drive", &Experiment::drive,
-                 {.meaning = "What moves the arm; with it a run writes command lists.",
-                  .default_text = "none"})
+          .field(
+              "drive", &Experiment::drive,
+              {.meaning = "What moves the arm; with it a run writes command lists.", .default_text = "none"})
           .field("obstacle", &Experiment::obstacle,
-                 {.meaning = "What the arm must not touch.", .count = {0, max_obstacles}, .default_text = "none"})
+                 {.meaning = "What the arm must not touch.",
+                  .count = {0, max_obstacles},
+                  .default_text = "none"})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);

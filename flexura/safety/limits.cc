@@ -50,7 +50,10 @@ void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>&
 
 }  // namespace
 
-double LimitWatch::threshold() const { return sign * limit + std::abs(limit) * limit_tolerance; }
+double LimitWatch::threshold() const {
+  const double tolerance = std::abs(limit) * limit_tolerance;
+  return sign * limit + (hazard == Hazard::folding ? -tolerance : tolerance);
+}
 
 std::vector<LimitWatch> limit_watches(const Arm& arm) {
   std::vector<LimitWatch> watches;

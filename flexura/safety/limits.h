@@ -24,7 +24,7 @@ struct LimitWatch {
   /// A bound on |d value/dt| anywhere in [start, end] of a motion that knows its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 
-  /// sign * value above this breaks the limit.
+  /// sign * value above this breaks the limit. A tube folds where it reaches its limit, all others may.
   [[nodiscard]] double threshold() const;
 };
 

@@ -94,7 +94,8 @@ TEST(MotionCheck, FindsATooFastPieceOfAMicrosecond) {
 TEST(MotionCheck, FindsFolding) {
   Arm arm = one_section();
   arm.sections[0].radius = {0.2, 0.5};
-  EXPECT_TRUE(check(arm, hold_motion(bent(2), 1)).is_safe());
+  EXPECT_TRUE(check(arm, hold_motion(bent(1.9999), 1)).is_safe());
+  EXPECT_FALSE(check(arm, hold_motion(bent(2), 1)).is_safe());
   const SafetyReport report = check(arm, hold_motion(bent(2.01), 1));
   ASSERT_EQ(report.violations.size(), 1u);
   EXPECT_EQ(report.violations[0].hazard, Hazard::folding);

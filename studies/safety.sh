@@ -16,8 +16,9 @@ mkdir -p docs/studies
   echo
   echo "Random spatial arms of one to six sections with random limits and radii, each among a random plane, ball, rod"
   echo "and box. Five motions each: hold, point to point, sine, linear and smooth keyframes. Each is checked as"
-  echo "[safety](../safety.md) tells, and then sampled at $samples even steps, without the code under test"
-  echo "([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h))."
+  echo "[safety](../safety.md) tells, and then sampled at $samples even steps by other code"
+  echo "([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)); the motions, the sections' frames and"
+  echo "the distance from a point to an obstacle are the simulator's own."
   echo
   echo "Bends, mean bend rates, stretches and folding are compared at every step. Clearances, of the arm to itself and"
   echo "to each obstacle, are found by points along the sections and a descent from the nearest ones, at every hundredth"

@@ -87,6 +87,11 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
   return shown;
 }
 
+const char* name_of(Recorder::Level level) {
+  if (level == Recorder::Level::info) return "info";
+  return level == Recorder::Level::warning ? "warning" : "error";
+}
+
 // Everything the loop leaves behind while it runs: the log, and what the report will show.
 class Witness {
  public:
@@ -98,10 +103,7 @@ class Witness {
 
   void event(double time, Recorder::Level level, const std::string& name, const std::string& text) {
     recorder_.event(time, level, name, text);
-    const char* kind = level == Recorder::Level::info      ? "info"
-                       : level == Recorder::Level::warning ? "warning"
-                                                           : "error";
-    marks_.push_back({time, kind, name + ": " + text});
+    marks_.push_back({time, name_of(level), name + ": " + text});
   }
   void state(std::size_t step, double time, const ArmState& state) {
     recorder_.state(time, state, Backbone(arm_, state));
@@ -148,10 +150,10 @@ class Events {
  public:
   Events(const Schedule& schedule, const SafetyReport& safety) {
     for (const Leg& leg : schedule.legs())
-      events_.push_back({leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind)});
+      add(leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind));
     for (const Violation& violation : safety.violations)
-      events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
-    std::ranges::stable_sort(events_, {}, &Event::time);
+      add(violation.start, Recorder::Level::error, "unsafe", violation.text());
+    std::ranges::sort(events_, {}, [](const Event& event) { return std::pair(event.time, event.place); });
   }
   void tell_up_to(double time, Witness& witness) {
     for (; told_ < events_.size() && events_[told_].time <= time; ++told_) {
@@ -163,10 +165,14 @@ class Events {
  private:
   struct Event {
     double time;
+    std::size_t place;  // among those of one time
     Recorder::Level level;
     std::string name;
     std::string text;
   };
+  void add(double time, Recorder::Level level, const std::string& name, const std::string& text) {
+    events_.push_back({time, events_.size(), level, name, text});
+  }
   std::vector<Event> events_;
   std::size_t told_ = 0;
 };

@@ -28,7 +28,7 @@ struct RunResult {
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,
 /// the log, the summary, the report and its figures (docs/results.md). The same experiment writes the same
 /// bytes. Throws InputError when there is no task; std::runtime_error when a file cannot be written.
-[[nodiscard]] RunResult run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
+[[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress);
 
 }  // namespace flexura

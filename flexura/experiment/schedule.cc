@@ -66,6 +66,7 @@ SafetyReport Schedule::check() const {
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
   if (drive_) {
     std::vector<double> times;
+    times.reserve(steps_ + 1);
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
     check_drive(arm_, *drive_, [this](double time) { return state_at(time); }, times, report);
   }

@@ -83,8 +83,8 @@ std::string Violation::text() const {
 }
 
 void SafetyReport::sort() {
-  std::ranges::stable_sort(violations, {}, [](const Violation& v) {
-    return std::tuple(v.start, v.section.value_or(0), v.hazard);
+  std::ranges::sort(violations, {}, [](const Violation& v) {
+    return std::tuple(v.start, v.section.value_or(0), v.hazard, v.name, v.end);
   });
 }
 

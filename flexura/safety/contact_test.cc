@@ -82,6 +82,17 @@ TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
   EXPECT_LT(report.violations[0].end, 0.4);
 }
 
+TEST(Contact, OfAnArmThatHardlyMovesIsDecidedSoon) {
+  // 1e-9 rad in a day, so near to a ball that no step of time is short enough to tell.
+  const Arm arm = even_arm(1, 0.02);
+  const MotionPtr creep = point_to_point_motion(bent(1, 0), bent(1, 1e-9), {Profile::linear(1e5)});
+  for (const double gap : {1e-10, -1e-10, -3e-6}) {
+    const auto ball = obstacles({SphereConfig{.center = {0.1, 0.9, 0}, .radius = 0.08 - gap}}).front();
+    const SafetyReport report = check_motions(arm, {ball}, bent(1, 0), {{creep, 0}}, 1);
+    EXPECT_EQ(report.is_safe(), gap > -1e-6) << gap;
+  }
+}
+
 TEST(Contact, TheBaseMayStandOnTheGround) {
   PlaneConfig plane{.name = "ground"};
   const Arm arm = even_arm(2, 0.05);

@@ -12,6 +12,7 @@ namespace flexura {
 namespace {
 
 constexpr double half_turn = std::numbers::pi;
+constexpr double deepest = -contact_tolerance;  // clearance that is none yet
 constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
 constexpr QuantityBounds in_contact{no_distance, no_distance};
 constexpr QuantityBounds undecided{-no_distance, no_distance};
@@ -101,9 +102,9 @@ QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, cons
       reach.extend(j, moved, turned);
       if (turn_between(tubes[i], tubes[j]) < half_turn - turned) continue;
       if (apart(tubes[i], at[i], tubes[j], at[j]) >= moved) continue;
-      is_free = is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), half_turn - turned, 0);
-      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned,
-                      -contact_tolerance))
+      is_free =
+          is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), half_turn - turned, deepest);
+      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned, deepest))
         return in_contact;
     }
   }
@@ -111,6 +112,7 @@ QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, cons
 }
 
 QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
+  constexpr DistanceWish wish{deepest, deepest};
   bool is_free = true;
   double moved = 0;
   double turned = 0;
@@ -118,12 +120,10 @@ QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, 
     const double moved_before = moved;
     reach.extend(j, moved, turned);
     const double from = ignored(j);
-    if (obstacle_distance(grown(tubes[j], moved_before, moved), from, *obstacle_, {0, 0}) >= 0) continue;
+    if (obstacle_distance(grown(tubes[j], moved_before, moved), from, *obstacle_, wish) >= deepest) continue;
     is_free = false;
     const TubeArc sure = grown(tubes[j], -moved_before, -moved);
-    if (obstacle_distance(sure, from, *obstacle_, {-contact_tolerance, -contact_tolerance}) <
-        -contact_tolerance)
-      return in_contact;
+    if (obstacle_distance(sure, from, *obstacle_, wish) < deepest) return in_contact;
   }
   return is_free ? free_of_contact : undecided;
 }

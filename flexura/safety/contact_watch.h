@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// Contact shallower than this is none: the arm may touch.
+/// Contact shallower than this is none: the arm may touch. (Distances are right to half of it.)
 inline constexpr double contact_tolerance = 1e-6;  // m
 
 /// Where something is nearest.

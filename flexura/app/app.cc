@@ -35,6 +35,19 @@ void add_run(CLI::App& app, Command& chosen) {
   });
 }
 
+void add_check(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* check =
+      app.add_subcommand("check", "Say what an experiment's motions would break, touch or not reach");
+  check->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
+  check->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  check->add_flag("--json", arguments->json, "Print what was found as one JSON document");
+  check->callback(
+      [&chosen, arguments] { chosen = [arguments] { return check_command(*arguments, std::cout); }; });
+}
+
 // The commands that answer lines about an arm.
 void add_answers(CLI::App& app, Command& chosen, const std::string& name, const std::string& meaning,
                  int (*command)(const std::string&, std::istream&, std::ostream&)) {
@@ -74,6 +87,7 @@ int parse_and_run(int argc, const char* const* argv) {
   });
   Command chosen;
   add_run(app, chosen);
+  add_check(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
   add_export(app, chosen);

@@ -14,6 +14,8 @@
 #include "flexura/experiment/export_csv.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
+#include "flexura/experiment/safety_nodes.h"
+#include "flexura/experiment/schedule.h"
 #include "flexura/store/json.h"
 #include "flexura/store/schema.h"
 #include "flexura/store/text_file.h"
@@ -99,6 +101,22 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     print_result(experiment, result, out);
   }
   return result.outcome == Outcome::done ? exit_done : exit_missed;
+}
+
+int check_command(const CheckArguments& arguments, std::ostream& out) {
+  const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
+  if (experiment.task.empty())
+    throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]");
+  const SafetyReport report = Schedule(experiment).check();
+  if (arguments.json) {
+    out << write_json(safety_node(report), 2) << '\n';
+  } else {
+    for (const Violation& violation : report.violations) out << "unsafe: " << violation.text() << '\n';
+    for (const std::string& caveat : report.caveats) out << "caveat: " << caveat << '\n';
+    for (const std::string& note : report.notes) out << "note: " << note << '\n';
+    if (report.is_safe()) out << "safe\n";
+  }
+  return report.is_safe() ? exit_done : exit_missed;
 }
 
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out) {

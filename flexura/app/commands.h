@@ -20,10 +20,18 @@ struct RunArguments {
   bool json = false;
 };
 
+/// What `flexura check` is told.
+struct CheckArguments {
+  std::string experiment;
+  std::vector<std::string> sets;
+  bool json = false;
+};
+
 // Each command writes its result to `out` and what is for people's eyes to `err`, returns an exit status, and
 // throws InputError for bad input and other exceptions for failures of the system.
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
+int check_command(const CheckArguments& arguments, std::ostream& out);
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int export_command(const std::string& results, const std::string& format, std::ostream& out,

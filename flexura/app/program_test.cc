@@ -84,10 +84,45 @@ TEST_F(Program, EndsWithOneWhenALimitWouldBeBroken) {
   EXPECT_THAT(ended.err, HasSubstr("unsafe: 0.833333 s to 5 s: section 2: bend 18 deg, limit 3 deg\n"));
 }
 
+TEST_F(Program, ChecksWithoutRunning) {
+  const Ended safe = run("check " + paper_arm);
+  EXPECT_EQ(safe.status, 0);
+  EXPECT_EQ(safe.out, "note: 0 s: singular pose: the tip can set out in 1 of 2 dimensions\nsafe\n");
+  const Ended unsafe = run("check " + paper_arm + " --json --set arm.section.1.max_bend_deg=3");
+  EXPECT_EQ(unsafe.status, 1);
+  const Node found = parse_json(unsafe.out, "stdout");
+  EXPECT_FALSE(*found.find("safe")->as<bool>());
+  const Node& violation = found.find("violations")->as<Node::Array>()->at(0);
+  EXPECT_EQ(*violation.find("hazard")->as<std::string>(), "bend");
+  EXPECT_EQ(*violation.find("section")->as<std::int64_t>(), 2);
+  EXPECT_EQ(*violation.find("end")->as<double>(), 5.0);
+  EXPECT_FALSE(std::filesystem::exists(path("results")));
+}
+
+TEST_F(Program, EndsWithOneWhenATargetIsOutsideTheWorkspace) {
+  std::ofstream(path("reach.toml")) << "[[arm.section]]\nlength = 1\n[[arm.section]]\nlength = 0.5\n"
+                                       "[[task]]\nkind = 'move'\nname = 'up'\nto.position = [0, 1.5, 0]\n";
+  EXPECT_EQ(run("check reach.toml").status, 0);
+  const Ended ended = run("check reach.toml --set task.0.to.position=[0,1.75,0]");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out,
+              HasSubstr("unsafe: 0 s to 1 s: up: target outside the workspace, 250 mm from the nearest "
+                        "pose\n"));
+  EXPECT_EQ(run("run reach.toml --set task.0.to.position=[0,1.75,0]").status, 1);
+}
+
+TEST_F(Program, SaysWhereAnObstacleIsWrong) {
+  std::ofstream(path("ball.toml")) << "[[arm.section]]\nlength = 1\n[[obstacle]]\nkind = 'sphere'\n"
+                                      "center = [0, 0, 0]\nradius = -0.1\n[[task]]\nkind = 'hold'\n";
+  const Ended ended = run("check ball.toml");
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("ball.toml:6:10: obstacle[0].radius = -0.1: expected"));
+}
+
 TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
-  for (const char* arguments :
-       {"", "fly", "run", "run none.toml", "run . ", "run --seed -1 x.toml", "run --seed x x.toml",
-        "export . --to csv", "export", "export . --to pdf", "schema --format yaml", "fk none.toml"}) {
+  for (const char* arguments : {"", "fly", "run", "run none.toml", "run . ", "run --seed -1 x.toml",
+                                "run --seed x x.toml", "export . --to csv", "export", "export . --to pdf",
+                                "schema --format yaml", "fk none.toml", "check", "check none.toml"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 2) << arguments;
     EXPECT_THAT(ended.out, IsEmpty()) << arguments;
@@ -105,7 +140,7 @@ TEST_F(Program, EndsWithThreeWhenTheSystemFails) {
 
 TEST_F(Program, TellsItsVersionAndHelp) {
   EXPECT_EQ(run("--version").out, std::string(version()) + "\n");
-  for (const char* command : {"", "run", "fk", "export", "schema"}) {
+  for (const char* command : {"", "run", "check", "fk", "export", "schema"}) {
     const Ended ended = run(std::string(command) + " --help");
     EXPECT_EQ(ended.status, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr("OPTIONS")) << command;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double max_steps = 1e6;
 constexpr std::size_t max_tasks = 10000;
+constexpr std::size_t max_obstacles = 1000;
 
 void check_experiment(const Experiment& experiment, Reader& reader) {
   if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
@@ -141,6 +142,10 @@ const Table<Experiment>& fields_of(const Experiment*) {
           .field(
               "drive", &Experiment::drive,
               {.meaning = "What moves the arm; with it a run writes command lists.", .default_text = "none"})
+          .field("obstacle", &Experiment::obstacle,
+                 {.meaning = "What the arm must not touch.",
+                  .count = {0, max_obstacles},
+                  .default_text = "none"})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);

@@ -11,6 +11,7 @@
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive_config.h"
+#include "flexura/model/obstacle.h"
 
 namespace flexura {
 
@@ -37,6 +38,7 @@ struct Experiment {
   RecordConfig record;
   ArmConfig arm;
   std::optional<DriveConfig> drive;
+  std::vector<ObstacleConfig> obstacle;
   std::vector<TaskConfig> task;
 };
 

@@ -11,18 +11,16 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
+#include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
 #include "flexura/report/report.h"
+#include "flexura/safety/motion_check.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 
 namespace flexura {
 namespace {
-
-Node tip_at(const Arm& arm, const Schedule& schedule, double time) {
-  return pose_node(Backbone(arm, schedule.state_at(time)).tip());
-}
 
 Node task_nodes(const Experiment& experiment, const Arm& arm, const Schedule& schedule) {
   Node::Array tasks;
@@ -46,23 +44,52 @@ Node reason_nodes(const std::vector<std::string>& reasons) {
   return {std::move(lines), {}};
 }
 
+// How far a run came.
+struct Played {
+  std::size_t states = 0;  // of the clock's steps, from time 0
+  double time = 0;         // of the last one, s
+  ArmState last;
+};
+
 Node summary_of(const Experiment& experiment, const Arm& arm, const Schedule& schedule,
-                const RunResult& result) {
+                const SafetyReport& safety, const Played& played, const RunResult& result) {
   const bool done = result.outcome == Outcome::done;
-  const double end = done ? schedule.duration() : 0.0;
-  Node::Table summary{{"flexura", {}, {experiment.flexura, {}}},
-                      {"title", {}, {experiment.title, {}}},
-                      {"outcome", {}, {std::string(done ? "done" : "unsafe"), {}}},
-                      {"reasons", {}, reason_nodes(result.reasons)},
-                      {"seed", {}, {experiment.seed, {}}},
-                      {"duration", {}, {end, {}}},
-                      {"steps", {}, {static_cast<std::int64_t>(done ? schedule.steps() : 0), {}}},
-                      {"sections", {}, {static_cast<std::int64_t>(arm.sections.size()), {}}},
-                      {"length", {}, {arm.length(), {}}},
-                      {"tip_at_start", {}, tip_at(arm, schedule, 0)},
-                      {"tip", {}, tip_at(arm, schedule, end)}};
-  if (done) summary.push_back({"tasks", {}, task_nodes(experiment, arm, schedule)});
+  Node::Table summary{
+      {"flexura", {}, {experiment.flexura, {}}},
+      {"title", {}, {experiment.title, {}}},
+      {"outcome", {}, {std::string(done ? "done" : "unsafe"), {}}},
+      {"reasons", {}, reason_nodes(result.reasons)},
+      {"seed", {}, {experiment.seed, {}}},
+      {"duration", {}, {played.time, {}}},
+      {"steps", {}, {static_cast<std::int64_t>(std::max<std::size_t>(played.states, 1) - 1), {}}},
+      {"sections", {}, {static_cast<std::int64_t>(arm.sections.size()), {}}},
+      {"length", {}, {arm.length(), {}}},
+      {"tip_at_start", {}, pose_node(Backbone(arm, schedule.initial()).tip())},
+      {"tip", {}, pose_node(Backbone(arm, played.last).tip())}};
+  if (played.states > schedule.steps())
+    summary.push_back({"tasks", {}, task_nodes(experiment, arm, schedule)});
+  const Node found = safety_node(safety);
+  for (const char* list : {"violations", "caveats", "notes"})
+    summary.push_back({list, {}, *found.find(list)});
   return {std::move(summary), {}};
+}
+
+ReportData::Safety shown_safety(const SafetyReport& safety) {
+  ReportData::Safety shown;
+  for (const Violation& violation : safety.violations) {
+    auto& told = shown.violations.emplace_back();
+    told.start = violation.start, told.end = violation.end, told.text = violation.text();
+    for (const auto& section : {violation.section, violation.other_section})
+      if (section) told.sections.push_back(*section);
+  }
+  shown.remarks = safety.caveats;
+  shown.remarks.insert(shown.remarks.end(), safety.notes.begin(), safety.notes.end());
+  return shown;
+}
+
+const char* name_of(Recorder::Level level) {
+  if (level == Recorder::Level::info) return "info";
+  return level == Recorder::Level::warning ? "warning" : "error";
 }
 
 // Everything the loop leaves behind while it runs: the log, and what the report will show.
@@ -76,10 +103,7 @@ class Witness {
 
   void event(double time, Recorder::Level level, const std::string& name, const std::string& text) {
     recorder_.event(time, level, name, text);
-    const char* kind = level == Recorder::Level::info      ? "info"
-                       : level == Recorder::Level::warning ? "warning"
-                                                           : "error";
-    marks_.push_back({time, kind, name + ": " + text});
+    marks_.push_back({time, name_of(level), name + ": " + text});
   }
   void state(std::size_t step, double time, const ArmState& state) {
     recorder_.state(time, state, Backbone(arm_, state));
@@ -100,10 +124,10 @@ class Witness {
     if (commands_) commands_->close();
   }
 
-  ReportData report_data(const Experiment& experiment) && {
-    return {experiment.title, experiment.flexura, experiment_toml(experiment),
-            std::move(arm_),  std::move(times_),  std::move(states_),
-            std::move(marks_)};
+  ReportData report_data(const Experiment& experiment, const SafetyReport& safety) && {
+    return {experiment.title,     experiment.flexura, experiment_toml(experiment), std::move(arm_),
+            std::move(times_),    std::move(states_), std::move(marks_),           recorded_,
+            shown_safety(safety), experiment.obstacle};
   }
 
  private:
@@ -121,22 +145,57 @@ class Witness {
   std::vector<ReportData::Mark> marks_;
 };
 
-void play(const Experiment& experiment, const Schedule& schedule, Witness& witness, Progress& progress) {
+// What is told at its time while the run plays, in the order of time.
+class Events {
+ public:
+  Events(const Schedule& schedule, const SafetyReport& safety) {
+    for (const Leg& leg : schedule.legs())
+      add(leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind));
+    for (const Violation& violation : safety.violations)
+      add(violation.start, Recorder::Level::error, "unsafe", violation.text());
+    std::ranges::sort(events_, {}, [](const Event& event) { return std::pair(event.time, event.place); });
+  }
+  void tell_up_to(double time, Witness& witness) {
+    for (; told_ < events_.size() && events_[told_].time <= time; ++told_) {
+      const Event& event = events_[told_];
+      witness.event(event.time, event.level, event.name, event.text);
+    }
+  }
+
+ private:
+  struct Event {
+    double time;
+    std::size_t place;  // among those of one time
+    Recorder::Level level;
+    std::string name;
+    std::string text;
+  };
+  void add(double time, Recorder::Level level, const std::string& name, const std::string& text) {
+    events_.push_back({time, events_.size(), level, name, text});
+  }
+  std::vector<Event> events_;
+  std::size_t told_ = 0;
+};
+
+// Plays every step, or those before the first state that no arm can take.
+Played play(const Experiment& experiment, const Schedule& schedule, const SafetyReport& safety,
+            Witness& witness, Progress& progress) {
   const auto every = static_cast<std::size_t>(experiment.record.every);
-  std::size_t started = 0;  // legs whose start was told
+  Played played{0, 0, schedule.initial()};
+  Events events(schedule, safety);
   for (std::size_t step = 0; step <= schedule.steps(); ++step) {
     const double time = schedule.time_of_step(step);
-    for (; started < schedule.legs().size() && schedule.legs()[started].start <= time; ++started) {
-      const Leg& leg = schedule.legs()[started];
-      witness.event(leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind));
-    }
+    events.tell_up_to(time, witness);
     const ArmState state = schedule.state_at(time);
+    if (!is_possible(state)) break;
     if (step % every == 0 || step == schedule.steps()) witness.state(step, time, state);
     witness.command(time, state);
+    played = {step + 1, time, state};
     progress.update(schedule.duration() > 0 ? time / schedule.duration() : 1.0,
                     schedule.legs()[schedule.leg_at(time)].name);
   }
-  witness.event(schedule.duration(), Recorder::Level::info, "run", "done");
+  if (played.states == 0) witness.state(0, 0, played.last);
+  return played;
 }
 
 void write_report(const std::filesystem::path& folder, const ReportData& data) {
@@ -162,21 +221,17 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   result.folder = folder;
   Witness witness(folder, arm, schedule);
   const SafetyReport safety = schedule.check();
-  for (const Violation& violation : safety.violations) {
-    result.outcome = Outcome::unsafe;
-    result.reasons.push_back(violation.text());
-    witness.event(0, Recorder::Level::error, "run", violation.text());
-  }
-  if (result.outcome == Outcome::done) {
-    if (experiment.drive) witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
-    play(experiment, schedule, witness, progress);
-  } else {
-    witness.state(0, 0, schedule.state_at(0));
-  }
+  for (const Violation& violation : safety.violations) result.reasons.push_back(violation.text());
+  if (!safety.is_safe()) result.outcome = Outcome::unsafe;
+  // Nobody should send motors where the arm would come to harm: an unsafe motion is simulated only.
+  if (experiment.drive && safety.is_safe())
+    witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
+  const Played played = play(experiment, schedule, safety, witness, progress);
+  witness.event(played.time, Recorder::Level::info, "run", safety.is_safe() ? "done" : "unsafe");
   witness.close();
-  result.summary = summary_of(experiment, arm, schedule, result);
+  result.summary = summary_of(experiment, arm, schedule, safety, played, result);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
-  if (experiment.record.report) write_report(folder, std::move(witness).report_data(experiment));
+  if (experiment.record.report) write_report(folder, std::move(witness).report_data(experiment, safety));
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace flexura {
 /// How a run ended.
 enum class Outcome {
   done,
-  unsafe,  ///< A task would break a limit of the arm: nothing moved.
+  unsafe,  ///< A task would break a limit of the arm or touch something; simulated to be looked at.
 };
 
 /// What a run says of itself at its end.
@@ -28,7 +28,7 @@ struct RunResult {
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,
 /// the log, the summary, the report and its figures (docs/results.md). The same experiment writes the same
 /// bytes. Throws InputError when there is no task; std::runtime_error when a file cannot be written.
-[[nodiscard]] RunResult run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
+[[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress);
 
 }  // namespace flexura

@@ -138,9 +138,36 @@ TEST_F(Run, GoesToALimitButNotBeyond) {
   move.to.archings->at(0) = 0.1;
   move.to.stretches->at(0) = 0.8;
   EXPECT_THAT(run(experiment).reasons.at(0), HasSubstr("stretch 0.8, limit 0.9"));
-  move.to = {.cord_angles = {}, .archings = {{0.5}}, .bends = {}, .stretches = {}};
+  move.to = {};
+  move.to.archings = {{0.5}};
   move.duration = 1.0;
   EXPECT_THAT(run(experiment).reasons.at(0), HasSubstr("bend rate 57.2958 deg/s, limit 40 deg/s"));
+}
+
+TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
+  Experiment experiment = parse_experiment(limited, "x.toml");
+  std::get<MoveTask>(experiment.task[0]).to.archings->at(0) = 0.6;
+  experiment.obstacle.emplace_back(SphereConfig{.name = "ball", .center = {0, 0.5, 0}, .radius = 0.1});
+  const RunResult result = run(experiment);
+  EXPECT_EQ(result.outcome, Outcome::unsafe);
+  EXPECT_EQ(*result.summary.find("duration")->as<double>(), 2.0);
+  const auto& violations = *result.summary.find("violations")->as<Node::Array>();
+  ASSERT_THAT(violations, SizeIs(2));
+  EXPECT_EQ(*violations[0].find("obstacle")->as<std::string>(), "ball");
+  const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
+  EXPECT_THAT(report, HasSubstr("section 1: contact with ball, "));
+  EXPECT_THAT(report, HasSubstr("class=\"warning\""));
+}
+
+TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
+  const RunResult result = run(parse_experiment(
+      "[clock]\nstep = 0.1\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'expression'\nduration = 2\n"
+      "archings = ['1 - sqrt(1 - t)']\n",
+      "x.toml"));
+  EXPECT_EQ(result.outcome, Outcome::unsafe);
+  EXPECT_EQ(result.reasons.at(0), "1.1 s: no possible value");
+  EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.0);
+  EXPECT_EQ(result.summary.find("tasks"), nullptr);
 }
 
 TEST_F(Run, LogsTheLastStateWhateverTheRate) {

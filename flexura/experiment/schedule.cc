@@ -4,24 +4,45 @@
 #include <cmath>
 
 #include "flexura/kinematics/shape.h"
+#include "flexura/model/backbone.h"
+#include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
 
 namespace flexura {
+namespace {
+
+// A tip that comes so near to its target, as a part of the arm's length, is there.
+constexpr double target_tolerance = 1e-6;
+
+}  // namespace
+
 Schedule::Schedule(const Experiment& experiment)
     : arm_(experiment.arm.arm()),
       initial_(arm_state(arm_, experiment.arm.initial)),
+      obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {
-  ArmState state = initial_;
-  for (const TaskConfig& task : experiment.task) {
-    const MotionPtr motion = task_motion(task, arm_, state);
-    legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
-    state = motion->at(motion->duration());
-    duration_ += motion->duration();
-  }
-  if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(state, 0.0)});
+  if (experiment.drive) drive_ = experiment.drive->drive();
+  for (const TaskConfig& task : experiment.task)
+    add(task, legs_.empty() ? initial_ : legs_.back().motion->at(legs_.back().motion->duration()));
+  if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
   // A duration of a whole number of steps, but for rounding, takes just that many.
   constexpr double rounding = 1e-9;
   steps_ = static_cast<std::size_t>(std::max(0.0, std::ceil(duration_ / step_ - rounding)));
+}
+
+void Schedule::add(const TaskConfig& task, const ArmState& from) {
+  const MotionPtr motion = task_motion(task, arm_, from);
+  legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
+  duration_ += motion->duration();
+  const auto target = tip_target(task);
+  if (!target) return;
+  const double missed = (Backbone(arm_, motion->at(motion->duration())).tip().position - *target).norm();
+  if (missed <= target_tolerance * arm_.length()) return;
+  missed_targets_.push_back({.hazard = Hazard::workspace,
+                             .start = legs_.back().start,
+                             .end = duration_,
+                             .name = legs_.back().name,
+                             .value = missed});
 }
 
 double Schedule::time_of_step(std::size_t step) const {
@@ -41,7 +62,16 @@ ArmState Schedule::state_at(double time) const {
 SafetyReport Schedule::check() const {
   std::vector<TimedMotion> motions;
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start});
-  return check_motions(arm_, initial_, motions, step_);
+  SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_);
+  report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
+  if (drive_) {
+    std::vector<double> times;
+    times.reserve(steps_ + 1);
+    for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
+    check_drive(arm_, *drive_, [this](double time) { return state_at(time); }, times, report);
+  }
+  report.sort();
+  return report;
 }
 
 }  // namespace flexura

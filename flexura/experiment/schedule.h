@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/experiment/experiment.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/model/obstacle.h"
 #include "flexura/safety/violation.h"
 
 namespace flexura {
@@ -33,14 +36,22 @@ class Schedule {
   [[nodiscard]] double time_of_step(std::size_t step) const;  ///< s
   /// The leg under way at `time`; a leg owns its start, the last one its end too.
   [[nodiscard]] std::size_t leg_at(double time) const;
+  /// The state in which the arm starts.
+  [[nodiscard]] const ArmState& initial() const { return initial_; }
   /// The arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
-  /// What would harm the arm, known before anything moves.
+  /// What would harm the arm or be too much for its motors, and targets out of reach; known before anything
+  /// moves.
   [[nodiscard]] SafetyReport check() const;
 
  private:
+  void add(const TaskConfig& task, const ArmState& from);
+
   Arm arm_;
+  std::optional<Drive> drive_;
   ArmState initial_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Violation> missed_targets_;
   double step_ = 0;
   double duration_ = 0;
   std::size_t steps_ = 0;

@@ -24,6 +24,28 @@ const std::vector<std::string>& names_of(const Interpolation*) {
   return names;
 }
 
+const Table<MoveTarget>& fields_of(const MoveTarget*) {
+  const auto of_shape = [](std::string_view name) {
+    return fields_of(static_cast<const ShapeConfig*>(nullptr)).info().find(name)->spec;
+  };
+  using Angles = std::optional<std::vector<double>> MoveTarget::*;
+  using Bends = std::optional<std::vector<std::array<double, 2>>> MoveTarget::*;
+  static const auto table =
+      Table<MoveTarget>("target",
+                        "A shape of the arm, as above; or a place for its tip, for which a shape is found "
+                        "within the limits of the arm, starting from where it is.")
+          .field("cord_angles", Angles(&ShapeConfig::cord_angles), of_shape("cord_angles"))
+          .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
+          .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
+          .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
+          .field("position", &MoveTarget::position,
+                 {.meaning = "Where the tip shall be in the world, instead of a shape.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .default_text = "not set"});
+  return table;
+}
+
 const Table<MoveTask>& fields_of(const MoveTask*) {
   static const auto table =
       Table<MoveTask>(
@@ -55,7 +77,9 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                   .range = above_up_to(0, 1e6),
                   .default_text = "not set"})
           .field("to", &MoveTask::to,
-                 {.meaning = "The shape to reach, as `to.archings_deg = [...]`.", .required = true});
+                 {.meaning = "The shape to reach, as `to.archings_deg = [...]`, or the tip's place, as "
+                             "`to.position = [x, y, z]`.",
+                  .required = true});
   return table;
 }
 
@@ -141,6 +165,13 @@ const Table<ExpressionTask>& fields_of(const ExpressionTask*) {
 std::string task_name(const TaskConfig& task) {
   return std::visit(
       [&](const auto& one) { return one.name.empty() ? std::string(task_kind(task)) : one.name; }, task);
+}
+
+std::optional<Eigen::Vector3d> tip_target(const TaskConfig& task) {
+  const auto* move = std::get_if<MoveTask>(&task);
+  if (move == nullptr || !move->to.position) return std::nullopt;
+  const auto& p = *move->to.position;
+  return Eigen::Vector3d(p[0], p[1], p[2]);
 }
 
 std::string_view task_kind(const TaskConfig& task) {

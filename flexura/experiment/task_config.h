@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
@@ -16,16 +17,22 @@ namespace flexura {
 /// How a move goes in time (kinematics/profile.h).
 enum class MoveLaw { linear, minimum_jerk, trapezoid };
 
+/// Where a move goes: to a shape, or to a shape that puts the tip in a place.
+struct MoveTarget : ShapeConfig {
+  std::optional<std::array<double, 3>> position;  ///< p_WT, m.
+};
+
 /// `kind = "move"`: the arm goes from where it is to another shape, each section on a straight line in bend
 /// and stretch. In a plane that is a straight line in cord angles and archings too, which depend linearly on
-/// the bends.
+/// the bends. A place for the tip is made a shape by inverse kinematics from where the arm is; out of reach,
+/// the nearest one.
 struct MoveTask {
   std::string name;
   std::optional<double> duration;                ///< s; 1 when left out. A trapezoid finds its own.
   std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One for all sections, or one each.
   std::optional<double> max_rate;                ///< rad/s, of the section that bends most; trapezoid.
   std::optional<double> max_acceleration;        ///< rad/s^2; trapezoid.
-  ShapeConfig to;
+  MoveTarget to;
 };
 
 /// `kind = "hold"`: the arm stays as it is.
@@ -68,6 +75,7 @@ using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, Exp
 
 const std::vector<std::string>& names_of(const MoveLaw*);
 const std::vector<std::string>& names_of(const Interpolation*);
+const Table<MoveTarget>& fields_of(const MoveTarget*);
 const Table<MoveTask>& fields_of(const MoveTask*);
 const Table<HoldTask>& fields_of(const HoldTask*);
 const Table<SineTask>& fields_of(const SineTask*);
@@ -80,6 +88,9 @@ const Table<ExpressionTask>& fields_of(const ExpressionTask*);
 /// Reports what keeps the task at `path` ("task[2]") from fitting an arm of this kind and number of sections.
 void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, const std::string& path,
                 Reader& reader);
+
+/// Where the tip shall be after the task, m, when the task says so.
+[[nodiscard]] std::optional<Eigen::Vector3d> tip_target(const TaskConfig& task);
 
 /// The motion that a task (checked by check_task) is, for an arm that stands in `from`.
 [[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from);

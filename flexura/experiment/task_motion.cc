@@ -8,6 +8,7 @@
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/task_config.h"
 #include "flexura/kinematics/expression.h"
+#include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/planar.h"
 #include "flexura/kinematics/shape.h"
 
@@ -31,6 +32,10 @@ void check_one(const HoldTask&, ArmKind, std::size_t, const std::string&, Reader
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   check_shape(task.to, kind, sections, path + ".to", reader);
+  const MoveTarget& to = task.to;
+  if (to.position && (to.cord_angles || to.archings || to.bends || to.stretches))
+    reader.problem_at(path + ".to.position",
+                      "stands beside a shape: expected a place for the tip or a shape");
   check_one_or_each(task.law.size(), sections, path + ".law", reader);
   const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
   if (trapezoids == 0) {
@@ -128,8 +133,20 @@ MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
   return hold_motion(from, task.duration);
 }
 
+// The shape that a move goes to. The search for one starts from where the arm is, unless a formula left it
+// nowhere.
+ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
+  const auto tip = tip_target(task);
+  if (!tip) return arm_state(arm, task.to);
+  InverseOptions options;
+  const bool is_finite = std::ranges::all_of(from.bends, [](const auto& bend) { return bend.allFinite(); }) &&
+                         std::ranges::all_of(from.stretches, [](double s) { return std::isfinite(s); });
+  if (is_finite) options.start = from;
+  return solve_inverse(arm, TipTarget{.position = *tip}, options).state;
+}
+
 MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {
-  const ArmState to = arm_state(arm, task.to);
+  const ArmState to = state_to_reach(task, arm, from);
   std::vector<Profile> profiles;
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
     switch (of_section(task.law, i)) {

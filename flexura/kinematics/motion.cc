@@ -86,8 +86,14 @@ class SineMotion : public Motion {
     return state;
   }
 
-  [[nodiscard]] std::optional<SectionRates> rates(std::size_t section, double, double) const override {
-    return SectionRates{amplitudes_[section].norm() * frequency_, 0};
+  // The rate is amplitude frequency |cos|, largest at a multiple of pi or at an end.
+  [[nodiscard]] std::optional<SectionRates> rates(std::size_t section, double start,
+                                                  double end) const override {
+    const double from = frequency_ * start + phases_[section];
+    const double to = frequency_ * end + phases_[section];
+    const bool has_peak = std::floor(to / std::numbers::pi) * std::numbers::pi >= from;
+    const double most = has_peak ? 1.0 : std::max(std::abs(std::cos(from)), std::abs(std::cos(to)));
+    return SectionRates{amplitudes_[section].norm() * frequency_ * most, 0};
   }
 
  private:
@@ -148,16 +154,24 @@ class KeyframeMotion : public Motion {
   [[nodiscard]] std::optional<SectionRates> rates(std::size_t section, double start,
                                                   double end) const override {
     SectionRates most;
-    for (std::size_t k = piece_at(start); k + 1 < times_.size() && times_[k] <= end; ++k) {
+    const std::size_t first = piece_at(start);
+    for (std::size_t k = first; k + 1 < times_.size() && (k == first || times_[k] < end); ++k) {
       const double width = times_[k + 1] - times_[k];
       const Eigen::Vector3d mean = (values_[k + 1][section] - values_[k][section]) / width;
-      include(mean, most);
-      if (is_linear_) continue;
-      // The rate of a cubic is a quadratic Bezier curve, which stays within the hull of its three control
-      // points: the slopes at the ends and 3 mean - (their sum) in the middle.
-      include(slopes_[k][section], most);
-      include(slopes_[k + 1][section], most);
-      include(3 * mean - slopes_[k][section] - slopes_[k + 1][section], most);
+      if (is_linear_) {
+        include(mean, most);
+        continue;
+      }
+      // The rate of a cubic is a quadratic Bezier curve: its control points are the slopes at the ends and
+      // 3 mean - (their sum) in the middle. A part of it, from a to b, is one too, with the control points
+      // (a, a), (a, b) and (b, b) of its blossom, and stays within their hull.
+      const Eigen::Vector3d& p0 = slopes_[k][section];
+      const Eigen::Vector3d& p2 = slopes_[k + 1][section];
+      const Eigen::Vector3d p1 = 3 * mean - p0 - p2;
+      const double a = std::clamp((start - times_[k]) / width, 0.0, 1.0);
+      const double b = std::clamp((end - times_[k]) / width, 0.0, 1.0);
+      for (const auto& [x, y] : {std::pair(a, a), std::pair(a, b), std::pair(b, b)})
+        include((1 - x) * (1 - y) * p0 + ((1 - x) * y + x * (1 - y)) * p1 + x * y * p2, most);
     }
     return most;
   }

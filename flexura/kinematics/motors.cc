@@ -53,7 +53,7 @@ TendonDisplacements displacements_at(const Drive& drive, std::span<const double>
 }
 
 MotorCommander::MotorCommander(const Drive& drive, const TendonDisplacements& start)
-    : axes_(drive.axes), sides_(drive.axes.size()), positions_(drive.axes.size(), 0) {
+    : axes_(drive.axes), sides_(drive.axes.size()), positions_(drive.axes.size(), 0), targets_(drive.axes.size(), 0.0) {
   const std::vector<double> exact = motor_positions(drive, start);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     sides_[i].farthest = sense(axes_[i]) * exact[i];
@@ -66,6 +66,7 @@ void MotorCommander::command(std::size_t axis, double target) {
     throw std::out_of_range(
         fmt::format("axis {}: the position {} microsteps cannot be counted", axis, target));
   }
+  targets_[axis] = sense(axes_[axis]) * target;
   // A target halfway between two microsteps stays at the one it was given first.
   if (std::abs(target - pulled_microsteps(axes_[axis], positions_[axis])) <= 0.5 + rounding) return;
   positions_[axis] = static_cast<std::int64_t>(sense(axes_[axis]) * std::round(target));

@@ -32,6 +32,8 @@ class MotorCommander {
 
   /// The positions now, microsteps.
   [[nodiscard]] const std::vector<std::int64_t>& positions() const { return positions_; }
+  /// What they are rounded from: the way of the motors without the steps of counting.
+  [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
   /// Goes on to `wanted`. std::out_of_range when a position is beyond 2^53, or not a number.
   void follow(const TendonDisplacements& wanted);
 
@@ -45,6 +47,7 @@ class MotorCommander {
   std::vector<Axis> axes_;
   std::vector<Side> sides_;
   std::vector<std::int64_t> positions_;
+  std::vector<double> targets_;
 };
 
 /// What the mechanism makes of commands: the spool follows its motor within the play, and stays where it is

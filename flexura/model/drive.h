@@ -35,6 +35,7 @@ struct StepperMotor {
   double max_speed = std::numeric_limits<double>::infinity();         ///< Of the motor, rad/s.
   double max_acceleration = std::numeric_limits<double>::infinity();  ///< Of the motor, rad/s^2.
   double max_step_rate = std::numeric_limits<double>::infinity();     ///< Microsteps a second.
+  double max_position = std::numeric_limits<double>::infinity();      ///< Microsteps to either side of 0.
 
   /// Microsteps a turn.
   [[nodiscard]] double resolution() const { return static_cast<double>(steps * microsteps); }

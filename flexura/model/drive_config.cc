@@ -87,6 +87,10 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
       .field("max_step_rate", &StepperMotor::max_step_rate,
              {.meaning = "Most microsteps a second that the controller gives.",
               .range = above(0),
+              .default_text = "no limit"})
+      .field("max_position", &StepperMotor::max_position,
+             {.meaning = "Most microsteps to either side of where the arm is straight and unstretched.",
+              .range = above(0),
               .default_text = "no limit"});
 }
 

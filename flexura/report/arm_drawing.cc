@@ -9,10 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/report/obstacle_drawing.h"
+
 namespace flexura {
 namespace {
 
-constexpr double thinnest_tube = 5.0;  // Of a tube, page units.
+constexpr double warning_border = 4.0;  // Around a tube, page units.
+constexpr double thinnest_tube = 5.0;   // Of a tube, page units.
 
 std::string moment(const ReportMotion& motion, std::size_t i) {
   return "t = " + fixed(motion.times[i], 3) + " s";
@@ -30,16 +33,26 @@ void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm&
 }
 
 void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
-               const Arc& arc, std::size_t section) {
+               const Arc& arc, std::size_t section, bool is_unsafe) {
   const bool exact = motion.in_plane && scene.views[v] == PlotView::xoy;
   const std::string colour = fmt::format("s{}", section % 8);
   std::array<double, 2> radius = motion.arm.sections[section].radius;
   for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2);
   if (radius[0] == radius[1]) {
+    if (is_unsafe) {
+      svg.leaf("path", {{"class", "warning"},
+                        {"stroke-width", page_number(2 * (radius[0] + warning_border))},
+                        {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
+    }
     svg.leaf("path", {{"class", "tube " + colour},
                       {"stroke-width", page_number(2 * radius[0])},
                       {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
     return;
+  }
+  if (is_unsafe) {
+    const std::array<double, 2> border = {radius[0] + warning_border, radius[1] + warning_border};
+    svg.leaf("path",
+             {{"class", "warning-taper"}, {"d", taper_path(arc, scene.views[v], scene.frames[v], border)}});
   }
   svg.leaf("path",
            {{"class", "taper " + colour}, {"d", taper_path(arc, scene.views[v], scene.frames[v], radius)}});
@@ -138,9 +151,10 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
   draw_scene_axes(svg, scene, heading);
   for (std::size_t v = 0; v < scene.views.size(); ++v) {
     const Backbone& backbone = motion.backbones[i];
+    draw_obstacles(svg, scene, v, motion);
     draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
-      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k);
+      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, motion.is_unsafe(k, i));
     }
     if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
       draw_joints(svg, scene, v, backbone);
@@ -186,6 +200,7 @@ Drawing player_picture(const ReportMotion& motion, const PlotScene& scene) {
   const bool joints = scene.has_room_for_joints(motion.arm.length(), motion.arm.sections.size());
   for (std::size_t v = 0; v < scene.views.size(); ++v) {
     const PlotFrame& frame = scene.frames[v];
+    draw_obstacles(svg, scene, v, motion);
     for (const std::size_t i : {std::size_t{0}, motion.end()}) {
       svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion, i)}});
     }

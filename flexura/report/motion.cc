@@ -83,6 +83,13 @@ std::vector<std::size_t> kept_indices(const std::vector<double>& times, const st
   return kept;
 }
 
+bool ReportMotion::is_unsafe(std::size_t section, std::size_t i) const {
+  return std::ranges::any_of(violations, [&](const auto& violation) {
+    return violation.start <= times[i] && times[i] <= violation.end &&
+           std::ranges::count(violation.sections, section) > 0;
+  });
+}
+
 int ReportMotion::tip_coordinates() const {
   return in_plane && std::abs(arm.X_WB.position.z()) < 1e-9 * arm.length() ? 2 : 3;
 }
@@ -98,6 +105,8 @@ ReportMotion motion_of(const ReportData& data) {
   require_usable(data);
   ReportMotion motion;
   motion.arm = data.arm;
+  if (data.safety) motion.violations = data.safety->violations;
+  motion.obstacles = data.obstacles;
   motion.in_plane = lies_in_xoy(data.arm);
   motion.recorded = std::max(data.recorded, data.states.size());
   const std::vector<double> marks = event_times(data);

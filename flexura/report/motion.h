@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/model/backbone.h"
+#include "flexura/model/obstacle.h"
 #include "flexura/report/report.h"
 
 namespace flexura {
@@ -28,10 +29,14 @@ struct ReportMotion {
   std::vector<double> event_times;  ///< s, each once, inside the run; empty when there are too many to mark.
   std::size_t recorded = 0;         ///< States in the run.
   std::size_t middle = 0;           ///< Index of the state nearest to half time.
-  bool in_plane = false;            ///< The arm moves in a plane parallel to XOY.
-  bool stretches_change = false;    ///< Some stretch is not 1 all the time.
+  std::vector<ReportData::Safety::Violation> violations;
+  std::vector<ObstacleConfig> obstacles;
+  bool in_plane = false;          ///< The arm moves in a plane parallel to XOY.
+  bool stretches_change = false;  ///< Some stretch is not 1 all the time.
 
   [[nodiscard]] std::size_t count() const { return times.size(); }
+  /// Whether a violation is drawn on the section at state i.
+  [[nodiscard]] bool is_unsafe(std::size_t section, std::size_t i) const;
   [[nodiscard]] std::size_t end() const { return times.size() - 1; }
   [[nodiscard]] const Eigen::Vector3d& tip(std::size_t i) const { return backbones[i].tip().position; }
   /// Whether cord angles count from the world's +X as in the paper: an arm in XOY whose archings are

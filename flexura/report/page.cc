@@ -23,6 +23,17 @@ class JsonArray {
   std::string text_;
 };
 
+std::string unsafe_json(const ReportMotion& motion) {
+  std::string text;
+  for (const auto& violation : motion.violations) {
+    for (const std::size_t section : violation.sections) {
+      text += fmt::format("{}[{},{},{}]", text.empty() ? "" : ",", json_number(violation.start),
+                          json_number(violation.end), section);
+    }
+  }
+  return '[' + text + ']';
+}
+
 std::string states_json(const ReportMotion& motion) {
   JsonArray bends;
   JsonArray stretches;
@@ -85,11 +96,11 @@ std::string motion_json(const ReportMotion& motion) {
   for (const double time : motion.times) times.add(time);
   return fmt::format(
       "{{\"planar\":{},\"coordinates\":{},\"baseAngle\":{},\"axes\":{},\"origin\":[{},{},{}],"
-      "\"lengths\":{},\"radii\":{},\"times\":{},{}}}",
+      "\"lengths\":{},\"radii\":{},\"times\":{},\"unsafe\":{},{}}}",
       motion.arm.kind == ArmKind::planar, motion.tip_coordinates(),
       json_number(base_tangent_angle(motion.arm)), rotation.text(), json_number(X_WB.position.x()),
       json_number(X_WB.position.y()), json_number(X_WB.position.z()), lengths.text(), radii.text(),
-      times.text(), states_json(motion));
+      times.text(), unsafe_json(motion), states_json(motion));
 }
 
 }  // namespace flexura

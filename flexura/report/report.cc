@@ -8,6 +8,7 @@
 #include "embedded/report_js.h"
 #include "flexura/report/arm_drawing.h"
 #include "flexura/report/charts.h"
+#include "flexura/report/obstacle_drawing.h"
 #include "flexura/report/page.h"
 
 namespace flexura {
@@ -35,7 +36,8 @@ std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
 }
 
 PlotScene motion_scene(const ReportMotion& motion) {
-  return scene_of(swept_box(motion), motion.in_plane, 0.1 * motion.arm.length());
+  return scene_of(with_obstacles(swept_box(motion), motion.obstacles), motion.in_plane,
+                  0.1 * motion.arm.length());
 }
 
 std::string figures_html(const std::vector<NamedDrawing>& drawings) {
@@ -105,6 +107,26 @@ std::string events_html(const ReportData& data) {
   return html;
 }
 
+std::string safety_html(const ReportData& data) {
+  if (!data.safety) return "";
+  const auto& [violations, remarks] = *data.safety;
+  std::string html =
+      "<section aria-labelledby=\"safety-title\" class=\"safety\">\n<h2 id=\"safety-title\">Safety</h2>\n";
+  if (violations.empty()) html += "<p>The motion keeps to its limits and touches nothing.</p>\n";
+  if (!violations.empty() || !remarks.empty()) html += "<ul>\n";
+  for (std::size_t i = 0; i < std::min(violations.size(), max_listed_events); ++i) {
+    html += fmt::format(
+        "<li><button type=\"button\" class=\"jump\" data-time=\"{:.9g}\">{}</button> <span "
+        "class=\"unsafe\">unsafe:</span> {}</li>\n",
+        violations[i].start, fixed(violations[i].start, 3), xml_escape(violations[i].text));
+  }
+  if (violations.size() > max_listed_events)
+    html += fmt::format("<li>and {} more</li>\n", violations.size() - max_listed_events);
+  for (const std::string& remark : remarks) html += fmt::format("<li>{}</li>\n", xml_escape(remark));
+  if (!violations.empty() || !remarks.empty()) html += "</ul>\n";
+  return html + "</section>\n";
+}
+
 std::string thinned_html(const ReportMotion& motion) {
   if (motion.count() == motion.recorded) return "";
   return fmt::format(
@@ -157,6 +179,7 @@ std::string report_html(const ReportData& data) {
                                         {"report_js", std::string(embedded::report_js)},
                                         {"summary", summary_html(motion)},
                                         {"thinned", thinned_html(motion)},
+                                        {"safety", safety_html(data)},
                                         {"views", motion.in_plane ? "one" : "two"},
                                         {"arms", figures_html(arms)},
                                         {"player", inline_svg(player_picture(motion, scene))},

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/model/arm.h"
+#include "flexura/model/obstacle.h"
 
 namespace flexura {
 
@@ -17,6 +19,18 @@ struct ReportData {
     std::string text;
   };
 
+  /// What the motion was found to break or touch, and what else is worth knowing of it.
+  struct Safety {
+    struct Violation {
+      double start = 0.0;                 ///< s
+      double end = 0.0;                   ///< s
+      std::vector<std::size_t> sections;  ///< From 0; drawn with a warning in that time.
+      std::string text;
+    };
+    std::vector<Violation> violations;
+    std::vector<std::string> remarks;
+  };
+
   std::string title;            ///< Any text.
   std::string version;          ///< Flexura's.
   std::string experiment_text;  ///< The experiment file as run, shown as it is.
@@ -25,6 +39,8 @@ struct ReportData {
   std::vector<ArmState> states;  ///< As run; finite.
   std::vector<Mark> events;      ///< In the order of time.
   std::size_t recorded = 0;      ///< States in the run's log, where they are more than those given here.
+  std::optional<Safety> safety;  ///< Empty: not checked, not shown.
+  std::vector<ObstacleConfig> obstacles;
 };
 
 /// A picture as a file.

@@ -103,6 +103,9 @@
     return {
       across, page, trail,
       way: add(group, "path", { class: "trail" }),
+      warnings: parts.map((part) => add(group, "path", {
+        class: "warning", "stroke-width": Math.max(2 * part.radius * scale, 5) + 8,
+      })),
       tubes: parts.map((part) => add(group, "path", {
         class: `tube s${part.section % 8}`, "stroke-width": Math.max(2 * part.radius * scale, 5),
       })),
@@ -143,6 +146,7 @@
 
   function drawArm(time, state) {
     let frame = base;
+    const unsafe = new Set(run.unsafe.filter(([start, end]) => start <= time && time <= end).map((found) => found[2]));
     const middles = [];
     parts.forEach((part, k) => {
       const q = state[part.section];
@@ -156,6 +160,7 @@
       for (const view of views) {
         const [start, ...rest] = points.map(view.page);
         view.tubes[k].setAttribute("d", `M${start}C${rest.join(" ")}`);
+        view.warnings[k].setAttribute("d", unsafe.has(part.section) ? `M${start}C${rest.join(" ")}` : "");
       }
       frame = arcEnd(...at(1));
     });

@@ -90,6 +90,56 @@ std::string xml_fault(std::string_view xml) {
   return open.empty() ? "" : "not closed: " + open.back();
 }
 
+TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
+  ReportData data = paper_run(50);
+  EXPECT_EQ(report_html(data).find("safety-title"), std::string::npos);
+  data.safety = {.violations = {{.start = 4.0, .end = 5.0, .sections = {1, 6}, .text = "section 2 < 7"}},
+                 .remarks = {"a note"}};
+  const std::string html = report_html(data);
+  for (const char* part : {"section 2 &lt; 7", "<li>a note</li>", R"("unsafe":[[4,5,1],[4,5,6]])"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  const std::vector<Figure> figures = report_figures(data);
+  const auto warnings = [&](const std::string& name) {
+    std::size_t count = 0;
+    const std::string& svg = svg_of(figures, name);
+    for (std::size_t at = svg.find("class=\"warning\""); at != std::string::npos;
+         at = svg.find("class=\"warning\"", at + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(warnings("arm-start.svg"), 0U);
+  EXPECT_EQ(warnings("arm-end.svg"), 2U);
+}
+
+TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
+  ReportData data = spatial_run();
+  data.obstacles = {PlaneConfig{.name = "ground <"},
+                    PlaneConfig{.name = "slope", .normal = {1, 1, 1}},  // not from the side in any view
+                    SphereConfig{.center = {0.1, 0, 0}, .radius = 0.1},
+                    CapsuleConfig{.name = "rod", .from = {0, 0, 0}, .to = {0, 0.2, 0}, .radius = 0.05},
+                    BoxConfig{.name = "desk", .center = {0, 0.1, 0}, .half_sizes = {0.1, 0.2, 0.3}}};
+  const std::vector<Figure> figures = report_figures(data);
+  for (const char* name : {"arm-start.svg", "arm-middle.svg", "arm-end.svg"}) {
+    const std::string& svg = svg_of(figures, name);
+    EXPECT_EQ(xml_fault(svg), "");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    for (const char* title : {"ground &lt;", "sphere 3", "rod", "desk"})
+      EXPECT_NE(svg.find("<title>" + std::string(title)), std::string::npos) << title;
+    EXPECT_EQ(svg.find("<title>slope"), std::string::npos);
+  }
+  EXPECT_NE(report_html(data).find("<title>desk</title>"), std::string::npos);
+  EXPECT_EQ(svg_of(figures, "tip.svg").find("class=\"obstacle\""), std::string::npos);
+}
+
+TEST(Report, DrawsAPlaneWhereItCutsThePlaneOfTheArm) {
+  ReportData data = paper_run(10);
+  data.obstacles = {PlaneConfig{.name = "slope", .normal = {1, 1, 1}},
+                    PlaneConfig{.name = "paper", .point = {0, 0, -1}, .normal = {0, 0, 1}}};
+  const std::vector<Figure> figures = report_figures(data);
+  EXPECT_NE(svg_of(figures, "arm-end.svg").find("<title>slope"), std::string::npos);
+  EXPECT_EQ(svg_of(figures, "arm-end.svg").find("<title>paper"), std::string::npos);
+}
+
 TEST(ReportFigures, AreWellFormedAndHaveNoMissingNumbers) {
   for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
     for (const Figure& figure : report_figures(data)) {

@@ -4,279 +4,252 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 
+#include "flexura/safety/contact_watch.h"
+#include "flexura/safety/jumps.h"
+#include "flexura/safety/limits.h"
+#include "flexura/safety/singular.h"
 #include "flexura/safety/spans.h"
 
 namespace flexura {
 namespace {
 
-// Limits are typed in degrees and bends computed in radians: a bend on its limit is not beyond it.
-constexpr double limit_tolerance = 1e-9;
-constexpr double time_resolution = 1e-7;  // s
-constexpr double smallest_jump = 1e-6;    // rad, or a factor of stretch
+constexpr double time_resolution = 1e-7;     // s, of limits
+constexpr double contact_resolution = 1e-4;  // s
 
-// One quantity of one section under a limit: what `spans_above` needs, and how to say it.
-struct Watch {
-  Hazard hazard;
-  double limit;              // what is reported
-  double sign = 1;           // -1: the value must not fall below the limit
-  WatchedQuantity quantity;  // the value at a time within the motion, and its rate bound
+// A span that grows with samples: a sample stands for the time up to the next.
+class SampledSpans {
+ public:
+  void sample(std::size_t step, double time, double value, bool is_bad) {
+    if (!is_bad) return;
+    if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({{time, time}, value});
+    last_step_ = step;
+    Found& found = spans_.back();
+    found.span.end = time;
+    found.worst = std::max(found.worst, value);
+  }
+  struct Found {
+    Span span;
+    double worst = 0;
+  };
+  [[nodiscard]] const std::vector<Found>& spans() const { return spans_; }
+
+ private:
+  std::vector<Found> spans_;
+  std::size_t last_step_ = 0;
 };
 
-SectionRates rates_of(const Motion& motion, std::size_t section, double start, double end) {
-  return motion.rates(section, start, end).value_or(SectionRates{});
-}
-
-double curvature_times_radius(const Section& section, const ArmState& state, std::size_t i) {
-  return state.bends[i].norm() * std::max(section.radius[0], section.radius[1]) /
-         (section.length * state.stretches[i]);
-}
-
-// |d/dt (bend r / (length stretch))| where the bend stays below and the stretch above what they are in the
-// middle and the rates allow.
-double folding_rate(const Section& section, const Motion& motion, std::size_t i, double start, double end) {
-  const SectionRates rates = rates_of(motion, i, start, end);
-  const ArmState middle = motion.at((start + end) / 2);
-  const double half = (end - start) / 2;
-  const double bend = middle.bends[i].norm() + rates.bend * half;
-  const double stretch = middle.stretches[i] - rates.stretch * half;
-  if (stretch <= 0) return std::numeric_limits<double>::infinity();
-  const double scale = std::max(section.radius[0], section.radius[1]) / section.length;
-  return scale * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
-}
-
-std::vector<Watch> watches_of(const Arm& arm, const Motion& motion, std::size_t i) {
-  const Section& section = arm.sections[i];
-  const auto bend_rate = [&motion, i](double a, double b) { return rates_of(motion, i, a, b).bend; };
-  const auto stretch_rate = [&motion, i](double a, double b) { return rates_of(motion, i, a, b).stretch; };
-  std::vector<Watch> watches;
-  if (std::isfinite(section.max_bend)) {
-    watches.push_back({Hazard::bend,
-                       section.max_bend,
-                       1,
-                       {[&motion, i](double t) { return motion.at(t).bends[i].norm(); }, bend_rate}});
-  }
-  watches.push_back({Hazard::stretch,
-                     section.stretch_limits[1],
-                     1,
-                     {[&motion, i](double t) { return motion.at(t).stretches[i]; }, stretch_rate}});
-  watches.push_back({Hazard::stretch,
-                     section.stretch_limits[0],
-                     -1,
-                     {[&motion, i](double t) { return -motion.at(t).stretches[i]; }, stretch_rate}});
-  watches.push_back(
-      {Hazard::folding,
-       1,
-       1,
-       {[&motion, &section, i](double t) { return curvature_times_radius(section, motion.at(t), i); },
-        [&motion, &section, i](double a, double b) { return folding_rate(section, motion, i, a, b); }}});
-  return watches;
-}
-
-double threshold(const Watch& watch) {
-  return watch.sign * watch.limit + std::abs(watch.limit) * limit_tolerance;
-}
-
-// The worst value in a span, of its ends and what lies evenly between.
-double worst(const std::function<double(double)>& value, const Span& span) {
+// When the value is largest in a span, of its ends and what lies evenly between.
+double worst_time(const std::function<double(double)>& value, const Span& span) {
   constexpr int samples = 200;
+  double worst = span.start;
   double most = -std::numeric_limits<double>::infinity();
   for (int k = 0; k <= samples; ++k) {
-    most = std::max(most, value(span.start + (span.end - span.start) * k / samples));
+    const double time = k == samples ? span.end : span.start + (span.end - span.start) * k / samples;
+    const double now = value(time);
+    if (now > most) most = now, worst = time;
   }
-  return most;
-}
-
-// Spans whose samples are above the limit, each sample standing for the time up to the next.
-std::vector<Span> sampled_spans(double limit, const std::function<double(double)>& value, double duration,
-                                double step) {
-  std::vector<Span> spans;
-  const auto count = static_cast<std::size_t>(std::ceil(duration / step));
-  for (std::size_t k = 0; k <= count; ++k) {
-    const double t = std::min(static_cast<double>(k) * step, duration);
-    if (!(value(t) > limit)) continue;
-    if (!spans.empty() && spans.back().end >= t - 1.5 * step) {
-      spans.back().end = t;
-    } else {
-      spans.push_back({t, t});
-    }
-  }
-  return spans;
+  return worst;
 }
 
 class MotionCheck {
  public:
-  MotionCheck(const Arm& arm, const TimedMotion& timed, double step, SafetyReport& report)
-      : arm_(arm), motion_(*timed.motion), start_(timed.start), step_(step), report_(report) {}
+  MotionCheck(const Arm& arm, const std::vector<ContactWatch>& contacts, const TimedMotion& timed,
+              double step, SafetyReport& report)
+      : arm_(arm),
+        contacts_(contacts),
+        motion_(*timed.motion),
+        start_(timed.start),
+        step_(step),
+        report_(report) {}
 
   void check_bounded() {
+    for (const LimitWatch& watch : limit_watches(arm_)) {
+      const auto value = [&](double t) { return watch.sign * watch.value(motion_.at(t)); };
+      const auto rate = [&](double a, double b) { return watch.rate(motion_, a, b); };
+      add(watch.hazard, watch.section, watch.limit, watch.sign, watch.threshold(), with_rate(value, rate));
+    }
     for (std::size_t i = 0; i < arm_.sections.size(); ++i) {
-      for (const Watch& watch : watches_of(arm_, motion_, i)) {
-        add(watch, i, spans_above(threshold(watch), watch.quantity, whole(), time_resolution));
-      }
-      check_rate(i);
+      const double limit = arm_.sections[i].max_bend_rate;
+      if (!std::isfinite(limit)) continue;
+      add(Hazard::bend_rate, i, limit, 1, limit_of_rate(limit), bend_rate(motion_, i));
+    }
+    for (const ContactWatch& contact : contacts_) {
+      const WatchedQuantity depth = contact.depth(motion_);
+      for (const Span& span : spans_above(contact_tolerance, depth, whole(), contact_resolution))
+        add_contact(contact, span);
     }
   }
 
   void check_sampled() {
-    if (const auto t = first_not_finite()) {
-      report_.violations.push_back({Hazard::not_finite, start_ + *t, start_ + *t, std::nullopt, 0, 0});
-      return;
+    if (const auto t = first_impossible()) {
+      add_impossible(*t);
+    } else {
+      sample();
+      for (const Jump& jump : find_jumps(motion_, step_)) add_jump(jump);
     }
-    for (std::size_t i = 0; i < arm_.sections.size(); ++i) {
-      for (const Watch& watch : watches_of(arm_, motion_, i)) {
-        add(watch, i, sampled_spans(threshold(watch), watch.quantity.value, motion_.duration(), step_));
-      }
-      check_sampled_rate(i);
-    }
-    find_jumps();
     report_.caveats.push_back(
         fmt::format("{:.6g} s to {:.6g} s: sampled every {:.6g} s: the law has no bound on its rates", start_,
                     start_ + motion_.duration(), step_));
   }
 
+  void add_impossible(double time) {
+    report_.violations.push_back(
+        {.hazard = Hazard::not_finite, .start = start_ + time, .end = start_ + time});
+  }
+
+  void add_jump(const Jump& jump) {
+    report_.violations.push_back(
+        {.hazard = Hazard::jump, .start = start_ + jump.time, .end = start_ + jump.time, .value = jump.size});
+  }
+
  private:
+  static double limit_of_rate(double limit) { return limit * (1 + limit_tolerance); }
   [[nodiscard]] Span whole() const { return {0, motion_.duration()}; }
+  [[nodiscard]] std::size_t last_sample() const {
+    return static_cast<std::size_t>(std::ceil(motion_.duration() / step_));
+  }
+  [[nodiscard]] double time_of(std::size_t k) const {
+    return std::min(static_cast<double>(k) * step_, motion_.duration());
+  }
 
-  void add(const Watch& watch, std::size_t section, const std::vector<Span>& spans) {
-    for (const Span& span : spans) {
-      report_.violations.push_back({watch.hazard, start_ + span.start, start_ + span.end, section,
-                                    watch.sign * worst(watch.quantity.value, span), watch.limit});
+  void add(Hazard hazard, std::size_t section, double limit, double sign, double threshold,
+           const WatchedQuantity& quantity) {
+    for (const Span& span : spans_above(threshold, quantity, whole(), time_resolution)) {
+      const double worst = quantity.value(worst_time(quantity.value, span));
+      add_limit(hazard, section, span, sign * worst, limit);
     }
   }
 
-  // A rate has no rate bound of its own. Its own bound over ever shorter intervals comes down to it.
-  void check_rate(std::size_t i) {
-    const double limit = arm_.sections[i].max_bend_rate;
-    if (!std::isfinite(limit)) return;
-    const auto bound = [&](const Span& span) { return rates_of(motion_, i, span.start, span.end).bend; };
-    std::vector<Span> found;
-    std::vector<Span> open{whole()};
-    double most = 0;
-    while (!open.empty()) {
-      const Span span = open.back();
-      open.pop_back();
-      const double rate = bound(span);
-      if (rate <= limit * (1 + limit_tolerance)) continue;
-      if (span.end - span.start > std::max(time_resolution, motion_.duration() * 1e-4)) {
-        const double middle = (span.start + span.end) / 2;
-        open.push_back({middle, span.end});
-        open.push_back({span.start, middle});
-        continue;
-      }
-      if (!found.empty() && found.back().end >= span.start) {
-        found.back().end = span.end;
-        most = std::max(most, rate);
-      } else {
-        flush_rate(i, found, most);
-        found = {span};
-        most = rate;
-      }
+  void add_limit(Hazard hazard, std::size_t section, const Span& span, double value, double limit) {
+    report_.violations.push_back({.hazard = hazard,
+                                  .start = start_ + span.start,
+                                  .end = start_ + span.end,
+                                  .section = section,
+                                  .value = value,
+                                  .limit = limit});
+  }
+
+  // The deepest contact, of the span's ends and what lies evenly between.
+  [[nodiscard]] Contact worst_contact(const ContactWatch& contact, const Span& span) const {
+    constexpr int samples = 100;
+    Contact worst{.clearance = 0};
+    for (int k = 0; k <= samples; ++k) {
+      const double time = span.start + (span.end - span.start) * k / samples;
+      const Contact now = contact.contact(motion_.at(time), worst.clearance);
+      if (now.clearance < worst.clearance) worst = now;
     }
-    flush_rate(i, found, most);
+    return worst;
   }
 
-  void flush_rate(std::size_t i, const std::vector<Span>& found, double most) {
-    if (found.empty()) return;
-    report_.violations.push_back({Hazard::bend_rate, start_ + found.back().start, start_ + found.back().end,
-                                  i, most, arm_.sections[i].max_bend_rate});
+  void add_contact(const ContactWatch& contact, const Span& span) {
+    const Contact worst = worst_contact(contact, span);
+    report_.violations.push_back({.hazard = contact.hazard(),
+                                  .start = start_ + span.start,
+                                  .end = start_ + span.end,
+                                  .section = worst.section,
+                                  .other_section = worst.other_section,
+                                  .name = contact.obstacle_name(),
+                                  .value = -worst.clearance,
+                                  .limit = 0});
   }
 
-  void check_sampled_rate(std::size_t i) {
-    const double limit = arm_.sections[i].max_bend_rate;
-    if (!std::isfinite(limit)) return;
-    const auto rate = [&](double t) {
-      const double next = std::min(t + step_, motion_.duration());
-      return next > t ? (motion_.at(next).bends[i] - motion_.at(t).bends[i]).norm() / (next - t) : 0.0;
-    };
-    const Watch watch{Hazard::bend_rate, limit, 1, {rate, {}}};
-    add(watch, i, sampled_spans(threshold(watch), rate, motion_.duration(), step_));
-  }
-
-  [[nodiscard]] std::optional<double> first_not_finite() const {
-    const auto count = static_cast<std::size_t>(std::ceil(motion_.duration() / step_));
-    for (std::size_t k = 0; k <= count; ++k) {
-      const double t = std::min(static_cast<double>(k) * step_, motion_.duration());
+  void sample() {
+    const std::vector<LimitWatch> watches = limit_watches(arm_);
+    std::vector<SampledSpans> limits(watches.size());
+    std::vector<SampledSpans> rates(arm_.sections.size());
+    std::vector<SampledSpans> contacts(contacts_.size());
+    ArmState before;
+    for (std::size_t k = 0; k <= last_sample(); ++k) {
+      const double t = time_of(k);
       const ArmState state = motion_.at(t);
-      for (std::size_t i = 0; i < state.bends.size(); ++i) {
-        if (!state.bends[i].allFinite() || !std::isfinite(state.stretches[i]) || state.stretches[i] <= 0)
-          return t;
+      for (std::size_t w = 0; w < watches.size(); ++w) {
+        const double value = watches[w].sign * watches[w].value(state);
+        limits[w].sample(k, t, value, value > watches[w].threshold());
       }
+      for (std::size_t i = 0; k > 0 && i < rates.size(); ++i) {
+        const double rate = (state.bends[i] - before.bends[i]).norm() / (t - time_of(k - 1));
+        rates[i].sample(k, t, rate, rate > limit_of_rate(arm_.sections[i].max_bend_rate));
+      }
+      for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const double depth = -contacts_[c].contact(state, 0).clearance;
+        contacts[c].sample(k, t, depth, depth > contact_tolerance);
+      }
+      before = state;
+    }
+    for (std::size_t w = 0; w < watches.size(); ++w) {
+      for (const auto& found : limits[w].spans())
+        add_limit(watches[w].hazard, watches[w].section, found.span, watches[w].sign * found.worst,
+                  watches[w].limit);
+    }
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      for (const auto& found : rates[i].spans())
+        add_limit(Hazard::bend_rate, i, found.span, found.worst, arm_.sections[i].max_bend_rate);
+    }
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      for (const auto& found : contacts[c].spans()) add_contact(contacts_[c], found.span);
+    }
+  }
+
+  [[nodiscard]] std::optional<double> first_impossible() const {
+    for (std::size_t k = 0; k <= last_sample(); ++k) {
+      if (!is_possible(motion_.at(time_of(k)))) return time_of(k);
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] double change(double a, double b) const;
-  void find_jumps();
-
   const Arm& arm_;
+  const std::vector<ContactWatch>& contacts_;
   const Motion& motion_;
   double start_;
   double step_;
   SafetyReport& report_;
 };
 
-double state_distance(const ArmState& a, const ArmState& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.bends.size(); ++i) {
-    most = std::max({most, (a.bends[i] - b.bends[i]).norm(), std::abs(a.stretches[i] - b.stretches[i])});
-  }
-  return most;
-}
-
-double MotionCheck::change(double a, double b) const { return state_distance(motion_.at(a), motion_.at(b)); }
-
-// Where the state changes much more in one step than in the steps beside it, the step is halved towards the
-// larger change: a jump keeps its size, what is only fast does not.
-void MotionCheck::find_jumps() {
-  const auto count = static_cast<std::size_t>(std::ceil(motion_.duration() / step_));
-  const auto time = [&](std::size_t k) {
-    return std::min(static_cast<double>(k) * step_, motion_.duration());
-  };
-  std::vector<double> changes;
-  for (std::size_t k = 0; k < count; ++k) changes.push_back(change(time(k), time(k + 1)));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double before = k > 0 ? changes[k - 1] : 0;
-    const double after = k + 1 < count ? changes[k + 1] : 0;
-    if (changes[k] < smallest_jump || changes[k] < 4 * std::max(before, after)) continue;
-    double a = time(k);
-    double b = time(k + 1);
-    constexpr int halvings = 40;
-    for (int n = 0; n < halvings; ++n) {
-      const double middle = (a + b) / 2;
-      (change(a, middle) > change(middle, b) ? b : a) = middle;
-    }
-    const double size = change(a, b);
-    if (size > std::max(smallest_jump, changes[k] / 4)) {
-      report_.violations.push_back({Hazard::jump, start_ + b, start_ + b, std::nullopt, size, 0});
-    }
-  }
+void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
+  if (!is_possible(state)) return;
+  const TipFreedom freedom = tip_freedom(arm, state);
+  if (freedom.now == freedom.usual) return;
+  report.notes.push_back(fmt::format("{:.6g} s: singular pose: the tip can set out in {} of {} dimensions",
+                                     time, freedom.now, freedom.usual));
 }
 
 }  // namespace
 
-SafetyReport check_motions(const Arm& arm, const ArmState& initial, const std::vector<TimedMotion>& motions,
-                           double step) {
+bool is_possible(const ArmState& state) {
+  return std::ranges::all_of(state.bends, [](const auto& bend) { return bend.allFinite(); }) &&
+         std::ranges::all_of(state.stretches, [](double s) { return std::isfinite(s) && s > 0; });
+}
+
+SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& initial,
+                           const std::vector<TimedMotion>& motions, double step) {
   SafetyReport report;
+  std::vector<ContactWatch> contacts{ContactWatch(arm)};
+  for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
+  note_singular(arm, initial, 0, report);
   ArmState before = initial;
   for (const TimedMotion& timed : motions) {
     const Motion& motion = *timed.motion;
-    MotionCheck check(arm, timed, step, report);
+    MotionCheck check(arm, contacts, timed, step, report);
+    const double jump = largest_change(before, motion.at(0));
+    if (jump > smallest_jump && std::isfinite(jump)) check.add_jump({0, jump});
     if (motion.rates(0, 0, motion.duration())) {
-      check.check_bounded();
+      if (is_possible(motion.at(0))) {
+        check.check_bounded();
+      } else {
+        check.add_impossible(0);
+      }
     } else {
       check.check_sampled();
     }
-    const double jump = state_distance(before, motion.at(0));
-    if (jump > smallest_jump)
-      report.violations.push_back({Hazard::jump, timed.start, timed.start, std::nullopt, jump, 0});
     before = motion.at(motion.duration());
+    note_singular(arm, before, timed.start + motion.duration(), report);
   }
-  const auto order = [](const Violation& v) { return std::pair(v.start, v.section.value_or(0)); };
-  std::ranges::stable_sort(report.violations, {}, order);
+  report.sort();
+  report.notes.erase(std::ranges::unique(report.notes).begin(), report.notes.end());
   return report;
 }
 

@@ -4,6 +4,7 @@
 
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/obstacle.h"
 #include "flexura/safety/violation.h"
 
 namespace flexura {
@@ -14,10 +15,15 @@ struct TimedMotion {
   double start = 0;
 };
 
-/// What the arm's own limits say of motions played one after another from the state `initial`: bends, bend
-/// rates, stretches, folding, jumps. Where a law knows bounds on its rates, nothing slips between two samples
-/// (spans.h); elsewhere it is sampled every `step` s, and the report says so.
-[[nodiscard]] SafetyReport check_motions(const Arm& arm, const ArmState& initial,
-                                         const std::vector<TimedMotion>& motions, double step);
+/// What would harm the arm in motions played one after another from the state `initial`: bends, bend rates,
+/// stretches, folding, contact with itself and with obstacles, jumps. Where a law knows bounds on its rates,
+/// nothing slips between two samples (spans.h); elsewhere it is sampled every `step` s, and the report says
+/// so. See docs/safety.md.
+[[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
+                                         const ArmState& initial, const std::vector<TimedMotion>& motions,
+                                         double step);
+
+/// Whether the arm can stand in this state at all: finite bends, finite lengths above 0.
+[[nodiscard]] bool is_possible(const ArmState& state);
 
 }  // namespace flexura

@@ -1,6 +1,7 @@
 #include "flexura/safety/spans.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace flexura {
 namespace {
@@ -15,6 +16,16 @@ void add(Span span, std::vector<Span>& spans) {
 
 }  // namespace
 
+WatchedQuantity with_rate(std::function<double(double time)> value,
+                          std::function<double(double start, double end)> rate) {
+  auto bounds = [value, rate = std::move(rate)](double start, double end) {
+    const double middle = value((start + end) / 2);
+    const double change = rate(start, end) * (end - start) / 2;
+    return QuantityBounds{middle - change, middle + change};
+  };
+  return {std::move(value), std::move(bounds)};
+}
+
 std::vector<Span> spans_above(double limit, const WatchedQuantity& quantity, Span whole, double resolution) {
   std::vector<Span> found;
   std::vector<Span> open{whole};  // a stack: the earliest interval is on top, so spans are found in order
@@ -22,13 +33,14 @@ std::vector<Span> spans_above(double limit, const WatchedQuantity& quantity, Spa
     const Span span = open.back();
     open.pop_back();
     const double middle = (span.start + span.end) / 2;
-    const double value = quantity.value(middle);
-    const double change = quantity.rate(span.start, span.end) * (span.end - span.start) / 2;
-    if (value + change <= limit) continue;
-    if (value - change > limit) {
+    const QuantityBounds bounds = quantity.bounds(span.start, span.end);
+    if (bounds.high <= limit) continue;
+    if (bounds.low > limit) {
       add(span, found);
     } else if (span.end - span.start <= resolution) {
-      if (std::max({value, quantity.value(span.start), quantity.value(span.end)}) > limit) add(span, found);
+      const double most =
+          std::max({quantity.value(span.start), quantity.value(middle), quantity.value(span.end)});
+      if (most > limit) add(span, found);
     } else {
       open.push_back({middle, span.end});
       open.push_back({span.start, middle});

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <numbers>
+#include <tuple>
 
 namespace flexura {
 namespace {
@@ -16,12 +18,19 @@ struct HazardText {
 
 const HazardText& text_of(Hazard hazard) {
   constexpr double degrees = 180.0 / std::numbers::pi;
-  static constexpr std::array<HazardText, 6> texts{{{"bend", degrees, " deg"},
-                                                    {"bend rate", degrees, " deg/s"},
-                                                    {"stretch", 1, ""},
-                                                    {"folding: curvature times radius", 1, ""},
-                                                    {"jump", 1, ""},
-                                                    {"no finite value", 1, ""}}};
+  static constexpr std::array<HazardText, 13> texts{{{"bend", degrees, " deg"},
+                                                     {"bend rate", degrees, " deg/s"},
+                                                     {"stretch", 1, ""},
+                                                     {"folding: curvature times radius", 1, ""},
+                                                     {"jump", 1, ""},
+                                                     {"no possible value", 1, ""},
+                                                     {"self-contact", 1000, " mm deep"},
+                                                     {"obstacle", 1000, " mm deep"},
+                                                     {"motor speed", degrees, " deg/s"},
+                                                     {"step rate", 1, " microsteps/s"},
+                                                     {"motor acceleration", 1, " rad/s^2"},
+                                                     {"motor position", 1, " microsteps"},
+                                                     {"target outside the workspace", 1000, " mm"}}};
   return texts.at(static_cast<std::size_t>(hazard));
 }
 
@@ -29,16 +38,54 @@ const HazardText& text_of(Hazard hazard) {
 
 const char* name_of(Hazard hazard) { return text_of(hazard).name; }
 
-std::string Violation::text() const {
+std::string Violation::place() const {
+  switch (hazard) {
+    case Hazard::motor_speed:
+    case Hazard::step_rate:
+    case Hazard::motor_acceleration:
+    case Hazard::motor_position:
+      return fmt::format("axis {}: ", name);
+    case Hazard::workspace:
+      return name + ": ";
+    default:
+      break;
+  }
+  if (section && other_section && *section != *other_section)
+    return fmt::format("sections {} and {}: ", *section + 1, *other_section + 1);
+  return section ? fmt::format("section {}: ", *section + 1) : "";
+}
+
+std::string Violation::finding() const {
   const HazardText& shown = text_of(hazard);
-  std::string text =
+  const double found = value * shown.factor;
+  switch (hazard) {
+    case Hazard::obstacle:
+      return fmt::format("contact with {}, {:.6g}{}", name, found, shown.unit);
+    case Hazard::self_contact:
+      return fmt::format("contact with {}, {:.6g}{}", section == other_section ? "itself" : "each other",
+                         found, shown.unit);
+    case Hazard::workspace:
+      return fmt::format("{}, {:.6g}{} from the nearest pose", shown.name, found, shown.unit);
+    case Hazard::not_finite:
+      return shown.name;
+    case Hazard::jump:
+      return fmt::format("{} {:.6g}{}", shown.name, found, shown.unit);
+    default:
+      return fmt::format("{} {:.6g}{}, limit {:.6g}{}", shown.name, found, shown.unit, limit * shown.factor,
+                         shown.unit);
+  }
+}
+
+std::string Violation::text() const {
+  const std::string when =
       start == end ? fmt::format("{:.6g} s: ", start) : fmt::format("{:.6g} s to {:.6g} s: ", start, end);
-  if (section) text += fmt::format("section {}: ", *section + 1);
-  text += shown.name;
-  if (hazard == Hazard::not_finite) return text;
-  text += fmt::format(" {:.6g}{}", value * shown.factor, shown.unit);
-  if (hazard != Hazard::jump) text += fmt::format(", limit {:.6g}{}", limit * shown.factor, shown.unit);
-  return text;
+  return when + place() + finding();
+}
+
+void SafetyReport::sort() {
+  std::ranges::sort(violations, {}, [](const Violation& v) {
+    return std::tuple(v.start, v.section.value_or(0), v.hazard, v.name, v.end);
+  });
 }
 
 }  // namespace flexura

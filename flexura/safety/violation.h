@@ -10,25 +10,38 @@ namespace flexura {
 
 /// What a motion can break.
 enum class Hazard : std::uint8_t {
-  bend,        ///< A section bends more than it may; rad.
-  bend_rate,   ///< A section bends faster than it may; rad/s.
-  stretch,     ///< A section is longer or shorter than it may be; factor.
-  folding,     ///< The inner side of the tube folds: curvature times radius reaches 1.
-  jump,        ///< The law asks for two states at one time; rad (or a factor).
-  not_finite,  ///< The law's formula has no finite value.
+  bend,                ///< A section bends more than it may; rad.
+  bend_rate,           ///< A section bends faster than it may; rad/s.
+  stretch,             ///< A section is longer or shorter than it may be; factor.
+  folding,             ///< The inner side of the tube folds: curvature times radius reaches 1.
+  jump,                ///< The law asks for two states at one time; rad (or a factor).
+  not_finite,          ///< The law's formula has no finite value, or no length above 0.
+  self_contact,        ///< The arm touches itself; m of depth.
+  obstacle,            ///< The arm touches an obstacle; m of depth.
+  motor_speed,         ///< A motor turns faster than it can; rad/s.
+  step_rate,           ///< Its controller gives more microsteps a second than it can; 1/s.
+  motor_acceleration,  ///< A motor speeds up or slows down faster than it can; rad/s^2.
+  motor_position,      ///< A motor goes farther than it may; microsteps.
+  workspace,           ///< The tip's target is out of the arm's reach; m from the nearest place.
 };
 
 /// Something a motion would break, and when.
 struct Violation {
   Hazard hazard = Hazard::bend;
-  double start = 0;                    ///< s
-  double end = 0;                      ///< s
-  std::optional<std::size_t> section;  ///< From 0.
-  double value = 0;                    ///< The worst in that time, in the hazard's unit.
+  double start = 0;                               ///< s
+  double end = 0;                                 ///< s
+  std::optional<std::size_t> section = {};        ///< From 0.
+  std::optional<std::size_t> other_section = {};  ///< From 0; which `section` touches.
+  std::string name = {};                          ///< Of the obstacle, the motor's axis or the task.
+  double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
 
   /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg".
   [[nodiscard]] std::string text() const;
+
+ private:
+  [[nodiscard]] std::string place() const;
+  [[nodiscard]] std::string finding() const;
 };
 
 /// What the check of a motion found.
@@ -40,6 +53,8 @@ struct SafetyReport {
   std::vector<std::string> notes;  ///< Worth knowing, and no reason to refuse.
 
   [[nodiscard]] bool is_safe() const { return violations.empty(); }
+  /// Puts the violations in their order.
+  void sort();
 };
 
 /// The hazard's name in reports: "bend", "bend rate", ...

@@ -1,0 +1,133 @@
+#include "flexura/model/obstacle.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange coordinate_range = {.min = -1e6, .max = 1e6};
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+Eigen::Vector4d vector(const std::array<double, 4>& a) { return {a[0], a[1], a[2], a[3]}; }
+
+// Adds what every obstacle has.
+template <class S>
+Table<S> obstacle_table(const char* kind, const char* meaning) {
+  Table<S> table(kind, meaning);
+  table
+      .field("name", &S::name,
+             {.meaning = "What messages call it.", .default_text = "its kind and place in the list"})
+      .field("ignore_base", &S::ignore_base,
+             {.meaning =
+                  "So much of the unstretched arm, from its base on, may touch it: for what the arm stands "
+                  "on.",
+              .unit = Unit::metre,
+              .range = between(0, 1e6)});
+  return table;
+}
+
+Spec place(const char* meaning, bool required = true) {
+  return {.meaning = meaning, .unit = Unit::metre, .range = coordinate_range, .required = required};
+}
+
+Spec size(const char* meaning) {
+  return {.meaning = meaning, .unit = Unit::metre, .range = above_up_to(0, 1e6), .required = true};
+}
+
+std::function<double(const Eigen::Vector3d&)> distance_of(const PlaneConfig& plane) {
+  return [p = vector(plane.point),
+          n = vector(plane.normal).normalized()](const Eigen::Vector3d& q) -> double { return n.dot(q - p); };
+}
+
+std::function<double(const Eigen::Vector3d&)> distance_of(const SphereConfig& sphere) {
+  return [c = vector(sphere.center), r = sphere.radius](const Eigen::Vector3d& q) -> double {
+    return (q - c).norm() - r;
+  };
+}
+
+std::function<double(const Eigen::Vector3d&)> distance_of(const CapsuleConfig& capsule) {
+  return [a = vector(capsule.from), along = Eigen::Vector3d(vector(capsule.to) - vector(capsule.from)),
+          r = capsule.radius](const Eigen::Vector3d& q) -> double {
+    const double squared = along.squaredNorm();
+    const double u = squared > 0 ? std::clamp((q - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+    return (q - a - u * along).norm() - r;
+  };
+}
+
+std::function<double(const Eigen::Vector3d&)> distance_of(const BoxConfig& box) {
+  const auto& q = box.rotation;
+  const Eigen::Matrix3d R_WX = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  return [c = vector(box.center), half = vector(box.half_sizes), R_WX](const Eigen::Vector3d& p) -> double {
+    const Eigen::Vector3d beyond = (R_WX.transpose() * (p - c)).cwiseAbs() - half;
+    return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+  };
+}
+
+}  // namespace
+
+const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
+  static const auto table =
+      obstacle_table<PlaneConfig>("plane", "A plane that the arm must not pass, such as the ground.")
+          .field("point", &PlaneConfig::point, place("A point of the plane.", false))
+          .field("normal", &PlaneConfig::normal,
+                 {.meaning = "Points to the side where the arm may be; of any length above 0.",
+                  .range = coordinate_range})
+          .check([](const PlaneConfig& plane, Reader& reader) {
+            if (!(vector(plane.normal).norm() > 0))
+              reader.problem_at("normal", "has no direction: expected a vector other than 0");
+          });
+  return table;
+}
+
+const Table<SphereConfig>& fields_of(const SphereConfig*) {
+  static const auto table = obstacle_table<SphereConfig>("sphere", "A ball.")
+                                .field("center", &SphereConfig::center, place("Its centre."))
+                                .field("radius", &SphereConfig::radius, size("Its radius."));
+  return table;
+}
+
+const Table<CapsuleConfig>& fields_of(const CapsuleConfig*) {
+  static const auto table = obstacle_table<CapsuleConfig>("capsule", "A rod with round ends.")
+                                .field("from", &CapsuleConfig::from, place("Where its axis starts."))
+                                .field("to", &CapsuleConfig::to, place("Where its axis ends."))
+                                .field("radius", &CapsuleConfig::radius, size("Its radius."));
+  return table;
+}
+
+const Table<BoxConfig>& fields_of(const BoxConfig*) {
+  static const auto table =
+      obstacle_table<BoxConfig>("box", "A box.")
+          .field("center", &BoxConfig::center, place("Its centre."))
+          .field("half_sizes", &BoxConfig::half_sizes, size("Half its edges, along its own x, y and z."))
+          .field("rotation", &BoxConfig::rotation,
+                 {.meaning = "Unit quaternion (w, x, y, z) that turns the box's axes into the world's.",
+                  .range = between(-2, 2)})
+          .check([](const BoxConfig& box, Reader& reader) {
+            const double norm = vector(box.rotation).norm();
+            if (std::abs(norm - 1) > 1e-3) {
+              reader.problem_at(
+                  "rotation",
+                  fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
+            }
+          });
+  return table;
+}
+
+std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs) {
+  std::vector<Obstacle> result;
+  for (const ObstacleConfig& config : configs) {
+    std::visit(
+        [&]<class One>(const One& one) {
+          const std::string called = fmt::format("{} {}", Codec<One>::table().info().name, result.size() + 1);
+          result.push_back({one.name.empty() ? called : one.name, one.ignore_base, distance_of(one)});
+        },
+        config);
+  }
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/table.h"
+
+namespace flexura {
+
+/// Something the arm must not touch: a convex body.
+struct Obstacle {
+  std::string name = {};
+  double ignore_base = 0;  ///< This much of the unstretched arm, from its base, may touch it; m.
+  /// Signed distance of a point in W to its surface, m; negative inside. Convex.
+  std::function<double(const Eigen::Vector3d& p_W)> distance;
+};
+
+/// A half space: all that is not on the side of the plane to which the normal points.
+struct PlaneConfig {
+  std::string name = {};
+  double ignore_base = 0;
+  std::array<double, 3> point = {0, 0, 0};
+  std::array<double, 3> normal = {0, 1, 0};
+};
+
+struct SphereConfig {
+  std::string name = {};
+  double ignore_base = 0;
+  std::array<double, 3> center = {0, 0, 0};
+  double radius = 0;
+};
+
+/// All that is within `radius` of a segment.
+struct CapsuleConfig {
+  std::string name = {};
+  double ignore_base = 0;
+  std::array<double, 3> from = {0, 0, 0};
+  std::array<double, 3> to = {0, 0, 0};
+  double radius = 0;
+};
+
+struct BoxConfig {
+  std::string name = {};
+  double ignore_base = 0;
+  std::array<double, 3> center = {0, 0, 0};
+  std::array<double, 3> half_sizes = {0, 0, 0};
+  std::array<double, 4> rotation = {1, 0, 0,
+                                    0};  ///< Quaternion (w, x, y, z), the box's axes into the world's.
+};
+
+/// One `[[obstacle]]` of a file.
+using ObstacleConfig = std::variant<PlaneConfig, SphereConfig, CapsuleConfig, BoxConfig>;
+
+const Table<PlaneConfig>& fields_of(const PlaneConfig*);
+const Table<SphereConfig>& fields_of(const SphereConfig*);
+const Table<CapsuleConfig>& fields_of(const CapsuleConfig*);
+const Table<BoxConfig>& fields_of(const BoxConfig*);
+
+/// What the tables describe; an obstacle without a name is called by its kind and its place in the list:
+/// "plane 1".
+[[nodiscard]] std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs);
+
+}  // namespace flexura

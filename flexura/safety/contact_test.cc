@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flexura/safety/contact_watch.h"
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A planar arm of equal sections of 1 m.
+Arm even_arm(std::size_t sections, double radius) {
+  Arm arm;
+  arm.sections.resize(sections);
+  for (Section& section : arm.sections) section.radius = {radius, radius};
+  return arm;
+}
+
+ArmState bent(std::size_t sections, double bend) {
+  ArmState state = ArmState::straight(sections);
+  for (auto& b : state.bends) b.x() = bend;
+  return state;
+}
+
+TEST(Contact, AStraightArmTouchesNothingOfItself) {
+  EXPECT_EQ(ContactWatch(even_arm(8, 0.02)).contact(ArmState::straight(8)).clearance, no_distance);
+}
+
+TEST(Contact, ATubeThatBendsAsSharplyAsItCanIsFreeUntilItMeetsItself) {
+  // Curvature times radius 0.999: the inner side almost folds, neighbours touch, and that is no contact.
+  const Arm arm = even_arm(4, 0.999);
+  const ContactWatch watch(arm);
+  const Contact half_circle = watch.contact(bent(4, 0.999 * pi / 4));
+  EXPECT_EQ(half_circle.clearance, no_distance);
+  for (const double bend : {0.8, 0.9, 1.0}) {
+    // Ends 4 bend apart on a circle of radius 1 / bend.
+    const double expected = 2 * std::sin(2 * bend) / bend - 2 * 0.999;
+    EXPECT_NEAR(watch.contact(bent(4, bend)).clearance, std::min(expected, 2 / bend - 2 * 0.999), 1e-6)
+        << bend;
+  }
+}
+
+TEST(Contact, FindsWhenAnArmCurlsIntoItself) {
+  // Four sections that close to a circle at 2 pi: the tip meets the base a tube's width before.
+  const Arm arm = even_arm(4, 0.05);
+  const MotionPtr curl =
+      point_to_point_motion(bent(4, 0), bent(4, pi / 2), std::vector(4, Profile::linear(10)));
+  const SafetyReport report = check_motions(arm, {}, curl->at(0), {{curl, 0}}, 0.02);
+  ASSERT_EQ(report.violations.size(), 1u);
+  const Violation& contact = report.violations[0];
+  EXPECT_EQ(contact.hazard, Hazard::self_contact);
+  EXPECT_EQ(contact.section, 0u);
+  EXPECT_EQ(contact.other_section, 3u);
+  EXPECT_EQ(contact.end, 10);
+  EXPECT_NEAR(contact.value, 0.1, 1e-6);
+  double touching = pi / 2;  // 2 sin(2 bend) / bend = 0.1 by bisection
+  for (double low = 1.2, high = pi / 2; high - low > 1e-14;) {
+    touching = (low + high) / 2;
+    (2 * std::sin(2 * touching) / touching > 0.1 ? low : high) = touching;
+  }
+  EXPECT_NEAR(contact.start, 10 * touching / (pi / 2), 2e-4);
+  EXPECT_EQ(contact.text().substr(contact.text().find(": ") + 2),
+            "sections 1 and 4: contact with each other, 100 mm deep");
+}
+
+TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
+  const Arm arm = even_arm(1, 0.02);
+  const Obstacle wall =
+      obstacles({PlaneConfig{.name = "wall", .point = {0.4, 0, 0}, .normal = {-1, 0, 0}}}).front();
+  // The tip swings out and back within half a second.
+  const MotionPtr swing = sine_motion(bent(1, 0), {{1, 0}}, {0}, 1, 0.5);
+  const SafetyReport report = check_motions(arm, {wall}, bent(1, 0), {{swing, 0}}, 0.5);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::obstacle);
+  EXPECT_EQ(report.violations[0].name, "wall");
+  EXPECT_NEAR(report.violations[0].value, 1 - std::cos(1) + 0.02 - 0.4, 1e-4);
+  EXPECT_GT(report.violations[0].start, 0.1);
+  EXPECT_LT(report.violations[0].end, 0.4);
+}
+
+TEST(Contact, OfAnArmThatHardlyMovesIsDecidedSoon) {
+  // 1e-9 rad in a day, so near to a ball that no step of time is short enough to tell.
+  const Arm arm = even_arm(1, 0.02);
+  const MotionPtr creep = point_to_point_motion(bent(1, 0), bent(1, 1e-9), {Profile::linear(1e5)});
+  for (const double gap : {1e-10, -1e-10, -3e-6}) {
+    const auto ball = obstacles({SphereConfig{.center = {0.1, 0.9, 0}, .radius = 0.08 - gap}}).front();
+    const SafetyReport report = check_motions(arm, {ball}, bent(1, 0), {{creep, 0}}, 1);
+    EXPECT_EQ(report.is_safe(), gap > -1e-6) << gap;
+  }
+}
+
+TEST(Contact, TheBaseMayStandOnTheGround) {
+  PlaneConfig plane{.name = "ground"};
+  const Arm arm = even_arm(2, 0.05);
+  const auto clearance = [&] {
+    return ContactWatch(arm, obstacles({plane}).front()).contact(ArmState::straight(2)).clearance;
+  };
+  EXPECT_NEAR(clearance(), -0.05, 1e-6);
+  plane.ignore_base = 0.05;  // touches, and may
+  EXPECT_NEAR(clearance(), 0, 1e-6);
+  plane.ignore_base = 1.5;
+  EXPECT_NEAR(clearance(), 1.45, 1e-6);
+  plane.ignore_base = 3;
+  EXPECT_EQ(clearance(), no_distance);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,161 @@
+#include "flexura/safety/contact_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "flexura/safety/limits.h"
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+constexpr double half_turn = std::numbers::pi;
+constexpr double deepest = -contact_tolerance;  // clearance that is none yet
+constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
+constexpr QuantityBounds in_contact{no_distance, no_distance};
+constexpr QuantityBounds undecided{-no_distance, no_distance};
+
+double largest_radius(const TubeArc& tube) { return std::max(tube.radius[0], tube.radius[1]); }
+
+double turn_between(const TubeArc& a, const TubeArc& b) { return b.turn + b.bend.norm() - a.turn; }
+
+// Distance between two sections' tubes that is surely there.
+double apart(const TubeArc& a, const Eigen::Vector3d& middle_a, const TubeArc& b,
+             const Eigen::Vector3d& middle_b) {
+  return (middle_a - middle_b).norm() - (a.length + b.length) / 2 - largest_radius(a) - largest_radius(b);
+}
+
+// The tube with its radius changed by so much at its start and end.
+TubeArc grown(TubeArc tube, double at_start, double at_end) {
+  tube.radius[0] += at_start;
+  tube.radius[1] += at_end;
+  return tube;
+}
+
+std::vector<Eigen::Vector3d> middles(const std::vector<TubeArc>& tubes) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(tubes.size());
+  for (const TubeArc& tube : tubes) points.push_back(tube.point(0.5));
+  return points;
+}
+
+}  // namespace
+
+// How far the arm may come from its state in the middle of an interval.
+struct ContactWatch::Reach {
+  std::vector<double> turn;     // of each section: change of its bend, rad
+  std::vector<double> length;   // the longest it gets, m
+  std::vector<double> stretch;  // change of its length, m
+
+  Reach(const Arm& arm, const Motion& motion, const ArmState& middle, double start, double end) {
+    const double half = (end - start) / 2;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const SectionRates rates = rates_of(motion, i, start, end);
+      turn.push_back(rates.bend * half);
+      stretch.push_back(rates.stretch * half * arm.sections[i].length);
+      length.push_back(arm.sections[i].length * middle.stretches[i] + stretch.back());
+    }
+  }
+
+  // Adds section j to a chain: how far its end may move in the frame at the chain's start (or anywhere in the
+  // chain's first section). A section that bends by d turns what is beyond it by at most d, and moves its own
+  // end by at most d length / 2; in between that is convex, so a line from start to end bounds it.
+  void extend(std::size_t j, double& moved, double& turned) const {
+    moved += turned * length[j] + turn[j] * length[j] / 2 + stretch[j];
+    turned += turn[j];
+  }
+};
+
+ContactWatch::ContactWatch(Arm arm) : arm_(std::move(arm)) {}
+ContactWatch::ContactWatch(Arm arm, Obstacle obstacle)
+    : arm_(std::move(arm)), obstacle_(std::move(obstacle)) {}
+
+Contact ContactWatch::contact(const ArmState& state, double cap) const {
+  if (!is_possible(state)) return {.clearance = cap};
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, state);
+  return obstacle_ ? obstacle_contact(tubes, cap) : self_contact(tubes, cap);
+}
+
+WatchedQuantity ContactWatch::depth(const Motion& motion) const {
+  return {[this, &motion](double t) { return -contact(motion.at(t), 0).clearance; },
+          [this, &motion](double start, double end) { return bounds(motion, start, end); }};
+}
+
+QuantityBounds ContactWatch::bounds(const Motion& motion, double start, double end) const {
+  const ArmState middle = motion.at((start + end) / 2);
+  if (!is_possible(middle)) return undecided;
+  const Reach reach(arm_, motion, middle, start, end);
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, middle);
+  return obstacle_ ? obstacle_bounds(tubes, reach) : self_bounds(tubes, reach);
+}
+
+QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  bool is_free = true;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    double moved = 0;
+    double turned = 0;
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      const double moved_before = moved;
+      reach.extend(j, moved, turned);
+      if (turn_between(tubes[i], tubes[j]) < half_turn - turned) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= moved) continue;
+      is_free =
+          is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), half_turn - turned, deepest);
+      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned, deepest))
+        return in_contact;
+    }
+  }
+  return is_free ? free_of_contact : undecided;
+}
+
+QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
+  constexpr DistanceWish wish{deepest, deepest};
+  bool is_free = true;
+  double moved = 0;
+  double turned = 0;
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double moved_before = moved;
+    reach.extend(j, moved, turned);
+    const double from = ignored(j);
+    if (obstacle_distance(grown(tubes[j], moved_before, moved), from, *obstacle_, wish) >= deepest) continue;
+    is_free = false;
+    const TubeArc sure = grown(tubes[j], -moved_before, -moved);
+    if (obstacle_distance(sure, from, *obstacle_, wish) < deepest) return in_contact;
+  }
+  return is_free ? free_of_contact : undecided;
+}
+
+Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap) {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  Contact nearest{.clearance = cap};
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= nearest.clearance) continue;
+      const double distance = tube_distance(tubes[i], tubes[j], half_turn, nearest.clearance);
+      if (distance < nearest.clearance) nearest = {distance, i, j};
+    }
+  }
+  return nearest;
+}
+
+Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const {
+  Contact nearest{.clearance = cap};
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double distance = obstacle_distance(tubes[j], ignored(j), *obstacle_, {.cap = nearest.clearance});
+    if (distance < nearest.clearance) nearest = {distance, j, std::nullopt};
+  }
+  return nearest;
+}
+
+// The fraction of a section that the obstacle does not count.
+double ContactWatch::ignored(std::size_t section) const {
+  double rest = obstacle_->ignore_base;
+  for (std::size_t i = 0; i < section; ++i) rest -= arm_.sections[i].length;
+  return std::max(0.0, rest / arm_.sections[section].length);
+}
+
+}  // namespace flexura

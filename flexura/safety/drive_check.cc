@@ -1,0 +1,129 @@
+#include "flexura/safety/drive_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/kinematics/motors.h"
+#include "flexura/kinematics/tendons.h"
+#include "flexura/safety/limits.h"
+#include "flexura/safety/motion_check.h"
+#include "flexura/safety/spans.h"
+
+namespace flexura {
+namespace {
+
+// Doubles count exactly up to here; no motor goes farther.
+constexpr double max_countable = 9007199254740992.0;
+
+// One limit of one axis; joins what is too much in rows that follow each other.
+class AxisLimit {
+ public:
+  AxisLimit(Hazard hazard, std::string axis, double limit)
+      : found_{.hazard = hazard, .name = std::move(axis), .limit = limit} {}
+
+  void add(Span span, double value, SafetyReport& report) {
+    if (value <= found_.limit * (1 + limit_tolerance)) {
+      close(report);
+      return;
+    }
+    if (!std::exchange(is_open_, true)) found_.start = span.start, found_.value = value;
+    found_.end = span.end;
+    found_.value = std::max(found_.value, value);
+  }
+  void close(SafetyReport& report) {
+    if (std::exchange(is_open_, false)) report.violations.push_back(found_);
+  }
+
+ private:
+  Violation found_;
+  bool is_open_ = false;
+};
+
+// Follows one axis from row to row.
+class AxisCheck {
+ public:
+  AxisCheck(const Drive& drive, std::size_t axis)
+      : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
+        speed_(Hazard::motor_speed, drive.axis_name(axis), drive.axes[axis].motor.max_speed),
+        step_rate_(Hazard::step_rate, drive.axis_name(axis), drive.axes[axis].motor.max_step_rate),
+        acceleration_(Hazard::motor_acceleration, drive.axis_name(axis),
+                      drive.axes[axis].motor.max_acceleration),
+        position_(Hazard::motor_position, drive.axis_name(axis), drive.axes[axis].motor.max_position) {}
+
+  void start(double time, double position, SafetyReport& report) {
+    last_position_ = position;
+    position_.add({time, time}, std::abs(position), report);
+  }
+  // `last` and `now` are the steps before and up to this row; the first step comes after one of standing.
+  void row(Span last, Span now, double position, SafetyReport& report) {
+    const double rate = (position - last_position_) / (now.end - now.start);
+    step_rate_.add(now, std::abs(rate), report);
+    speed_.add(now, std::abs(rate) * to_radians_, report);
+    change_rate(last, now, rate, report);
+    position_.add({now.end, now.end}, std::abs(position), report);
+    last_position_ = position;
+  }
+  // The motor stands after the last step.
+  void stop(Span last, SafetyReport& report) {
+    change_rate(last, {last.end, 2 * last.end - last.start}, 0, report);
+    for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_, &position_}) limit->close(report);
+  }
+
+ private:
+  void change_rate(Span last, Span now, double rate, SafetyReport& report) {
+    const double time = (now.end - last.start) / 2;
+    const double acceleration = std::abs(rate - last_rate_) * to_radians_ / time;
+    acceleration_.add({now.start, now.start}, acceleration, report);
+    last_rate_ = rate;
+  }
+
+  double to_radians_;  // a microstep of the motor
+  AxisLimit speed_, step_rate_, acceleration_, position_;
+  double last_position_ = 0;  // microsteps
+  double last_rate_ = 0;      // microsteps/s
+};
+
+// The displacements in a state, if motors can be sent there.
+std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive& drive,
+                                                    const ArmState& state) {
+  if (!is_possible(state)) return std::nullopt;
+  TendonDisplacements wanted = tendon_displacements(arm, drive, state);
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+    const double farthest = std::abs(wanted.pulled[i]) * drive.axes[i].microsteps_a_metre();
+    if (!(farthest + drive.axes[i].play() < max_countable)) return std::nullopt;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
+                 std::span<const double> times, SafetyReport& report) {
+  if (times.size() < 2) return;
+  const auto first = displacements_in(arm, drive, state_at(times[0]));
+  if (!first) return;
+  MotorCommander commander(drive, *first);
+  std::vector<AxisCheck> axes;
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+    axes.emplace_back(drive, i);
+    axes.back().start(times[0], commander.targets()[i], report);
+  }
+  Span last{2 * times[0] - times[1], times[0]};
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const auto wanted = displacements_in(arm, drive, state_at(times[k]));
+    if (!wanted) break;
+    commander.follow(*wanted);
+    const Span now{times[k - 1], times[k]};
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, commander.targets()[i], report);
+    last = now;
+  }
+  for (AxisCheck& axis : axes) axis.stop(last, report);
+}
+
+}  // namespace flexura

@@ -1,0 +1,125 @@
+#include "flexura/safety/drive_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+constexpr double step = 0.01;  // s
+
+// One planar section of 0.5 m; a tendon on either side, 20 mm from the backbone, on spools of 10 mm behind
+// gears of 5 to 1. A bend of 1 rad takes 20 mm of cable, 2 rad of the spool and 10 of the motor: so many
+// turns that 3000 microsteps each make 15000/pi.
+class DriveCheck : public ::testing::Test {
+ protected:
+  DriveCheck() {
+    arm_.sections.resize(1);
+    arm_.sections[0].length = 0.5;
+    for (const double angle : {0.0, std::numbers::pi}) {
+      drive_.tendons.push_back({0, 0.02, angle});
+      drive_.axes.push_back({.motor = {}, .spool = {.radius = 0.01, .gear = 5}, .reversed = angle > 0});
+    }
+  }
+  SafetyReport check(const MotionPtr& motion) const {
+    std::vector<double> times;
+    const auto steps = static_cast<int>(std::lround(motion->duration() / step));
+    for (int k = 0; k <= steps; ++k) times.push_back(motion->duration() * k / steps);
+    SafetyReport report;
+    check_drive(arm_, drive_, [&](double t) { return motion->at(t); }, times, report);
+    report.sort();
+    return report;
+  }
+  // From straight to a bend within 1 s at an even rate.
+  SafetyReport check_bend(double bend) const {
+    return check(point_to_point_motion(state(0), state(bend), {Profile::linear(1)}));
+  }
+  static ArmState state(double bend) { return {{{bend, 0}}, {1}}; }
+  // Sets a limit of the first motor to a value and expects a bend of 1 rad to break it just beyond that.
+  void expect_limit(double StepperMotor::* limit, double value, Hazard hazard) {
+    drive_.axes[0].motor.*limit = value;
+    EXPECT_TRUE(check_bend(1 - 1e-6).is_safe());
+    const SafetyReport beyond = check_bend(1 + 1e-6);
+    ASSERT_FALSE(beyond.is_safe());
+    for (const Violation& violation : beyond.violations) {
+      EXPECT_EQ(violation.hazard, hazard);
+      EXPECT_EQ(violation.name, "1.1");
+      EXPECT_EQ(violation.limit, value);
+      EXPECT_NEAR(violation.value, value * (1 + 1e-6), value * 1e-8);
+    }
+    drive_.axes[0].motor.*limit = std::numeric_limits<double>::infinity();
+  }
+
+  Arm arm_;
+  Drive drive_;
+};
+
+TEST_F(DriveCheck, FindsEveryLimitJustBeyondItAndNotJustWithin) {
+  const double microsteps = 10 / (2 * std::numbers::pi) * 3000;
+  expect_limit(&StepperMotor::max_speed, 10, Hazard::motor_speed);
+  expect_limit(&StepperMotor::max_step_rate, microsteps, Hazard::step_rate);
+  expect_limit(&StepperMotor::max_position, microsteps, Hazard::motor_position);
+  // From standing to 10 rad/s within a step.
+  expect_limit(&StepperMotor::max_acceleration, 10 / step, Hazard::motor_acceleration);
+}
+
+TEST_F(DriveCheck, TellsWhenAndHowMuch) {
+  drive_.axes[1].motor.max_speed = 5;
+  const auto law =
+      keyframe_motion({0, 1, 2, 3}, {state(0), state(0.1), state(0.9), state(1)}, Interpolation::linear);
+  const SafetyReport report = check(law);
+  ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_EQ(report.violations[0].text(),
+            "1 s to 2 s: axis 1.2: motor speed 458.366 deg/s, limit 286.479 deg/s");
+}
+
+TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {
+  drive_.axes[0].motor.max_acceleration = 500;
+  const SafetyReport report = check_bend(1);
+  ASSERT_EQ(report.violations.size(), 2U);
+  EXPECT_EQ(report.violations[0].start, 0);
+  EXPECT_EQ(report.violations[1].start, 1);
+  // The least jerk takes 10/sqrt(3) of the way a second squared.
+  const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
+  drive_.axes[0].motor.max_acceleration = 10 * 10 / std::sqrt(3.0);
+  EXPECT_TRUE(check(smooth).is_safe());
+  drive_.axes[0].motor.max_acceleration *= 0.99;
+  EXPECT_FALSE(check(smooth).is_safe());
+}
+
+TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
+  drive_.axes[0].spool.backlash = 0.02;  // 0.1 rad of the motor: 10 rad/s within a step
+  drive_.axes[0].motor.max_speed = 12;
+  const auto there_and_back = keyframe_motion({0, 1, 2}, {state(0), state(0.3), state(0)},
+                                              Interpolation::linear);  // 3 rad/s of the motor
+  const SafetyReport report = check(there_and_back);
+  ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_NEAR(report.violations[0].start, 1, 1e-12);
+  EXPECT_NEAR(report.violations[0].end, 1 + step, 1e-12);
+  EXPECT_NEAR(report.violations[0].value, 13, 1e-9);
+}
+
+TEST_F(DriveCheck, RoundingToMicrostepsIsNoAcceleration) {
+  drive_.axes[0].motor.steps = 3;
+  drive_.axes[0].motor.microsteps = 1;  // 2 rad each
+  drive_.axes[0].motor.max_acceleration = 10 * 10 / std::sqrt(3.0);
+  EXPECT_TRUE(check(point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)})).is_safe());
+}
+
+TEST_F(DriveCheck, EndsBeforeAStateThatIsNotPossible) {
+  drive_.axes[0].motor.max_speed = 1e-3;
+  const auto nowhere = function_motion(1, [](double t) { return state(std::sqrt(0.5 - t)); });
+  const SafetyReport report = check(nowhere);
+  ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_EQ(report.violations[0].end, 0.5);
+  EXPECT_TRUE(std::isfinite(report.violations[0].value));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,58 @@
+#include "flexura/safety/jumps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+struct Sample {
+  double time = 0;
+  ArmState state;
+};
+
+std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
+  constexpr int halvings = 40;
+  constexpr int few = 6;
+  const double whole = largest_change(a.state, b.state);
+  double size = whole;
+  for (int n = 1; n <= halvings && size > smallest_jump; ++n) {
+    Sample middle{(a.time + b.time) / 2, {}};
+    middle.state = motion.at(middle.time);
+    const double first = largest_change(a.state, middle.state);
+    const double second = largest_change(middle.state, b.state);
+    size = std::max(first, second);
+    (first > second ? b : a) = std::move(middle);
+    // A smooth law would have come down to some 1/64 by then.
+    if (n == few && size < whole / 32) return std::nullopt;
+  }
+  if (size <= smallest_jump) return std::nullopt;
+  return Jump{b.time, size};
+}
+
+}  // namespace
+
+double largest_change(const ArmState& a, const ArmState& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.bends.size(); ++i) {
+    most = std::max({most, (a.bends[i] - b.bends[i]).norm(), std::abs(a.stretches[i] - b.stretches[i])});
+  }
+  return most;
+}
+
+std::vector<Jump> find_jumps(const Motion& motion, double step) {
+  std::vector<Jump> jumps;
+  const auto count = static_cast<std::size_t>(std::ceil(motion.duration() / step));
+  Sample last{0, motion.at(0)};
+  for (std::size_t k = 1; k <= count; ++k) {
+    Sample next{std::min(static_cast<double>(k) * step, motion.duration()), {}};
+    next.state = motion.at(next.time);
+    if (const auto jump = jump_between(motion, last, next)) jumps.push_back(*jump);
+    last = std::move(next);
+  }
+  return jumps;
+}
+
+}  // namespace flexura

@@ -1,0 +1,20 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/sampled_check.h"
+
+namespace flexura {
+namespace {
+
+TEST(MotionCheckFull, MissesNothingThatDenseSamplingFinds) {
+  SampledComparison result;
+  for_random_cases(10, [&](TestRandom& random) {
+    compare_with_samples(random, 100'000, result);
+    EXPECT_EQ(result.missed, 0U);
+    EXPECT_EQ(result.refuted, 0U);
+    EXPECT_EQ(result.contacts_missed, 0U);
+  });
+  EXPECT_EQ(result.motions, 50U);
+}
+
+}  // namespace
+}  // namespace flexura

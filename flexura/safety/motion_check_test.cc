@@ -1,0 +1,173 @@
+#include "flexura/safety/motion_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "flexura/safety/jumps.h"
+#include "tests/support/arms.h"
+#include "tests/support/sampled_check.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+Arm one_section() {
+  Arm arm;
+  arm.sections.resize(1);
+  return arm;
+}
+
+ArmState bent(double bend) { return {{{bend, 0}}, {1}}; }
+
+SafetyReport check(const Arm& arm, MotionPtr motion, double step = 0.02) {
+  const ArmState initial = motion->at(0);
+  return check_motions(arm, {}, initial, {{std::move(motion), 0}}, step);
+}
+
+TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
+  SampledComparison result;
+  for_random_cases(6, [&](TestRandom& random) {
+    compare_with_samples(random, 10'000, result);
+    EXPECT_EQ(result.missed, 0U);
+    EXPECT_EQ(result.refuted, 0U);
+    EXPECT_EQ(result.contacts_missed, 0U);
+  });
+  EXPECT_EQ(result.motions, 30U);
+  EXPECT_GT(result.above, 10'000U);
+  EXPECT_GT(result.contacts, 1000U);
+}
+
+TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
+  Arm arm = one_section();
+  arm.sections[0].max_bend = 1;
+  const SafetyReport report = check(arm, point_to_point_motion(bent(0), bent(2), {Profile::linear(4)}));
+  ASSERT_EQ(report.violations.size(), 1u);
+  const Violation& violation = report.violations[0];
+  EXPECT_EQ(violation.hazard, Hazard::bend);
+  EXPECT_NEAR(violation.start, 2, 1e-6);
+  EXPECT_EQ(violation.end, 4);
+  EXPECT_EQ(violation.section, 0u);
+  EXPECT_EQ(violation.value, 2);
+  EXPECT_EQ(violation.limit, 1);
+  EXPECT_THAT(violation.text(), HasSubstr("s to 4 s: section 1: bend 114.592 deg, limit 57.2958 deg"));
+}
+
+TEST(MotionCheck, LimitsThatAreJustTouchedAreKept) {
+  Arm arm = one_section();
+  arm.sections[0].max_bend = 2;
+  arm.sections[0].stretch_limits = {0.5, 1};
+  arm.sections[0].max_bend_rate = 1.875;
+  EXPECT_TRUE(check(arm, point_to_point_motion(bent(1), bent(2), {Profile::minimum_jerk(1)})).is_safe());
+  arm.sections[0].max_bend_rate = 2 * std::numbers::pi;
+  EXPECT_TRUE(check(arm, sine_motion(bent(1), {{1, 0}}, {0}, 1, 3)).is_safe());
+  arm.sections[0].max_bend_rate = 1.5;  // of a cubic from rest to rest
+  EXPECT_TRUE(check(arm, keyframe_motion({0, 1}, {bent(0), bent(1)}, Interpolation::smooth)).is_safe());
+}
+
+TEST(MotionCheck, FindsAPeakBetweenTwoSamplesOfTheClock) {
+  Arm arm = one_section();
+  arm.sections[0].max_bend = 0.999;
+  const MotionPtr swing = sine_motion(bent(0), {{1, 0}}, {0}, 4, 2);  // above the limit for 57 ms
+  const SafetyReport report = check(arm, swing, 0.7);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_NEAR(report.violations[0].start, std::asin(0.999) * 2 / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(report.violations[0].value, 1, 1e-4);
+}
+
+TEST(MotionCheck, FindsATooFastPieceOfAMicrosecond) {
+  Arm arm = one_section();
+  arm.sections[0].max_bend_rate = 1;
+  const auto keyframes =
+      keyframe_motion({0, 5, 5 + 1e-6, 10}, {bent(0), bent(0), bent(1e-5), bent(0)}, Interpolation::linear);
+  const SafetyReport report = check(arm, keyframes);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::bend_rate);
+  EXPECT_NEAR(report.violations[0].start, 5, 1e-6);
+  EXPECT_NEAR(report.violations[0].value, 10, 1e-4);
+}
+
+TEST(MotionCheck, FindsFolding) {
+  Arm arm = one_section();
+  arm.sections[0].radius = {0.2, 0.5};
+  EXPECT_TRUE(check(arm, hold_motion(bent(1.9999), 1)).is_safe());
+  EXPECT_FALSE(check(arm, hold_motion(bent(2), 1)).is_safe());
+  const SafetyReport report = check(arm, hold_motion(bent(2.01), 1));
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::folding);
+  EXPECT_NEAR(report.violations[0].value, 1.005, 1e-12);
+}
+
+TEST(MotionCheck, FindsJumpsBetweenTasks) {
+  const SafetyReport report = check_motions(
+      one_section(), {}, bent(0), {{hold_motion(bent(0), 1), 0}, {hold_motion(bent(0.1), 1), 1}}, 0.02);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::jump);
+  EXPECT_EQ(report.violations[0].start, 1);
+  EXPECT_DOUBLE_EQ(report.violations[0].value, 0.1);
+}
+
+TEST(MotionCheck, FindsJumpsInFormulasAndNoneWhereTheyAreOnlyFast) {
+  for_random_cases(200, [](TestRandom& random) {
+    const double at = random.uniform(0.5, 1.5);
+    const double size = random.uniform(1e-3, 1);
+    const double slope = random.uniform(0, 1e-2);
+    const auto step = function_motion(2, [=](double t) { return bent(slope * t + (t > at ? size : 0)); });
+    const std::vector<Jump> jumps = find_jumps(*step, 0.02);
+    ASSERT_EQ(jumps.size(), 1u);
+    EXPECT_NEAR(jumps[0].time, at, 1e-9);
+    EXPECT_NEAR(jumps[0].size, size, 1e-9);
+    const double steepness = random.uniform(1, 1e6);
+    const auto fast = function_motion(2, [=](double t) { return bent(std::tanh(steepness * (t - at))); });
+    EXPECT_TRUE(find_jumps(*fast, 0.02).empty()) << steepness;
+  });
+}
+
+TEST(MotionCheck, SaysWhatItOnlySampled) {
+  const auto formula = function_motion(3, [](double t) { return bent(0.1 * t); });
+  const SafetyReport report = check(one_section(), formula, 0.05);
+  EXPECT_TRUE(report.is_safe());
+  EXPECT_THAT(report.caveats,
+              testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: the law has no bound on its rates"));
+  EXPECT_TRUE(check(one_section(), hold_motion(bent(0), 1)).caveats.empty());
+}
+
+TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
+  const auto nowhere = function_motion(2, [](double t) { return bent(std::sqrt(1 - t)); });
+  const SafetyReport report = check(one_section(), nowhere, 0.1);
+  ASSERT_FALSE(report.is_safe());
+  EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
+  EXPECT_NEAR(report.violations[0].start, 1.1, 1e-9);
+  EXPECT_EQ(report.violations[0].text(), "1.1 s: no possible value");
+  const auto no_length = function_motion(2, [](double t) -> ArmState { return {{{0, 0}}, {1 - t}}; });
+  EXPECT_EQ(check(one_section(), no_length, 0.1).violations.at(0).hazard, Hazard::not_finite);
+}
+
+TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {
+  // Smooth keyframes overshoot: the stretch goes below 0 for a while.
+  const auto state = [](double stretch) -> ArmState { return {{{0.5, 0}}, {stretch}}; };
+  const auto law = keyframe_motion(
+      {0, 1, 2, 3, 4}, {state(1), state(0.05), state(0.01), state(0.05), state(1)}, Interpolation::smooth);
+  ASSERT_LT(law->at(1.5).stretches[0], 0);
+  const SafetyReport report = check(one_section(), law);
+  ASSERT_FALSE(report.is_safe());
+  for (const Violation& violation : report.violations)
+    EXPECT_TRUE(violation.hazard == Hazard::stretch || violation.hazard == Hazard::folding)
+        << violation.text();
+}
+
+TEST(MotionCheck, ASingularPoseIsANoteOnly) {
+  const Arm arm = paper_arm();
+  const SafetyReport report = check(
+      arm, point_to_point_motion(ArmState::straight(8), paper_state(), std::vector(8, Profile::linear(5))));
+  EXPECT_TRUE(report.is_safe());
+  EXPECT_THAT(report.notes,
+              testing::ElementsAre("0 s: singular pose: the tip can set out in 1 of 2 dimensions"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,28 @@
+#include "flexura/safety/singular.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <vector>
+
+#include "flexura/kinematics/jacobian.h"
+
+namespace flexura {
+
+TipFreedom tip_freedom(const Arm& arm, const ArmState& state) {
+  const Jacobian whole = tip_jacobian(arm, state);
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const auto first = static_cast<Eigen::Index>(3 * i);
+    free.push_back(first);
+    if (arm.kind == ArmKind::spatial) free.push_back(first + 1);
+    if (arm.sections[i].stretch_limits[0] < arm.sections[i].stretch_limits[1]) free.push_back(first + 2);
+  }
+  const Eigen::MatrixXd velocities = whole.topRows<3>()(Eigen::all, free);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(velocities);
+  svd.setThreshold(1e-9);
+  const std::size_t dimensions = arm.kind == ArmKind::planar ? 2 : 3;
+  // One spatial section without stretch reaches a surface only.
+  return {static_cast<std::size_t>(svd.rank()), std::min(dimensions, free.size())};
+}
+
+}  // namespace flexura

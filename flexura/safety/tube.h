@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "flexura/math/pose.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/obstacle.h"
+
+// Distances between the arm's tubes and to obstacles. A tube is the union of balls around the backbone, so
+// its ends are hemispheres. Distances are right to `distance_tolerance`: what is returned is a distance that
+// occurs, and none is less by more.
+namespace flexura {
+
+inline constexpr double distance_tolerance = 5e-7;  ///< m
+inline constexpr double no_distance = std::numeric_limits<double>::infinity();
+
+/// One section's tube as it stands.
+struct TubeArc {
+  Pose X_WS;                          ///< Frame at its start; z is the tangent.
+  Eigen::Vector2d bend;               ///< rad
+  double length = 0;                  ///< m, stretch included.
+  std::array<double, 2> radius = {};  ///< m, at its start and end.
+  double turn = 0;  ///< How far the backbone turns from the base to its start: sum of |bend|, rad.
+
+  /// On the backbone, at the fraction `u` in [0, 1] of the way.
+  [[nodiscard]] Eigen::Vector3d point(double u) const;
+  [[nodiscard]] double radius_at(double u) const { return radius[0] + u * (radius[1] - radius[0]); }
+  [[nodiscard]] double turn_at(double u) const { return turn + u * bend.norm(); }
+};
+
+/// The arm's tubes, one a section. `state` must fit the arm, else std::invalid_argument.
+[[nodiscard]] std::vector<TubeArc> tube_arcs(const Arm& arm, const ArmState& state);
+
+/// A question about the least distance: values at or above `cap` do not matter, and any value below `enough`
+/// will do.
+struct DistanceWish {
+  double cap = no_distance;
+  double enough = -no_distance;
+};
+
+/// The least distance between the surfaces of `a` and `b` (`a` nearer to the base, or the same arc), m,
+/// negative where they overlap, over the pairs of backbone points between which the backbone turns by
+/// `least_turn` rad or more; `cap` when there are none, or none nearer.
+///
+/// Branch and bound: a piece of an arc of length l that turns by psi stays within l min(psi/8, 1/2) of its
+/// chord, so the distance of two chords bounds that of the pieces, ever closer as they get shorter.
+[[nodiscard]] double tube_distance(const TubeArc& a, const TubeArc& b, double least_turn,
+                                   double cap = no_distance);
+
+/// Whether all these pairs are surely as far apart; false where it takes long to prove.
+[[nodiscard]] bool stay_apart(const TubeArc& a, const TubeArc& b, double least_turn, double distance);
+
+/// Whether some of these pairs are surely nearer; false where it takes long to prove.
+[[nodiscard]] bool come_within(const TubeArc& a, const TubeArc& b, double least_turn, double distance);
+
+/// The least distance from the tube's surface to the obstacle, m, negative where they overlap; of the tube
+/// from the fraction `from` on.
+[[nodiscard]] double obstacle_distance(const TubeArc& tube, double from, const Obstacle& obstacle,
+                                       const DistanceWish& wish);
+
+}  // namespace flexura

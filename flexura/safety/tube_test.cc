@@ -1,0 +1,199 @@
+#include "flexura/safety/tube.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "tests/support/arms.h"
+
+namespace flexura {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TubeArc tube_at(const Eigen::Vector3d& position, const Eigen::Vector2d& bend, double length, double radius) {
+  return {{Eigen::Matrix3d::Identity(), position}, bend, length, {radius, radius}, 0};
+}
+
+// The distance between the tubes at u and v. Where the pair must turn by more between them, v is drawn to
+// where it just does.
+double distance_at(const TubeArc& a, const TubeArc& b, double least_turn, double u, double v) {
+  const double missing = a.turn_at(u) + least_turn - b.turn_at(v);
+  if (missing > 0) v += b.bend.norm() > 0 ? missing / b.bend.norm() : 2;
+  if (v > 1) return no_distance;
+  return (a.point(u) - b.point(v)).norm() - a.radius_at(u) - b.radius_at(v);
+}
+
+// Goes down from (u, v) by ever smaller steps.
+double descended(const TubeArc& a, const TubeArc& b, double least_turn, double u, double v, double step) {
+  constexpr int ways = 16;
+  double best = distance_at(a, b, least_turn, u, v);
+  for (double h = step; h > 1e-11;) {
+    const double before = best;
+    for (int k = 0; k < ways; ++k) {
+      const double x = std::clamp(u + h * std::cos(2 * pi * k / ways), 0.0, 1.0);
+      const double y = std::clamp(v + h * std::sin(2 * pi * k / ways), 0.0, 1.0);
+      const double now = distance_at(a, b, least_turn, x, y);
+      if (now < best) best = now, u = x, v = y;
+    }
+    if (best == before) h /= 2;
+  }
+  return best;
+}
+
+// Brute force: a grid, and a descent from every point of it that is no farther than its neighbours.
+double brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
+  constexpr int n = 60;
+  std::vector<double> grid;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j)
+      grid.push_back(distance_at(a, b, least_turn, static_cast<double>(i) / n, static_cast<double>(j) / n));
+  }
+  const auto at = [&](int i, int j) {
+    return grid[static_cast<std::size_t>(std::clamp(i, 0, n) * (n + 1) + std::clamp(j, 0, n))];
+  };
+  double best = no_distance;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      if (at(i, j) > std::min({at(i - 1, j), at(i + 1, j), at(i, j - 1), at(i, j + 1)})) continue;
+      if (at(i, j) == no_distance) continue;
+      best = std::min(
+          best, descended(a, b, least_turn, static_cast<double>(i) / n, static_cast<double>(j) / n, 1.0 / n));
+    }
+  }
+  return best;
+}
+
+void expect_as_brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
+  const double expected = brute_force(a, b, least_turn);
+  const double found = tube_distance(a, b, least_turn);
+  if (expected == no_distance) return;  // the grid may miss a sliver of pairs
+  EXPECT_LE(found, expected + 1e-6);
+  EXPECT_GE(found, expected - 1e-6);  // brute force may stay above the least
+}
+
+TEST(TubeDistance, IsThatOfBruteForce) {
+  for_random_cases(40, [](TestRandom& random) {
+    Arm arm = random_arm(random);
+    for (Section& section : arm.sections)
+      section.radius = {random.uniform(0.01, 0.1), random.uniform(0.01, 0.1)};
+    const std::vector<TubeArc> tubes = tube_arcs(arm, random_state(random, arm));
+    const auto last = static_cast<int>(tubes.size()) - 1;
+    const auto i = static_cast<std::size_t>(random.integer(0, last));
+    const auto j = static_cast<std::size_t>(random.integer(static_cast<int>(i), last));
+    expect_as_brute_force(tubes[i], tubes[j], pi);
+    if (i != j) expect_as_brute_force(tubes[i], tubes[j], -1);
+  });
+}
+
+TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
+  for_random_cases(60, [](TestRandom& random) {
+    const TubeArc a = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.01);
+    const TubeArc b = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.02);
+    const double found = tube_distance(a, b, -100);
+    for (int k = 0; k < 2000; ++k) {
+      const Eigen::Vector3d p = a.point(random.uniform(0, 1));
+      ASSERT_GE((p - b.point(random.uniform(0, 1))).norm() - 0.03, found - 1e-6);
+    }
+    EXPECT_NEAR(found, brute_force(a, b, -100), 1e-5);
+  });
+}
+
+TEST(TubeDistance, OfParallelAndCrossingStraightTubesIsExact) {
+  const TubeArc a = tube_at({0, 0, 0}, {0, 0}, 1, 0.1);
+  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0.2}, {0, 0}, 1, 0.1), -1), 0.3, 1e-12);
+  EXPECT_NEAR(tube_distance(a, tube_at({0, 0, 1.5}, {0, 0}, 1, 0.1), -1), 0.3, 1e-12);
+  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0}, {1e-9, 0}, 1, 0.1), -1), 0.3, 1e-6);
+}
+
+TEST(TubeDistance, OfAHalfTurnIsTheDiameter) {
+  const TubeArc half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // radius of curvature 1
+  EXPECT_NEAR(tube_distance(half, half, pi - 1e-9), 1.5, 1e-6);
+  EXPECT_EQ(tube_distance(half, half, pi + 1e-9), no_distance);
+}
+
+TEST(TubeDistance, OfAFullCircleIsItsOverlap) {
+  for (const double bend : {2 * pi, 2.5 * pi, 4 * pi}) {
+    const TubeArc circle = tube_at({0, 0, 0}, {0, bend}, 1, 0.01);
+    EXPECT_NEAR(tube_distance(circle, circle, pi), -0.02, 1e-6) << bend;
+  }
+  const TubeArc open = tube_at({0, 0, 0}, {1.9 * pi, 0}, 1.9 * pi, 0.01);
+  EXPECT_NEAR(tube_distance(open, open, pi), 2 * std::sin(0.05 * pi) - 0.02, 1e-6);
+}
+
+TEST(TubeDistance, StopsWhereItsQuestionIsAnswered) {
+  const TubeArc a = tube_at({0, 0, 0}, {1, 0}, 1, 0.1);
+  const TubeArc b = tube_at({0.7, 0.3, 0}, {-1, 2}, 1, 0.1);
+  const double exact = tube_distance(a, b, -100);
+  EXPECT_EQ(tube_distance(a, b, -100, exact - 1e-3), exact - 1e-3);
+  EXPECT_TRUE(stay_apart(a, b, -100, exact - 1e-5));
+  EXPECT_FALSE(stay_apart(a, b, -100, exact + 1e-5));
+  EXPECT_TRUE(come_within(a, b, -100, exact + 1e-5));
+  EXPECT_FALSE(come_within(a, b, -100, exact - 1e-5));
+}
+
+std::vector<Obstacle> random_obstacles(TestRandom& random) {
+  const auto place = [&] {
+    const Eigen::Vector3d p = random.vector<3>(-2, 2);
+    return std::array{p.x(), p.y(), p.z()};
+  };
+  const Eigen::Quaterniond q(so3_exp(random.vector<3>(-2, 2)));
+  return obstacles(
+      {PlaneConfig{.point = place(), .normal = place()},
+       SphereConfig{.center = place(), .radius = random.uniform(0.1, 1)},
+       CapsuleConfig{.from = place(), .to = place(), .radius = random.uniform(0.1, 0.5)},
+       BoxConfig{.center = place(),
+                 .half_sizes = {random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1)},
+                 .rotation = {q.w(), q.x(), q.y(), q.z()}}});
+}
+
+TEST(ObstacleDistance, IsThatOfBruteForce) {
+  for_random_cases(100, [](TestRandom& random) {
+    TubeArc tube = tube_at(random.vector<3>(-2, 2), random.vector<2>(-5, 5), random.uniform(0.2, 3), 0);
+    tube.radius = {random.uniform(0.01, 0.2), random.uniform(0.01, 0.2)};
+    const double from = random.uniform(0, 0.5);
+    for (const Obstacle& obstacle : random_obstacles(random)) {
+      double expected = no_distance;
+      double where = 0;
+      const auto at = [&](double u) { return obstacle.distance(tube.point(u)) - tube.radius_at(u); };
+      for (int k = 0; k <= 2000; ++k) {
+        const double u = from + (1 - from) * k / 2000;
+        if (at(u) < expected) expected = at(u), where = u;
+      }
+      for (double h = 1e-3; h > 1e-10; h /= 2) {
+        for (const double u : {where - h, where + h}) {
+          if (u >= from && u <= 1 && at(u) < expected) expected = at(u), where = u;
+        }
+      }
+      EXPECT_NEAR(obstacle_distance(tube, from, obstacle, {}), expected, 1e-6) << obstacle.name;
+    }
+  });
+}
+
+TEST(ObstacleDistance, CountsFromTheFractionOnAndAlongAPlane) {
+  const Obstacle ground = obstacles({PlaneConfig{.normal = {3, 0, 0}}}).front();
+  const TubeArc along = tube_at({0.5, 0, 0}, {0, 0}, 1, 0.1);
+  EXPECT_NEAR(obstacle_distance(along, 0, ground, {}), 0.4, 1e-6);
+  const TubeArc away = tube_at({0, 0, 0}, {pi, 0}, pi, 0.1);
+  EXPECT_NEAR(obstacle_distance(away, 0, ground, {}), -0.1, 1e-6);
+  EXPECT_NEAR(obstacle_distance(away, 0.5, ground, {}), 1 - 0.1, 1e-6);
+  EXPECT_EQ(obstacle_distance(away, 1.5, ground, {}), no_distance);
+}
+
+TEST(Obstacle, DistancesOfABoxAreThoseOfItsFacesEdgesAndCorners) {
+  const Obstacle box = obstacles({BoxConfig{.name = "desk", .half_sizes = {1, 2, 3}}}).front();
+  EXPECT_EQ(box.name, "desk");
+  EXPECT_DOUBLE_EQ(box.distance({0, 0, 0}), -1);
+  EXPECT_NEAR(box.distance({0.9, 0, 2.95}), -0.05, 1e-12);
+  EXPECT_DOUBLE_EQ(box.distance({4, 0, 0}), 3);
+  EXPECT_DOUBLE_EQ(box.distance({4, 6, 0}), 5);
+  EXPECT_DOUBLE_EQ(box.distance({2, 4, 5}), 3);
+}
+
+}  // namespace
+}  // namespace flexura

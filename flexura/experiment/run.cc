@@ -125,9 +125,10 @@ class Witness {
   }
 
   ReportData report_data(const Experiment& experiment, const SafetyReport& safety) && {
-    return {experiment.title,     experiment.flexura, experiment_toml(experiment), std::move(arm_),
-            std::move(times_),    std::move(states_), std::move(marks_),           recorded_,
-            shown_safety(safety), experiment.obstacle};
+    return {
+        experiment.title,     experiment.flexura,  experiment_toml(experiment), std::move(arm_),
+        std::move(times_),    std::move(states_),  std::move(marks_),           recorded_,
+        shown_safety(safety), experiment.obstacle, experiment.record.curve,     experiment.record.tension};
   }
 
  private:

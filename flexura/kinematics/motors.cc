@@ -53,7 +53,10 @@ TendonDisplacements displacements_at(const Drive& drive, std::span<const double>
 }
 
 MotorCommander::MotorCommander(const Drive& drive, const TendonDisplacements& start)
-    : axes_(drive.axes), sides_(drive.axes.size()), positions_(drive.axes.size(), 0), targets_(drive.axes.size(), 0.0) {
+    : axes_(drive.axes),
+      sides_(drive.axes.size()),
+      positions_(drive.axes.size(), 0),
+      targets_(drive.axes.size(), 0.0) {
   const std::vector<double> exact = motor_positions(drive, start);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     sides_[i].farthest = sense(axes_[i]) * exact[i];

@@ -1,11 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "flexura/math/pose.h"
 
@@ -20,12 +19,12 @@ struct Section {
   std::array<double, 2> radius = {0.02, 0.02};  ///< Of the tube at the section's base and end, m; > 0.
   double max_bend = std::numeric_limits<double>::infinity();       ///< Largest |bend|, rad.
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
-  std::array<double, 2> stretch_limits = {1.0, 1.0};               ///< Smallest and largest factor on `length`.
+  std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
 };
 
 /// What changes when the arm moves: each section's bend vector and stretch, base first.
-/// bend = theta (cos phi, sin phi), rad, towards the x and y of the section's own base frame; a planar arm has
-/// bend_y = 0, and a planar arching b (counter-clockwise) is the bend (-2 b, 0).
+/// bend = theta (cos phi, sin phi), rad, towards the x and y of the section's own base frame; a planar arm
+/// has bend_y = 0, and a planar arching b (counter-clockwise) is the bend (-2 b, 0).
 struct ArmState {
   std::vector<Eigen::Vector2d> bends;  ///< rad, one a section.
   std::vector<double> stretches;       ///< Factor on each section's length, one a section.

@@ -58,6 +58,21 @@ void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Repo
            {{"class", "taper " + colour}, {"d", taper_path(arc, scene.views[v], scene.frames[v], radius)}});
 }
 
+// The line of the chosen drawing curve; arcs are the tube itself.
+void draw_curve(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
+                const Backbone& backbone) {
+  std::string path;
+  const auto page = [&](const Eigen::Vector3d& p_WP) {
+    return page_point(scene.frames[v].page(seen(scene.views[v], p_WP)));
+  };
+  for (const CubicBezier& piece : drawn_curve(backbone, motion.curve, motion.tension)) {
+    const auto& p = piece.points;
+    if (path.empty()) path = 'M' + page(p[0]);
+    path += fmt::format("C{} {} {}", page(p[1]), page(p[2]), page(p[3]));
+  }
+  if (!path.empty()) svg.leaf("path", {{"class", "spline"}, {"d", path}});
+}
+
 // How near the middle of an arc is to the view's camera.
 double nearness(PlotView view, const Arc& arc) {
   const Eigen::Vector3d middle = arc.pose(arc.length / 2).position;
@@ -156,6 +171,7 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
       draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, motion.is_unsafe(k, i));
     }
+    draw_curve(svg, scene, v, motion, backbone);
     if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
       draw_joints(svg, scene, v, backbone);
     draw_dot(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), "tip", "5");

@@ -107,6 +107,8 @@ ReportMotion motion_of(const ReportData& data) {
   motion.arm = data.arm;
   if (data.safety) motion.violations = data.safety->violations;
   motion.obstacles = data.obstacles;
+  motion.curve = data.curve;
+  motion.tension = data.tension;
   motion.in_plane = lies_in_xoy(data.arm);
   motion.recorded = std::max(data.recorded, data.states.size());
   const std::vector<double> marks = event_times(data);

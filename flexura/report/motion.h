@@ -31,6 +31,8 @@ struct ReportMotion {
   std::size_t middle = 0;           ///< Index of the state nearest to half time.
   std::vector<ReportData::Safety::Violation> violations;
   std::vector<ObstacleConfig> obstacles;
+  CurveKind curve = CurveKind::arcs;  ///< As in ReportData.
+  double tension = 0.5;
   bool in_plane = false;          ///< The arm moves in a plane parallel to XOY.
   bool stretches_change = false;  ///< Some stretch is not 1 all the time.
 

@@ -34,6 +34,11 @@ std::string unsafe_json(const ReportMotion& motion) {
   return '[' + text + ']';
 }
 
+const char* curve_name(CurveKind kind) {
+  if (kind == CurveKind::arcs) return "arcs";
+  return kind == CurveKind::bezier ? "bezier" : "catmull_rom";
+}
+
 std::string states_json(const ReportMotion& motion) {
   JsonArray bends;
   JsonArray stretches;
@@ -96,11 +101,12 @@ std::string motion_json(const ReportMotion& motion) {
   for (const double time : motion.times) times.add(time);
   return fmt::format(
       "{{\"planar\":{},\"coordinates\":{},\"baseAngle\":{},\"axes\":{},\"origin\":[{},{},{}],"
-      "\"lengths\":{},\"radii\":{},\"times\":{},\"unsafe\":{},{}}}",
+      "\"lengths\":{},\"radii\":{},\"times\":{},\"unsafe\":{},\"curve\":\"{}\",\"tension\":{},{}}}",
       motion.arm.kind == ArmKind::planar, motion.tip_coordinates(),
       json_number(base_tangent_angle(motion.arm)), rotation.text(), json_number(X_WB.position.x()),
       json_number(X_WB.position.y()), json_number(X_WB.position.z()), lengths.text(), radii.text(),
-      times.text(), unsafe_json(motion), states_json(motion));
+      times.text(), unsafe_json(motion), curve_name(motion.curve), json_number(motion.tension),
+      states_json(motion));
 }
 
 }  // namespace flexura

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "embedded/figure_css.h"
 #include "embedded/report_css.h"
 #include "embedded/report_html.h"
@@ -135,6 +137,23 @@ std::string thinned_html(const ReportMotion& motion) {
       motion.count(), motion.recorded);
 }
 
+std::string curve_html(const ReportMotion& motion) {
+  if (motion.curve == CurveKind::arcs) return "";
+  const std::string name =
+      motion.curve == CurveKind::bezier
+          ? "one Bezier curve a section with exact tangents"
+          : fmt::format("the Catmull-Rom spline through the sections' base points, tension {:.3g}",
+                        motion.tension);
+  const Backbone& backbone = motion.backbones.back();
+  const CurveDeviation end = deviation(drawn_curve(backbone, motion.curve, motion.tension), backbone);
+  return fmt::format(
+      "<p class=\"note\">The dark line is {}; at the end it is at most {:.2g} m from the arm's arcs and "
+      "{:.2g} % {} "
+      "than they.</p>\n",
+      name, end.distance, 100 * std::abs(end.length / backbone.length() - 1),
+      end.length < backbone.length() ? "shorter" : "longer");
+}
+
 std::string policy() {
   return fmt::format(
       "default-src 'none'; img-src data:; script-src {}; style-src {} {}; base-uri 'none'; form-action "
@@ -178,7 +197,7 @@ std::string report_html(const ReportData& data) {
                                         {"report_css", std::string(embedded::report_css)},
                                         {"report_js", std::string(embedded::report_js)},
                                         {"summary", summary_html(motion)},
-                                        {"thinned", thinned_html(motion)},
+                                        {"thinned", curve_html(motion) + thinned_html(motion)},
                                         {"safety", safety_html(data)},
                                         {"views", motion.in_plane ? "one" : "two"},
                                         {"arms", figures_html(arms)},

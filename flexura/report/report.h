@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/kinematics/curves.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/obstacle.h"
 
@@ -41,6 +42,8 @@ struct ReportData {
   std::size_t recorded = 0;      ///< States in the run's log, where they are more than those given here.
   std::optional<Safety> safety;  ///< Empty: not checked, not shown.
   std::vector<ObstacleConfig> obstacles;
+  CurveKind curve = CurveKind::arcs;  ///< Drawn as a line along the arm; the arm itself is drawn as its arcs.
+  double tension = 0.5;               ///< Of CurveKind::catmull_rom.
 };
 
 /// A picture as a file.

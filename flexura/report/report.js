@@ -49,6 +49,7 @@
   /** u X + v Y + w Z, the frame's own axes in the world. */
   const along = (frame, u, v, w) =>
     [0, 1, 2].map((k) => frame.axes[k] * u + frame.axes[3 + k] * v + frame.axes[6 + k] * w);
+  const minus = (p, q) => p.map((value, k) => value - q[k]);
   const plus = (p, q, factor) => p.map((value, k) => value + factor * q[k]);
 
   /** The frame at the end of an arc; (1 - cos t)/t^2 is written so that nothing cancels near t = 0. */
@@ -109,6 +110,7 @@
       tubes: parts.map((part) => add(group, "path", {
         class: `tube s${part.section % 8}`, "stroke-width": Math.max(2 * part.radius * scale, 5),
       })),
+      line: add(group, "path", { class: "spline" }),
       joints: group.dataset.joints === "no" ? [] : run.lengths.slice(1).map(() => add(group, "circle", { class: "joint", r: 2.8 })),
       tip: add(group, "circle", { class: "tip", r: 5 }),
     };
@@ -121,9 +123,9 @@
   };
 
   /** Beziers of at most an eighth turn, tangent to the arc at both ends: one curve and every view of it. */
-  function curve(frame, x, y, length) {
+  function curve(frame, x, y, length, most = Math.PI / 4) {
     const theta = Math.hypot(x, y);
-    const count = Math.floor(theta / (Math.PI / 4)) + 1;
+    const count = Math.floor(theta / most) + 1;
     const quarter = theta / count / 4;
     const handle = (length / count / 3) * (quarter < 1e-5 ? 1 : Math.tan(quarter) / quarter);
     const points = [frame.point];
@@ -135,13 +137,35 @@
     return points;
   }
 
+  /** The paper's Catmull-Rom spline (eq. 11) through `points`, past each end that end's neighbour reflected in it. */
+  function spline(points) {
+    const last = points.length - 1;
+    const at = (i) => (i < 0 ? plus(points[0], minus(points[0], points[1]), 1)
+      : i > last ? plus(points[last], minus(points[last], points[last - 1]), 1) : points[i]);
+    const third = (i) => minus(at(i + 1), at(i - 1)).map((value) => (run.tension * value) / 3);
+    return points.flatMap((point, i) => (i === 0 ? [point]
+      : [plus(points[i - 1], third(i - 1), 1), plus(point, third(i), -1), point]));
+  }
+
+  /** The curve that is drawn along the arm, where it is not the arcs themselves. */
+  function drawLine(state) {
+    const frames = [base];
+    state.forEach((q, i) => frames.push(arcEnd(frames[i], q.x, q.y, run.lengths[i] * q.stretch)));
+    const points = run.curve === "catmull_rom" ? spline(frames.map((frame) => frame.point))
+      : state.flatMap((q, i) => curve(frames[i], q.x, q.y, run.lengths[i] * q.stretch, Math.PI).slice(i > 0 ? 1 : 0));
+    for (const view of views) {
+      const [start, ...rest] = points.map(view.page);
+      view.line.setAttribute("d", `M${start}C${rest.join(" ")}`);
+    }
+  }
+
   /** Puts nearer tubes over farther ones: the XOY view looks along -Z, the ZOY view along +X. */
   function stack(view, middles) {
     const nearness = (k) => (view.across === 0 ? middles[k][2] : -middles[k][0]);
     const order = parts.map((_, k) => k).sort((a, b) => nearness(a) - nearness(b) || a - b);
     if (String(order) === view.order) return;
     view.order = String(order);
-    for (const k of order) view.tubes[k].parentNode.insertBefore(view.tubes[k], view.joints[0] ?? view.tip);
+    for (const k of order) view.tubes[k].parentNode.insertBefore(view.tubes[k], view.line);
   }
 
   function drawArm(time, state) {
@@ -164,6 +188,7 @@
       }
       frame = arcEnd(...at(1));
     });
+    if (run.curve !== "arcs") drawLine(state);
     if (!run.planar) for (const view of views) stack(view, middles);
     const { index } = place(time);
     for (const view of views) {

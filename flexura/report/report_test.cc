@@ -131,6 +131,23 @@ TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
   EXPECT_EQ(svg_of(figures, "tip.svg").find("class=\"obstacle\""), std::string::npos);
 }
 
+TEST(Report, DrawsTheChosenCurveAlongTheArm) {
+  ReportData data = paper_run(20);
+  EXPECT_EQ(svg_of(report_figures(data), "arm-end.svg").find("class=\"spline\""), std::string::npos);
+  for (const CurveKind kind : {CurveKind::catmull_rom, CurveKind::bezier}) {
+    data.curve = kind;
+    const std::string svg = svg_of(report_figures(data), "arm-end.svg");
+    const std::size_t line = svg.find("class=\"spline\"");
+    ASSERT_NE(line, std::string::npos);
+    const std::string path = svg.substr(line, svg.find("/>", line) - line);
+    EXPECT_EQ(std::ranges::count(path, 'C'), 8) << path;  // One cubic a section.
+    EXPECT_EQ(xml_fault(svg), "");
+    const std::string html = report_html(data);
+    // The paper's spline through its arm's base points: docs/kinematic-model.md.
+    EXPECT_NE(html.find(kind == CurveKind::bezier ? "at most 0.0" : "2.7 % shorter"), std::string::npos);
+  }
+}
+
 TEST(Report, DrawsAPlaneWhereItCutsThePlaneOfTheArm) {
   ReportData data = paper_run(10);
   data.obstacles = {PlaneConfig{.name = "slope", .normal = {1, 1, 1}},

@@ -12,7 +12,8 @@ namespace flexura {
 [[nodiscard]] Node parse_json(std::string_view text, const std::string& source);
 
 /// The node as JSON: keys in their order, doubles so that they read back exactly, `null` for what JSON lacks.
-/// `indent` < 0 gives one line, otherwise that many spaces a level, with what holds only plain values on one line.
+/// `indent` < 0 gives one line, otherwise that many spaces a level, with what holds only plain values on one
+/// line.
 [[nodiscard]] std::string write_json(const Node& node, int indent = -1);
 
 }  // namespace flexura

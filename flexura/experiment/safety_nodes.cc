@@ -22,8 +22,7 @@ Node violation_node(const Violation& violation) {
                     {"end", {}, {violation.end, {}}}};
   if (violation.section) table.push_back({"section", {}, section_node(*violation.section)});
   if (violation.other_section) table.push_back({"other_section", {}, section_node(*violation.other_section)});
-  if (!violation.name.empty())
-    table.push_back({name_key(violation.hazard), {}, {violation.name, {}}});
+  if (!violation.name.empty()) table.push_back({name_key(violation.hazard), {}, {violation.name, {}}});
   const bool has_value = violation.hazard != Hazard::not_finite && std::isfinite(violation.value);
   if (has_value) table.push_back({"value", {}, {violation.value, {}}});
   if (has_value && violation.hazard != Hazard::jump) table.push_back({"limit", {}, {violation.limit, {}}});

@@ -37,7 +37,7 @@ std::string error_of(const std::string& rest) {
 TEST(Obstacles, BadOnesGetAClearLineWithTheirPlace) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"name = 'x'", "x.toml:7:1: obstacle[0]: kind is missing: expected one of"},
-      {"kind = 'ball'", "x.toml:8:8: obstacle[0].kind = \"ball\": expected one of \"plane\", \"sphere\""},
+      {"kind = 'ball'", R"(x.toml:8:8: obstacle[0].kind = "ball": expected one of "plane", "sphere")"},
       {"kind = 'sphere'\nradius = 1", "x.toml:7:1: obstacle[0].center: missing: expected"},
       {"kind = 'sphere'\ncenter = [0, 0]\nradius = 1",
        "x.toml:9:10: obstacle[0].center is an array of 2: expected an array of 3"},

@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "flexura/base/source.h"
-#include "flexura/experiment/experiment.h"
+#include "tests/support/experiment_files.h"
 
 namespace flexura {
 namespace {
@@ -36,30 +35,10 @@ section = 2
 angle_deg = 150
 )";
 
-std::string error_of(const std::string& text) {
-  try {
-    (void)parse_experiment(text, "x.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 // The good file with the first `from` replaced.
-std::string with(const std::string& from, const std::string& to) {
-  std::string text = good;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+std::string with(const std::string& from, const std::string& to) { return replaced(good, from, to); }
 
-struct BadFile {
-  const char* what;
-  std::string text;
-  std::string error;
-};
-
-TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of(good), "no error"); }
+TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good), "no error"); }
 
 TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
   const std::string planar_good = with("spatial", "planar");
@@ -126,7 +105,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"positions beyond what is counted exactly", with("gear = 10", "gear = 1e6\nradius = 1e-9"),
        "drive.tendon[0]: makes up to "},
   };
-  for (const BadFile& file : files) EXPECT_THAT(error_of(file.text), HasSubstr(file.error)) << file.what;
+  for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }
 
 TEST(BadDriveFiles, LeaveGoodOnesAlone) {
@@ -136,7 +115,7 @@ TEST(BadDriveFiles, LeaveGoodOnesAlone) {
         with("steps = 600", "phases = 5\nsteps = 500\nmicrosteps = 1\nmax_step_rate = 1e5"),
         std::string("arm.section = [{length = 1, stretch_limits = [0.5, 2]}]\n"
                     "drive.tendon = [{section = 1, angle = 0}, {section = 1, angle_pi = 1}]\n")}) {
-    EXPECT_EQ(error_of(text), "no error") << text;
+    EXPECT_EQ(error_of_file(text), "no error") << text;
   }
 }
 

@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "flexura/base/source.h"
-#include "flexura/experiment/experiment.h"
+#include "tests/support/experiment_files.h"
 
 namespace flexura {
 namespace {
@@ -22,30 +21,10 @@ duration = 2.0
 to.archings_pi = [0.1, 0.2]
 )";
 
-std::string error_of(const std::string& text) {
-  try {
-    (void)parse_experiment(text, "x.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 // The good file with the first `from` replaced.
-std::string with(const std::string& from, const std::string& to) {
-  std::string text = good;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+std::string with(const std::string& from, const std::string& to) { return replaced(good, from, to); }
 
-struct BadFile {
-  const char* what;
-  std::string text;
-  std::string error;
-};
-
-TEST(BadFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of(good), "no error"); }
+TEST(BadFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good), "no error"); }
 
 TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
   const std::vector<BadFile> files{
@@ -124,22 +103,23 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
                    10),
        "x.toml:1:1: "},
   };
-  for (const BadFile& file : files) EXPECT_THAT(error_of(file.text), HasSubstr(file.error)) << file.what;
+  for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }
 
 TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
-  EXPECT_EQ(error_of("[arm]\nknid = 'planar'\n[[arm.section]]\nlength = -1\nradius = 0\n[[arm.section]]\n"),
-            "x.toml:2:1: arm.knid: unknown key; did you mean \"kind\"?\n"
-            "x.toml:4:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m\n"
-            "x.toml:5:10: arm.section[0].radius = 0: expected a number above 0 m and at most 1000000 m\n"
-            "x.toml:6:1: arm.section[1].length: missing: expected a number above 0 m and at most 1000000 m "
-            "(Arc length of the section's centreline when not stretched.)");
+  EXPECT_EQ(
+      error_of_file("[arm]\nknid = 'planar'\n[[arm.section]]\nlength = -1\nradius = 0\n[[arm.section]]\n"),
+      "x.toml:2:1: arm.knid: unknown key; did you mean \"kind\"?\n"
+      "x.toml:4:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m\n"
+      "x.toml:5:10: arm.section[0].radius = 0: expected a number above 0 m and at most 1000000 m\n"
+      "x.toml:6:1: arm.section[1].length: missing: expected a number above 0 m and at most 1000000 m "
+      "(Arc length of the section's centreline when not stretched.)");
 }
 
 TEST(BadFiles, AHundredThousandSectionsAreTooMany) {
   std::string text = "[arm]\nsection = [";
   for (int i = 0; i < 100000; ++i) text += "{length=1},";
-  EXPECT_THAT(error_of(text + "]\n"),
+  EXPECT_THAT(error_of_file(text + "]\n"),
               HasSubstr("arm.section is an array of 100000: expected an array of 1 to 1000"));
 }
 

@@ -12,6 +12,7 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
 #include "flexura/store/json.h"
+#include "tests/support/experiment_files.h"
 
 namespace flexura {
 namespace {
@@ -25,14 +26,7 @@ Experiment parse(const std::string& rest) { return parse_experiment(arm + rest, 
 
 SafetyReport check(const std::string& rest) { return Schedule(parse(rest)).check(); }
 
-std::string error_of(const std::string& rest) {
-  try {
-    (void)parse(rest);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+std::string error_of(const std::string& rest) { return error_of_file(arm + rest); }
 
 TEST(Obstacles, BadOnesGetAClearLineWithTheirPlace) {
   const std::vector<std::pair<std::string, std::string>> cases = {

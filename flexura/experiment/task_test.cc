@@ -10,6 +10,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/kinematics/shape.h"
+#include "tests/support/experiment_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -23,14 +24,7 @@ Experiment experiment_of(const std::string& task) {
   return parse_experiment(arm + "[[task]]\n" + task, "x.toml");
 }
 
-std::string error_of(const std::string& task) {
-  try {
-    (void)experiment_of(task);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+std::string error_of(const std::string& task) { return error_of_file(arm + "[[task]]\n" + task); }
 
 std::vector<double> archings_at(const Experiment& experiment, double time) {
   return archings(Schedule(experiment).state_at(time));

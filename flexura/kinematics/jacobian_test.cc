@@ -12,24 +12,6 @@
 namespace flexura {
 namespace {
 
-Eigen::VectorXd packed(const ArmState& state) {
-  Eigen::VectorXd q(3 * static_cast<Eigen::Index>(state.bends.size()));
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    q.segment<3>(3 * static_cast<Eigen::Index>(i)) << state.bends[i], state.stretches[i];
-  }
-  return q;
-}
-
-ArmState unpacked(const Eigen::VectorXd& q) {
-  ArmState state = ArmState::straight(static_cast<std::size_t>(q.size() / 3));
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    const Eigen::Vector3d part = q.segment<3>(3 * static_cast<Eigen::Index>(i));
-    state.bends[i] = part.head<2>();
-    state.stretches[i] = part[2];
-  }
-  return state;
-}
-
 // The Jacobian by differences of poses that know nothing of its derivation.
 NumericalJacobian by_differences(const Arm& arm, const ArmState& state, const MaterialPoint& point) {
   const auto pose_of = [&](const ArmState& at) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/support/arms.h"
+#include "tests/support/motions.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
@@ -78,35 +79,6 @@ TEST(Profile, RefusesWhatIsNoMotion) {
   EXPECT_THROW((void)Profile::linear(std::nan("")), std::invalid_argument);
   EXPECT_THROW((void)Profile::trapezoid(0, 1, 1), std::invalid_argument);
   EXPECT_THROW((void)Profile::trapezoid(1, -1, 1), std::invalid_argument);
-}
-
-std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm) {
-  const std::size_t n = arm.sections.size();
-  const auto state = [&] {
-    ArmState result = ArmState::straight(n);
-    for (auto& bend : result.bends) bend = random.vector<2>(-3, 3);
-    for (auto& stretch : result.stretches) stretch = random.uniform(0.8, 1.2);
-    return result;
-  };
-  const double duration = random.uniform(0.2, 5);
-  std::vector<Profile> profiles(n, Profile::linear(duration));
-  profiles.back() = Profile::minimum_jerk(duration);
-  std::vector<Eigen::Vector2d> amplitudes;
-  std::vector<double> phases;
-  for (std::size_t i = 0; i < n; ++i) {
-    amplitudes.emplace_back(random.vector<2>(-1, 1));
-    phases.push_back(random.uniform(-4, 4));
-  }
-  std::vector<double> times{0};
-  std::vector<ArmState> states{state()};
-  for (int k = random.integer(1, 6); k > 0; --k) {
-    times.push_back(times.back() + random.uniform(0.05, 2));
-    states.push_back(state());
-  }
-  return {hold_motion(state(), duration), point_to_point_motion(state(), state(), profiles),
-          sine_motion(state(), amplitudes, phases, random.uniform(0.2, 3), duration),
-          keyframe_motion(times, states, Interpolation::linear),
-          keyframe_motion(times, states, Interpolation::smooth)};
 }
 
 TEST(Motion, NeverGoesFasterThanItsRatesSay) {

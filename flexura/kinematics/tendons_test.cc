@@ -141,23 +141,6 @@ TEST(Tendons, PullingInBendsTowardsTheTendon) {
   EXPECT_NEAR(tendon_lengths(arm, drive, state)[2], 0.33 + 0.2 - 0.016, 1e-16);
 }
 
-Eigen::VectorXd packed(const ArmState& state) {
-  Eigen::VectorXd q(3 * static_cast<Eigen::Index>(state.bends.size()));
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    q.segment<3>(3 * static_cast<Eigen::Index>(i)) << state.bends[i], state.stretches[i];
-  }
-  return q;
-}
-
-ArmState unpacked(const Eigen::VectorXd& q) {
-  ArmState state = ArmState::straight(static_cast<std::size_t>(q.size() / 3));
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    state.bends[i] = q.segment<2>(3 * static_cast<Eigen::Index>(i));
-    state.stretches[i] = q[3 * static_cast<Eigen::Index>(i) + 2];
-  }
-  return state;
-}
-
 Eigen::VectorXd vector_of(const TendonDisplacements& displacements) {
   return Eigen::Map<const Eigen::VectorXd>(displacements.pulled.data(),
                                            static_cast<Eigen::Index>(displacements.pulled.size()));

@@ -61,4 +61,24 @@ inline ArmState random_state(TestRandom& random, const Arm& arm) {
   return state;
 }
 
+/// A state as one vector, three numbers a section: bend_x, bend_y, stretch.
+inline Eigen::VectorXd packed(const ArmState& state) {
+  Eigen::VectorXd q(3 * static_cast<Eigen::Index>(state.bends.size()));
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    q.segment<3>(3 * static_cast<Eigen::Index>(i)) << state.bends[i], state.stretches[i];
+  }
+  return q;
+}
+
+/// The state of such a vector.
+inline ArmState unpacked(const Eigen::VectorXd& q) {
+  ArmState state = ArmState::straight(static_cast<std::size_t>(q.size() / 3));
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    const Eigen::Vector3d part = q.segment<3>(3 * static_cast<Eigen::Index>(i));
+    state.bends[i] = part.head<2>();
+    state.stretches[i] = part[2];
+  }
+  return state;
+}
+
 }  // namespace flexura

@@ -4,9 +4,12 @@
 
 // Only this file sees CLI11 (docs/architecture.md, "Heavy headers").
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <stdexcept>
 
 #include "flexura/app/commands.h"
 #include "flexura/base/source.h"
@@ -28,7 +31,7 @@ void add_run(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false);
   run->add_option("--seed", arguments->seed, "Seed of every random number")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}));
   run->add_flag("--json", arguments->json, "Print the summary as one JSON document");
   run->callback([&chosen, arguments] {
     chosen = [arguments] { return run_command(*arguments, std::cout, std::cerr); };
@@ -106,7 +109,9 @@ int run_app(int argc, const char* const* argv) noexcept {
   try {
     const int status = parse_and_run(argc, argv);
     std::cout.flush();
-    return std::cout ? status : exit_system_failure;
+    if (std::ferror(stdin) != 0) throw std::runtime_error("cannot read the standard input");
+    if (!std::cout) throw std::runtime_error("cannot write to the standard output");
+    return status;
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
     return exit_bad_input;

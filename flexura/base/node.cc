@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "flexura/base/unit.h"
+
 namespace flexura {
 namespace {
 
@@ -50,6 +52,15 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   }
   node = found;
   return {};
+}
+
+// A value given as length_mm takes the place of one given as length.
+void erase_other_spellings(Node& node, std::string_view key) {
+  auto* members = node.as<Node::Table>();
+  if (members == nullptr) return;
+  std::erase_if(*members, [key](const Node::Member& member) {
+    return member.key != key && without_unit(member.key) == without_unit(key);
+  });
 }
 
 }  // namespace
@@ -97,6 +108,7 @@ std::string set_at_path(Node& root, std::string_view path, Node value) {
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())
       return fmt::format("\"{}\" is no path: expected names and numbers joined by dots", path);
+    if (dot == std::string_view::npos) erase_other_spellings(*node, part);
     if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
     if (dot == std::string_view::npos) break;
     rest.remove_prefix(dot + 1);

@@ -48,8 +48,12 @@ void Reader::problem_at(std::string_view path, std::string what) {
 
 void Reader::unexpected(const Node& node, std::string_view expected) {
   const bool is_whole = node.as<Node::Array>() != nullptr || node.as<Node::Table>() != nullptr;
+  if (path_.empty()) {
+    problems_.push_back({node.where, fmt::format("{}: expected {}", node.brief(), expected)});
+    return;
+  }
   const std::string what = fmt::format("{} {}: expected {}", is_whole ? "is" : "=", node.brief(), expected);
-  problems_.push_back({node.where, path_.empty() ? what : path_ + " " + what});
+  problems_.push_back({node.where, path_ + " " + what});
 }
 
 void Reader::throw_if_any() const {
@@ -184,8 +188,10 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
     FoundField& slot = found[static_cast<std::size_t>(field - table.fields.begin())];
     if (slot.member != nullptr) {
       const Reader::Scope scope(reader, member.key, member.where);
-      reader.problem(fmt::format("written twice: {} stands in line {} already", slot.member->key,
-                                 slot.member->where.line));
+      const SourcePosition& first = slot.member->where;
+      const bool same_file = first.source == member.where.source || first.source == nullptr;
+      reader.problem(fmt::format("written twice: {} stands in line {}{} already", slot.member->key,
+                                 first.line, same_file ? "" : " of " + *first.source));
       continue;
     }
     slot = {&member, spelling};

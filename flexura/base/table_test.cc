@@ -211,6 +211,16 @@ TEST(NearestName, FindsMisspeltAndNothingElse) {
   EXPECT_EQ(nearest_name(std::string(100000, 'l'), names), "");
 }
 
+TEST(SetAtPath, ReplacesAValueInWhateverUnitItStands) {
+  Node root{Node::Table{{"length", {}, {2.0, {}}}, {"mass", {}, {1.0, {}}}}, {}};
+  EXPECT_EQ(set_at_path(root, "length_mm", {2.5, {}}), "");
+  EXPECT_EQ(root.find("length"), nullptr);
+  ASSERT_NE(root.find("length_mm"), nullptr);
+  EXPECT_NE(root.find("mass"), nullptr);
+  EXPECT_EQ(set_at_path(root, "length", {2.0, {}}), "");
+  EXPECT_EQ(root.find("length_mm"), nullptr);
+}
+
 TEST(SetAtPath, ChangesEntriesAndMakesTables) {
   Node root = table({member("wheel", Node::Array{{one_wheel(1), at(1, 1)}})});
   EXPECT_EQ(set_at_path(root, "wheel.0.radius", {2.5, {}}), "");

@@ -39,4 +39,11 @@ std::span<const std::string_view> all_unit_suffixes() {
   return suffixes;
 }
 
+std::string_view without_unit(std::string_view key) {
+  for (const std::string_view suffix : all_unit_suffixes()) {
+    if (key.size() > suffix.size() && key.ends_with(suffix)) return key.substr(0, key.size() - suffix.size());
+  }
+  return key;
+}
+
 }  // namespace flexura

@@ -24,4 +24,7 @@ struct UnitSpelling {
 /// Every suffix that any unit has, to tell a wrong unit from a misspelt name.
 [[nodiscard]] std::span<const std::string_view> all_unit_suffixes();
 
+/// A key without its unit's suffix: "length" of "length_mm" and of "length".
+[[nodiscard]] std::string_view without_unit(std::string_view key);
+
 }  // namespace flexura

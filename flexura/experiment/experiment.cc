@@ -72,6 +72,9 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
     const std::string source = "--set " + set;
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw input_error(source, "expected path=value");
+    if (std::string_view(set).substr(0, equals).starts_with("include"))
+      throw input_error(source, "include: files are read before values are set; write it into the file", 1,
+                        1);
     Node value =
         parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
     const std::string error =
@@ -129,9 +132,8 @@ const Table<Experiment>& fields_of(const Experiment*) {
                  {.meaning = "Version that ran the file; written into results.", .default_text = "not set"})
           .field("title", &Experiment::title,
                  {.meaning = "A title for the report.", .default_text = "the file's name"})
-          .field(
-              "seed", &Experiment::seed,
-              {.meaning = "Seed of every random number of the run.", .range = between(0, 9007199254740992.0)})
+          .field("seed", &Experiment::seed,
+                 {.meaning = "Seed of every random number of the run.", .range = between(0, 1e15)})
           .field("include", &Experiment::include,
                  {.meaning = "Files in this file's folder or below upon whose values this file's are laid.",
                   .count = {0, 100},

@@ -93,7 +93,23 @@ Tables tables_of(const McapReader& log, const std::string& name) {
       tables.events.end_row();
     }
   }
+  if (!sections) {
+    tables.states.cell(std::string_view("time"));  // Of a run that was stopped at once.
+    tables.states.end_row();
+  }
   return tables;
+}
+
+// A damaged log is bad input like any other.
+template <class Read>
+auto from_log(Read&& read) {
+  try {
+    return read();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw InputError(std::vector<Problem>{{{}, error.what()}});
+  }
 }
 
 }  // namespace
@@ -104,8 +120,8 @@ ExportResult export_csv(const std::filesystem::path& results) {
     throw input_error(results.string(),
                       fmt::format("holds no {}: expected a folder made by `flexura run`", log_file_name));
   }
-  const McapReader log(file);
-  const Tables tables = tables_of(log, file.string());
+  const McapReader log = from_log([&] { return McapReader(file); });
+  const Tables tables = from_log([&] { return tables_of(log, file.string()); });
   ExportResult result{make_new_folder(results / "csv"), log.truncated()};
   write_new_file(result.folder / "states.csv", tables.states.text());
   write_new_file(result.folder / "events.csv", tables.events.text());

@@ -11,6 +11,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double largest_radius(const Section& section) { return std::max(section.radius[0], section.radius[1]); }
 
+// The tube's radius over the section's length; finite however short the section, so that bounds on what it
+// scales are too.
+double slenderness(const Section& section) {
+  return std::min(largest_radius(section) / section.length, 1e200);
+}
+
 // |d/dt (bend r / (length stretch))| where the bend stays below and the stretch above what they are in the
 // middle and the rates allow.
 double folding_rate(const Section& section, const Motion& motion, std::size_t i, double start, double end) {
@@ -21,8 +27,7 @@ double folding_rate(const Section& section, const Motion& motion, std::size_t i,
   const double stretch = middle.stretches[i] - rates.stretch * half;
   if (middle.stretches[i] + rates.stretch * half <= 0) return 0;  // no length anywhere: infinite all along
   if (stretch <= 0) return infinity;
-  const double scale = largest_radius(section) / section.length;
-  return scale * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
+  return slenderness(section) * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
 }
 
 void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>& watches) {
@@ -40,8 +45,7 @@ void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>&
   watches.push_back({Hazard::folding, i, 1, 1,
                      [i, section](const ArmState& state) {
                        if (state.stretches[i] <= 0) return infinity;
-                       return state.bends[i].norm() * largest_radius(section) /
-                              (section.length * state.stretches[i]);
+                       return state.bends[i].norm() * slenderness(section) / state.stretches[i];
                      },
                      [i, section](const Motion& motion, double a, double b) {
                        return folding_rate(section, motion, i, a, b);

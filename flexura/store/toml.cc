@@ -4,8 +4,8 @@
 
 // Only this file sees toml++ (docs/architecture.md, "Heavy headers").
 #define TOML_ENABLE_FORMATTERS 0
-// toml++ 3.3 asserts, and with NDEBUG lets the compiler assume, that "[" is followed by the start of a key; where it is
-// not, the code after that says so in good order.
+// toml++ 3.3 asserts, and with NDEBUG lets the compiler assume, that "[" is followed by the start of a key;
+// where it is not, the code after that says so in good order.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
@@ -73,12 +73,21 @@ Node convert(const toml::node& node, const Source& source) {
 }
 
 constexpr int max_include_depth = 8;
+constexpr int max_included_files = 100;
 
-void lay_upon_includes(Node& document, const std::filesystem::path& file, int depth);
+// Where a reading has come to: files include files, a few of which could name each other without end.
+struct Including {
+  int depth = 0;
+  int files = 0;
+};
 
-Node read_with_includes(const std::filesystem::path& file, int depth) {
+void lay_upon_includes(Node& document, const std::filesystem::path& file, Including& including);
+
+Node read_with_includes(const std::filesystem::path& file, Including& including) {
   Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string());
-  lay_upon_includes(document, file, depth);
+  ++including.depth;
+  lay_upon_includes(document, file, including);
+  --including.depth;
   return document;
 }
 
@@ -93,19 +102,22 @@ std::filesystem::path included_file(const Node& entry, const std::filesystem::pa
   }
 }
 
-void lay_upon_includes(Node& document, const std::filesystem::path& file, int depth) {
+void lay_upon_includes(Node& document, const std::filesystem::path& file, Including& including) {
   const Node* include = document.find("include");
   if (include == nullptr) return;
   const auto* names = include->as<Node::Array>();
   if (names == nullptr) throw InputError({{include->where, "include: expected an array of file names"}});
-  if (depth == max_include_depth) {
+  if (including.depth > max_include_depth) {
     throw InputError(
         {{include->where,
           fmt::format("include: more than {} files deep; does a file include itself?", max_include_depth)}});
   }
   Node below{Node::Table{}, document.where};
   for (const Node& name : *names) {
-    merge(below, read_with_includes(included_file(name, file.parent_path()), depth + 1));
+    if (++including.files > max_included_files) {
+      throw InputError({{name.where, fmt::format("include: more than {} files in all", max_included_files)}});
+    }
+    merge(below, read_with_includes(included_file(name, file.parent_path()), including));
   }
   auto& members = *document.as<Node::Table>();
   std::erase_if(members, [](const Node::Member& member) { return member.key == "include"; });
@@ -149,6 +161,9 @@ Node parse_toml_value(std::string_view text, const std::string& source, int line
   return value;
 }
 
-Node read_toml_file(const std::filesystem::path& file) { return read_with_includes(file, 0); }
+Node read_toml_file(const std::filesystem::path& file) {
+  Including including;
+  return read_with_includes(file, including);
+}
 
 }  // namespace flexura

@@ -113,6 +113,19 @@ TEST_F(TomlFile, IncludesNothingOutsideItsFolder) {
 
 TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   write("circle.toml", "include = ['circle.toml']");
+  std::string crowd;
+  for (int i = 0; i < 101; ++i) crowd += "'leaf.toml', ";
+  write("leaf.toml", "x = 1");
+  write("crowd.toml", "include = [" + crowd + "]");
+  EXPECT_THAT(error("crowd.toml"), HasSubstr("include: more than 100 files in all"));
+  // Fifteen a file, eight deep: without a bound on all of them a reading would take years.
+  for (int i = 0; i < 8; ++i) {
+    std::string next;
+    for (int k = 0; k < 15; ++k) next += "'fan" + std::to_string(i + 1) + ".toml', ";
+    write("fan" + std::to_string(i) + ".toml", "include = [" + next + "]");
+  }
+  write("fan8.toml", "x = 1");
+  EXPECT_THAT(error("fan0.toml"), HasSubstr("include: more than 100 files in all"));
   write("missing.toml", "include = ['nothing.toml']");
   write("number.toml", "include = [3]");
   write("word.toml", "include = 'circle.toml'");

@@ -83,32 +83,29 @@
     return parent.appendChild(element);
   }
 
-  /** A tapered section is drawn as several tubes. */
-  const parts = [];
-  for (let i = 0; i < sections; ++i) {
-    const [start, end] = [run.radii[2 * i], run.radii[2 * i + 1]];
-    const count = start === end ? 1 : 8;
-    for (let k = 0; k < count; ++k) {
-      // Each reaches a little under the next, so that no seam shows.
-      parts.push({ section: i, count, radius: start + ((end - start) * (k + 0.5)) / count, reach: k + 1 < count ? 1.05 : 1 });
-    }
-  }
+  const thinnest = 2.5; // Half of a tube's width, page units.
+  const border = 4; // Of a warning around a tube, page units.
+  const parts = run.lengths.map((_, section) => {
+    const radii = run.radii.slice(2 * section, 2 * section + 2);
+    return { section, radii, tapered: radii[0] !== radii[1] };
+  });
 
   const views = [...document.querySelectorAll("#stage .view")].map((group) => {
     const scale = Number(group.dataset.scale);
     const across = group.dataset.view === "xoy" ? 0 : 2;
-    const page = (p) =>
-      `${(Number(group.dataset.x) + scale * p[across]).toFixed(2)} ${(Number(group.dataset.y) - scale * p[1]).toFixed(2)}`;
+    const text = ([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`;
+    const at = (p) => [Number(group.dataset.x) + scale * p[across], Number(group.dataset.y) - scale * p[1]];
+    const page = (p) => text(at(p));
     const trail = run.times.map((time) => page(tipOf(stateAt(time))));
     add(group, "path", { class: "trail faint", d: `M${trail.join("L")}` });
     return {
-      across, page, trail,
+      across, scale, at, text, page, trail,
       way: add(group, "path", { class: "trail" }),
-      warnings: parts.map((part) => add(group, "path", {
-        class: "warning", "stroke-width": Math.max(2 * part.radius * scale, 5) + 8,
+      warnings: parts.map((part) => add(group, "path", part.tapered ? { class: "warning-taper" } : {
+        class: "warning", "stroke-width": 2 * (Math.max(part.radii[0] * scale, thinnest) + border),
       })),
-      tubes: parts.map((part) => add(group, "path", {
-        class: `tube s${part.section % 8}`, "stroke-width": Math.max(2 * part.radius * scale, 5),
+      tubes: parts.map((part) => add(group, "path", part.tapered ? { class: `taper s${part.section % 8}` } : {
+        class: `tube s${part.section % 8}`, "stroke-width": 2 * Math.max(part.radii[0] * scale, thinnest),
       })),
       line: add(group, "path", { class: "spline" }),
       joints: group.dataset.joints === "no" ? [] : run.lengths.slice(1).map(() => add(group, "circle", { class: "joint", r: 2.8 })),
@@ -135,6 +132,25 @@
       frame = next;
     }
     return points;
+  }
+
+  /** The outline of a tapered tube in a view, `more` page units wider than it is. */
+  function outline(view, { radii }, frame, { x, y, length }, more) {
+    const steps = 8 * (Math.floor(Math.hypot(x, y) / (Math.PI / 4)) + 1);
+    const sides = [[], []];
+    let normal = [1, 0];
+    for (let i = 0; i <= steps; ++i) {
+      const part = i / steps;
+      const here = arcEnd(frame, part * x, part * y, part * length);
+      const tangent = [here.axes[6 + view.across], -here.axes[7]];
+      const size = Math.hypot(...tangent);
+      if (size > 1e-6) normal = [-tangent[1] / size, tangent[0] / size];
+      const half = [0, 1].map((k) => Math.max(radii[k] * view.scale, thinnest) + more);
+      const reach = half[0] + (half[1] - half[0]) * part;
+      const [u, v] = view.at(here.point);
+      [1, -1].forEach((sign, k) => sides[k].push(view.text([u + sign * reach * normal[0], v + sign * reach * normal[1]])));
+    }
+    return `M${[...sides[0], ...sides[1].reverse()].join("L")}Z`;
   }
 
   /** The paper's Catmull-Rom spline (eq. 11) through `points`, past each end that end's neighbour reflected in it. */
@@ -173,20 +189,17 @@
     const unsafe = new Set(run.unsafe.filter(([start, end]) => start <= time && time <= end).map((found) => found[2]));
     const middles = [];
     parts.forEach((part, k) => {
-      const q = state[part.section];
-      const length = (run.lengths[part.section] * q.stretch) / part.count;
-      if (part.section > 0 && parts[k - 1].section !== part.section) {
-        for (const view of views) if (view.joints.length > 0) moveTo(view.joints[part.section - 1], view.page(frame.point));
-      }
-      const at = (factor) => [frame, (factor * q.x) / part.count, (factor * q.y) / part.count, factor * length];
-      middles.push(arcEnd(...at(0.5)).point);
-      const points = curve(...at(part.reach));
+      const q = { ...state[k], length: run.lengths[k] * state[k].stretch };
+      if (k > 0) for (const view of views) if (view.joints.length > 0) moveTo(view.joints[k - 1], view.page(frame.point));
+      middles.push(arcEnd(frame, q.x / 2, q.y / 2, q.length / 2).point);
+      const points = curve(frame, q.x, q.y, q.length);
       for (const view of views) {
         const [start, ...rest] = points.map(view.page);
-        view.tubes[k].setAttribute("d", `M${start}C${rest.join(" ")}`);
-        view.warnings[k].setAttribute("d", unsafe.has(part.section) ? `M${start}C${rest.join(" ")}` : "");
+        const path = (more) => (part.tapered ? outline(view, part, frame, q, more) : `M${start}C${rest.join(" ")}`);
+        view.tubes[k].setAttribute("d", path(0));
+        view.warnings[k].setAttribute("d", unsafe.has(k) ? path(border) : "");
       }
-      frame = arcEnd(...at(1));
+      frame = arcEnd(frame, q.x, q.y, q.length);
     });
     if (run.curve !== "arcs") drawLine(state);
     if (!run.planar) for (const view of views) stack(view, middles);

@@ -20,11 +20,11 @@ constexpr double step = 0.01;  // s
 class DriveCheck : public ::testing::Test {
  protected:
   DriveCheck() {
-    arm.sections.resize(1);
-    arm.sections[0].length = 0.5;
+    arm_.sections.resize(1);
+    arm_.sections[0].length = 0.5;
     for (const double angle : {0.0, std::numbers::pi}) {
-      drive.tendons.push_back({0, 0.02, angle});
-      drive.axes.push_back({.motor = {}, .spool = {.radius = 0.01, .gear = 5}, .reversed = angle > 0});
+      drive_.tendons.push_back({0, 0.02, angle});
+      drive_.axes.push_back({.motor = {}, .spool = {.radius = 0.01, .gear = 5}, .reversed = angle > 0});
     }
   }
   SafetyReport check(const MotionPtr& motion) const {
@@ -32,7 +32,7 @@ class DriveCheck : public ::testing::Test {
     const auto steps = static_cast<int>(std::lround(motion->duration() / step));
     for (int k = 0; k <= steps; ++k) times.push_back(motion->duration() * k / steps);
     SafetyReport report;
-    check_drive(arm, drive, [&](double t) { return motion->at(t); }, times, report);
+    check_drive(arm_, drive_, [&](double t) { return motion->at(t); }, times, report);
     report.sort();
     return report;
   }
@@ -43,7 +43,7 @@ class DriveCheck : public ::testing::Test {
   static ArmState state(double bend) { return {{{bend, 0}}, {1}}; }
   // Sets a limit of the first motor to a value and expects a bend of 1 rad to break it just beyond that.
   void expect_limit(double StepperMotor::* limit, double value, Hazard hazard) {
-    drive.axes[0].motor.*limit = value;
+    drive_.axes[0].motor.*limit = value;
     EXPECT_TRUE(check_bend(1 - 1e-6).is_safe());
     const SafetyReport beyond = check_bend(1 + 1e-6);
     ASSERT_FALSE(beyond.is_safe());
@@ -53,11 +53,11 @@ class DriveCheck : public ::testing::Test {
       EXPECT_EQ(violation.limit, value);
       EXPECT_NEAR(violation.value, value * (1 + 1e-6), value * 1e-8);
     }
-    drive.axes[0].motor.*limit = std::numeric_limits<double>::infinity();
+    drive_.axes[0].motor.*limit = std::numeric_limits<double>::infinity();
   }
 
-  Arm arm;
-  Drive drive;
+  Arm arm_;
+  Drive drive_;
 };
 
 TEST_F(DriveCheck, FindsEveryLimitJustBeyondItAndNotJustWithin) {
@@ -70,7 +70,7 @@ TEST_F(DriveCheck, FindsEveryLimitJustBeyondItAndNotJustWithin) {
 }
 
 TEST_F(DriveCheck, TellsWhenAndHowMuch) {
-  drive.axes[1].motor.max_speed = 5;
+  drive_.axes[1].motor.max_speed = 5;
   const auto law =
       keyframe_motion({0, 1, 2, 3}, {state(0), state(0.1), state(0.9), state(1)}, Interpolation::linear);
   const SafetyReport report = check(law);
@@ -80,22 +80,22 @@ TEST_F(DriveCheck, TellsWhenAndHowMuch) {
 }
 
 TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {
-  drive.axes[0].motor.max_acceleration = 500;
+  drive_.axes[0].motor.max_acceleration = 500;
   const SafetyReport report = check_bend(1);
   ASSERT_EQ(report.violations.size(), 2U);
   EXPECT_EQ(report.violations[0].start, 0);
   EXPECT_EQ(report.violations[1].start, 1);
   // The least jerk takes 10/sqrt(3) of the way a second squared.
   const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
-  drive.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
+  drive_.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
   EXPECT_TRUE(check(smooth).is_safe());
-  drive.axes[0].motor.max_acceleration *= 0.99;
+  drive_.axes[0].motor.max_acceleration *= 0.99;
   EXPECT_FALSE(check(smooth).is_safe());
 }
 
 TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
-  drive.axes[0].spool.backlash = 0.02;  // 0.1 rad of the motor: 10 rad/s within a step
-  drive.axes[0].motor.max_speed = 12;
+  drive_.axes[0].spool.backlash = 0.02;  // 0.1 rad of the motor: 10 rad/s within a step
+  drive_.axes[0].motor.max_speed = 12;
   const auto there_and_back = keyframe_motion({0, 1, 2}, {state(0), state(0.3), state(0)},
                                               Interpolation::linear);  // 3 rad/s of the motor
   const SafetyReport report = check(there_and_back);
@@ -106,14 +106,14 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
 }
 
 TEST_F(DriveCheck, RoundingToMicrostepsIsNoAcceleration) {
-  drive.axes[0].motor.steps = 3;
-  drive.axes[0].motor.microsteps = 1;  // 2 rad each
-  drive.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
+  drive_.axes[0].motor.steps = 3;
+  drive_.axes[0].motor.microsteps = 1;  // 2 rad each
+  drive_.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
   EXPECT_TRUE(check(point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)})).is_safe());
 }
 
 TEST_F(DriveCheck, EndsBeforeAStateThatIsNotPossible) {
-  drive.axes[0].motor.max_speed = 1e-3;
+  drive_.axes[0].motor.max_speed = 1e-3;
   const auto nowhere = function_motion(1, [](double t) { return state(std::sqrt(0.5 - t)); });
   const SafetyReport report = check(nowhere);
   ASSERT_EQ(report.violations.size(), 1U);

@@ -123,11 +123,11 @@ TEST(Hazard, Obstacles) {
   });
   // Turned by 45 degrees about Z, its edge points at the arm.
   expect_just(Hazard::obstacle, [&](double part) {
-    return check(
-        arm, stand,
-        {BoxConfig{.center = {0.5, 0.5, 0},
-                   .half_sizes = {(part * 0.5 - r) / std::sqrt(2.), (part * 0.5 - r) / std::sqrt(2.), 1},
-                   .rotation = {std::cos(pi / 8), 0, 0, std::sin(pi / 8)}}});
+    return check(arm, stand,
+                 {BoxConfig{.center = {0.5, 0.5, 0},
+                            .half_sizes = {(part * 0.5 - r) / std::numbers::sqrt2,
+                                           (part * 0.5 - r) / std::numbers::sqrt2, 1},
+                            .rotation = {std::cos(pi / 8), 0, 0, std::sin(pi / 8)}}});
   });
 }
 

@@ -55,7 +55,8 @@ double brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
       grid.push_back(distance_at(a, b, least_turn, static_cast<double>(i) / n, static_cast<double>(j) / n));
   }
   const auto at = [&](int i, int j) {
-    return grid[static_cast<std::size_t>(std::clamp(i, 0, n) * (n + 1) + std::clamp(j, 0, n))];
+    const auto row = static_cast<std::size_t>(std::clamp(i, 0, n));
+    return grid[row * static_cast<std::size_t>(n + 1) + static_cast<std::size_t>(std::clamp(j, 0, n))];
   };
   double best = no_distance;
   for (int i = 0; i <= n; ++i) {

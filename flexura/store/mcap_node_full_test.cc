@@ -41,12 +41,12 @@ class McapCore : public testing::Test {
         output_of("node '" + (node_folder / "read_mcap.mjs").string() + "' '" + log.string() + "'"));
   }
 
-  TestFolder folder;
+  TestFolder folder_;
 };
 
 TEST_F(McapCore, ReadsWhatWasWritten) {
   {
-    McapWriter log(folder / "log.mcap", {.chunk_size = 10'000});
+    McapWriter log(folder_ / "log.mcap", {.chunk_size = 10'000});
     const auto arm = log.add_channel(json_channel("/arm"));
     const auto tip = log.add_channel({"/tip", "json", json_channel("/arm").schema, {{"unit", "m"}}});
     const auto raw = log.add_channel({"/raw", "x-text"});
@@ -66,7 +66,7 @@ TEST_F(McapCore, ReadsWhatWasWritten) {
   const json first = {{"topic", "/arm"}, {"time", "1000"}, {"data", R"({"i":0})"}};
   const json last = {{"topic", "/tip"}, {"time", "30990"}, {"data", R"({"i":2999})"}};
 
-  const json read_back = read(folder / "log.mcap");
+  const json read_back = read(folder_ / "log.mcap");
   EXPECT_THAT(read_back["library"].get<std::string>(), testing::StartsWith("flexura 0."));
   EXPECT_EQ(read_back["indexed"],
             json({{"channels", channels}, {"start", "5"}, {"end", "30990"}, {"first", raw}, {"last", last}}));
@@ -76,23 +76,23 @@ TEST_F(McapCore, ReadsWhatWasWritten) {
 }
 
 TEST_F(McapCore, ReadsAnEmptyLog) {
-  McapWriter(folder / "log.mcap").close();
+  McapWriter(folder_ / "log.mcap").close();
   const json nothing = {{"channels", json::array()},
                         {"start", nullptr},
                         {"end", nullptr},
                         {"first", nullptr},
                         {"last", nullptr}};
-  EXPECT_EQ(read(folder / "log.mcap")["indexed"], nothing);
-  EXPECT_EQ(read(folder / "log.mcap")["streamed"], nothing);
+  EXPECT_EQ(read(folder_ / "log.mcap")["indexed"], nothing);
+  EXPECT_EQ(read(folder_ / "log.mcap")["streamed"], nothing);
 }
 
 TEST_F(McapCore, NoticesADamagedLog) {
-  write_small_log(folder / "log.mcap");
-  std::string bytes = file_bytes(folder / "log.mcap");
+  write_small_log(folder_ / "log.mcap");
+  std::string bytes = file_bytes(folder_ / "log.mcap");
   bytes[bytes.find(R"({"i":3})") + 5] = '4';
-  std::ofstream(folder / "damaged.mcap", std::ios::binary) << bytes;
+  std::ofstream(folder_ / "damaged.mcap", std::ios::binary) << bytes;
   const std::string command = "node '" + (node_folder / "read_mcap.mjs").string() + "' '" +
-                              (folder / "damaged.mcap").string() + "' 2>&1 | grep -c 'Incorrect chunk CRC'";
+                              (folder_ / "damaged.mcap").string() + "' 2>&1 | grep -c 'Incorrect chunk CRC'";
   EXPECT_NE(output_of(command), "0\n");
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <system_error>
 
+#include "flexura/base/source.h"
+
 namespace flexura {
 
 std::filesystem::path make_new_folder(const std::filesystem::path& wanted) {

@@ -79,6 +79,18 @@ Contact ContactWatch::contact(const ArmState& state, double cap) const {
   return obstacle_ ? obstacle_contact(tubes, cap) : self_contact(tubes, cap);
 }
 
+std::vector<Contact> ContactWatch::contacts(const ArmState& state) const {
+  if (!is_possible(state)) return {};
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, state);
+  if (!obstacle_) return self_contacts(tubes);
+  std::vector<Contact> found;
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double distance = obstacle_distance(tubes[j], ignored(j), *obstacle_, {.cap = deepest});
+    if (distance < deepest) found.push_back({distance, j, std::nullopt});
+  }
+  return found;
+}
+
 WatchedQuantity ContactWatch::depth(const Motion& motion) const {
   return {[this, &motion](double t) { return -contact(motion.at(t), deepest).clearance; },
           [this, &motion](double start, double end) { return bounds(motion, start, end); }};
@@ -151,6 +163,20 @@ Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap
     }
   }
   return nearest;
+}
+
+std::vector<Contact> ContactWatch::self_contacts(const std::vector<TubeArc>& tubes) {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  std::vector<Contact> found;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= deepest) continue;
+      const double distance = tube_distance(tubes[i], tubes[j], half_turn, deepest);
+      if (distance < deepest) found.push_back({distance, i, j});
+    }
+  }
+  return found;
 }
 
 Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const {

@@ -39,6 +39,8 @@ class ContactWatch {
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
   /// The least clearance in a state that is possible, where it is below `cap`; otherwise `cap` stands for it.
   [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
+  /// Every section, or pair of them, that is in contact in a state: deeper than `contact_tolerance`.
+  [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
   /// How deep the contact is, m (`contact_tolerance` where there is none deeper), in a motion that knows its
   /// rates. Its bounds say no more than whether an interval is surely free of contact or surely in contact;
   /// elsewhere the upper one is above `contact_tolerance` by what the arm may move in half the interval.
@@ -51,6 +53,7 @@ class ContactWatch {
   [[nodiscard]] static QuantityBounds self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach);
   [[nodiscard]] QuantityBounds obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const;
   [[nodiscard]] double share_of_motion() const;
+  [[nodiscard]] static std::vector<Contact> self_contacts(const std::vector<TubeArc>& tubes);
   [[nodiscard]] static Contact self_contact(const std::vector<TubeArc>& tubes, double cap);
   [[nodiscard]] Contact obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const;
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/jumps.h"
@@ -186,28 +188,39 @@ class MotionCheck {
                                   .limit = limit});
   }
 
-  // The deepest contact, of the span's ends and what lies evenly between.
-  [[nodiscard]] Contact worst_contact(const ContactWatch& contact, const Span& span) const {
-    constexpr int samples = 100;
-    Contact worst{.clearance = 0};
-    for (int k = 0; k <= samples; ++k) {
-      const double time = span.start + (span.end - span.start) * k / samples;
-      const Contact now = contact.contact(motion_.at(time), worst.clearance);
-      if (now.clearance < worst.clearance) worst = now;
-    }
-    return worst;
-  }
-
+  // What touches in a span, of its ends and what lies evenly between: every section or pair with its depth
+  // and its time, which is right to the distance of two samples; the deepest has the whole span.
   void add_contact(const ContactWatch& contact, const Span& span) {
-    const Contact worst = worst_contact(contact, span);
-    report_.violations.push_back({.hazard = contact.hazard(),
-                                  .start = start_ + span.start,
-                                  .end = start_ + span.end,
-                                  .section = worst.section,
-                                  .other_section = worst.other_section,
-                                  .name = contact.obstacle_name(),
-                                  .value = -worst.clearance,
-                                  .limit = 0});
+    constexpr int samples = 100;
+    const auto time_of_sample = [&](int k) {
+      return k >= samples ? span.end : span.start + (span.end - span.start) * std::max(k, 0) / samples;
+    };
+    using Place = std::pair<std::size_t, std::optional<std::size_t>>;
+    std::map<Place, Violation> found;
+    for (int k = 0; k <= samples; ++k) {
+      for (const Contact& now : contact.contacts(motion_.at(time_of_sample(k)))) {
+        Violation& violation = found
+                                   .try_emplace({now.section, now.other_section},
+                                                Violation{.hazard = contact.hazard(),
+                                                          .start = start_ + time_of_sample(k - 1),
+                                                          .section = now.section,
+                                                          .other_section = now.other_section,
+                                                          .name = contact.obstacle_name()})
+                                   .first->second;
+        violation.end = start_ + time_of_sample(k + 1);
+        violation.value = std::max(violation.value, -now.clearance);
+      }
+    }
+    const auto depth = [](const auto& one) { return one.second.value; };
+    const auto deepest = std::ranges::max_element(found, {}, depth);
+    if (deepest == found.end()) {  // between two samples only, and hardly
+      found.try_emplace({0, std::nullopt},
+                        Violation{.hazard = contact.hazard(), .name = contact.obstacle_name()});
+    }
+    Violation& whole = (deepest == found.end() ? found.begin() : deepest)->second;
+    whole.start = start_ + span.start;
+    whole.end = start_ + span.end;
+    for (auto& [place, violation] : found) report_.violations.push_back(std::move(violation));
   }
 
   // Every step of the clock up to `last`.

@@ -85,6 +85,21 @@ TEST(Contact, NamesEverySectionThatTouches) {
   EXPECT_LT(report.violations[2].end, 0.1);
 }
 
+TEST(Contact, SaysWhereAThinSectionBetweenThickOnesIsNotSeen) {
+  Arm arm = even_arm(3, 0.1);
+  const auto caveats = [&] {
+    const MotionPtr hold = hold_motion(bent(3, 0), 1);
+    return check_motions(arm, {}, bent(3, 0), {{hold, 0}}, 0.02).caveats;
+  };
+  arm.sections[1].length = 0.1;
+  EXPECT_TRUE(caveats().empty());
+  arm.sections[1].radius = {0.02, 0.02};
+  ASSERT_EQ(caveats().size(), 1u);
+  EXPECT_EQ(caveats()[0].substr(0, 32), "sections 1 and 3 are thicker tha");
+  arm.sections[1].length = 0.32;
+  EXPECT_TRUE(caveats().empty());
+}
+
 TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
   const Arm arm = even_arm(1, 0.02);
   const Obstacle wall =

@@ -295,7 +295,7 @@ void warn_of_thin_sections(const Arm& arm, SafetyReport& report) {
                         "other within half a turn is not looked at",
                         i + 1, j + 1));
       }
-      between += arm.sections[j].length;
+      between += arm.sections[j].length * arm.sections[j].stretch_limits[0];
       thinnest = std::min(thinnest, thickness(j));
     }
   }

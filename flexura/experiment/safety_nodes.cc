@@ -13,7 +13,9 @@ Node section_node(std::size_t section) { return {static_cast<std::int64_t>(secti
 // What a violation's name is the name of.
 const char* name_key(Hazard hazard) {
   if (hazard == Hazard::obstacle) return "obstacle";
-  return hazard == Hazard::workspace ? "task" : "axis";
+  const bool is_of_task =
+      hazard == Hazard::workspace || hazard == Hazard::jump || hazard == Hazard::not_finite;
+  return is_of_task ? "task" : "axis";
 }
 
 Node violation_node(const Violation& violation) {

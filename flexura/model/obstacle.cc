@@ -43,6 +43,15 @@ std::function<double(const Eigen::Vector3d&)> distance_of(const PlaneConfig& pla
           n = vector(plane.normal).normalized()](const Eigen::Vector3d& q) -> double { return n.dot(q - p); };
 }
 
+std::optional<Eigen::Vector3d> normal_of(const PlaneConfig& plane) {
+  return vector(plane.normal).normalized();
+}
+
+template <class Other>
+std::optional<Eigen::Vector3d> normal_of(const Other&) {
+  return std::nullopt;
+}
+
 std::function<double(const Eigen::Vector3d&)> distance_of(const SphereConfig& sphere) {
   return [c = vector(sphere.center), r = sphere.radius](const Eigen::Vector3d& q) -> double {
     return (q - c).norm() - r;
@@ -123,7 +132,8 @@ std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs) {
     std::visit(
         [&]<class One>(const One& one) {
           const std::string called = fmt::format("{} {}", Codec<One>::table().info().name, result.size() + 1);
-          result.push_back({one.name.empty() ? called : one.name, one.ignore_base, distance_of(one)});
+          result.push_back(
+              {one.name.empty() ? called : one.name, one.ignore_base, distance_of(one), normal_of(one)});
         },
         config);
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,6 +18,8 @@ struct Obstacle {
   double ignore_base = 0;  ///< This much of the unstretched arm, from its base, may touch it; m.
   /// Signed distance of a point in W to its surface, m; negative inside. Convex.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
+  /// Of a plane: its unit normal in W, along which `distance` grows.
+  std::optional<Eigen::Vector3d> normal{};
 };
 
 /// A half space: all that is not on the side of the plane to which the normal points.

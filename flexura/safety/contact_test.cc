@@ -67,6 +67,39 @@ TEST(Contact, FindsWhenAnArmCurlsIntoItself) {
             "sections 1 and 4: contact with each other, 100 mm deep");
 }
 
+TEST(Contact, NamesEverySectionThatTouches) {
+  const Arm arm = even_arm(3, 0.05);
+  // A wall along the arm, which the last section leaves at once, and the others, as they stand on it, never.
+  const auto wall = obstacles({PlaneConfig{.name = "wall", .point = {0.049, 0, 0}, .normal = {-1, 0, 0}}});
+  ArmState leaning = bent(3, 0);
+  leaning.bends[1].x() = -0.1;
+  const MotionPtr lean = point_to_point_motion(bent(3, 0), leaning, std::vector(3, Profile::linear(1)));
+  const SafetyReport report = check_motions(arm, wall, bent(3, 0), {{lean, 0}}, 0.02);
+  ASSERT_EQ(report.violations.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(report.violations[i].section, i);
+    EXPECT_EQ(report.violations[i].start, 0);
+    EXPECT_NEAR(report.violations[i].value, 1e-3, 1e-9);
+  }
+  EXPECT_EQ(report.violations[0].end, 1);
+  EXPECT_LT(report.violations[2].end, 0.1);
+}
+
+TEST(Contact, SaysWhereAThinSectionBetweenThickOnesIsNotSeen) {
+  Arm arm = even_arm(3, 0.1);
+  const auto caveats = [&] {
+    const MotionPtr hold = hold_motion(bent(3, 0), 1);
+    return check_motions(arm, {}, bent(3, 0), {{hold, 0}}, 0.02).caveats;
+  };
+  arm.sections[1].length = 0.1;
+  EXPECT_TRUE(caveats().empty());
+  arm.sections[1].radius = {0.02, 0.02};
+  ASSERT_EQ(caveats().size(), 1u);
+  EXPECT_EQ(caveats()[0].substr(0, 32), "sections 1 and 3 are thicker tha");
+  arm.sections[1].length = 0.32;
+  EXPECT_TRUE(caveats().empty());
+}
+
 TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
   const Arm arm = even_arm(1, 0.02);
   const Obstacle wall =

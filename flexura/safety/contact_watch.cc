@@ -15,7 +15,8 @@ constexpr double half_turn = std::numbers::pi;
 constexpr double deepest = -contact_tolerance;  // clearance that is none yet
 constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
 constexpr QuantityBounds in_contact{no_distance, no_distance};
-constexpr QuantityBounds undecided{-no_distance, no_distance};
+
+QuantityBounds undecided(double moved) { return {-no_distance, contact_tolerance + moved}; }
 
 double largest_radius(const TubeArc& tube) { return std::max(tube.radius[0], tube.radius[1]); }
 
@@ -78,14 +79,26 @@ Contact ContactWatch::contact(const ArmState& state, double cap) const {
   return obstacle_ ? obstacle_contact(tubes, cap) : self_contact(tubes, cap);
 }
 
+std::vector<Contact> ContactWatch::contacts(const ArmState& state) const {
+  if (!is_possible(state)) return {};
+  const std::vector<TubeArc> tubes = tube_arcs(arm_, state);
+  if (!obstacle_) return self_contacts(tubes);
+  std::vector<Contact> found;
+  for (std::size_t j = 0; j < tubes.size(); ++j) {
+    const double distance = obstacle_distance(tubes[j], ignored(j), *obstacle_, {.cap = deepest});
+    if (distance < deepest) found.push_back({distance, j, std::nullopt});
+  }
+  return found;
+}
+
 WatchedQuantity ContactWatch::depth(const Motion& motion) const {
-  return {[this, &motion](double t) { return -contact(motion.at(t), 0).clearance; },
+  return {[this, &motion](double t) { return -contact(motion.at(t), deepest).clearance; },
           [this, &motion](double start, double end) { return bounds(motion, start, end); }};
 }
 
 QuantityBounds ContactWatch::bounds(const Motion& motion, double start, double end) const {
   const ArmState middle = motion.at((start + end) / 2);
-  if (!is_possible(middle)) return undecided;
+  if (!is_possible(middle)) return undecided(contact_motion);  // by its samples
   const Reach reach(arm_, motion, middle, start, end);
   const std::vector<TubeArc> tubes = tube_arcs(arm_, middle);
   return obstacle_ ? obstacle_bounds(tubes, reach) : self_bounds(tubes, reach);
@@ -94,6 +107,7 @@ QuantityBounds ContactWatch::bounds(const Motion& motion, double start, double e
 QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) {
   const std::vector<Eigen::Vector3d> at = middles(tubes);
   bool is_free = true;
+  double most_moved = 0;
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     double moved = 0;
     double turned = 0;
@@ -107,25 +121,34 @@ QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, cons
       if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned, deepest))
         return in_contact;
     }
+    most_moved = std::max(most_moved, moved);
   }
-  return is_free ? free_of_contact : undecided;
+  return is_free ? free_of_contact : undecided(most_moved);
+}
+
+// How much of the arm's motion changes its distance to the obstacle: all of it; but where a planar arm stands
+// before a plane, only as much as its own plane is tilted to that.
+double ContactWatch::share_of_motion() const {
+  if (arm_.kind != ArmKind::planar || !obstacle_->normal) return 1;
+  const Eigen::Vector3d own = arm_.X_WB.rotation.col(1);
+  return (*obstacle_->normal - obstacle_->normal->dot(own) * own).norm();
 }
 
 QuantityBounds ContactWatch::obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const {
-  constexpr DistanceWish wish{deepest, deepest};
+  const double share = share_of_motion();
   bool is_free = true;
   double moved = 0;
   double turned = 0;
   for (std::size_t j = 0; j < tubes.size(); ++j) {
-    const double moved_before = moved;
+    const double at_start = share * moved;
     reach.extend(j, moved, turned);
+    const double at_end = share * moved;
     const double from = ignored(j);
-    if (obstacle_distance(grown(tubes[j], moved_before, moved), from, *obstacle_, wish) >= deepest) continue;
+    if (stays_clear(grown(tubes[j], at_start, at_end), from, *obstacle_, deepest)) continue;
     is_free = false;
-    const TubeArc sure = grown(tubes[j], -moved_before, -moved);
-    if (obstacle_distance(sure, from, *obstacle_, wish) < deepest) return in_contact;
+    if (comes_within(grown(tubes[j], -at_start, -at_end), from, *obstacle_, deepest)) return in_contact;
   }
-  return is_free ? free_of_contact : undecided;
+  return is_free ? free_of_contact : undecided(share * moved);
 }
 
 Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap) {
@@ -140,6 +163,20 @@ Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap
     }
   }
   return nearest;
+}
+
+std::vector<Contact> ContactWatch::self_contacts(const std::vector<TubeArc>& tubes) {
+  const std::vector<Eigen::Vector3d> at = middles(tubes);
+  std::vector<Contact> found;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    for (std::size_t j = i; j < tubes.size(); ++j) {
+      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      if (apart(tubes[i], at[i], tubes[j], at[j]) >= deepest) continue;
+      const double distance = tube_distance(tubes[i], tubes[j], half_turn, deepest);
+      if (distance < deepest) found.push_back({distance, i, j});
+    }
+  }
+  return found;
 }
 
 Contact ContactWatch::obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const {

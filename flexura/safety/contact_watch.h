@@ -15,6 +15,9 @@ namespace flexura {
 /// Contact shallower than this is none: the arm may touch. (Distances are right to half of it.)
 inline constexpr double contact_tolerance = 1e-6;  // m
 
+/// Where it is undecided whether there is a contact, the arm moves at most this far between two looks.
+inline constexpr double contact_motion = 1e-4;  // m
+
 /// Where something is nearest.
 struct Contact {
   double clearance = no_distance;              ///< m; negative: how deep.
@@ -36,8 +39,11 @@ class ContactWatch {
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
   /// The least clearance in a state that is possible, where it is below `cap`; otherwise `cap` stands for it.
   [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
-  /// How deep the contact is, m (0 where there is none), in a motion that knows its rates. Its bounds say no
-  /// more than whether an interval is surely free of contact or surely in contact.
+  /// Every section, or pair of them, that is in contact in a state: deeper than `contact_tolerance`.
+  [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
+  /// How deep the contact is, m (`contact_tolerance` where there is none deeper), in a motion that knows its
+  /// rates. Its bounds say no more than whether an interval is surely free of contact or surely in contact;
+  /// elsewhere the upper one is above `contact_tolerance` by what the arm may move in half the interval.
   [[nodiscard]] WatchedQuantity depth(const Motion& motion) const;
 
  private:
@@ -46,6 +52,8 @@ class ContactWatch {
   [[nodiscard]] QuantityBounds bounds(const Motion& motion, double start, double end) const;
   [[nodiscard]] static QuantityBounds self_bounds(const std::vector<TubeArc>& tubes, const Reach& reach);
   [[nodiscard]] QuantityBounds obstacle_bounds(const std::vector<TubeArc>& tubes, const Reach& reach) const;
+  [[nodiscard]] double share_of_motion() const;
+  [[nodiscard]] static std::vector<Contact> self_contacts(const std::vector<TubeArc>& tubes);
   [[nodiscard]] static Contact self_contact(const std::vector<TubeArc>& tubes, double cap);
   [[nodiscard]] Contact obstacle_contact(const std::vector<TubeArc>& tubes, double cap) const;
 

@@ -13,6 +13,10 @@ struct Sample {
   ArmState state;
 };
 
+double change(const ArmState& a, const ArmState& b, std::size_t i) {
+  return std::max((a.bends[i] - b.bends[i]).norm(), std::abs(a.stretches[i] - b.stretches[i]));
+}
+
 std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
   constexpr int halvings = 40;
   constexpr int few = 6;
@@ -29,25 +33,32 @@ std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
     if (n == few && size < whole / 32) return std::nullopt;
   }
   if (size <= smallest_jump) return std::nullopt;
-  return Jump{b.time, size};
+  return Jump{b.time, size, most_changed(a.state, b.state)};
 }
 
 }  // namespace
 
 double largest_change(const ArmState& a, const ArmState& b) {
   double most = 0;
-  for (std::size_t i = 0; i < a.bends.size(); ++i) {
-    most = std::max({most, (a.bends[i] - b.bends[i]).norm(), std::abs(a.stretches[i] - b.stretches[i])});
+  for (std::size_t i = 0; i < a.bends.size(); ++i) most = std::max(most, change(a, b, i));
+  return most;
+}
+
+std::size_t most_changed(const ArmState& a, const ArmState& b) {
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < a.bends.size(); ++i) {
+    if (change(a, b, i) > change(a, b, most)) most = i;
   }
   return most;
 }
 
-std::vector<Jump> find_jumps(const Motion& motion, double step) {
+std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {
+  const double end = std::min(until, motion.duration());
   std::vector<Jump> jumps;
-  const auto count = static_cast<std::size_t>(std::ceil(motion.duration() / step));
+  const auto count = static_cast<std::size_t>(std::ceil(end / step));
   Sample last{0, motion.at(0)};
   for (std::size_t k = 1; k <= count; ++k) {
-    Sample next{std::min(static_cast<double>(k) * step, motion.duration()), {}};
+    Sample next{std::min(static_cast<double>(k) * step, end), {}};
     next.state = motion.at(next.time);
     if (const auto jump = jump_between(motion, last, next)) jumps.push_back(*jump);
     last = std::move(next);

@@ -52,6 +52,20 @@ void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>&
                      }});
 }
 
+WatchedQuantity watched_rate(const Motion& motion, std::size_t section, double SectionRates::* which) {
+  const auto value = [&motion, section, which](double t) { return rates_of(motion, section, t, t).*which; };
+  // A rate has no rate bound of its own. It has a highest value; where an interval is short and too fast at
+  // its ends and middle, it is taken for too fast all along.
+  const double short_interval = motion.duration() * 1e-4;
+  return {value, [&motion, section, which, value, short_interval](double start, double end) {
+            const double high = rates_of(motion, section, start, end).*which;
+            const double low = end - start > short_interval
+                                   ? 0.0
+                                   : std::min({value(start), value((start + end) / 2), value(end)});
+            return QuantityBounds{low, high};
+          }};
+}
+
 }  // namespace
 
 double LimitWatch::threshold() const {
@@ -70,17 +84,11 @@ SectionRates rates_of(const Motion& motion, std::size_t section, double start, d
 }
 
 WatchedQuantity bend_rate(const Motion& motion, std::size_t section) {
-  const auto value = [&motion, section](double t) { return rates_of(motion, section, t, t).bend; };
-  // A rate has no rate bound of its own. It has a highest value; where an interval is short and too fast at
-  // its ends and middle, it is taken for too fast all along.
-  const double short_interval = motion.duration() * 1e-4;
-  return {value, [&motion, section, value, short_interval](double start, double end) {
-            const double high = rates_of(motion, section, start, end).bend;
-            const double low = end - start > short_interval
-                                   ? 0.0
-                                   : std::min({value(start), value((start + end) / 2), value(end)});
-            return QuantityBounds{low, high};
-          }};
+  return watched_rate(motion, section, &SectionRates::bend);
+}
+
+WatchedQuantity stretch_rate(const Motion& motion, std::size_t section) {
+  return watched_rate(motion, section, &SectionRates::stretch);
 }
 
 }  // namespace flexura

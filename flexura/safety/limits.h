@@ -36,5 +36,7 @@ struct LimitWatch {
 
 /// A section's bend rate in a motion that knows its rates, rad/s.
 [[nodiscard]] WatchedQuantity bend_rate(const Motion& motion, std::size_t section);
+/// Its stretch rate, 1/s.
+[[nodiscard]] WatchedQuantity stretch_rate(const Motion& motion, std::size_t section);
 
 }  // namespace flexura

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/jumps.h"
@@ -19,6 +22,11 @@ namespace {
 
 constexpr double time_resolution = 1e-7;     // s, of limits
 constexpr double contact_resolution = 1e-4;  // s
+// How many intervals are looked into for one limit, and for one thing the arm may touch, which takes longer;
+// and for every step of the clock.
+constexpr std::size_t limit_intervals = 200'000;
+constexpr std::size_t contact_intervals = 5'000;
+constexpr std::size_t intervals_of_step = 4;
 
 // A span that grows with samples: a sample stands for the time up to the next.
 class SampledSpans {
@@ -63,6 +71,7 @@ class MotionCheck {
         contacts_(contacts),
         motion_(*timed.motion),
         start_(timed.start),
+        task_(timed.name),
         step_(step),
         report_(report) {}
 
@@ -77,19 +86,28 @@ class MotionCheck {
       if (!std::isfinite(limit)) continue;
       add(Hazard::bend_rate, i, limit, 1, limit_of_rate(limit), bend_rate(motion_, i));
     }
+    for (std::size_t i = 0; i < arm_.sections.size(); ++i) {
+      check_jumps(i, bend_rate(motion_, i));
+      check_jumps(i, stretch_rate(motion_, i));
+    }
     for (const ContactWatch& contact : contacts_) {
       const WatchedQuantity depth = contact.depth(motion_);
-      for (const Span& span : spans_above(contact_tolerance, depth, whole(), contact_resolution))
-        add_contact(contact, span);
+      const FoundSpans found = spans_above(contact_tolerance, depth, whole(),
+                                           {.time = contact_resolution,
+                                            .value = contact_motion,
+                                            .most_intervals = most_intervals(contact_intervals)});
+      for (const Span& span : found.spans) add_contact(contact, span);
+      const std::string with = contact.hazard() == Hazard::obstacle ? contact.obstacle_name() : "itself";
+      add_undecided("contact with " + with, found);
     }
   }
 
   void check_sampled() {
-    if (const auto t = first_impossible()) {
-      add_impossible(*t);
-    } else {
-      sample();
-      for (const Jump& jump : find_jumps(motion_, step_)) add_jump(jump);
+    const std::size_t impossible = first_impossible();
+    if (impossible <= last_sample()) add_impossible(time_of(impossible));
+    if (impossible > 0) {
+      sample(impossible - 1);
+      for (const Jump& jump : find_jumps(motion_, step_, time_of(impossible - 1))) add_jump(jump);
     }
     report_.caveats.push_back(
         fmt::format("{:.6g} s to {:.6g} s: sampled every {:.6g} s: the law has no bound on its rates", start_,
@@ -97,16 +115,38 @@ class MotionCheck {
   }
 
   void add_impossible(double time) {
-    report_.violations.push_back(
-        {.hazard = Hazard::not_finite, .start = start_ + time, .end = start_ + time});
+    report_.violations.push_back({.hazard = Hazard::not_finite,
+                                  .start = start_ + time,
+                                  .end = start_ + time,
+                                  .section = impossible_section(motion_.at(time)),
+                                  .name = task_});
   }
 
-  void add_jump(const Jump& jump) {
-    report_.violations.push_back(
-        {.hazard = Hazard::jump, .start = start_ + jump.time, .end = start_ + jump.time, .value = jump.size});
-  }
+  void add_jump(const Jump& jump) { add_jump({jump.time, jump.time}, jump.section, jump.size); }
 
  private:
+  void add_jump(const Span& span, std::size_t section, double size) {
+    report_.violations.push_back({.hazard = Hazard::jump,
+                                  .start = start_ + span.start,
+                                  .end = start_ + span.end,
+                                  .section = section,
+                                  .name = task_,
+                                  .value = size});
+  }
+
+  // Where a law that knows its rates is faster than anything that moves: keyframes a moment apart.
+  void check_jumps(std::size_t section, const WatchedQuantity& rate) {
+    const SpanSearch search{.time = time_resolution,
+                            .value = jump_rate * limit_tolerance,
+                            .most_intervals = most_intervals(limit_intervals)};
+    for (const Span& span : spans_above(jump_rate, rate, whole(), search).spans) {
+      const ArmState before = motion_.at(span.start);
+      const auto change = [&](double t) { return largest_change(before, motion_.at(t)); };
+      const double size = change(worst_time(change, span));
+      if (size > smallest_jump) add_jump(span, section, size);
+    }
+  }
+
   static double limit_of_rate(double limit) { return limit * (1 + limit_tolerance); }
   [[nodiscard]] Span whole() const { return {0, motion_.duration()}; }
   [[nodiscard]] std::size_t last_sample() const {
@@ -118,10 +158,26 @@ class MotionCheck {
 
   void add(Hazard hazard, std::size_t section, double limit, double sign, double threshold,
            const WatchedQuantity& quantity) {
-    for (const Span& span : spans_above(threshold, quantity, whole(), time_resolution)) {
+    const FoundSpans found = spans_above(threshold, quantity, whole(),
+                                         {.time = time_resolution,
+                                          .value = std::abs(limit) * limit_tolerance,
+                                          .most_intervals = most_intervals(limit_intervals)});
+    add_undecided(fmt::format("section {}: {}", section + 1, name_of(hazard)), found);
+    for (const Span& span : found.spans) {
       const double worst = quantity.value(worst_time(quantity.value, span));
       add_limit(hazard, section, span, sign * worst, limit);
     }
+  }
+
+  [[nodiscard]] std::size_t most_intervals(std::size_t at_least) const {
+    return at_least + intervals_of_step * last_sample();
+  }
+
+  void add_undecided(const std::string& what, const FoundSpans& found) {
+    if (!found.undecided) return;
+    report_.caveats.push_back(fmt::format(
+        "{} undecided between {:.6g} s and {:.6g} s: too near its limit to tell, sampled every {:.3g} s",
+        what, start_ + found.undecided->start, start_ + found.undecided->end, found.sampled_every));
   }
 
   void add_limit(Hazard hazard, std::size_t section, const Span& span, double value, double limit) {
@@ -133,37 +189,49 @@ class MotionCheck {
                                   .limit = limit});
   }
 
-  // The deepest contact, of the span's ends and what lies evenly between.
-  [[nodiscard]] Contact worst_contact(const ContactWatch& contact, const Span& span) const {
-    constexpr int samples = 100;
-    Contact worst{.clearance = 0};
-    for (int k = 0; k <= samples; ++k) {
-      const double time = span.start + (span.end - span.start) * k / samples;
-      const Contact now = contact.contact(motion_.at(time), worst.clearance);
-      if (now.clearance < worst.clearance) worst = now;
-    }
-    return worst;
-  }
-
+  // What touches in a span, of its ends and what lies evenly between: every section or pair with its depth
+  // and its time, which is right to the distance of two samples; the deepest has the whole span.
   void add_contact(const ContactWatch& contact, const Span& span) {
-    const Contact worst = worst_contact(contact, span);
-    report_.violations.push_back({.hazard = contact.hazard(),
-                                  .start = start_ + span.start,
-                                  .end = start_ + span.end,
-                                  .section = worst.section,
-                                  .other_section = worst.other_section,
-                                  .name = contact.obstacle_name(),
-                                  .value = -worst.clearance,
-                                  .limit = 0});
+    constexpr int samples = 100;
+    const auto time_of_sample = [&](int k) {
+      return k >= samples ? span.end : span.start + (span.end - span.start) * std::max(k, 0) / samples;
+    };
+    using Place = std::pair<std::size_t, std::optional<std::size_t>>;
+    std::map<Place, Violation> found;
+    for (int k = 0; k <= samples; ++k) {
+      for (const Contact& now : contact.contacts(motion_.at(time_of_sample(k)))) {
+        Violation& violation = found
+                                   .try_emplace({now.section, now.other_section},
+                                                Violation{.hazard = contact.hazard(),
+                                                          .start = start_ + time_of_sample(k - 1),
+                                                          .section = now.section,
+                                                          .other_section = now.other_section,
+                                                          .name = contact.obstacle_name()})
+                                   .first->second;
+        violation.end = start_ + time_of_sample(k + 1);
+        violation.value = std::max(violation.value, -now.clearance);
+      }
+    }
+    const auto depth = [](const auto& one) { return one.second.value; };
+    const auto deepest = std::ranges::max_element(found, {}, depth);
+    if (deepest == found.end()) {  // between two samples only, and hardly
+      found.try_emplace({0, std::nullopt},
+                        Violation{.hazard = contact.hazard(), .name = contact.obstacle_name()});
+    }
+    Violation& whole = (deepest == found.end() ? found.begin() : deepest)->second;
+    whole.start = start_ + span.start;
+    whole.end = start_ + span.end;
+    for (auto& [place, violation] : found) report_.violations.push_back(std::move(violation));
   }
 
-  void sample() {
+  // Every step of the clock up to `last`.
+  void sample(std::size_t last) {
     const std::vector<LimitWatch> watches = limit_watches(arm_);
     std::vector<SampledSpans> limits(watches.size());
     std::vector<SampledSpans> rates(arm_.sections.size());
     std::vector<SampledSpans> contacts(contacts_.size());
     ArmState before;
-    for (std::size_t k = 0; k <= last_sample(); ++k) {
+    for (std::size_t k = 0; k <= last; ++k) {
       const double t = time_of(k);
       const ArmState state = motion_.at(t);
       for (std::size_t w = 0; w < watches.size(); ++w) {
@@ -194,20 +262,44 @@ class MotionCheck {
     }
   }
 
-  [[nodiscard]] std::optional<double> first_impossible() const {
-    for (std::size_t k = 0; k <= last_sample(); ++k) {
-      if (!is_possible(motion_.at(time_of(k)))) return time_of(k);
-    }
-    return std::nullopt;
+  // The step from which on the law has no possible value, or the one after the last.
+  [[nodiscard]] std::size_t first_impossible() const {
+    std::size_t k = 0;
+    while (k <= last_sample() && is_possible(motion_.at(time_of(k)))) ++k;
+    return k;
   }
 
   const Arm& arm_;
   const std::vector<ContactWatch>& contacts_;
   const Motion& motion_;
   double start_;
+  const std::string& task_;
   double step_;
   SafetyReport& report_;
 };
+
+// Tubes i and j may meet within half a turn where what is between them is shorter than half a circle around
+// them, and thin enough to bend sharper than they could: that is not looked at.
+void warn_of_thin_sections(const Arm& arm, SafetyReport& report) {
+  const auto thickness = [&](std::size_t i) {
+    return std::max(arm.sections[i].radius[0], arm.sections[i].radius[1]);
+  };
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    double between = 0;
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = i + 1; j < arm.sections.size(); ++j) {
+      const double mean = (thickness(i) + thickness(j)) / 2;
+      if (thinnest < mean && between < std::numbers::pi * mean) {
+        report.caveats.push_back(
+            fmt::format("sections {} and {} are thicker than what is between them: whether they touch each "
+                        "other within half a turn is not looked at",
+                        i + 1, j + 1));
+      }
+      between += arm.sections[j].length * arm.sections[j].stretch_limits[0];
+      thinnest = std::min(thinnest, thickness(j));
+    }
+  }
+}
 
 void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
   if (!is_possible(state)) return;
@@ -219,9 +311,14 @@ void note_singular(const Arm& arm, const ArmState& state, double time, SafetyRep
 
 }  // namespace
 
-bool is_possible(const ArmState& state) {
-  return std::ranges::all_of(state.bends, [](const auto& bend) { return bend.allFinite(); }) &&
-         std::ranges::all_of(state.stretches, [](double s) { return std::isfinite(s) && s > 0; });
+bool is_possible(const ArmState& state) { return !impossible_section(state); }
+
+std::optional<std::size_t> impossible_section(const ArmState& state) {
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    const double stretch = state.stretches[i];
+    if (!state.bends[i].allFinite() || !std::isfinite(stretch) || stretch <= 0) return i;
+  }
+  return std::nullopt;
 }
 
 SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& initial,
@@ -229,13 +326,15 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
   SafetyReport report;
   std::vector<ContactWatch> contacts{ContactWatch(arm)};
   for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
+  warn_of_thin_sections(arm, report);
   note_singular(arm, initial, 0, report);
   ArmState before = initial;
   for (const TimedMotion& timed : motions) {
     const Motion& motion = *timed.motion;
     MotionCheck check(arm, contacts, timed, step, report);
     const double jump = largest_change(before, motion.at(0));
-    if (jump > smallest_jump && std::isfinite(jump)) check.add_jump({0, jump});
+    if (jump > smallest_jump && std::isfinite(jump))
+      check.add_jump({0, jump, most_changed(before, motion.at(0))});
     if (motion.rates(0, 0, motion.duration())) {
       if (is_possible(motion.at(0))) {
         check.check_bounded();

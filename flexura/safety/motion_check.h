@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "flexura/kinematics/motion.h"
@@ -13,6 +16,7 @@ namespace flexura {
 struct TimedMotion {
   MotionPtr motion;
   double start = 0;
+  std::string name = {};  ///< Of its task, for messages.
 };
 
 /// What would harm the arm in motions played one after another from the state `initial`: bends, bend rates,
@@ -25,5 +29,8 @@ struct TimedMotion {
 
 /// Whether the arm can stand in this state at all: finite bends, finite lengths above 0.
 [[nodiscard]] bool is_possible(const ArmState& state);
+
+/// The first section that cannot, from 0.
+[[nodiscard]] std::optional<std::size_t> impossible_section(const ArmState& state);
 
 }  // namespace flexura

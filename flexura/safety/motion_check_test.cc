@@ -142,9 +142,27 @@ TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   ASSERT_FALSE(report.is_safe());
   EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
   EXPECT_NEAR(report.violations[0].start, 1.1, 1e-9);
-  EXPECT_EQ(report.violations[0].text(), "1.1 s: no possible value");
+  EXPECT_EQ(report.violations[0].text(), "1.1 s: section 1: no possible value");
   const auto no_length = function_motion(2, [](double t) -> ArmState { return {{{0, 0}}, {1 - t}}; });
-  EXPECT_EQ(check(one_section(), no_length, 0.1).violations.at(0).hazard, Hazard::not_finite);
+  const SafetyReport shrunk = check(one_section(), no_length, 0.1);
+  ASSERT_FALSE(shrunk.is_safe());
+  EXPECT_EQ(shrunk.violations.back().hazard, Hazard::not_finite);
+  EXPECT_NEAR(shrunk.violations.back().start, 1, 1e-9);
+}
+
+TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
+  Arm arm;
+  arm.sections.resize(2);
+  arm.sections[0].max_bend = 0.5;
+  const auto law = function_motion(2, [](double t) -> ArmState {
+    return {{{t, 0}, {t < 0.4 ? std::sqrt(1 - t) : std::sqrt(1 - t) + 0.1, 0}}, {1, 1}};
+  });
+  const SafetyReport report = check_motions(arm, {}, law->at(0), {{law, 3, "reach"}}, 0.1);
+  ASSERT_EQ(report.violations.size(), 3u);
+  EXPECT_THAT(report.violations[0].text(), testing::StartsWith("3.4 s: reach: section 2: jump 0.1"));
+  EXPECT_EQ(report.violations[1].hazard, Hazard::bend);
+  EXPECT_NEAR(report.violations[1].end, 4, 1e-9);
+  EXPECT_EQ(report.violations[2].text(), "4.1 s: reach: section 2: no possible value");
 }
 
 TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {

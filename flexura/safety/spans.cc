@@ -6,12 +6,36 @@
 namespace flexura {
 namespace {
 
-void add(Span span, std::vector<Span>& spans) {
-  if (!spans.empty() && spans.back().end >= span.start) {
-    spans.back().end = std::max(spans.back().end, span.end);
-  } else {
-    spans.push_back(span);
+enum class Verdict { safe, above, open };
+
+double sampled(const WatchedQuantity& quantity, const Span& span) {
+  return std::max(
+      {quantity.value(span.start), quantity.value((span.start + span.end) / 2), quantity.value(span.end)});
+}
+
+Verdict judged(double limit, const WatchedQuantity& quantity, const Span& span, const SpanSearch& search) {
+  const QuantityBounds bounds = quantity.bounds(span.start, span.end);
+  if (bounds.high <= limit) return Verdict::safe;
+  if (bounds.low > limit) return Verdict::above;
+  const double length = span.end - span.start;
+  if (length <= search.time && bounds.high <= limit + search.value)
+    return sampled(quantity, span) > limit ? Verdict::above : Verdict::safe;
+  // Late times are less fine than the shortest interval.
+  const bool is_shortest = length <= std::max(shortest_interval, 1e-15 * span.end);
+  return is_shortest ? Verdict::above : Verdict::open;
+}
+
+std::vector<Span> joined(std::vector<Span> spans) {
+  std::ranges::sort(spans, {}, &Span::start);
+  std::vector<Span> result;
+  for (const Span& span : spans) {
+    if (!result.empty() && result.back().end >= span.start) {
+      result.back().end = std::max(result.back().end, span.end);
+    } else {
+      result.push_back(span);
+    }
   }
+  return result;
 }
 
 }  // namespace
@@ -26,26 +50,34 @@ WatchedQuantity with_rate(std::function<double(double time)> value,
   return {std::move(value), std::move(bounds)};
 }
 
-std::vector<Span> spans_above(double limit, const WatchedQuantity& quantity, Span whole, double resolution) {
-  std::vector<Span> found;
-  std::vector<Span> open{whole};  // a stack: the earliest interval is on top, so spans are found in order
-  while (!open.empty()) {
-    const Span span = open.back();
-    open.pop_back();
-    const double middle = (span.start + span.end) / 2;
-    const QuantityBounds bounds = quantity.bounds(span.start, span.end);
-    if (bounds.high <= limit) continue;
-    if (bounds.low > limit) {
-      add(span, found);
-    } else if (span.end - span.start <= resolution) {
-      const double most =
-          std::max({quantity.value(span.start), quantity.value(middle), quantity.value(span.end)});
-      if (most > limit) add(span, found);
-    } else {
-      open.push_back({middle, span.end});
-      open.push_back({span.start, middle});
+FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole, const SpanSearch& search) {
+  std::vector<Span> above;
+  std::vector<Span> open{whole};
+  std::vector<Span> shorter;
+  std::size_t examined = 0;
+  // By length, from the longest on; `open` is in the order of time.
+  for (; !open.empty() && examined < search.most_intervals; open.swap(shorter)) {
+    shorter.clear();
+    for (const Span& span : open) {
+      if (++examined > search.most_intervals) {
+        shorter.push_back(span);
+        continue;
+      }
+      const Verdict verdict = judged(limit, quantity, span, search);
+      if (verdict == Verdict::above) above.push_back(span);
+      if (verdict != Verdict::open) continue;
+      const double middle = (span.start + span.end) / 2;
+      shorter.push_back({span.start, middle});
+      shorter.push_back({middle, span.end});
     }
   }
+  FoundSpans found;
+  for (const Span& span : open) {
+    if (sampled(quantity, span) > limit) above.push_back(span);
+    found.sampled_every = std::max(found.sampled_every, (span.end - span.start) / 2);
+  }
+  if (!open.empty()) found.undecided = {open.front().start, open.back().end};
+  found.spans = joined(std::move(above));
   return found;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace flexura {
@@ -28,12 +30,35 @@ struct WatchedQuantity {
 [[nodiscard]] WatchedQuantity with_rate(std::function<double(double time)> value,
                                         std::function<double(double start, double end)> rate);
 
-/// The spans of `whole` in which the quantity is above `limit`, joined where they touch, in order.
+/// When an interval is looked into no further.
+struct SpanSearch {
+  double time = 0;                       ///< s: intervals that are undecided and longer are halved,
+  double value = 0;                      ///< and so are those whose upper bound is above the limit by more.
+  std::size_t most_intervals = 200'000;  ///< After so many, samples decide what is open.
+};
+
+/// What a search found.
+struct FoundSpans {
+  std::vector<Span> spans;  ///< Where the quantity is above its limit, joined where they touch, in order.
+  /// From the first to the last time that only samples decided, because there was too much to look into.
+  std::optional<Span> undecided{};
+  double sampled_every = 0;  ///< s, in there at most.
+};
+
+/// The spans of `whole` in which the quantity is above `limit`.
 ///
 /// Nothing slips through: an interval is let go only when its bounds prove it safe, is taken whole when they
-/// prove it unsafe, and is halved otherwise, down to `resolution` s, where its ends and middle decide. So
-/// what is missed, if anything, is shorter than half the resolution, and the ends of spans are right to it.
-[[nodiscard]] std::vector<Span> spans_above(double limit, const WatchedQuantity& quantity, Span whole,
-                                            double resolution);
+/// prove it unsafe, and is halved otherwise, until it is as short as `search` says and its upper bound as
+/// near to the limit; then its ends and middle decide. So what is missed, if anything, is shorter than half
+/// of that time, and above the limit by no more than that value; and the ends of spans are right to that
+/// time. What time cannot resolve (`shortest_interval`) is unsafe unless proved safe.
+///
+/// All intervals of one length come before shorter ones, so that what is open when there are too many is
+/// looked into evenly.
+[[nodiscard]] FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole,
+                                     const SpanSearch& search);
+
+/// No interval is halved below this, s.
+inline constexpr double shortest_interval = 1e-12;
 
 }  // namespace flexura

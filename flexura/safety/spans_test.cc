@@ -10,9 +10,11 @@
 namespace flexura {
 namespace {
 
+constexpr SpanSearch fine{.time = 1e-7, .value = 1e-7};
+
 TEST(Spans, FindWhatRisesAboveALimitFromStartToEnd) {
   const auto sine = with_rate([](double t) { return std::sin(t); }, [](double, double) { return 1.0; });
-  const std::vector<Span> spans = spans_above(0.5, sine, {0, 10}, 1e-7);
+  const std::vector<Span> spans = spans_above(0.5, sine, {0, 10}, fine).spans;
   ASSERT_EQ(spans.size(), 2u);
   constexpr double pi = std::numbers::pi;
   EXPECT_NEAR(spans[0].start, pi / 6, 1e-7);
@@ -22,12 +24,12 @@ TEST(Spans, FindWhatRisesAboveALimitFromStartToEnd) {
 }
 
 TEST(Spans, FindANeedleThatNoGridWouldHit) {
-  for_random_cases(100, [](TestRandom& random) {
+  for_random_cases(4, [](TestRandom& random) {
     const double at = random.uniform(0, 10);
     constexpr double width = 1e-5;
     const auto needle = with_rate([at](double t) { return 1 - std::abs(t - at) / width; },
                                   [](double, double) { return 1 / width; });
-    const std::vector<Span> spans = spans_above(0, needle, {0, 10}, 1e-7);
+    const std::vector<Span> spans = spans_above(0, needle, {0, 10}, {1e-7, 1e-7, 4'000'000}).spans;
     ASSERT_EQ(spans.size(), 1u);
     EXPECT_NEAR(spans[0].start, std::max(0.0, at - width), 1e-7);
     EXPECT_NEAR(spans[0].end, std::min(10.0, at + width), 1e-7);
@@ -36,15 +38,42 @@ TEST(Spans, FindANeedleThatNoGridWouldHit) {
 
 TEST(Spans, WhatTouchesTheLimitIsNotAboveIt) {
   const auto sine = with_rate([](double t) { return std::sin(t); }, [](double, double) { return 1.0; });
-  EXPECT_TRUE(spans_above(1.0, sine, {0, 10}, 1e-3).empty());
+  EXPECT_TRUE(spans_above(1.0, sine, {0, 10}, {1e-3, 1e-3}).spans.empty());
   const auto even = with_rate([](double) { return 2.0; }, [](double, double) { return 0.0; });
-  EXPECT_TRUE(spans_above(2.0, even, {0, 10}, 1e-7).empty());
+  EXPECT_TRUE(spans_above(2.0, even, {0, 10}, fine).spans.empty());
 }
 
 TEST(Spans, AnInstantIsJudgedByItsValue) {
   const auto even = with_rate([](double) { return 2.0; }, [](double, double) { return 1e9; });
-  EXPECT_TRUE(spans_above(2.0, even, {3, 3}, 1e-7).empty());
-  EXPECT_EQ(spans_above(1.9, even, {3, 3}, 1e-7).size(), 1u);
+  EXPECT_TRUE(spans_above(2.0, even, {3, 3}, fine).spans.empty());
+  EXPECT_EQ(spans_above(1.9, even, {3, 3}, fine).spans.size(), 1u);
+}
+
+TEST(Spans, WhatIsFarAboveTheLimitIsFoundHoweverShort) {
+  const auto needle = with_rate([](double t) { return t < 3 || t > 3 + 2e-9 ? 0.0 : 1.0; },
+                                [](double a, double b) { return a <= 3 + 2e-9 && b >= 3 ? 1e12 : 0.0; });
+  const std::vector<Span> spans = spans_above(0.5, needle, {0, 10}, fine).spans;
+  ASSERT_EQ(spans.size(), 1u);
+  EXPECT_NEAR(spans[0].start, 3, 1e-11);
+  EXPECT_NEAR(spans[0].end, 3 + 2e-9, 1e-11);
+}
+
+TEST(Spans, AreSampledEvenlyWhereThereAreTooManyToLookInto) {
+  std::size_t asked = 0;
+  const WatchedQuantity near{[](double t) { return t > 5 && t < 5.1 ? 2.0 : 0.0; },
+                             [&asked](double, double) {
+                               ++asked;
+                               return QuantityBounds{0, 3};
+                             }};
+  const FoundSpans found = spans_above(1, near, {0, 8}, {1e-7, 1e-7, 1000});
+  EXPECT_EQ(asked, 1000u);
+  ASSERT_TRUE(found.undecided);
+  EXPECT_EQ(found.undecided->start, 0);
+  EXPECT_EQ(found.undecided->end, 8);
+  EXPECT_EQ(found.sampled_every, 8. / 512 / 2);
+  ASSERT_EQ(found.spans.size(), 1u);
+  EXPECT_NEAR(found.spans[0].start, 5, 0.02);
+  EXPECT_NEAR(found.spans[0].end, 5.1, 0.02);
 }
 
 }  // namespace

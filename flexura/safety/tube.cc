@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "flexura/math/series.h"
@@ -12,7 +13,8 @@ namespace {
 
 // Thousands are rare; this keeps a case that nobody thought of from filling the memory.
 constexpr int most_steps = 200'000;
-constexpr int few_steps = 500;
+constexpr int few_steps = 200;
+constexpr int few_cuts = 60;  // of an arc before an obstacle, each of which takes longer
 
 // A piece of a tube between two fractions.
 struct Piece {
@@ -217,6 +219,74 @@ struct ObstacleNode {
   double low = 0;
 };
 
+class ObstacleSearch {
+ public:
+  ObstacleSearch(const TubeArc& tube, const Obstacle& obstacle, const DistanceWish& wish)
+      : tube_(tube), obstacle_(obstacle), enough_(wish.enough), best_(wish.cap) {}
+
+  // As PairSearch::find.
+  bool find(double from, int steps) {
+    if (from > 1) return true;
+    if (obstacle_.normal) {
+      find_on_plane(from);
+      return true;
+    }
+    add(piece_of(tube_, from, 1));
+    for (int step = 0; !open_.empty() && best_ >= enough_; ++step) {
+      const ObstacleNode node = open_.pop();
+      if (node.low >= best_ - distance_tolerance) break;
+      if (step == steps) return false;
+      add(piece_of(tube_, node.piece.from, node.piece.middle()));
+      add(piece_of(tube_, node.piece.middle(), node.piece.to));
+    }
+    return true;
+  }
+  [[nodiscard]] double best() const { return best_; }
+
+ private:
+  void try_at(double u) { best_ = std::min(best_, obstacle_.distance(tube_.point(u)) - tube_.radius_at(u)); }
+
+  void add(const Piece& piece) {
+    const double slack = slack_of(tube_, piece);
+    const double reach = (piece.end - piece.start).norm() / 2;
+    const double radius = std::max(tube_.radius_at(piece.from), tube_.radius_at(piece.to));
+    const double rough = obstacle_.distance((piece.start + piece.end) / 2) - reach - radius - slack;
+    if (rough >= best_ - distance_tolerance) return;
+    const Least chord = least(tube_, piece, obstacle_);
+    try_at(piece.at(chord.at));
+    if (chord.value - slack < best_ - distance_tolerance) open_.push({piece, chord.value - slack});
+  }
+
+  // Along an arc that has turned by t so far the distance to a plane changes by (length / turn) size sin(t +
+  // phase) per rad, the radius by grow / turn: the difference is least at an end, or where both are the same.
+  // From one such place to the next, 2 pi further on, it changes by the same amount, so that the first and
+  // the last will do.
+  void find_on_plane(double from) {
+    try_at(from);
+    try_at(1);
+    const double turn = tube_.bend.norm();
+    if (turn == 0) return;
+    const Eigen::Vector3d normal = tube_.X_WS.rotation.transpose() * *obstacle_.normal;
+    const double inward = normal.head<2>().dot(tube_.bend) / turn;
+    const double size = tube_.length * std::hypot(inward, normal.z());
+    const double grow = tube_.radius[1] - tube_.radius[0];
+    if (!(size > std::abs(grow))) return;
+    // Where the slope goes up through `grow`: on the rising half of the sine.
+    const double place = std::asin(grow / size) - std::atan2(normal.z(), inward);
+    constexpr double round = 2 * std::numbers::pi;
+    const double first = place + round * std::ceil((from * turn - place) / round);
+    const double last = place + round * std::floor((turn - place) / round);
+    try_at(std::clamp(first / turn, from, 1.0));
+    try_at(std::clamp(last / turn, from, 1.0));
+  }
+
+  const TubeArc& tube_;
+  const Obstacle& obstacle_;
+  double enough_;
+  double best_;
+  Queue<ObstacleNode> open_;
+};
+
 }  // namespace
 
 Eigen::Vector3d TubeArc::point(double u) const {
@@ -256,28 +326,19 @@ bool come_within(const TubeArc& a, const TubeArc& b, double least_turn, double d
 
 double obstacle_distance(const TubeArc& tube, double from, const Obstacle& obstacle,
                          const DistanceWish& wish) {
-  if (from > 1) return wish.cap;
-  double best = wish.cap;
-  Queue<ObstacleNode> open;
-  const auto add = [&](const Piece& piece) {
-    const double slack = slack_of(tube, piece);
-    const double reach = (piece.end - piece.start).norm() / 2;
-    const double radius = std::max(tube.radius_at(piece.from), tube.radius_at(piece.to));
-    const double rough = obstacle.distance((piece.start + piece.end) / 2) - reach - radius - slack;
-    if (rough >= best - distance_tolerance) return;
-    const Least chord = least(tube, piece, obstacle);
-    const double u = piece.at(chord.at);
-    best = std::min(best, obstacle.distance(tube.point(u)) - tube.radius_at(u));
-    if (chord.value - slack < best - distance_tolerance) open.push({piece, chord.value - slack});
-  };
-  add(piece_of(tube, from, 1));
-  for (int step = 0; !open.empty() && best >= wish.enough && step < most_steps; ++step) {
-    const ObstacleNode node = open.pop();
-    if (node.low >= best - distance_tolerance) break;
-    add(piece_of(tube, node.piece.from, node.piece.middle()));
-    add(piece_of(tube, node.piece.middle(), node.piece.to));
-  }
-  return best;
+  ObstacleSearch search(tube, obstacle, wish);
+  (void)search.find(from, most_steps);
+  return search.best();
+}
+
+bool stays_clear(const TubeArc& tube, double from, const Obstacle& obstacle, double distance) {
+  ObstacleSearch search(tube, obstacle, {distance, distance});
+  return search.find(from, few_cuts) && search.best() >= distance;
+}
+
+bool comes_within(const TubeArc& tube, double from, const Obstacle& obstacle, double distance) {
+  ObstacleSearch search(tube, obstacle, {distance, distance});
+  return search.find(from, few_cuts) && search.best() < distance;
 }
 
 }  // namespace flexura

@@ -57,8 +57,14 @@ struct DistanceWish {
 [[nodiscard]] bool come_within(const TubeArc& a, const TubeArc& b, double least_turn, double distance);
 
 /// The least distance from the tube's surface to the obstacle, m, negative where they overlap; of the tube
-/// from the fraction `from` on.
+/// from the fraction `from` on. To a plane it is exact.
 [[nodiscard]] double obstacle_distance(const TubeArc& tube, double from, const Obstacle& obstacle,
                                        const DistanceWish& wish);
+
+/// Whether the tube surely stays as far from the obstacle; false where it takes long to prove.
+[[nodiscard]] bool stays_clear(const TubeArc& tube, double from, const Obstacle& obstacle, double distance);
+
+/// Whether the tube surely comes nearer to the obstacle; false where it takes long to prove.
+[[nodiscard]] bool comes_within(const TubeArc& tube, double from, const Obstacle& obstacle, double distance);
 
 }  // namespace flexura

@@ -45,14 +45,15 @@ std::string Violation::place() const {
     case Hazard::motor_acceleration:
     case Hazard::motor_position:
       return fmt::format("axis {}: ", name);
-    case Hazard::workspace:
-      return name + ": ";
     default:
       break;
   }
+  const bool is_of_task =
+      hazard == Hazard::workspace || hazard == Hazard::jump || hazard == Hazard::not_finite;
+  const std::string task = is_of_task && !name.empty() ? name + ": " : "";
   if (section && other_section && *section != *other_section)
     return fmt::format("sections {} and {}: ", *section + 1, *other_section + 1);
-  return section ? fmt::format("section {}: ", *section + 1) : "";
+  return task + (section ? fmt::format("section {}: ", *section + 1) : "");
 }
 
 std::string Violation::finding() const {
@@ -77,9 +78,9 @@ std::string Violation::finding() const {
 }
 
 std::string Violation::text() const {
-  const std::string when =
-      start == end ? fmt::format("{:.6g} s: ", start) : fmt::format("{:.6g} s to {:.6g} s: ", start, end);
-  return when + place() + finding();
+  const std::string from = fmt::format("{:.6g} s", start);
+  const std::string to = fmt::format("{:.6g} s", end);
+  return (from == to ? from : from + " to " + to) + ": " + place() + finding();
 }
 
 void SafetyReport::sort() {

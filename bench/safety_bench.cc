@@ -54,7 +54,10 @@ void check(benchmark::State& state, const Arm& arm, const MotionPtr& motion,
            const std::vector<ObstacleConfig>& around) {
   const std::vector<Obstacle> bodies = obstacles(around);
   const SafetyReport report = check_motions(arm, bodies, motion->at(0), {{motion, 0}}, step);
-  if (!report.is_safe()) return state.SkipWithError(report.violations.front().text().c_str());
+  if (!report.is_safe()) {
+    state.SkipWithError(report.violations.front().text().c_str());
+    return;
+  }
   for (auto _ : state)
     benchmark::DoNotOptimize(check_motions(arm, bodies, motion->at(0), {{motion, 0}}, step));
 }
@@ -80,7 +83,8 @@ void laboratory_10_s_motors(benchmark::State& state) {
   const Arm arm = laboratory_arm();
   Drive drive;
   for (std::size_t i = 0; i < 9; ++i) {
-    drive.tendons.push_back({i / 3, 0.014, static_cast<double>(40 * (i / 3) + 120 * (i % 3)) * degree});
+    const std::size_t section = i / 3;
+    drive.tendons.push_back({section, 0.014, static_cast<double>(40 * section + 120 * (i % 3)) * degree});
     drive.axes.push_back(
         {.motor = {.max_speed = 60}, .spool = {.radius = 0.01, .gear = 10, .backlash = 0.002}});
   }

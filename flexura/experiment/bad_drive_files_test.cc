@@ -41,7 +41,6 @@ std::string with(const std::string& from, const std::string& to) { return replac
 TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good), "no error"); }
 
 TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
-  const std::string planar_good = with("spatial", "planar");
   const std::vector<BadFile> files{
       {"no tendons", "[[arm.section]]\nlength = 1\n[drive]\n",
        "x.toml:3:2: drive.tendon: missing: expected an array (The tendons in the order"},

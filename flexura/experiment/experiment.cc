@@ -59,9 +59,9 @@ void check_whole(const Experiment& experiment, const Node& document) {
   if (schedule.duration() / experiment.clock.step <= max_steps) return;
   const Node* clock = document.find("clock");
   const Node* step = clock == nullptr ? nullptr : clock->find("step");
-  const SourcePosition where = step != nullptr    ? step->where
-                               : clock != nullptr ? clock->where
-                                                  : document.where;
+  SourcePosition where = document.where;
+  if (clock != nullptr) where = clock->where;
+  if (step != nullptr) where = step->where;
   throw InputError(std::vector<Problem>{
       {where, fmt::format("clock.step: makes {:.3g} steps of {:.6g} s: expected at most {:.0e}",
                           schedule.duration() / experiment.clock.step, schedule.duration(), max_steps)}});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -62,6 +63,12 @@ void check_sizes(const ArmStateMessage& state, std::size_t sections, const Poses
     throw std::runtime_error(fmt::format("the log's state at {} s does not fit its arm", state.time));
 }
 
+// A level as Foxglove counts them.
+std::string_view level_name(std::int64_t level) {
+  if (level == 2) return "info";
+  return level == 3 ? "warning" : "error";
+}
+
 struct Tables {
   CsvText states;
   CsvText events;
@@ -87,7 +94,7 @@ Tables tables_of(const McapReader& log, const std::string& name) {
     } else if (topic == events_topic) {
       const auto event = read_as<EventMessage>(parse_json(message.text(), name));
       tables.events.cell(static_cast<double>(message.log_time) * 1e-9);
-      tables.events.cell(event.level == 2 ? "info" : event.level == 3 ? "warning" : "error");
+      tables.events.cell(level_name(event.level));
       tables.events.cell(event.name);
       tables.events.cell(event.message);
       tables.events.end_row();

@@ -121,7 +121,8 @@ void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
                       : fmt::format("time {}: expected more than the {} before it", value, last)});
         last = value;
       } else if (columns[c].quantity == "stretch") {
-        if (!(value > 0 && value <= 100))
+        const bool is_possible = value > 0 && value <= 100;
+        if (!is_possible)
           problems.push_back({row, c, fmt::format("stretch {}: expected above 0 and at most 100", value)});
       } else if (!angle_range.contains(value)) {
         problems.push_back({row, c,
@@ -183,7 +184,7 @@ MotionPtr keyframes_task_motion(const KeyframesTask& task, const Arm& arm) {
     }
     states.push_back(arm_state(arm, shape));
   }
-  return keyframe_motion(std::move(times), std::move(states), task.interpolation);
+  return keyframe_motion(std::move(times), states, task.interpolation);
 }
 
 }  // namespace flexura

@@ -61,6 +61,7 @@ ArmState Schedule::state_at(double time) const {
 
 SafetyReport Schedule::check() const {
   std::vector<TimedMotion> motions;
+  motions.reserve(legs_.size());
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start, leg.name});
   SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_);
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());

@@ -177,6 +177,7 @@ MotionPtr motion_of(const SineTask& task, const Arm& arm, const ArmState& from) 
     amplitudes = arm_state(arm, task.amplitude).bends;
   }
   std::vector<double> phases;
+  phases.reserve(arm.sections.size());
   for (std::size_t i = 0; i < arm.sections.size(); ++i) phases.push_back(of_section(task.phase, i));
   return sine_motion(from, std::move(amplitudes), std::move(phases), task.period, task.duration);
 }
@@ -201,6 +202,7 @@ class Formulas {
 
 std::vector<double> values_of(const Formulas& formulas, double t, double T, std::size_t sections) {
   std::vector<double> values;
+  values.reserve(sections);
   for (std::size_t i = 0; i < sections; ++i) values.push_back(formulas.value(t, T, i));
   return values;
 }

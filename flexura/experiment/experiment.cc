@@ -72,7 +72,8 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
     const std::string source = "--set " + set;
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw input_error(source, "expected path=value");
-    if (std::string_view(set).substr(0, equals).starts_with("include"))
+    if (const std::string_view path = std::string_view(set).substr(0, equals);
+        path.substr(0, path.find('.')) == "include")
       throw input_error(source, "include: files are read before values are set; write it into the file", 1,
                         1);
     Node value =

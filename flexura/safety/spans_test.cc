@@ -24,7 +24,7 @@ TEST(Spans, FindWhatRisesAboveALimitFromStartToEnd) {
 }
 
 TEST(Spans, FindANeedleThatNoGridWouldHit) {
-  for_random_cases(4, [](TestRandom& random) {
+  for_random_cases(100, [](TestRandom& random) {
     const double at = random.uniform(0, 10);
     constexpr double width = 1e-5;
     const auto needle = with_rate([at](double t) { return 1 - std::abs(t - at) / width; },

@@ -79,7 +79,7 @@ void expect_as_brute_force(const TubeArc& a, const TubeArc& b, double least_turn
 }
 
 TEST(TubeDistance, IsThatOfBruteForce) {
-  for_random_cases(20, [](TestRandom& random) {
+  for_random_cases(40, [](TestRandom& random) {
     Arm arm = random_arm(random);
     for (Section& section : arm.sections)
       section.radius = {random.uniform(0.01, 0.1), random.uniform(0.01, 0.1)};

@@ -56,8 +56,7 @@ inline constexpr int one_case_of = 1;
 /// that fails, whose seed the failure shows.
 template <typename Body>
 void for_random_cases(int count, Body&& body) {
-  for (int index = 0; index < count && !testing::Test::HasFailure(); ++index) {
-    if (index % one_case_of != 0) continue;
+  for (int index = 0; index < count && !testing::Test::HasFailure(); index += one_case_of) {
     const std::uint64_t seed = case_seed(index);
     SCOPED_TRACE("random case " + std::to_string(index) + ", seed " + std::to_string(seed));
     TestRandom random(seed);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+
+namespace flexura {
+
+enum class PixelKind { gray, color };
+
+/// How rows become an image: all at once, one after another, or the even rows of one instant and the odd ones
+/// of half a frame later.
+enum class Readout { global, rolling, interlaced };
+
+/// What turns the light on a camera's image plane into numbers. Everything that makes an image worse is off
+/// by default.
+///
+/// Light is measured in units of the sensor's full scale: 1 is where the quantizer ends at gain 1.
+struct SensorConfig {
+  std::int64_t width = 640, height = 480;  ///< px
+  PixelKind pixels = PixelKind::gray;
+  std::int64_t bits = 8;   ///< Of each value; 1 to 16.
+  double frame_rate = 30;  ///< Hz
+  double exposure = 0;     ///< s during which a frame gathers light; motion blurs over it. 0: an instant.
+  double delay = 0;        ///< s from the end of the exposure until the frame can be had.
+  double drop = 0;         ///< The share of frames that are lost.
+  double gain = 1;         ///< Factor on the light before it is read out; it amplifies shot noise too.
+  double full_well = 0;    ///< Electrons at full scale and gain 1; sets the shot noise. 0: no shot noise.
+  double read_noise = 0;   ///< Standard deviation in values of an 8-bit image.
+  double psf = 0;          ///< Standard deviation of the Gaussian blur of lens and pixel, px.
+  double vignetting = 0;   ///< Share of light lost in the image's corners; grows with the radius squared.
+  double gamma = 1;        ///< Values are light to the power 1/gamma.
+  Readout readout = Readout::global;
+  double row_time = 0;  ///< s between two rows of a rolling shutter.
+};
+
+const std::vector<std::string>& names_of(const PixelKind*);
+const std::vector<std::string>& names_of(const Readout*);
+const Table<SensorConfig>& fields_of(const SensorConfig*);
+
+}  // namespace flexura

@@ -74,4 +74,16 @@ void write_new_file(const std::filesystem::path& file, std::string_view text) {
   if (::close(descriptor) != 0) fail();
 }
 
+void replace_file(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path beside = file.string() + ".new";
+  std::error_code error;
+  std::filesystem::remove(beside, error);  // of a program that was killed
+  write_new_file(beside, text);
+  std::filesystem::rename(beside, file, error);
+  if (!error) return;
+  std::error_code ignored;
+  std::filesystem::remove(beside, ignored);
+  throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), error.message()));
+}
+
 }  // namespace flexura

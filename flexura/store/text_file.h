@@ -18,4 +18,8 @@ namespace flexura {
 /// Writes a new file whole; std::runtime_error with the path when it exists already or cannot be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 
+/// Writes a file that may be there already: it keeps its old content until all of the new is written.
+/// std::runtime_error with the path when the system refuses.
+void replace_file(const std::filesystem::path& file, std::string_view text);
+
 }  // namespace flexura

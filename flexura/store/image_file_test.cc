@@ -1,0 +1,86 @@
+#include "flexura/store/image_file.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <tiffio.h>
+
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_cases.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+// What libpng reads from a file's bytes, in this machine's byte order.
+template <typename T>
+Image<T> read_png(const std::string& bytes) {
+  png_structp reader = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(reader);
+  const char* at = bytes.data();
+  png_set_read_fn(reader, &at, [](png_structp png, png_bytep data, png_size_t size) {
+    const char*& from = *static_cast<const char**>(png_get_io_ptr(png));
+    std::memcpy(data, from, size);
+    from += size;
+  });
+  png_read_png(reader, info, PNG_TRANSFORM_SWAP_ENDIAN, nullptr);
+  EXPECT_EQ(png_get_bit_depth(reader, info), 8 * sizeof(T));
+  Image<T> image(static_cast<int>(png_get_image_width(reader, info)),
+                 static_cast<int>(png_get_image_height(reader, info)), png_get_channels(reader, info));
+  for (int v = 0; v < image.height(); ++v)
+    std::memcpy(image.row(v).data(), png_get_rows(reader, info)[v], image.row(v).size_bytes());
+  png_destroy_read_struct(&reader, &info, nullptr);
+  return image;
+}
+
+template <typename T>
+Image<T> random_image(TestRandom& random, int channels) {
+  Image<T> image(static_cast<int>(random.uniform(1, 40)), static_cast<int>(random.uniform(1, 40)), channels);
+  for (T& value : image.values())
+    value = static_cast<T>(random.uniform(0, static_cast<double>(std::numeric_limits<T>::max()) + 0.99));
+  return image;
+}
+
+TEST(ImageFile, KeepsEveryValueOfAPng) {
+  for_random_cases(40, [](TestRandom& random) {
+    for (const int channels : {1, 3}) {
+      const auto bytes = random_image<std::uint8_t>(random, channels);
+      EXPECT_EQ(read_png<std::uint8_t>(png(bytes)), bytes);
+      EXPECT_EQ(read_png<std::uint8_t>(png(bytes, {.level = 1})), bytes);
+      EXPECT_EQ(png(bytes), png(bytes));
+      const auto words = random_image<std::uint16_t>(random, channels);
+      EXPECT_EQ(read_png<std::uint16_t>(png(words)), words);
+    }
+  });
+}
+
+TEST(ImageFile, KeepsEveryValueOfATiff) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "depth.tiff";
+  Image<float> image(37, 21);
+  for (std::size_t i = 0; i < image.values().size(); ++i)
+    image.values()[i] = 1.0F / static_cast<float>(i);  // the first is infinite
+  std::ofstream(file, std::ios::binary) << tiff(image);
+  EXPECT_EQ(tiff(image), tiff(image));
+  TIFF* open = TIFFOpen(file.c_str(), "r");
+  ASSERT_NE(open, nullptr);
+  std::vector<float> row(37);
+  for (int v = 0; v < image.height(); ++v) {
+    ASSERT_EQ(TIFFReadScanline(open, row.data(), static_cast<std::uint32_t>(v)), 1);
+    for (int u = 0; u < image.width(); ++u) EXPECT_EQ(row[static_cast<std::size_t>(u)], image.at(u, v));
+  }
+  TIFFClose(open);
+}
+
+TEST(ImageFile, RefusesWhatIsNoPicture) {
+  EXPECT_THROW((void)png(Image<std::uint8_t>()), std::invalid_argument);
+  EXPECT_THROW((void)png(Image<std::uint8_t>(3, 3, 2)), std::invalid_argument);
+  EXPECT_THROW((void)tiff(Image<float>()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,74 @@
+#include <png.h>
+
+#include <bit>
+#include <csetjmp>
+#include <stdexcept>
+#include <vector>
+
+#include "flexura/store/image_file.h"
+
+namespace flexura {
+namespace {
+
+void append(png_structp writer, png_bytep data, png_size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(writer))->append(reinterpret_cast<const char*>(data), size);
+}
+
+void nothing_to_flush(png_structp /*writer*/) {}
+
+struct Writer {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  Writer() = default;
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+};
+
+struct Header {
+  png_uint_32 width, height;
+  int bits, color;
+};
+
+// False when libpng gave up. It does so by a jump that runs no destructors: nothing here has one.
+bool write(const Writer& writer, const Header& header, png_bytepp rows, int level, std::string* out) {
+  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
+  png_set_write_fn(writer.png, out, append, nothing_to_flush);
+  png_set_compression_level(writer.png, level);
+  png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, level < 3 ? PNG_FILTER_SUB : PNG_ALL_FILTERS);
+  png_set_IHDR(writer.png, writer.info, header.width, header.height, header.bits, header.color,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(writer.png, writer.info);
+  if (header.bits == 16 && std::endian::native == std::endian::little) png_set_swap(writer.png);
+  png_write_image(writer.png, rows);
+  png_write_end(writer.png, nullptr);
+  return true;
+}
+
+template <typename T>
+std::string png_of(const Image<T>& image, PngConfig config) {
+  if (image.width() <= 0 || image.height() <= 0) throw std::invalid_argument("a PNG file needs pixels");
+  if (image.channels() != 1 && image.channels() != 3)
+    throw std::invalid_argument("a PNG file is gray or RGB: not " + std::to_string(image.channels()) +
+                                " channels");
+  // libpng takes rows it may change, and does not when it writes.
+  std::vector<png_bytep> rows;
+  for (int v = 0; v < image.height(); ++v)
+    rows.push_back(const_cast<png_bytep>(reinterpret_cast<png_const_bytep>(image.row(v).data())));
+  const Header header{static_cast<png_uint_32>(image.width()), static_cast<png_uint_32>(image.height()),
+                      static_cast<int>(8 * sizeof(T)),
+                      image.channels() == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB};
+  std::string bytes;
+  const Writer writer;
+  if (writer.png == nullptr || writer.info == nullptr ||
+      !write(writer, header, rows.data(), config.level, &bytes))
+    throw std::runtime_error("libpng did not make the image");
+  return bytes;
+}
+
+}  // namespace
+
+std::string png(const Image<std::uint8_t>& image, PngConfig config) { return png_of(image, config); }
+std::string png(const Image<std::uint16_t>& image, PngConfig config) { return png_of(image, config); }
+
+}  // namespace flexura

@@ -149,6 +149,7 @@ const Table<Experiment>& fields_of(const Experiment*) {
                  {.meaning = "What the arm must not touch.",
                   .count = {0, max_obstacles},
                   .default_text = "none"})
+          .field("stand", &Experiment::stand, {.meaning = "What stands around the arm for the cameras to see."})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);

@@ -12,6 +12,7 @@
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive_config.h"
 #include "flexura/model/obstacle.h"
+#include "flexura/model/stand.h"
 
 namespace flexura {
 
@@ -39,6 +40,7 @@ struct Experiment {
   ArmConfig arm;
   std::optional<DriveConfig> drive;
   std::vector<ObstacleConfig> obstacle;
+  StandConfig stand;
   std::vector<TaskConfig> task;
 };
 

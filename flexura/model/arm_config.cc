@@ -30,6 +30,7 @@ void check_arm(const ArmConfig& config, Reader& reader) {
     reader.problem_at("base.tangent", "is for planar arms: expected base.rotation for a spatial one");
   }
   check_shape(config.initial, config.kind, config.section.size(), "initial", reader);
+  check_look(config.look, config.arm(), "look", reader);
 }
 
 }  // namespace
@@ -141,6 +142,7 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                  {.meaning = "The sections, base first, as tables [[arm.section]].",
                   .count = {1, max_sections},
                   .required = true})
+          .field("look", &ArmConfig::look, {.meaning = "What a camera sees of it beside its shape."})
           .check(check_arm);
   return table;
 }

@@ -8,6 +8,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/look.h"
 
 namespace flexura {
 
@@ -37,6 +38,7 @@ struct ArmConfig {
   BaseConfig base;
   ShapeConfig initial;
   std::vector<Section> section;
+  LookConfig look;
 
   /// The arm it describes.
   [[nodiscard]] Arm arm() const;

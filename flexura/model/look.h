@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// What share of the red, green and blue light a surface gives back, each from 0 to 1.
+using Color = std::array<double, 3>;
+
+/// How the arm ends: cut straight across, or in half a ball.
+enum class TipKind { flat, round };
+
+/// A coloured band around the arm. Places along the arm are of the unstretched arm; a band stretches with it.
+struct Marker {
+  double at = 0;        ///< Of its middle, m from the base.
+  double width = 0.01;  ///< m along the arm; > 0.
+  Color color = {0.85, 0.1, 0.1};
+};
+
+/// Bands of one kind, evenly along every section.
+struct MarkerBands {
+  std::int64_t per_section = 4;                    ///< The last one ends where the section does.
+  std::optional<double> width;                     ///< m; a fifth of the distance between two when left out.
+  std::vector<Color> colors = {{0.85, 0.1, 0.1}};  ///< Taken in turn, from the base on.
+};
+
+/// A guide disk: flat, round, across the arm.
+struct Disk {
+  double at = 0;             ///< Of its middle, m from the base along the unstretched arm.
+  double radius = 0.03;      ///< m
+  double thickness = 0.004;  ///< m
+  Color color = {0.25, 0.25, 0.28};
+};
+
+/// What a camera sees of the arm beside its shape.
+struct LookConfig {
+  Color color = {0.08, 0.08, 0.09};
+  TipKind tip = TipKind::flat;
+  std::optional<MarkerBands> bands;
+  std::vector<Marker> marker;
+  std::vector<Disk> disk;
+
+  /// All markers of an arm, base first: those of the bands and the single ones.
+  [[nodiscard]] std::vector<Marker> markers(const Arm& arm) const;
+};
+
+const std::vector<std::string>& names_of(const TipKind*);
+const Table<Marker>& fields_of(const Marker*);
+const Table<MarkerBands>& fields_of(const MarkerBands*);
+const Table<Disk>& fields_of(const Disk*);
+const Table<LookConfig>& fields_of(const LookConfig*);
+
+/// Reports to `reader` which markers and disks at `path` do not lie on the arm, or one upon another.
+void check_look(const LookConfig& look, const Arm& arm, const std::string& path, Reader& reader);
+
+}  // namespace flexura

@@ -1,0 +1,134 @@
+#include "flexura/model/stand.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange coordinate_range = {.min = -1e6, .max = 1e6};
+constexpr NumberRange brightness_range = {.min = 0, .max = 100};
+constexpr NumberRange share = {.min = 0, .max = 1};
+
+Spec length_of(const char* meaning) {
+  return {.meaning = meaning, .unit = Unit::metre, .range = above_up_to(0, 1e6)};
+}
+
+void expect_direction(const std::array<double, 3>& direction, const char* name, Reader& reader) {
+  if (std::hypot(direction[0], direction[1], direction[2]) < 1e-9)
+    reader.problem_at(name, "has no direction: expected a vector that is not zero");
+}
+
+}  // namespace
+
+const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
+  static const auto table =
+      Table<ScreenConfig>("screen", "A flat white screen, seen from both sides.")
+          .field("center", &ScreenConfig::center,
+                 {.meaning = "Its middle: X, Y, Z.",
+                  .unit = Unit::metre,
+                  .range = coordinate_range,
+                  .required = true})
+          .field("normal", &ScreenConfig::normal,
+                 {.meaning = "The way it faces; its height runs upwards as far as it can.",
+                  .range = coordinate_range})
+          .field("width", &ScreenConfig::width, length_of("Width."))
+          .field("height", &ScreenConfig::height, length_of("Height."))
+          .field("brightness", &ScreenConfig::brightness,
+                 {.meaning = "Light that it sends; 1 is a camera's full scale.", .range = brightness_range})
+          .field(
+              "fall_off", &ScreenConfig::fall_off,
+              {.meaning =
+                   "Share by which its corners are darker than its middle; grows with the distance squared.",
+               .range = share})
+          .check([](const ScreenConfig& screen, Reader& reader) {
+            expect_direction(screen.normal, "normal", reader);
+          });
+  return table;
+}
+
+const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
+  static const auto table =
+      Table<EtalonConfig>("etalon", "The calibration cylinder: dark grey, with a red line every 90 degrees.")
+          .field("position", &EtalonConfig::position,
+                 {.meaning = "Middle of its lower end: X, Y, Z.",
+                  .unit = Unit::metre,
+                  .range = coordinate_range})
+          .field("rotation", &EtalonConfig::rotation,
+                 {.meaning = "Quaternion (w, x, y, z) that turns its axes into the world's; it stands along "
+                             "its y, a red "
+                             "line towards its z.",
+                  .range = between(-2, 2)})
+          .field("radius", &EtalonConfig::radius, length_of("Radius."))
+          .field("height", &EtalonConfig::height, length_of("Height."))
+          .field("color", &EtalonConfig::color,
+                 {.meaning = "Shares of red, green and blue light that it gives back.", .range = share})
+          .field("line_width", &EtalonConfig::line_width, length_of("Width of a red line."))
+          .field("line_color", &EtalonConfig::line_color,
+                 {.meaning = "Shares of red, green and blue light that the lines give back.", .range = share})
+          .check([](const EtalonConfig& etalon, Reader& reader) {
+            const auto& q = etalon.rotation;
+            const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+            if (std::abs(norm - 1) > 1e-3)
+              reader.problem_at(
+                  "rotation",
+                  fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
+            if (4 * etalon.line_width > 6.28 * etalon.radius)
+              reader.problem_at("line_width", "leaves nothing between the four lines: expected less");
+          });
+  return table;
+}
+
+const Table<LightConfig>& fields_of(const LightConfig*) {
+  static const auto table =
+      Table<LightConfig>("light", "The light on the arm, the etalon and the obstacles.")
+          .field("ambient", &LightConfig::ambient,
+                 {.meaning = "Light from everywhere.", .range = brightness_range})
+          .field(
+              "directed", &LightConfig::directed,
+              {.meaning = "Light from one direction, on a surface that faces it.", .range = brightness_range})
+          .field("towards", &LightConfig::towards,
+                 {.meaning = "The direction from which it comes.", .range = coordinate_range})
+          .field("angular_radius", &LightConfig::angular_radius,
+                 {.meaning = "Half the angle under which its source is seen: the arm casts shadows with soft "
+                             "borders on "
+                             "the screens. 0 is no shadows.",
+                  .unit = Unit::radian,
+                  .range = between(0, 0.5)})
+          .check([](const LightConfig& light, Reader& reader) {
+            expect_direction(light.towards, "towards", reader);
+          });
+  return table;
+}
+
+const Table<StandConfig>& fields_of(const StandConfig*) {
+  static const auto table =
+      Table<StandConfig>("stand", "What stands around the arm: screens, calibration cylinder, light.")
+          .field("screen", &StandConfig::screen,
+                 {.meaning = "Screens, as tables [[stand.screen]].",
+                  .count = {0, 100},
+                  .default_text = "two, behind the arm as cameras 1 and 2 see it"})
+          .field("etalon", &StandConfig::etalon,
+                 {.meaning = "The calibration cylinder.", .default_text = "none"})
+          .field("light", &StandConfig::light, {.meaning = "The light."})
+          .field("background", &StandConfig::background,
+                 {.meaning = "Light from where nothing is.", .range = brightness_range})
+          .field("arm", &StandConfig::arm, {.meaning = "Whether the arm stands there too."});
+  return table;
+}
+
+std::vector<ScreenConfig> default_screens(double length, const std::array<double, 3>& base) {
+  // Just beyond the arm's reach, and wider than what a camera sees there that has all of the reach in its
+  // image.
+  const double away = 1.2 * length, size = 5 * length;
+  ScreenConfig behind_1, behind_2;
+  behind_1.center = {base[0], base[1], base[2] - away};
+  behind_1.normal = {0, 0, 1};
+  behind_2.center = {base[0] + away, base[1], base[2]};
+  behind_2.normal = {-1, 0, 0};
+  for (ScreenConfig* screen : {&behind_1, &behind_2}) screen->width = screen->height = size;
+  return {behind_1, behind_2};
+}
+
+}  // namespace flexura

@@ -120,12 +120,13 @@ ZoomTable::ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t 
   first_ = by_count_ ? *rows.front().count : rows.front().ratio;
   last_ = by_count_ ? *rows.back().count : rows.back().ratio;
   std::vector<double> x;
-  std::vector<std::vector<double>> y(intrinsics_count);
+  std::vector<std::vector<double>> y(intrinsics_count + 1);
   for (const ZoomRow& row : rows) {
     x.push_back(by_count_ ? *row.count : std::log(row.ratio));
     const auto lens = numbers(lens_at(row, one_));
     for (int i = 0; i < intrinsics_count; ++i)
       y[static_cast<std::size_t>(i)].push_back(i < 2 ? std::log(lens[i]) : lens[i]);
+    y[intrinsics_count].push_back(std::log(row.ratio));
   }
   for (const auto& values : y) curves_.emplace_back(x, values);
 }
@@ -150,6 +151,15 @@ Intrinsics ZoomTable::at(double zoom) const {
                     {}};
   for (std::size_t i = 0; i < 5; ++i) result.distortion[i] = curves_[4 + i].value(x);
   return result;
+}
+
+double ZoomTable::ratio(double zoom) const {
+  zoom = within(zoom);
+  return by_count_ ? std::exp(curves_[intrinsics_count].value(zoom)) : zoom;
+}
+
+double ZoomTable::ratio_slope(double zoom) const {
+  return by_count_ ? ratio(zoom) * curves_[intrinsics_count].slope(within(zoom)) : 1;
 }
 
 Eigen::Vector<double, intrinsics_count> ZoomTable::slope(double zoom) const {

@@ -59,9 +59,9 @@ class ZoomTable {
   [[nodiscard]] Intrinsics at(double zoom) const;
   /// d intrinsics / d zoom, in the order of `intrinsics_count`. The same errors.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> slope(double zoom) const;
-  /// fx over fx at ratio 1, and its derivative by `zoom`. The same errors.
-  [[nodiscard]] double ratio(double zoom) const { return at(zoom).fx / one_.fx; }
-  [[nodiscard]] double ratio_slope(double zoom) const { return slope(zoom)[0] / one_.fx; }
+  /// The ratio at `zoom`, interpolated as the focal lengths are, and its derivative. The same errors.
+  [[nodiscard]] double ratio(double zoom) const;
+  [[nodiscard]] double ratio_slope(double zoom) const;
 
  private:
   [[nodiscard]] double within(double zoom) const;
@@ -70,7 +70,7 @@ class ZoomTable {
   Intrinsics one_;  // at ratio 1
   double first_ = std::numeric_limits<double>::min(), last_ = std::numeric_limits<double>::max();
   bool by_count_ = false;
-  std::vector<MonotoneCubic> curves_;  // log fx, log fy, cx, ... over the abscissa; none: linear
+  std::vector<MonotoneCubic> curves_;  // log fx, log fy, cx, ..., log ratio; none: linear
 };
 
 }  // namespace flexura

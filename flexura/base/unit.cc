@@ -9,6 +9,9 @@ std::span<const UnitSpelling> spellings(Unit unit) {
   using std::numbers::pi;
   static constexpr std::array<UnitSpelling, 1> none{{{"", 1.0, ""}}};
   static constexpr std::array<UnitSpelling, 2> metre{{{"", 1.0, "m"}, {"_mm", 1e-3, "mm"}}};
+  static constexpr std::array<UnitSpelling, 2> metre_per_second{{{"", 1.0, "m/s"}, {"_mm", 1e-3, "mm/s"}}};
+  static constexpr std::array<UnitSpelling, 2> metre_per_second_squared{
+      {{"", 1.0, "m/s^2"}, {"_mm", 1e-3, "mm/s^2"}}};
   static constexpr std::array<UnitSpelling, 2> second{{{"", 1.0, "s"}, {"_ms", 1e-3, "ms"}}};
   static constexpr std::array<UnitSpelling, 3> radian{
       {{"", 1.0, "rad"}, {"_deg", pi / 180.0, "deg"}, {"_pi", pi, "pi rad"}}};
@@ -21,6 +24,10 @@ std::span<const UnitSpelling> spellings(Unit unit) {
       break;
     case Unit::metre:
       return metre;
+    case Unit::metre_per_second:
+      return metre_per_second;
+    case Unit::metre_per_second_squared:
+      return metre_per_second_squared;
     case Unit::second:
       return second;
     case Unit::radian:

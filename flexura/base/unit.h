@@ -6,7 +6,16 @@
 namespace flexura {
 
 /// What a number in a file measures. Inside the program everything is SI; a key's suffix says another unit.
-enum class Unit { none, metre, second, radian, radian_per_second, radian_per_second_squared };
+enum class Unit {
+  none,
+  metre,
+  metre_per_second,
+  metre_per_second_squared,
+  second,
+  radian,
+  radian_per_second,
+  radian_per_second_squared
+};
 
 /// A way to write a quantity: a value under the key NAME + suffix counts `factor` base units.
 struct UnitSpelling {

@@ -59,6 +59,30 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   return infinity;
 }
 
+// The point whose radial part alone is distorted to `wanted`; one near the rim when there is none.
+Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::array<double, 5>& distortion,
+                                   double largest_radius) {
+  const double radius = wanted.norm();
+  if (!(radius > 0)) return wanted;
+  const double k1 = distortion[0], k2 = distortion[1], k3 = distortion[4];
+  constexpr double beyond = 1e4;
+  double low = 0, high = std::min(largest_radius, beyond);
+  double r = std::min(radius, high);
+  for (int step = 0; step < 100 && high - low > 1e-15 * high; ++step) {
+    const double q = r * r;
+    const double excess = r * (1 + q * (k1 + q * (k2 + q * k3))) - radius;
+    const double slope = 1 + q * (3 * k1 + q * (5 * k2 + q * 7 * k3));
+    (excess > 0 ? high : low) = r;
+    const double next = r - excess / slope;
+    // Newton's step where it stays in the bracket, half the bracket otherwise.
+    const double middle = 0.5 * (low + high);
+    const double last = r;
+    r = next > low && next < high ? next : middle;
+    if (std::abs(r - last) <= 1e-15 * r) break;
+  }
+  return wanted * (r / radius);
+}
+
 // Distorted coordinates and their derivative by the undistorted ones.
 struct Distorted {
   Eigen::Vector2d point;
@@ -99,8 +123,10 @@ std::optional<Eigen::Vector2d> Lens::project(const Eigen::Vector3d& p_CP) const 
     if (point.norm() > largest_radius_) return std::nullopt;
     point = distort(point, intrinsics_.distortion).point;
   }
-  return Eigen::Vector2d(intrinsics_.fx * point.x() + intrinsics_.cx,
-                         intrinsics_.fy * point.y() + intrinsics_.cy);
+  const Eigen::Vector2d pixel(intrinsics_.fx * point.x() + intrinsics_.cx,
+                              intrinsics_.fy * point.y() + intrinsics_.cy);
+  if (!pixel.allFinite()) return std::nullopt;
+  return pixel;
 }
 
 std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& p_CP) const {
@@ -127,19 +153,20 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
                                (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
   if (!wanted.allFinite()) return std::nullopt;
   if (!intrinsics_.is_distorted()) return wanted;
-  // Newton's method, damped so that the error falls; a guess outside the field is drawn back into it.
+  // From the radial part alone, which is inverted for certain, by Newton's method, damped so that the error
+  // falls; a guess outside the field is drawn back into it.
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-15;
   const auto inside = [this](const Eigen::Vector2d& normal) {
     const double radius = normal.norm();
     return radius > largest_radius_ ? Eigen::Vector2d(normal * (largest_radius_ / radius)) : normal;
   };
-  Eigen::Vector2d normal = inside(wanted);
+  Eigen::Vector2d normal = inside(undistort_radially(wanted, intrinsics_.distortion, largest_radius_));
   Distorted distorted = distort(normal, intrinsics_.distortion);
   double error = (distorted.point - wanted).norm();
   const double close = tolerance * (1 + wanted.norm());
   for (int step = 0; step < most_steps && error > close; ++step) {
-    const Eigen::Vector2d move = distorted.by_point.fullPivLu().solve(wanted - distorted.point);
+    const Eigen::Vector2d move = distorted.by_point.inverse() * (wanted - distorted.point);
     bool fell = false;
     for (double part = 1; part > 1e-4 && !fell; part /= 2) {
       const Eigen::Vector2d tried = inside(normal + part * move);

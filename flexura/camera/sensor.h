@@ -15,7 +15,7 @@ enum class PixelKind { gray, color };
 enum class Readout { global, rolling, interlaced };
 
 /// What turns the light on a camera's image plane into numbers. Everything that makes an image worse is off
-/// by default.
+/// by default. render/sensor_image.h does it.
 ///
 /// Light is measured in units of the sensor's full scale: 1 is where the quantizer ends at gain 1.
 struct SensorConfig {
@@ -33,7 +33,10 @@ struct SensorConfig {
   double vignetting = 0;   ///< Share of light lost in the image's corners; grows with the radius squared.
   double gamma = 1;        ///< Values are light to the power 1/gamma.
   Readout readout = Readout::global;
-  double row_time = 0;  ///< s between two rows of a rolling shutter.
+  double row_time = 0;  ///< s between two rows of a rolling shutter; with Readout::rolling alone.
+
+  /// Values a pixel: 1 or 3.
+  [[nodiscard]] int channels() const { return pixels == PixelKind::color ? 3 : 1; }
 };
 
 const std::vector<std::string>& names_of(const PixelKind*);

@@ -1,0 +1,74 @@
+#include "flexura/camera/camera.h"
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+}  // namespace
+
+Camera::Camera(const CameraConfig& config)
+    : config_(config),
+      lens_(config.lens, config.sensor.width, config.sensor.height),
+      X_WM_(config.mount.pose()),
+      head_axes_{config.head.pan, config.head.tilt, config.head.zoom.axis(lens_)} {}
+
+std::array<AxisConfig, 3> Camera::stage_axes() const {
+  return {config_.mount.stage.x, config_.mount.stage.y, config_.mount.stage.z};
+}
+
+HeadState Camera::initial_head() const {
+  const CameraStartConfig& start = config_.initial;
+  return {start.pan, start.tilt, start.zoom.value_or(head_axes_[2].limits[0])};
+}
+
+StageState Camera::initial_stage() const { return {vector(config_.initial.stage)}; }
+
+HeadGeometry Camera::geometry(double zoom) const {
+  const double forward = config_.head.pupil_shift * (lens_.ratio(zoom) - 1);
+  return {vector(config_.head.tilt_axis), vector(config_.head.pupil) + Eigen::Vector3d(0, 0, forward)};
+}
+
+Pose Camera::pose(const StageState& stage, const HeadState& head) const {
+  return X_WM_ * Pose{Eigen::Matrix3d::Identity(), stage.offset} *
+         head_pose(geometry(head.zoom), head.pan, head.tilt);
+}
+
+View Camera::view(const StageState& stage, const HeadState& head) const {
+  return {Lens(lens_.at(head.zoom)), pose(stage, head), static_cast<int>(config_.sensor.width),
+          static_cast<int>(config_.sensor.height)};
+}
+
+std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP, const StageState& stage,
+                                                const HeadState& head) const {
+  const HeadGeometry axes = geometry(head.zoom);
+  const Eigen::Matrix3d R_PM = pan_rotation(head.pan).transpose();  // P: the panned frame
+  const Eigen::Matrix3d R_CP = tilt_rotation(head.tilt).transpose();
+  const Eigen::Matrix3d R_CM = R_CP * R_PM, R_CW = R_CM * X_WM_.rotation.transpose();
+  const Eigen::Vector3d from_mount = p_WP - X_WM_.position;
+  const Eigen::Vector3d panned = R_PM * (X_WM_.rotation.transpose() * from_mount - stage.offset);
+  const Eigen::Vector3d tilted = R_CP * (panned - axes.tilt_axis);
+  const auto in_camera = Lens(lens_.at(head.zoom)).project_with_derivatives(tilted - axes.pupil);
+  if (!in_camera) return std::nullopt;
+
+  CameraProjection result;
+  const Eigen::Matrix<double, 2, 3>& by_C = in_camera->by_point;
+  result.pixel = in_camera->pixel;
+  result.by_point = by_C * R_CW;
+  result.by_mount << -result.by_point, result.by_point * skew(from_mount);
+  result.by_stage = -by_C * R_CM;
+  // The point turns the other way than the camera: d/dpan about P's -y, d/dtilt about C's x.
+  result.by_pan = by_C * (R_CP * Eigen::Vector3d::UnitY().cross(panned));
+  result.by_tilt = -by_C * Eigen::Vector3d::UnitX().cross(tilted);
+  result.by_tilt_axis = -by_C * R_CP;
+  result.by_pupil = -by_C;
+  result.by_pupil_shift = -by_C.col(2) * (lens_.ratio(head.zoom) - 1);
+  result.by_intrinsics = in_camera->by_intrinsics;
+  result.by_zoom = in_camera->by_intrinsics * lens_.slope(head.zoom) -
+                   by_C.col(2) * (config_.head.pupil_shift * lens_.ratio_slope(head.zoom));
+  return result;
+}
+
+}  // namespace flexura

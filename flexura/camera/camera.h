@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "flexura/camera/camera_config.h"
+#include "flexura/camera/intrinsics.h"
+#include "flexura/camera/view.h"
+#include "flexura/camera/zoom.h"
+#include "flexura/math/pose.h"
+
+namespace flexura {
+
+/// A pixel of a point in W, and how it changes with all that it depends on: px per m, rad, or unit of zoom.
+struct CameraProjection {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> by_point;  ///< The point in W.
+  /// A small motion [v; w] of the mount, V_WM_W: p_WM + v, exp(w) R_WM, in W's axes.
+  Eigen::Matrix<double, 2, 6> by_mount;
+  Eigen::Matrix<double, 2, 3> by_stage;  ///< The stage's offset.
+  Eigen::Vector2d by_pan, by_tilt;
+  Eigen::Vector2d by_zoom;                                   ///< Through the lens and the pupil's shift.
+  Eigen::Matrix<double, 2, 3> by_tilt_axis;                  ///< HeadConfig::tilt_axis.
+  Eigen::Matrix<double, 2, 3> by_pupil;                      ///< HeadConfig::pupil.
+  Eigen::Vector2d by_pupil_shift;                            ///< HeadConfig::pupil_shift.
+  Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< At this zoom; fx, fy, cx, cy, k1, ...
+};
+
+/// A camera on its head and mount, ready to use.
+class Camera {
+ public:
+  /// std::invalid_argument: a lens or a mount that is none (ZoomTable, MountConfig::pose).
+  explicit Camera(const CameraConfig& config);
+
+  [[nodiscard]] const CameraConfig& config() const { return config_; }
+  [[nodiscard]] const ZoomTable& lens() const { return lens_; }
+  /// X_WM at stage offset 0.
+  [[nodiscard]] const Pose& mount() const { return X_WM_; }
+
+  /// How pan, tilt and zoom move, the zoom's defaults filled in from the lens.
+  [[nodiscard]] const std::array<AxisConfig, 3>& head_axes() const { return head_axes_; }
+  /// How the stage's x, y and z move.
+  [[nodiscard]] std::array<AxisConfig, 3> stage_axes() const;
+
+  /// Where it stands when a run starts.
+  [[nodiscard]] HeadState initial_head() const;
+  [[nodiscard]] StageState initial_stage() const;
+
+  /// X_WC: the entrance pupil's position, and the camera's axes. std::out_of_range: a zoom outside the lens's
+  /// table (these and the following).
+  [[nodiscard]] Pose pose(const StageState& stage, const HeadState& head) const;
+  /// What it sees.
+  [[nodiscard]] View view(const StageState& stage, const HeadState& head) const;
+  /// The pixel of a point in W with its derivatives; none where the lens shows it nowhere.
+  [[nodiscard]] std::optional<CameraProjection> project(const Eigen::Vector3d& p_WP, const StageState& stage,
+                                                        const HeadState& head) const;
+
+ private:
+  [[nodiscard]] HeadGeometry geometry(double zoom) const;
+
+  CameraConfig config_;
+  ZoomTable lens_;
+  Pose X_WM_;
+  std::array<AxisConfig, 3> head_axes_;
+};
+
+}  // namespace flexura

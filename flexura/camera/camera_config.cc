@@ -1,0 +1,114 @@
+#include "flexura/camera/camera_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <stdexcept>
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange turn_range = {.min = -10, .max = 10};
+
+void check_start(const AxisConfig& axis, double start, const std::string& path, Reader& reader) {
+  if (start >= axis.limits[0] && start <= axis.limits[1]) return;
+  reader.problem_at(path, fmt::format("{:.6g} is outside the axis's limits {:.6g} to {:.6g}", start,
+                                      axis.limits[0], axis.limits[1]));
+}
+
+void check_camera(const CameraConfig& camera, Reader& reader) {
+  const ZoomTable lens(camera.lens, camera.sensor.width, camera.sensor.height);
+  const AxisConfig zoom = camera.head.zoom.axis(lens);
+  if (zoom.limits[0] < lens.first() || zoom.limits[1] > lens.last()) {
+    reader.problem_at("head.zoom.limits",
+                      lens.is_linear()
+                          ? "reach to 0 or below: expected zoom ratios above 0"
+                          : fmt::format("leave the lens's table: expected {:.9g} to {:.9g} or a part of it",
+                                        lens.first(), lens.last()));
+    return;
+  }
+  const CameraStartConfig& start = camera.initial;
+  check_start(camera.head.pan, start.pan, "initial.pan", reader);
+  check_start(camera.head.tilt, start.tilt, "initial.tilt", reader);
+  if (start.zoom) check_start(zoom, *start.zoom, "initial.zoom", reader);
+  const StageConfig& stage = camera.mount.stage;
+  check_start(stage.x, start.stage[0], "initial.stage[0]", reader);
+  check_start(stage.y, start.stage[1], "initial.stage[1]", reader);
+  check_start(stage.z, start.stage[2], "initial.stage[2]", reader);
+}
+
+}  // namespace
+
+const Table<CameraStartConfig>& fields_of(const CameraStartConfig*) {
+  static const auto table =
+      Table<CameraStartConfig>("initial", "Where the camera stands when the run starts.")
+          .field("pan", &CameraStartConfig::pan,
+                 {.meaning = "Pan, to the camera's left.", .unit = Unit::radian, .range = turn_range})
+          .field("tilt", &CameraStartConfig::tilt,
+                 {.meaning = "Tilt, upwards.", .unit = Unit::radian, .range = turn_range})
+          .field("zoom", &CameraStartConfig::zoom,
+                 {.meaning = "Zoom: a ratio, or a motor count where the lens's table has counts.",
+                  .range = {.min = -1e9, .max = 1e9},
+                  .default_text = "the least of its limits"})
+          .field("stage", &CameraStartConfig::stage,
+                 {.meaning = "Offset of the stage: right, down, forward.",
+                  .unit = Unit::metre,
+                  .range = between(-1e3, 1e3)});
+  return table;
+}
+
+const Table<CameraConfig>& fields_of(const CameraConfig*) {
+  static const auto table =
+      Table<CameraConfig>("camera", "A camera on a pan/tilt/zoom head.")
+          .field("name", &CameraConfig::name, {.meaning = "What tasks and files call it.", .required = true})
+          .field("mount", &CameraConfig::mount,
+                 {.meaning = "Where its head stands, and which way it faces.", .required = true})
+          .field("head", &CameraConfig::head, {.meaning = "The pan/tilt/zoom head."})
+          .field("lens", &CameraConfig::lens, {.meaning = "The lens."})
+          .field("sensor", &CameraConfig::sensor, {.meaning = "The sensor."})
+          .field("initial", &CameraConfig::initial, {.meaning = "Where it stands when the run starts."})
+          .check([](const CameraConfig& camera, Reader& reader) {
+            if (camera.name.empty()) reader.problem_at("name", "is empty: expected a name");
+            check_camera(camera, reader);
+          });
+  return table;
+}
+
+void check_cameras(const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (names.insert(cameras[i].name).second) continue;
+    reader.problem_at(fmt::format("{}[{}].name", path, i),
+                      fmt::format("\"{}\" is the name of another camera", cameras[i].name));
+  }
+}
+
+std::vector<CameraConfig> cameras_at(const std::array<double, 2>& distances,
+                                     const std::array<double, 3>& center) {
+  std::vector<CameraConfig> cameras(2);
+  const std::array<const char*, 2> names = {"front", "side"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!(std::isfinite(distances[i]) && distances[i] > 0))
+      throw std::invalid_argument("a camera's distance must be a positive number");
+    cameras[i].name = names[i];
+    cameras[i].mount.position = center;
+    cameras[i].mount.look_at = center;
+  }
+  cameras[0].mount.position[2] += distances[0];
+  cameras[1].mount.position[0] -= distances[1];
+  return cameras;
+}
+
+std::vector<CameraConfig> default_cameras(double reach, const std::array<double, 3>& center) {
+  const CameraConfig camera;
+  // The ball's edge appears under the angle asin(reach / distance).
+  const double half_size = 0.5 * static_cast<double>(std::min(camera.sensor.width, camera.sensor.height));
+  constexpr double margin = 0.95;
+  const double distance = reach * std::hypot(camera.lens.fx, margin * half_size) / (margin * half_size);
+  return cameras_at({distance, distance}, center);
+}
+
+}  // namespace flexura

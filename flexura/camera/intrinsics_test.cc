@@ -1,0 +1,184 @@
+#include "flexura/camera/intrinsics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "flexura/camera/view.h"
+#include "flexura/math/derivative_check.h"
+#include "flexura/math/so3.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// From none to strong barrel and pincushion: at the corner of a wide lens (a radius of 1) the image moves by
+// up to 60 % of the radius.
+Intrinsics random_intrinsics(TestRandom& random) {
+  Intrinsics intrinsics;
+  intrinsics.fx = random.uniform(200, 5000), intrinsics.fy = intrinsics.fx * random.uniform(0.9, 1.1);
+  intrinsics.cx = random.uniform(-50, 1000), intrinsics.cy = random.uniform(-50, 1000);
+  constexpr std::array<double, 3> scales = {0, 0.1, 1};
+  const double scale = scales[static_cast<std::size_t>(random.integer(0, 2))];
+  intrinsics.distortion = {scale * random.uniform(-0.4, 0.4), scale * random.uniform(-0.2, 0.2),
+                           scale * random.uniform(-0.01, 0.01), scale * random.uniform(-0.01, 0.01),
+                           scale * random.uniform(-0.1, 0.1)};
+  return intrinsics;
+}
+
+Eigen::Vector3d at(double radius, double angle) {
+  return {radius * std::cos(angle), radius * std::sin(angle), 1};
+}
+
+TEST(Lens, UnprojectsWhatItProjects) {
+  for_random_cases(2000, [](TestRandom& random) {
+    const Lens lens(random_intrinsics(random));
+    const double rim = std::min(0.9 * lens.largest_radius(), 1.5);
+    const Eigen::Vector3d direction = at(random.uniform(0, rim), random.uniform(-3.2, 3.2));
+    const auto pixel = lens.project(direction * random.uniform(0.01, 100));
+    ASSERT_TRUE(pixel);
+    const auto back = lens.unproject(*pixel);
+    ASSERT_TRUE(back);
+    EXPECT_LE((*back - direction.head<2>()).norm(), 1e-12);
+  });
+}
+
+TEST(Lens, ProjectsBackToThePixelUpToItsRim) {
+  for_random_cases(2000, [](TestRandom& random) {
+    Intrinsics intrinsics = random_intrinsics(random);
+    intrinsics.distortion[0] = random.uniform(-0.5, -0.1);  // so that there is a rim
+    intrinsics.distortion[1] = intrinsics.distortion[4] = 0;
+    intrinsics.distortion[2] = intrinsics.distortion[3] = 0;
+    const Lens lens(intrinsics);
+    // Near the rim the radius moves by the square root of what the pixel moves.
+    const double inward = std::pow(10.0, random.uniform(-14, -1));
+    const Eigen::Vector3d direction = at(lens.largest_radius() * (1 - inward), random.uniform(-3.2, 3.2));
+    const auto pixel = lens.project(direction);
+    ASSERT_TRUE(pixel);
+    const auto back = lens.unproject(*pixel);
+    ASSERT_TRUE(back);
+    EXPECT_LE((*lens.project({back->x(), back->y(), 1}) - *pixel).norm(), 1e-8);
+    EXPECT_LE((*back - direction.head<2>()).norm(), 1e-5);
+  });
+}
+
+TEST(Lens, ShowsNothingBeyondItsRim) {
+  Intrinsics intrinsics;
+  intrinsics.distortion = {-0.3, 0, 0, 0, 0};
+  const Lens lens(intrinsics);
+  const double rim = 1 / std::sqrt(0.9);  // 1 + 3 k1 r^2 = 0
+  EXPECT_NEAR(lens.largest_radius(), rim, 1e-15);
+  EXPECT_TRUE(lens.project(at(0.999 * rim, 1)));
+  EXPECT_FALSE(lens.project(at(1.001 * rim, 1)));
+  EXPECT_FALSE(lens.project_with_derivatives(at(1.001 * rim, 1)));
+  const double largest = rim * (1 - 0.3 * rim * rim) * intrinsics.fx;
+  EXPECT_TRUE(lens.unproject({intrinsics.cx + 0.999 * largest, intrinsics.cy}));
+  EXPECT_FALSE(lens.unproject({intrinsics.cx + 1.001 * largest, intrinsics.cy}));
+  EXPECT_FALSE(lens.unproject({intrinsics.cx, intrinsics.cy - 1e9}));
+}
+
+TEST(Lens, ItsRimIsWhereTheRadialPartFirstStopsGrowing) {
+  for_random_cases(2000, [](TestRandom& random) {
+    Intrinsics intrinsics;
+    intrinsics.distortion = {random.uniform(-1, 1), random.uniform(-1, 1), 0, 0, random.uniform(-1, 1)};
+    if (random.integer(0, 3) == 0) intrinsics.distortion[4] = 0;
+    const auto [k1, k2, p1, p2, k3] = intrinsics.distortion;
+    const double rim = Lens(intrinsics).largest_radius();
+    const auto slope = [k1 = k1, k2 = k2, k3 = k3](double r) {
+      return 1 + 3 * k1 * std::pow(r, 2) + 5 * k2 * std::pow(r, 4) + 7 * k3 * std::pow(r, 6);
+    };
+    for (double r = 0; r < std::min(rim, 20.0); r += 0.01) EXPECT_GE(slope(r), 0) << r;
+    if (rim == infinity) return;
+    EXPECT_NEAR(slope(rim), 0, 1e-9 * (1 + std::pow(rim, 6)));
+  });
+}
+
+TEST(Lens, ProjectsOnlyWhatIsInFront) {
+  const Lens lens{Intrinsics{}};
+  EXPECT_EQ(lens.largest_radius(), infinity);
+  EXPECT_EQ(*lens.project({0, 0, 2}), Eigen::Vector2d(319.5, 239.5));
+  EXPECT_EQ(*lens.project({1, -0.5, 2}), Eigen::Vector2d(719.5, 39.5));
+  for (const double z : {0.0, -1.0, -infinity, std::nan("")}) EXPECT_FALSE(lens.project({0.1, 0.1, z}));
+  EXPECT_FALSE(lens.project({1, 1, 1e-320}));
+  EXPECT_FALSE(lens.project({std::nan(""), 1, 1}));
+  EXPECT_FALSE(lens.unproject({infinity, 0}));
+}
+
+TEST(Lens, RefusesNumbersThatDescribeNone) {
+  const auto refuses = [](auto&& spoil) {
+    Intrinsics intrinsics;
+    spoil(intrinsics);
+    EXPECT_THROW(Lens{intrinsics}, std::invalid_argument);
+  };
+  refuses([](Intrinsics& i) { i.fx = 0; });
+  refuses([](Intrinsics& i) { i.fy = -800; });
+  refuses([](Intrinsics& i) { i.fx = std::nan(""); });
+  refuses([](Intrinsics& i) { i.cx = infinity; });
+  refuses([](Intrinsics& i) { i.distortion[4] = std::nan(""); });
+}
+
+TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
+  for_random_cases(200, [](TestRandom& random) {
+    const Intrinsics intrinsics = random_intrinsics(random);
+    const double rim = std::min(0.8 * Lens(intrinsics).largest_radius(), 1.0);
+    const Eigen::Vector3d p_CP = at(random.uniform(0, rim), random.uniform(-3.2, 3.2)) * random.uniform(1, 4);
+    Eigen::VectorXd x(12);
+    x << p_CP, intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy,
+        Eigen::Map<const Eigen::Vector<double, 5>>(intrinsics.distortion.data());
+    const VectorFunction pixel = [](const Eigen::VectorXd& y) -> Eigen::VectorXd {
+      Intrinsics changed{y[3], y[4], y[5], y[6], {y[7], y[8], y[9], y[10], y[11]}};
+      return *Lens(changed).project(y.head<3>());
+    };
+    const Projection projection = *Lens(intrinsics).project_with_derivatives(p_CP);
+    Eigen::Matrix<double, 2, 12> analytic;
+    analytic << projection.by_point, projection.by_intrinsics;
+    const NumericalJacobian numeric = numerical_jacobian(pixel, x, 0.01);
+    EXPECT_EQ(projection.pixel, pixel(x));
+    EXPECT_LE((analytic - numeric.value).cwiseAbs().maxCoeff(), 1e-7 * (1 + intrinsics.fx));
+  });
+}
+
+// Points of a circle's inscribed square and of its top, in a plane tilted towards the camera.
+class TiltedCircle : public testing::Test {
+ protected:
+  static constexpr double f_ = 800, R_ = 0.5, D_ = 2.5;
+  const double a_ = R_ / std::numbers::sqrt2;
+  const double X_ = 20 * std::numbers::pi / 180;
+
+  // In the image of a camera `D_` in front of the plane's centre: the point (x, y) of the plane (right, up),
+  // whose top edge leans towards the camera by `tilt`; the camera itself looks up by `camera_tilt`.
+  [[nodiscard]] Eigen::Vector2d pixel(double x, double y, double tilt, double camera_tilt) const {
+    View view;
+    view.lens = Lens({f_, f_, 0, 0, {}});
+    view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks along -Z, W's Y up
+    view.X_WC.rotation *= so3_exp({camera_tilt, 0, 0});
+    view.X_WC.position = {0, 0, D_};
+    return *view.project(so3_exp({tilt, 0, 0}) * Eigen::Vector3d(x, y, 0));
+  }
+};
+
+TEST_F(TiltedCircle, HasTheFormOfFigures10To13) {
+  const auto corner = [&](double right, double up) { return pixel(right * a_, up * a_, X_, 0); };
+  EXPECT_NEAR((corner(1, 1) - corner(-1, 1)).norm(), 237.7751, 5e-5);
+  EXPECT_NEAR((corner(1, -1) - corner(-1, -1)).norm(), 215.8345, 5e-5);
+  EXPECT_NEAR(corner(1, -1).y() - corner(1, 1).y(), 213.1268, 5e-5);
+  EXPECT_NEAR(corner(1, 1).norm(), 163.1414, 5e-5);
+  EXPECT_NEAR(-pixel(0, R_, X_, 0).y(), 161.3906, 5e-5);
+}
+
+TEST_F(TiltedCircle, LooksOtherwiseWhenTheCameraTiltsInstead) {
+  const auto corner = [&](double right, double up) { return pixel(right * a_, up * a_, 0, X_); };
+  EXPECT_NEAR((corner(1, 1) - corner(-1, 1)).norm(), 229.0082, 5e-5);
+  EXPECT_NEAR((corner(1, -1) - corner(-1, -1)).norm(), 253.8631, 5e-5);
+  EXPECT_NEAR(corner(1, -1).y() - corner(1, 1).y(), 256.9304, 5e-5);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,133 @@
+#include "flexura/camera/mount.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange place_range = {.min = -1e6, .max = 1e6};
+constexpr AxisUnits slide_units = {Unit::metre, Unit::metre_per_second, Unit::metre_per_second_squared};
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+Eigen::Quaterniond quaternion(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
+
+struct Fault {
+  std::string path, what;
+};
+
+// What keeps the mount from having one orientation; an empty text when nothing does.
+Fault orientation_fault(const MountConfig& mount) {
+  if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
+  if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
+  if (mount.rotation) {
+    const double norm = quaternion(*mount.rotation).norm();
+    if (!(std::abs(norm - 1) <= 1e-3))
+      return {"rotation", fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm)};
+    if (mount.roll != 0) return {"roll", "belongs to look_at: expected it to be part of rotation"};
+    return {};
+  }
+  const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
+  if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
+  if (!upright(forward))
+    return {"look_at", "is straight above or below, where no side is up: expected rotation instead"};
+  return {};
+}
+
+}  // namespace
+
+SlideConfig::SlideConfig() : AxisConfig{.max_rate = 0.1, .max_acceleration = 0.5} {}
+
+const Table<SlideConfig>& fields_of(const SlideConfig*) {
+  static const auto table = axis_table<SlideConfig>(
+      "slide", "One axis of a stage; it has no travel by default.", slide_units, between(-1e3, 1e3));
+  return table;
+}
+
+const Table<StageConfig>& fields_of(const StageConfig*) {
+  static const auto table = Table<StageConfig>("stage", "What moves the mount along its own axes.")
+                                .field("x", &StageConfig::x, {.meaning = "To the right."})
+                                .field("y", &StageConfig::y, {.meaning = "Downwards."})
+                                .field("z", &StageConfig::z, {.meaning = "Forwards."})
+                                .field("delay", &StageConfig::delay,
+                                       {.meaning = "From a command until its motion starts.",
+                                        .unit = Unit::second,
+                                        .range = between(0, 1e3)});
+  return table;
+}
+
+const Table<MountConfig>& fields_of(const MountConfig*) {
+  static const auto table =
+      Table<MountConfig>("mount",
+                         "Where the camera's head stands and which way it faces: look_at or rotation.")
+          .field("position", &MountConfig::position,
+                 {.meaning = "The mount's origin, on the head's pan axis: X, Y, Z.",
+                  .unit = Unit::metre,
+                  .range = place_range,
+                  .required = true})
+          .field(
+              "look_at", &MountConfig::look_at,
+              {.meaning = "The point to which the camera faces at pan 0 and tilt 0, +Y upright in its image.",
+               .unit = Unit::metre,
+               .range = place_range,
+               .default_text = "not set"})
+          .field("roll", &MountConfig::roll,
+                 {.meaning =
+                      "With look_at: how far the mount is turned about that direction, clockwise seen from "
+                      "behind the camera.",
+                  .unit = Unit::radian,
+                  .range = between(-10, 10)})
+          .field("rotation", &MountConfig::rotation,
+                 {.meaning =
+                      "Unit quaternion (w, x, y, z) that turns the mount's axes (right, down, forward) into "
+                      "the world's.",
+                  .range = between(-2, 2),
+                  .default_text = "not set"})
+          .field("stage", &MountConfig::stage, {.meaning = "What moves the mount."})
+          .check([](const MountConfig& mount, Reader& reader) {
+            const Fault fault = orientation_fault(mount);
+            if (!fault.what.empty()) reader.problem_at(fault.path, fault.what);
+          });
+  return table;
+}
+
+Pose MountConfig::pose() const {
+  const Fault fault = orientation_fault(*this);
+  if (!fault.what.empty()) throw std::invalid_argument("a mount's " + fault.path + " " + fault.what);
+  Pose X_WM;
+  X_WM.position = vector(position);
+  if (rotation) {
+    X_WM.rotation = quaternion(*rotation).normalized().toRotationMatrix();
+  } else {
+    X_WM.rotation = *upright(vector(*look_at) - X_WM.position) * so3_exp(Eigen::Vector3d(0, 0, roll));
+  }
+  return X_WM;
+}
+
+std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward) {
+  const Eigen::Vector3d z = forward.stableNormalized();
+  const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitY());
+  // Nearer to the vertical than this, its direction is rounding.
+  if (!(across.norm() > 1e-9)) return std::nullopt;
+  Eigen::Matrix3d R;
+  R.col(0) = across.normalized();
+  R.col(1) = z.cross(R.col(0));
+  R.col(2) = z;
+  return R;
+}
+
+std::optional<double> roll_of(const Eigen::Matrix3d& R_WC) {
+  const auto R = upright(R_WC.col(2));
+  if (!R) return std::nullopt;
+  const double angle = std::atan2(R_WC.col(0).dot(R->col(1)), R_WC.col(0).dot(R->col(0)));
+  return angle <= -std::numbers::pi ? std::numbers::pi : angle;
+}
+
+}  // namespace flexura

@@ -1,0 +1,116 @@
+#include "flexura/camera/sensor.h"
+
+#include <fmt/format.h>
+
+namespace flexura {
+namespace {
+
+// More than cameras have; keep a mistaken file from filling the memory.
+constexpr double max_side = 16384;
+constexpr double max_pixels = 1 << 26;
+
+void check_sensor(const SensorConfig& sensor, Reader& reader) {
+  const auto width = static_cast<double>(sensor.width), height = static_cast<double>(sensor.height);
+  if (width * height > max_pixels) {
+    reader.problem_at("height", fmt::format("{} x {} pixels: expected at most {}", sensor.width,
+                                            sensor.height, max_pixels));
+  }
+  const double frame = 1 / sensor.frame_rate;
+  if (sensor.exposure > frame) {
+    reader.problem_at("exposure",
+                      fmt::format("takes longer than a frame: expected at most {:.6g} s at {:.6g} "
+                                  "frames/s",
+                                  frame, sensor.frame_rate));
+  }
+  const bool is_rolling = sensor.readout == Readout::rolling;
+  if (is_rolling && sensor.row_time == 0) {
+    reader.problem_at("row_time", "is missing: a rolling shutter needs the time between two rows");
+  }
+  if (!is_rolling && sensor.row_time > 0) {
+    reader.problem_at("row_time", "is for readout = \"rolling\" alone");
+  }
+  if (is_rolling && sensor.row_time * height > frame) {
+    reader.problem_at("row_time",
+                      fmt::format("{} rows take longer than a frame: expected at most {:.6g} s at "
+                                  "{:.6g} frames/s",
+                                  sensor.height, frame / height, sensor.frame_rate));
+  }
+}
+
+// What the sensor delivers, and when.
+void add_frames(Table<SensorConfig>& table) {
+  table.field("width", &SensorConfig::width, {.meaning = "Pixels in a row.", .range = between(1, max_side)})
+      .field("height", &SensorConfig::height, {.meaning = "Rows.", .range = between(1, max_side)})
+      .field("pixels", &SensorConfig::pixels, {.meaning = "What a pixel holds: one value, or three."})
+      .field("bits", &SensorConfig::bits,
+             {.meaning = "Bits of each value; above 8 images have 16.", .range = between(1, 16)})
+      .field("frame_rate", &SensorConfig::frame_rate,
+             {.meaning = "Frames a second, Hz.", .range = above_up_to(0, 1e6)})
+      .field("exposure", &SensorConfig::exposure,
+             {.meaning = "How long a frame gathers light; motion blurs over it. 0 is an instant.",
+              .unit = Unit::second,
+              .range = between(0, 1e3)})
+      .field("delay", &SensorConfig::delay,
+             {.meaning = "From the end of the exposure until the frame can be had.",
+              .unit = Unit::second,
+              .range = between(0, 1e3)})
+      .field("drop", &SensorConfig::drop,
+             {.meaning = "Share of the frames that are lost.", .range = between(0, 1)})
+      .field("readout", &SensorConfig::readout,
+             {.meaning = "All rows at once; one after another; or the even rows of one instant and the odd "
+                         "ones of half a frame later."})
+      .field("row_time", &SensorConfig::row_time,
+             {.meaning = "Between two rows of a rolling shutter.",
+              .unit = Unit::second,
+              .range = between(0, 1)});
+}
+
+// What happens to the light, in that order.
+void add_effects(Table<SensorConfig>& table) {
+  table
+      .field("vignetting", &SensorConfig::vignetting,
+             {.meaning = "Share of the light lost in the image's corners; it grows with the square of the "
+                         "distance from the middle.",
+              .range = between(0, 1)})
+      .field("psf", &SensorConfig::psf,
+             {.meaning = "Standard deviation of the Gaussian blur of lens and pixel, px.",
+              .range = between(0, 20)})
+      .field(
+          "full_well", &SensorConfig::full_well,
+          {.meaning = "Electrons that full scale stands for at gain 1; the shot noise is the square root of "
+                      "their number. 0 is no shot noise.",
+           .range = between(0, 1e9)})
+      .field("gain", &SensorConfig::gain,
+             {.meaning = "Factor on the light and its shot noise.", .range = above_up_to(0, 1e3)})
+      .field("read_noise", &SensorConfig::read_noise,
+             {.meaning =
+                  "Standard deviation of the noise added when a pixel is read, in values of an 8-bit image.",
+              .range = between(0, 255)})
+      .field("gamma", &SensorConfig::gamma,
+             {.meaning = "Values are the light to the power 1/gamma.", .range = between(0.1, 10)});
+}
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const PixelKind*) {
+  static const std::vector<std::string> names{"gray", "color"};
+  return names;
+}
+
+const std::vector<std::string>& names_of(const Readout*) {
+  static const std::vector<std::string> names{"global", "rolling", "interlaced"};
+  return names;
+}
+
+const Table<SensorConfig>& fields_of(const SensorConfig*) {
+  static const auto table = [] {
+    Table<SensorConfig> result("sensor", "What turns the light on the image plane into numbers.");
+    add_frames(result);
+    add_effects(result);
+    result.check(check_sensor);
+    return result;
+  }();
+  return table;
+}
+
+}  // namespace flexura

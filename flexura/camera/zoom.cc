@@ -1,0 +1,179 @@
+#include "flexura/camera/zoom.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t max_rows = 1000;
+constexpr NumberRange focal_length_range = {.min = 0, .max = 1e7, .open_min = true};
+constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
+constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
+
+Intrinsics lens_at_one(const LensConfig& config, std::int64_t width, std::int64_t height) {
+  return {config.fx, config.fy.value_or(config.fx), config.cx.value_or(0.5 * static_cast<double>(width - 1)),
+          config.cy.value_or(0.5 * static_cast<double>(height - 1)), config.distortion};
+}
+
+Intrinsics lens_at(const ZoomRow& row, const Intrinsics& one) {
+  return {row.fx.value_or(one.fx * row.ratio), row.fy.value_or(one.fy * row.ratio), row.cx.value_or(one.cx),
+          row.cy.value_or(one.cy), row.distortion.value_or(one.distortion)};
+}
+
+Eigen::Vector<double, intrinsics_count> numbers(const Intrinsics& lens) {
+  Eigen::Vector<double, intrinsics_count> result;
+  result << lens.fx, lens.fy, lens.cx, lens.cy,
+      Eigen::Map<const Eigen::Vector<double, 5>>(lens.distortion.data());
+  return result;
+}
+
+Spec row_spec(const char* meaning, NumberRange range, const char* default_text) {
+  return {.meaning = meaning, .range = range, .default_text = default_text};
+}
+
+}  // namespace
+
+const Table<ZoomRow>& fields_of(const ZoomRow*) {
+  static const auto table =
+      Table<ZoomRow>("zoom row", "A measured position of a zoom.")
+          .field("ratio", &ZoomRow::ratio,
+                 {.meaning = "Zoom ratio: the focal length over that at ratio 1. Rises from row to row.",
+                  .range = above_up_to(0, 1e4),
+                  .required = true})
+          .field("count", &ZoomRow::count,
+                 row_spec("Position of the zoom's motor. Where the rows have it, positions of the zoom are "
+                          "counts and not ratios; it rises, or falls, from row to row.",
+                          {.min = -1e9, .max = 1e9}, "not set"))
+          .field(
+              "fx", &ZoomRow::fx,
+              row_spec("Focal length in pixels, across.", focal_length_range, "the lens's times the ratio"))
+          .field("fy", &ZoomRow::fy,
+                 row_spec("Focal length in pixels, down.", focal_length_range, "the lens's times the ratio"))
+          .field("cx", &ZoomRow::cx,
+                 row_spec("Principal point, px from the left.", pixel_range, "the lens's"))
+          .field("cy", &ZoomRow::cy, row_spec("Principal point, px from the top.", pixel_range, "the lens's"))
+          .field("distortion", &ZoomRow::distortion,
+                 row_spec("Distortion k1, k2, p1, p2, k3.", distortion_range, "the lens's"));
+  return table;
+}
+
+const Table<LensConfig>& fields_of(const LensConfig*) {
+  static const auto table =
+      Table<LensConfig>("lens", "A zoom lens: what it is at ratio 1, and how it changes with the zoom.")
+          .field("fx", &LensConfig::fx,
+                 {.meaning = "Focal length at ratio 1 in pixels, across.", .range = focal_length_range})
+          .field("fy", &LensConfig::fy, row_spec("The same, down.", focal_length_range, "fx"))
+          .field("cx", &LensConfig::cx,
+                 row_spec("Principal point, px from the middle of the leftmost pixel.", pixel_range,
+                          "the image's middle"))
+          .field("cy", &LensConfig::cy,
+                 row_spec("Principal point, px from the middle of the topmost pixel.", pixel_range,
+                          "the image's middle"))
+          .field("distortion", &LensConfig::distortion,
+                 {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",
+                  .range = distortion_range})
+          .field("zoom", &LensConfig::zoom,
+                 {.meaning = "Measured positions of the zoom, as tables [[camera.lens.zoom]].",
+                  .count = {0, max_rows},
+                  .default_text = "none: focal length in proportion to the ratio, the rest constant"})
+          .check([](const LensConfig& config, Reader& reader) {
+            if (const std::string problem = ZoomTable::problem(config); !problem.empty())
+              reader.problem_at("zoom", problem);
+          });
+  return table;
+}
+
+std::string ZoomTable::problem(const LensConfig& config) {
+  const auto& rows = config.zoom;
+  if (rows.empty()) return "";
+  if (rows.size() == 1) return "has one row: expected at least two, or none for a linear zoom";
+  const Intrinsics one = lens_at_one(config, 1, 1);
+  const bool counts = rows[0].count.has_value();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].count.has_value() != counts)
+      return fmt::format("[{}]: expected a count in all rows or none", i);
+    if (i == 0) continue;
+    const Intrinsics before = lens_at(rows[i - 1], one), here = lens_at(rows[i], one);
+    if (!(rows[i].ratio > rows[i - 1].ratio)) return fmt::format("[{}]: expected a rising ratio", i);
+    if (!(here.fx > before.fx && here.fy > before.fy))
+      return fmt::format("[{}]: expected rising focal lengths", i);
+    if (counts && !((*rows[i].count - *rows[i - 1].count) * (*rows[1].count - *rows[0].count) > 0))
+      return fmt::format("[{}]: expected counts that all rise or all fall", i);
+  }
+  return "";
+}
+
+ZoomTable::ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t height)
+    : one_(lens_at_one(config, width, height)) {
+  if (const std::string what = problem(config); !what.empty())
+    throw std::invalid_argument("the zoom's table " + what);
+  if (config.zoom.empty()) return;
+  std::vector<ZoomRow> rows = config.zoom;
+  by_count_ = rows.front().count.has_value();
+  if (by_count_ && *rows.back().count < *rows.front().count) std::ranges::reverse(rows);
+  first_ = by_count_ ? *rows.front().count : rows.front().ratio;
+  last_ = by_count_ ? *rows.back().count : rows.back().ratio;
+  std::vector<double> x;
+  std::vector<std::vector<double>> y(intrinsics_count + 1);
+  for (const ZoomRow& row : rows) {
+    x.push_back(by_count_ ? *row.count : std::log(row.ratio));
+    const auto lens = numbers(lens_at(row, one_));
+    for (int i = 0; i < intrinsics_count; ++i)
+      y[static_cast<std::size_t>(i)].push_back(i < 2 ? std::log(lens[i]) : lens[i]);
+    y[intrinsics_count].push_back(std::log(row.ratio));
+  }
+  for (const auto& values : y) curves_.emplace_back(x, values);
+}
+
+double ZoomTable::within(double zoom) const {
+  constexpr double rounding = 1e-9;
+  if (!(zoom >= first_ - rounding * std::abs(first_)) || zoom > last_ + rounding * std::abs(last_))
+    throw std::out_of_range(fmt::format("zoom {:.9g} is outside {:.9g} to {:.9g}", zoom, first_, last_));
+  return std::clamp(zoom, first_, last_);
+}
+
+double ZoomTable::abscissa(double zoom) const { return by_count_ ? zoom : std::log(zoom); }
+
+Intrinsics ZoomTable::at(double zoom) const {
+  zoom = within(zoom);
+  if (is_linear()) return {one_.fx * zoom, one_.fy * zoom, one_.cx, one_.cy, one_.distortion};
+  const double x = abscissa(zoom);
+  Intrinsics result{std::exp(curves_[0].value(x)),
+                    std::exp(curves_[1].value(x)),
+                    curves_[2].value(x),
+                    curves_[3].value(x),
+                    {}};
+  for (std::size_t i = 0; i < 5; ++i) result.distortion[i] = curves_[4 + i].value(x);
+  return result;
+}
+
+double ZoomTable::ratio(double zoom) const {
+  zoom = within(zoom);
+  return by_count_ ? std::exp(curves_[intrinsics_count].value(zoom)) : zoom;
+}
+
+double ZoomTable::ratio_slope(double zoom) const {
+  return by_count_ ? ratio(zoom) * curves_[intrinsics_count].slope(within(zoom)) : 1;
+}
+
+Eigen::Vector<double, intrinsics_count> ZoomTable::slope(double zoom) const {
+  zoom = within(zoom);
+  Eigen::Vector<double, intrinsics_count> result = Eigen::Vector<double, intrinsics_count>::Zero();
+  if (is_linear()) {
+    result.head<2>() << one_.fx, one_.fy;
+    return result;
+  }
+  const double x = abscissa(zoom), x_slope = by_count_ ? 1 : 1 / zoom;
+  for (int i = 0; i < intrinsics_count; ++i)
+    result[i] = curves_[static_cast<std::size_t>(i)].slope(x) * x_slope;
+  result[0] *= std::exp(curves_[0].value(x)), result[1] *= std::exp(curves_[1].value(x));
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+namespace flexura {
+
+/// A curve through points that never swings out between them: a cubic on each piece, with a continuous slope,
+/// rising only where the points rise and falling only where they fall (F. N. Fritsch and J. Butland, "A
+/// method for constructing local monotone piecewise cubic interpolants", 1984; slopes at the ends by three
+/// points, limited likewise). Through points of a straight line it is the line.
+class MonotoneCubic {
+ public:
+  /// Through (x[i], y[i]). std::invalid_argument: fewer than one point, unequal counts, numbers that are not
+  /// finite, x that does not rise. A single point makes a constant.
+  MonotoneCubic(std::vector<double> x, std::vector<double> y);
+
+  [[nodiscard]] double front() const { return x_.front(); }
+  [[nodiscard]] double back() const { return x_.back(); }
+
+  /// At x; outside [front(), back()] it goes on as at the nearest end.
+  [[nodiscard]] double value(double x) const;
+  /// dy/dx; 0 outside.
+  [[nodiscard]] double slope(double x) const;
+
+ private:
+  struct Piece {
+    double start, width, y, rise, slope, end_slope;
+  };
+  [[nodiscard]] Piece piece_at(double x) const;
+
+  std::vector<double> x_, y_, slopes_;
+};
+
+}  // namespace flexura

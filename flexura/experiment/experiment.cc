@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -19,9 +20,11 @@ namespace {
 constexpr double max_steps = 1e6;
 constexpr std::size_t max_tasks = 10000;
 constexpr std::size_t max_obstacles = 1000;
+constexpr std::size_t max_cameras = 100;
 
 void check_experiment(const Experiment& experiment, Reader& reader) {
   if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
+  check_cameras(experiment.camera, "camera", reader);
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     check_task(experiment.task[i], experiment.arm.kind, experiment.arm.section.size(),
                fmt::format("task[{}]", i), reader);
@@ -149,11 +152,25 @@ const Table<Experiment>& fields_of(const Experiment*) {
                  {.meaning = "What the arm must not touch.",
                   .count = {0, max_obstacles},
                   .default_text = "none"})
-          .field("stand", &Experiment::stand, {.meaning = "What stands around the arm for the cameras to see."})
+          .field("stand", &Experiment::stand,
+                 {.meaning = "What stands around the arm for the cameras to see."})
+          .field("camera", &Experiment::camera,
+                 {.meaning = "The cameras.",
+                  .count = {0, max_cameras},
+                  .default_text =
+                      "two, \"front\" on +Z and \"side\" on -X, with all of the arm's reach in view"})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);
   return table;
+}
+
+std::vector<CameraConfig> Experiment::cameras() const {
+  if (!camera.empty()) return camera;
+  double reach = 0;
+  for (const Section& section : arm.section)
+    reach += section.length * std::max(1.0, section.stretch_limits[1]);
+  return default_cameras(reach, arm.base.position);
 }
 
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {

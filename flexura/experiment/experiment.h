@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "flexura/camera/camera_config.h"
 #include "flexura/experiment/task_config.h"
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm_config.h"
@@ -41,7 +42,11 @@ struct Experiment {
   std::optional<DriveConfig> drive;
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
+  std::vector<CameraConfig> camera;  ///< None: the paper's two (cameras()).
   std::vector<TaskConfig> task;
+
+  /// The file's cameras, or the paper's two, which have all of the arm's reach in view.
+  [[nodiscard]] std::vector<CameraConfig> cameras() const;
 };
 
 const std::vector<std::string>& names_of(const CurveKind*);

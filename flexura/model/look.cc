@@ -65,8 +65,7 @@ const Table<Disk>& fields_of(const Disk*) {
   static const auto table = Table<Disk>("disk", "A guide disk: flat and round, across the arm.")
                                 .field("at", &Disk::at, place_of("the disk"))
                                 .field("radius", &Disk::radius, size_of("Radius of the disk."))
-                                .field("thickness", &Disk::thickness, size_of("Thickness of the disk."))
-                                .field("color", &Disk::color, color_of("the disk"));
+                                .field("thickness", &Disk::thickness, size_of("Thickness of the disk."));
   return table;
 }
 
@@ -85,7 +84,8 @@ const Table<LookConfig>& fields_of(const LookConfig*) {
           .field("disk", &LookConfig::disk,
                  {.meaning = "Guide disks, as tables [[look.disk]].",
                   .count = {0, max_marks},
-                  .default_text = "none"});
+                  .default_text = "none"})
+          .field("disk_color", &LookConfig::disk_color, color_of("the disks"));
   return table;
 }
 

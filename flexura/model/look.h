@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// What share of the red, green and blue light a surface gives back, each from 0 to 1.
-using Color = std::array<double, 3>;
+using ColorConfig = std::array<double, 3>;
 
 /// How the arm ends: cut straight across, or in half a ball.
 enum class TipKind { flat, round };
@@ -21,14 +21,14 @@ enum class TipKind { flat, round };
 struct Marker {
   double at = 0;        ///< Of its middle, m from the base.
   double width = 0.01;  ///< m along the arm; > 0.
-  Color color = {0.85, 0.1, 0.1};
+  ColorConfig color = {0.85, 0.1, 0.1};
 };
 
 /// Bands of one kind, evenly along every section.
 struct MarkerBands {
-  std::int64_t per_section = 4;                    ///< The last one ends where the section does.
-  std::optional<double> width;                     ///< m; a fifth of the distance between two when left out.
-  std::vector<Color> colors = {{0.85, 0.1, 0.1}};  ///< Taken in turn, from the base on.
+  std::int64_t per_section = 4;  ///< The last one ends where the section does.
+  std::optional<double> width;   ///< m; a fifth of the distance between two when left out.
+  std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};  ///< Taken in turn, from the base on.
 };
 
 /// A guide disk: flat, round, across the arm.
@@ -36,16 +36,16 @@ struct Disk {
   double at = 0;             ///< Of its middle, m from the base along the unstretched arm.
   double radius = 0.03;      ///< m
   double thickness = 0.004;  ///< m
-  Color color = {0.25, 0.25, 0.28};
 };
 
 /// What a camera sees of the arm beside its shape.
 struct LookConfig {
-  Color color = {0.08, 0.08, 0.09};
+  ColorConfig color = {0.08, 0.08, 0.09};
   TipKind tip = TipKind::flat;
   std::optional<MarkerBands> bands;
   std::vector<Marker> marker;
   std::vector<Disk> disk;
+  ColorConfig disk_color = {0.35, 0.35, 0.37};
 
   /// All markers of an arm, base first: those of the bands and the single ones.
   [[nodiscard]] std::vector<Marker> markers(const Arm& arm) const;

@@ -31,9 +31,9 @@ TEST(Look, PlacesBandsAlongEverySectionTheLastOneAtItsEnd) {
   ASSERT_EQ(markers.size(), 5U);
   const double ends[] = {0.35, 0.5, 1, 2, 3};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(markers[i].at + markers[i].width / 2, ends[i]) << i;
-  EXPECT_EQ(markers[0].color, (Color{1, 1, 1}));
-  EXPECT_EQ(markers[1].color, (Color{1, 0, 0}));
-  EXPECT_EQ(markers[4].color, (Color{1, 0, 0}));
+  EXPECT_EQ(markers[0].color, (ColorConfig{1, 1, 1}));
+  EXPECT_EQ(markers[1].color, (ColorConfig{1, 0, 0}));
+  EXPECT_EQ(markers[4].color, (ColorConfig{1, 0, 0}));
   EXPECT_TRUE(problems_of(look, arm_of({1, 2})).empty());
 }
 

@@ -37,6 +37,10 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
           .field("height", &ScreenConfig::height, length_of("Height."))
           .field("brightness", &ScreenConfig::brightness,
                  {.meaning = "Light that it sends; 1 is a camera's full scale.", .range = brightness_range})
+          .field("gradient", &ScreenConfig::gradient,
+                 {.meaning =
+                      "Share by which it grows brighter from its middle to its right and to its upper edge.",
+                  .range = between(-1, 1)})
           .field(
               "fall_off", &ScreenConfig::fall_off,
               {.meaning =
@@ -86,16 +90,20 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
           .field("ambient", &LightConfig::ambient,
                  {.meaning = "Light from everywhere.", .range = brightness_range})
           .field(
-              "directed", &LightConfig::directed,
+              "directional", &LightConfig::directional,
               {.meaning = "Light from one direction, on a surface that faces it.", .range = brightness_range})
           .field("towards", &LightConfig::towards,
                  {.meaning = "The direction from which it comes.", .range = coordinate_range})
-          .field("angular_radius", &LightConfig::angular_radius,
-                 {.meaning = "Half the angle under which its source is seen: the arm casts shadows with soft "
-                             "borders on "
-                             "the screens. 0 is no shadows.",
-                  .unit = Unit::radian,
-                  .range = between(0, 0.5)})
+          .field("shadow", &LightConfig::shadow,
+                 {.meaning = "Share of the light of screens and planes that the arm's shadow takes away.",
+                  .range = share})
+          .field(
+              "angular_radius", &LightConfig::angular_radius,
+              {.meaning =
+                   "Half the angle under which the light's source is seen: the larger, the softer a shadow's "
+                   "border.",
+               .unit = Unit::radian,
+               .range = above_up_to(0, 0.5)})
           .check([](const LightConfig& light, Reader& reader) {
             expect_direction(light.towards, "towards", reader);
           });

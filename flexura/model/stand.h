@@ -17,7 +17,9 @@ struct ScreenConfig {
       0, 0, 1};                  ///< The way it faces, in W; its height runs along W's Y as far as it can.
   double width = 1, height = 1;  ///< m
   double brightness = 0.85;      ///< Light that it sends, in shares of a camera's full scale.
-  double fall_off = 0;           ///< Share by which its corners are darker than its middle.
+  std::array<double, 2> gradient = {
+      0, 0};  ///< Share by which it grows brighter from its middle to its right and to its upper edge.
+  double fall_off = 0;  ///< Share by which its corners are darker than its middle.
 };
 
 /// The calibration cylinder: dark grey, with red lines along it.
@@ -26,19 +28,19 @@ struct EtalonConfig {
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Quaternion (w, x, y, z), E into W: the axis is E's +Y.
   double radius = 0.1;                            ///< m
   double height = 0.4;                            ///< m
-  Color color = {0.1, 0.1, 0.1};
+  ColorConfig color = {0.1, 0.1, 0.1};
   double line_width =
       0.01;  ///< m around the cylinder; a line towards E's +Z and every 90 degrees from there.
-  Color line_color = {0.75, 0.08, 0.08};
+  ColorConfig line_color = {0.75, 0.08, 0.08};
 };
 
-/// The light on the arm and the etalon; screens have a brightness of their own.
+/// The light on the arm, the etalon and the obstacles; screens have a brightness of their own.
 struct LightConfig {
-  double ambient = 0.6;                           ///< From everywhere.
-  double directed = 0.6;                          ///< From one direction, on a surface that faces it.
-  std::array<double, 3> towards = {0.3, 1, 0.5};  ///< Where it comes from, in W.
-  double angular_radius = 0;                      ///< Of its source, rad: shadows on screens and planes have
-                                                  ///< soft borders. 0: no shadows.
+  double ambient = 0.45;                             ///< From everywhere.
+  double directional = 0.55;                         ///< From one direction, on a surface that faces it.
+  std::array<double, 3> towards = {0.4, 0.8, 0.45};  ///< Where it comes from, in W.
+  double shadow = 0;  ///< Share of the light of screens and planes that the arm's shadow takes away.
+  double angular_radius = 0.05;  ///< Half the angle under which the light's source is seen, rad.
 };
 
 /// What stands around the arm.

@@ -8,44 +8,11 @@
 #include "flexura/kinematics/simd_kernels.h"
 
 namespace flexura {
-namespace {
-
-bool processor_has(SimdPath path) {
-  if (path == SimdPath::baseline) return true;
-#if defined(__x86_64__) || defined(__i386__)
-  if (path == SimdPath::avx2) return __builtin_cpu_supports("avx2");
-  if (path == SimdPath::avx512) return __builtin_cpu_supports("avx512f");
-#endif
-  return false;
-}
-
-// None where this build or this processor lacks the path.
-const SimdKernels* find_kernels(SimdPath path) {
-  if (!processor_has(path)) return nullptr;
-  if (path == SimdPath::avx512) return avx512_kernels();
-  return path == SimdPath::avx2 ? avx2_kernels() : baseline_kernels();
-}
-
-}  // namespace
-
-std::string_view name_of(SimdPath path) {
-  if (path == SimdPath::baseline) return "baseline";
-  return path == SimdPath::avx2 ? "avx2" : "avx512";
-}
-
-std::vector<SimdPath> available_simd_paths() {
-  std::vector<SimdPath> paths;
-  for (const SimdPath path : {SimdPath::baseline, SimdPath::avx2, SimdPath::avx512}) {
-    if (find_kernels(path) != nullptr) paths.push_back(path);
-  }
-  return paths;
-}
-
-SimdPath best_simd_path() { return available_simd_paths().back(); }
 
 const SimdKernels& kernels_of(SimdPath path) {
-  if (const SimdKernels* kernels = find_kernels(path)) return *kernels;
-  throw std::invalid_argument("this machine has no " + std::string(name_of(path)) + " path");
+  require_simd_path(path);
+  if (path == SimdPath::avx512) return *avx512_kernels();
+  return path == SimdPath::avx2 ? *avx2_kernels() : *baseline_kernels();
 }
 
 void replace_far_sines_and_cosines(const double* angles, double* sines, double* cosines, std::size_t count) {

@@ -1,0 +1,96 @@
+#include "flexura/render/scene_maker.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace flexura {
+namespace {
+
+Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+Screen screen_of(const ScreenConfig& config) {
+  Screen screen;
+  const Eigen::Vector3d z = vector(config.normal).normalized();
+  // A screen that lies flat has its height along -Z.
+  const bool is_upright = std::abs(z.y()) < 0.999;
+  const Eigen::Vector3d up = is_upright ? Eigen::Vector3d(0, 1, 0) : Eigen::Vector3d(0, 0, -1);
+  const Eigen::Vector3d x = up.cross(z).normalized();
+  screen.X_WS.rotation << x, z.cross(x), z;
+  screen.X_WS.position = vector(config.center);
+  screen.size = {config.width, config.height};
+  screen.brightness = Color::Constant(config.brightness);
+  screen.gradient = config.gradient;
+  screen.falloff = config.fall_off;
+  return screen;
+}
+
+Etalon etalon_of(const EtalonConfig& config) {
+  Etalon etalon;
+  const auto& q = config.rotation;
+  etalon.X_WE.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  etalon.X_WE.position = vector(config.position) + etalon.X_WE.rotation.col(1) * (config.height / 2);
+  etalon.radius = config.radius;
+  etalon.height = config.height;
+  etalon.line_width = config.line_width;
+  etalon.albedo = vector(config.color);
+  etalon.line_albedo = vector(config.line_color);
+  return etalon;
+}
+
+Light light_of(const LightConfig& config) {
+  return {.direction = vector(config.towards),
+          .ambient = config.ambient,
+          .directional = config.directional,
+          .shadow = config.shadow,
+          .angular_radius = config.angular_radius};
+}
+
+// Arc length along the arm as it stands of a place along the unstretched arm.
+double stretched(const Arm& arm, const Backbone& backbone, double at) {
+  double base = 0;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const double length = arm.sections[i].length;
+    const Arc& arc = backbone.arcs()[i];
+    if (at <= base + length) return arc.s + (at - base) * (arc.length / length);
+    base += length;
+  }
+  return backbone.length();
+}
+
+}  // namespace
+
+SceneMaker::SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
+                       const std::vector<ObstacleConfig>& obstacles)
+    : arm_(arm), shows_arm_(stand.arm), markers_(look.markers(arm)), disks_(look.disk) {
+  still_.arm.tip = look.tip == TipKind::flat ? TipShape::flat : TipShape::round;
+  still_.arm.albedo = vector(look.color);
+  still_.arm.disk_albedo = vector(look.disk_color);
+  const Eigen::Vector3d& base = arm.X_WB.position;
+  const auto screens = stand.screen.value_or(default_screens(arm.length(), {base.x(), base.y(), base.z()}));
+  for (const ScreenConfig& screen : screens) still_.screens.push_back(screen_of(screen));
+  if (stand.etalon) still_.etalon = etalon_of(*stand.etalon);
+  for (const ObstacleConfig& obstacle : obstacles) still_.obstacles.push_back({.shape = obstacle});
+  still_.light = light_of(stand.light);
+  still_.background = Color::Constant(stand.background);
+}
+
+Scene SceneMaker::scene(const Backbone& backbone) const {
+  Scene scene = still_;
+  if (!shows_arm_) return scene;
+  scene.arm.tube = tube_of(arm_, backbone);
+  for (const Marker& marker : markers_) {
+    const double from = std::max(marker.at - marker.width / 2, 0.0);
+    scene.arm.markers.push_back({.s_from = stretched(arm_, backbone, from),
+                                 .s_to = stretched(arm_, backbone, marker.at + marker.width / 2),
+                                 .albedo = vector(marker.color)});
+  }
+  for (const Disk& disk : disks_) {
+    scene.arm.disks.push_back(
+        {.s = stretched(arm_, backbone, disk.at), .radius = disk.radius, .thickness = disk.thickness});
+  }
+  return scene;
+}
+
+}  // namespace flexura

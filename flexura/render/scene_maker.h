@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
+#include "flexura/model/look.h"
+#include "flexura/model/obstacle.h"
+#include "flexura/model/stand.h"
+#include "flexura/render/scene.h"
+
+namespace flexura {
+
+/// What cameras see of an experiment: the part that stays while the arm moves, and the arm as it stands.
+class SceneMaker {
+ public:
+  SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
+             const std::vector<ObstacleConfig>& obstacles);
+
+  /// The scene with the arm in `state`. Markers and disks move with the arm's material: where a section is
+  /// stretched, so are its bands. std::invalid_argument: a state that does not fit the arm (Backbone).
+  [[nodiscard]] Scene scene(const ArmState& state) const;
+
+ private:
+  Arm arm_;
+  bool shows_arm_;
+  std::vector<Marker> markers_;
+  std::vector<Disk> disks_;
+  Scene still_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/camera/sensor.h"
+#include "flexura/math/simd_path.h"
+#include "flexura/render/gamma_table.h"
+#include "flexura/render/sensor_kernels.h"
+
+namespace flexura {
+
+/// What the noise of an image depends on, beside the pixel and the channel: the same stream gives the same
+/// noise, any other one independent noise.
+struct NoiseStream {
+  std::uint64_t seed = 0;
+  std::uint64_t camera = 0;  ///< Its place among the cameras.
+  std::uint64_t frame = 0;   ///< Its number.
+};
+
+/// The rows that a sensor works on; reused, it allocates no more. One for each thread.
+struct SensorRows {
+  std::vector<float> conditioned, blurred, light, levels;
+  std::vector<const float*> window;
+  std::vector<int> changed;  ///< By block: the row at which it last differed from the row above it.
+  std::vector<unsigned char> flags;
+};
+
+/// A sensor ready to turn light into the numbers that a camera delivers. In physical order, for each value:
+///
+/// 1. Light that is negative or not a number counts as 0, and beyond 2^20 as 2^20.
+/// 2. Vignetting: times 1 - vignetting (r/R)^2, r from the middle of the image, R the corner pixel's.
+/// 3. PSF: a Gaussian along rows, then columns, cut at 3.5 standard deviations, of unit sum and just the
+///    variance asked for; beyond the image its edge goes on. What is flat stays exactly as it is.
+/// 4. Shot noise: normal, of the variance light / full_well (Poisson's for many electrons); times gain.
+/// 5. Read noise: normal.
+/// 6. Cut to [0, 1], to the power 1/gamma, times 2^bits - 1, rounded half up.
+///
+/// A value's noise is a function of the stream, the pixel and the channel, so that images are the same for
+/// any number of threads and on every SimdPath.
+class Sensor {
+ public:
+  /// std::invalid_argument: a size below 1, bits other than 1 to 16, a negative or infinite strength, a gain
+  /// or gamma that is not positive; a path that is not available.
+  explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
+
+  [[nodiscard]] const SensorConfig& config() const { return config_; }
+
+  /// The image of `light`, which is in units of full scale and of the sensor's size and channels. Bytes come
+  /// from sensors of up to 8 bits, words from those of more. std::invalid_argument: another size or type.
+  void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
+            Image<std::uint8_t>& image) const;
+  void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
+            Image<std::uint16_t>& image) const;
+
+  /// Rows [first, last) of it alone, into an image of the right size: one thread's part.
+  void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
+                 Image<std::uint8_t>& image) const;
+  void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
+                 Image<std::uint16_t>& image) const;
+
+  /// The PSF's weights on one side, the middle one first; that one alone without a PSF.
+  [[nodiscard]] const std::vector<float>& psf_weights() const { return weights_; }
+
+ private:
+  void reserve(SensorRows& rows) const;
+  void condition(const Image<float>& light, int v, SensorRows& rows) const;
+  void push(const Image<float>& light, int v, bool is_first, SensorRows& rows) const;
+  const float* blurred(int v, SensorRows& rows) const;
+  template <typename Value>
+  void read_all(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
+                Image<Value>& image) const;
+  template <typename Value>
+  void read_band(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
+                 Image<Value>& image) const;
+  template <typename Value>
+  void require_fit(const Image<float>& light, const Image<Value>& image) const;
+
+  SensorConfig config_;
+  const SensorKernels* kernels_;
+  int width_, height_, radius_;
+  std::size_t channels_, count_, padded_;  // Values in a row, and up to a whole number of blocks.
+  std::vector<float> weights_;
+  std::vector<float> lost_across_;  // Of vignetting, by value.
+  SensorLevels levels_;
+  GammaTable gamma_;
+};
+
+}  // namespace flexura

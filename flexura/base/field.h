@@ -51,7 +51,7 @@ struct Spec {
 
 /// The shape of a field's value.
 struct Type {
-  enum class Kind { boolean, integer, number, text, choice, array, table, one_of };
+  enum class Kind { boolean, integer, number, text, bytes, choice, array, table, one_of };
   Kind kind = Kind::number;
   std::vector<std::string> choices = {};            ///< choice
   std::shared_ptr<const Type> item = {};            ///< array

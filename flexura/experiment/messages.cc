@@ -82,6 +82,18 @@ const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*) {
   return table;
 }
 
+const Table<ImageMessage>& fields_of(const ImageMessage*) {
+  static const auto table =
+      Table<ImageMessage>("foxglove.CompressedImage", "A frame of a camera.")
+          .field("timestamp", &ImageMessage::timestamp, {.meaning = "Middle of the exposure."})
+          .field("frame_id", &ImageMessage::frame_id, {.meaning = "The camera's optical frame."})
+          .field("data", &ImageMessage::data, {.meaning = "An image file."})
+          .field("format", &ImageMessage::format, {.meaning = "Its format."});
+  return table;
+}
+
+std::string image_topic(std::string_view camera) { return "/camera/" + std::string(camera); }
+
 std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(time * 1e9)); }
 
 TimeMessage time_message(std::uint64_t nanoseconds) {

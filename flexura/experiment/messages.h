@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/bytes.h"
 #include "flexura/base/table.h"
 #include "flexura/math/pose.h"
 
@@ -67,6 +68,14 @@ struct DriveCommandsMessage {
   std::vector<double> rates;            ///< Microsteps/s, the mean since the command before.
 };
 
+/// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
+struct ImageMessage {
+  TimeMessage timestamp;  ///< Middle of the exposure.
+  std::string frame_id;   ///< "camera/NAME"
+  Bytes data;             ///< A PNG file.
+  std::string format = "png";
+};
+
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
@@ -80,6 +89,10 @@ const Table<PoseMessage>& fields_of(const PoseMessage*);
 const Table<PosesMessage>& fields_of(const PosesMessage*);
 const Table<EventMessage>& fields_of(const EventMessage*);
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
+const Table<ImageMessage>& fields_of(const ImageMessage*);
+
+/// The topic of a camera's images.
+[[nodiscard]] std::string image_topic(std::string_view camera);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);

@@ -17,9 +17,9 @@ class SceneMaker {
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 
-  /// The scene with the arm in `state`. Markers and disks move with the arm's material: where a section is
-  /// stretched, so are its bands. std::invalid_argument: a state that does not fit the arm (Backbone).
-  [[nodiscard]] Scene scene(const ArmState& state) const;
+  /// The scene with the arm along `backbone`, one arc a section. Markers and disks move with the arm's
+  /// material: where a section is stretched, so are its bands. std::invalid_argument: another number of arcs.
+  [[nodiscard]] Scene scene(const Backbone& backbone) const;
 
  private:
   Arm arm_;

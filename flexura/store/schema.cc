@@ -66,6 +66,10 @@ Node value_schema(const Type& type, const Spec& spec, const Count& count, double
     case Type::Kind::text:
       add(schema, "type", text("string"));
       return schema;
+    case Type::Kind::bytes:
+      add(schema, "type", text("string"));
+      add(schema, "contentEncoding", text("base64"));
+      return schema;
     case Type::Kind::choice: {
       Node::Array names;
       for (const std::string& name : type.choices) names.push_back(text(name));
@@ -145,6 +149,8 @@ std::string type_text(const Type& type, const Spec& spec, const Count& count) {
       return "number";
     case Type::Kind::text:
       return "text";
+    case Type::Kind::bytes:
+      return "text in base64";
     case Type::Kind::choice:
       return fmt::format("`\"{}\"`", fmt::join(type.choices, "\"` or `\""));
     case Type::Kind::table:

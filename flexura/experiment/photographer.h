@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/render/renderer.h"
+#include "flexura/render/scene_maker.h"
+#include "flexura/render/sensor_image.h"
+#include "flexura/sim/simulated_camera.h"
+
+namespace flexura {
+
+/// Makes the pictures that an experiment's cameras take: the scene as it stands, its light, the sensor's
+/// numbers. The same shot gives the same picture, whatever was taken before.
+class Photographer {
+ public:
+  /// `arm` with the look, stand and obstacles of `experiment`.
+  Photographer(const Arm& arm, const Experiment& experiment);
+
+  [[nodiscard]] Picture take(const Shot& shot);
+
+  /// All that stands there with the arm along `backbone`.
+  [[nodiscard]] Scene scene(const Backbone& backbone) const { return maker_.scene(backbone); }
+
+ private:
+  [[nodiscard]] const Sensor& sensor(const Shot& shot);
+  void expose(const Shot& shot, Image<float>& light);
+
+  SceneMaker maker_;
+  Renderer renderer_;
+  LightImage instant_;
+  Image<float> light_;
+  SensorRows rows_;
+  std::map<std::size_t, Sensor> sensors_;  // by camera
+};
+
+}  // namespace flexura

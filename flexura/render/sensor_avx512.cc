@@ -3,12 +3,12 @@
 
 #include "flexura/render/sensor_lanes.h"
 
-const flexura::SensorKernels* flexura::avx512_sensor_kernels() { return &sensor_kernels; }
+const flexura::SensorKernelPair* flexura::avx512_sensor_kernels() { return &sensor_kernels; }
 
 #else
 
 #include "flexura/render/sensor_kernels.h"
 
-const flexura::SensorKernels* flexura::avx512_sensor_kernels() { return nullptr; }
+const flexura::SensorKernelPair* flexura::avx512_sensor_kernels() { return nullptr; }
 
 #endif

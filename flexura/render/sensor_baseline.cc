@@ -1,3 +1,3 @@
 #include "flexura/render/sensor_lanes.h"
 
-const flexura::SensorKernels* flexura::baseline_sensor_kernels() { return &sensor_kernels; }
+const flexura::SensorKernelPair* flexura::baseline_sensor_kernels() { return &sensor_kernels; }

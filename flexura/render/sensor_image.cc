@@ -14,10 +14,12 @@
 namespace flexura {
 namespace {
 
-const SensorKernels& kernels_of(SimdPath path) {
+const SensorKernels& kernels_of(SimdPath path, PixelKind pixels) {
   require_simd_path(path);
-  if (path == SimdPath::avx512) return *avx512_sensor_kernels();
-  return path == SimdPath::avx2 ? *avx2_sensor_kernels() : *baseline_sensor_kernels();
+  const SensorKernelPair* pair = baseline_sensor_kernels();
+  if (path == SimdPath::avx2) pair = avx2_sensor_kernels();
+  if (path == SimdPath::avx512) pair = avx512_sensor_kernels();
+  return pixels == PixelKind::color ? pair->color : pair->gray;
 }
 
 const SensorConfig& checked(const SensorConfig& config) {
@@ -31,7 +33,7 @@ const SensorConfig& checked(const SensorConfig& config) {
     require(std::isfinite(strength) && strength >= 0, "a sensor's effect must be finite and not negative");
   for (const double factor : {config.gain, config.gamma})
     require(std::isfinite(factor) && factor > 0, "a sensor's gain and gamma must be positive");
-  require(config.psf <= 100, "a sensor's PSF must be at most 100 px");
+  require(config.psf <= 30, "a sensor's PSF must be at most 30 px");
   return config;
 }
 
@@ -56,7 +58,16 @@ NoiseRow noise_of(const NoiseStream& stream, int v) {
   return {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
 }
 
-// (x - middle)^2 of n pixels.
+// Fills `to` with one pixel over and over.
+void repeat(const float* pixel, std::size_t channels, std::vector<float>& to) {
+  if (channels == 1) {
+    std::ranges::fill(to, *pixel);
+    return;
+  }
+  for (std::size_t i = 0; i < to.size(); i += channels) std::copy_n(pixel, channels, to.data() + i);
+}
+
+// The square of the distance from the middle of n pixels.
 double square_from_middle(int x, int n) {
   const double distance = x - 0.5 * (n - 1);
   return distance * distance;
@@ -66,83 +77,145 @@ double square_from_middle(int x, int n) {
 
 Sensor::Sensor(const SensorConfig& config, SimdPath path)
     : config_(checked(config)),
-      kernels_(&kernels_of(path)),
+      kernels_(&kernels_of(path, config.pixels)),
       width_(static_cast<int>(config.width)),
       height_(static_cast<int>(config.height)),
+      weights_(psf_weights(config.psf)),
       channels_(static_cast<std::size_t>(config.channels())),
-      weights_(flexura::psf_weights(config.psf)),
       levels_(levels_for(config)) {
   radius_ = static_cast<int>(weights_.size()) - 1;
   count_ = static_cast<std::size_t>(width_) * channels_;
-  const std::size_t block = sensor_block * channels_;
-  padded_ = (count_ + block - 1) / block * block;
+  values_ = sensor_block * channels_;
+  margin_ = (weights_.size() - 1 + sensor_block - 1) / sensor_block;
+  blocks_ = (count_ + values_ - 1) / values_ + 2 * margin_;
   if (config.gamma != 1) gamma_ = GammaTable(config.gamma, top_of(config));
   if (config.vignetting == 0) return;
-  const double corner = square_from_middle(0, width_) + square_from_middle(0, height_);
-  for (int u = 0; u < width_; ++u) {
-    const double lost = corner > 0 ? config.vignetting * square_from_middle(u, width_) / corner : 0;
-    lost_across_.insert(lost_across_.end(), channels_, static_cast<float>(lost));
+  for (std::size_t i = 0; i < blocks_ * sensor_block; ++i) {
+    const auto u = static_cast<int>(i) - static_cast<int>(margin_ * sensor_block);
+    lost_across_.insert(lost_across_.end(), channels_, lost(std::clamp(u, 0, width_ - 1), width_));
   }
+}
+
+// The part of vignetting that a column of `width_` or a row of `height_` has.
+float Sensor::lost(int x, int n) const {
+  if (config_.vignetting == 0) return 0;
+  const double corner = square_from_middle(0, width_) + square_from_middle(0, height_);
+  if (corner == 0) return 0;
+  return static_cast<float>(config_.vignetting * square_from_middle(x, n) / corner);
 }
 
 void Sensor::reserve(SensorRows& rows) const {
-  const auto radius = static_cast<std::size_t>(radius_);
-  // The comparison for flat blocks reads a little further than the taps.
-  rows.conditioned.resize(padded_ + 2 * radius * channels_ + 16);
-  rows.blurred.resize((2 * radius + 1) * padded_);
-  rows.light.resize(padded_), rows.levels.resize(padded_);
-  rows.window.resize(2 * radius + 1);
-  rows.changed.resize(padded_ / (sensor_block * channels_));
-  rows.flags.resize(rows.changed.size());
+  const std::size_t slots = 2 * weights_.size(), padded = blocks_ * values_;
+  rows.left.resize(margin_ * values_);
+  rows.right.resize((margin_ + 1) * values_);
+  rows.conditioned.resize(slots * padded);
+  rows.same.resize(slots * blocks_);
+  rows.work.resize(blocks_);
+  for (auto* flags : {&rows.age, &rows.is_plain, &rows.is_even, &rows.is_known, &rows.is_needed})
+    flags->assign(blocks_, 0);
+  rows.window.resize(2 * weights_.size() - 1);
+  rows.light.resize(padded), rows.levels.resize(padded), rows.bytes.resize(padded);
 }
 
-// Row v of the light, within its edges' continuation.
-void Sensor::condition(const Image<float>& light, int v, SensorRows& rows) const {
-  const std::size_t reach = static_cast<std::size_t>(radius_) * channels_;
-  float* const row = rows.conditioned.data() + reach;
-  float down = 0;
-  if (!lost_across_.empty() && height_ > 1) {
-    const double corner = square_from_middle(0, width_) + square_from_middle(0, height_);
-    down = static_cast<float>(config_.vignetting * square_from_middle(v, height_) / corner);
-  }
-  kernels_->condition(light.row(v).data(), lost_across_.empty() ? nullptr : lost_across_.data(), down, row,
-                      count_);
-  for (std::size_t i = 0; i < reach; ++i)
-    row[-1 - static_cast<std::ptrdiff_t>(i)] = row[channels_ - 1 - i % channels_];
-  for (float* to = row + count_; to < rows.conditioned.data() + rows.conditioned.size(); ++to)
-    *to = *(to - channels_);
-}
+// Where row v is kept.
+std::size_t Sensor::slot(int v) const { return static_cast<std::size_t>(v) % (2 * weights_.size()); }
 
-// Takes row v of the light, blurred along the row.
-void Sensor::push(const Image<float>& light, int v, bool is_first, SensorRows& rows) const {
-  condition(light, v, rows);
-  const auto radius = static_cast<std::size_t>(radius_);
-  const auto slot = [&](int row) {
-    return rows.blurred.data() + static_cast<std::size_t>(row % (2 * radius_ + 1)) * padded_;
+// Conditions row v of the light, continued at its ends, and sees where it is as the row before.
+void Sensor::take(const Image<float>& light, int v, bool is_first, SensorRows& rows) const {
+  const float* const from = light.row(v).data();
+  const std::size_t whole = count_ / values_, rest = count_ % values_, padded = blocks_ * values_;
+  repeat(from, channels_, rows.left);
+  repeat(from + count_ - channels_, channels_, rows.right);
+  std::copy_n(from + whole * values_, rest, rows.right.begin());
+  float* const to = rows.conditioned.data() + slot(v) * padded;
+  const float* const above = rows.conditioned.data() + slot(v + 2 * radius_ + 1) * padded;
+  std::uint8_t* const same = rows.same.data() + slot(v) * blocks_;
+  std::size_t begin = 0;
+  const auto condition = [&](const float* part, std::size_t blocks) {
+    const std::size_t at = begin * values_;
+    kernels_->condition({blocks, nullptr, 0}, part, lost_across_.empty() ? nullptr : lost_across_.data() + at,
+                        lost(v, height_), above + at, begin > 0, to + at, same + begin);
+    begin += blocks;
   };
-  kernels_->blur_across(rows.conditioned.data() + radius * channels_, slot(v), padded_, channels_,
-                        weights_.data() + 1, radius);
-  if (is_first) {
-    std::ranges::fill(rows.changed, v);
-    return;
+  condition(rows.left.data(), margin_);
+  condition(from, whole);
+  condition(rows.right.data(), blocks_ - margin_ - whole);
+  std::uint8_t* const age = rows.age.data();
+  for (std::size_t i = 0, end = blocks_; i < end; ++i) {
+    const int older = std::min(age[i] + 1, 255), is_older = same[i] / same_as_above;
+    age[i] = static_cast<std::uint8_t>(older * is_older);
   }
-  kernels_->compare(slot(v), slot(v - 1), padded_, channels_, rows.flags.data());
-  for (std::size_t i = 0; i < rows.flags.size(); ++i)
-    if (rows.flags[i] == 0) rows.changed[i] = v;
+  if (is_first) std::ranges::fill(rows.age, std::uint8_t{0});
 }
 
-// Row v blurred both ways, once all rows within the radius were pushed.
-const float* Sensor::blurred(int v, SensorRows& rows) const {
-  for (int i = -radius_; i <= radius_; ++i) {
-    const int row = std::clamp(v + i, 0, height_ - 1);
-    rows.window[static_cast<std::size_t>(i + radius_)] =
-        rows.blurred.data() + static_cast<std::size_t>(row % (2 * radius_ + 1)) * padded_;
+// What is to be done for row v. A block is plain when all rows that are blurred into it are equal; even when
+// it and the one on its left are plain and equal; known when all that is blurred into it along the row is
+// even.
+void Sensor::plan(int v, SensorRows& rows) const {
+  const std::uint8_t *const same = rows.same.data() + slot(v) * blocks_, *const age = rows.age.data();
+  std::uint8_t *const is_plain = rows.is_plain.data(), *const is_even = rows.is_even.data();
+  std::uint8_t *const is_known = rows.is_known.data() + margin_, *const is_needed = rows.is_needed.data();
+  const auto before =
+      static_cast<std::uint8_t>(std::min(v + radius_, height_ - 1) - std::max(v - radius_, 0));
+  const std::size_t blocks = blocks_, count = blocks_ - 2 * margin_;
+  for (std::size_t i = 0; i < blocks; ++i) is_plain[i] = age[i] >= before ? 1 : 0;
+  for (std::size_t i = 1; i < blocks; ++i)
+    is_even[i] = static_cast<std::uint8_t>(is_plain[i] & is_plain[i - 1] & same[i] & same_as_left);
+  std::fill_n(is_known, count, std::uint8_t{1});
+  std::fill_n(is_needed, blocks, std::uint8_t{0});
+  for (std::size_t shift = 0; shift <= 2 * margin_; ++shift)
+    for (std::size_t i = 0; i < count; ++i) is_known[i] &= is_even[i + shift];
+  for (std::size_t shift = 0; shift <= 2 * margin_; ++shift)
+    for (std::size_t i = 0; i < count; ++i) is_needed[i + shift] |= is_known[i] ^ 1;
+  BlockWork* const work = rows.work.data();
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const BlockWork needed = is_plain[i] != 0 ? BlockWork::copy : BlockWork::blur;
+    work[i] = is_needed[i] != 0 ? needed : BlockWork::none;
   }
-  const int first = std::max(v - radius_, 0);
-  for (std::size_t i = 0; i < rows.flags.size(); ++i) rows.flags[i] = rows.changed[i] <= first ? 1 : 0;
-  kernels_->blur_down(rows.window.data(), rows.light.data(), padded_, channels_, weights_.data() + 1,
-                      static_cast<std::size_t>(radius_), rows.flags.data());
+}
+
+// Row v blurred down the columns, where it is needed.
+const float* Sensor::blur_down(int v, SensorRows& rows) const {
+  const std::size_t padded = blocks_ * values_;
+  if (radius_ == 0) {
+    const std::uint8_t* const same = rows.same.data() + slot(v) * blocks_;
+    std::ranges::transform(same, same + blocks_, rows.is_known.begin(),
+                           [](std::uint8_t one) { return static_cast<std::uint8_t>(one & same_as_left); });
+    return rows.conditioned.data() + slot(v) * padded;
+  }
+  for (int i = -radius_; i <= radius_; ++i) {
+    const std::size_t at = slot(std::clamp(v + i, 0, height_ - 1));
+    rows.window[static_cast<std::size_t>(i + radius_)] = rows.conditioned.data() + at * padded;
+  }
+  plan(v, rows);
+  kernels_->blur_down(row(blocks_), rows.window.data(), rows.work.data(), rows.light.data());
   return rows.light.data();
+}
+
+// Whole blocks, of which the image takes what it has room for.
+template <typename Value>
+void Sensor::deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* to) const {
+  const float* const light = blur_down(v, rows) + margin_ * values_;
+  const std::uint8_t* const is_known = rows.is_known.data() + margin_;
+  const SensorRow image_row = row(blocks_ - 2 * margin_);
+  const NoiseRow noise = noise_of(stream, v);
+  if constexpr (std::is_same_v<Value, std::uint8_t>) {
+    if (gamma_.empty()) {
+      kernels_->to_bytes(image_row, light, is_known, levels_, noise, rows.bytes.data());
+      std::copy_n(rows.bytes.data(), count_, to);
+      return;
+    }
+  }
+  kernels_->to_levels(image_row, light, is_known, levels_, noise, rows.levels.data());
+  for (std::size_t i = 0; i < count_; ++i) {
+    const float level = rows.levels[i];
+    to[i] = static_cast<Value>(gamma_.empty() ? static_cast<int>(level) : gamma_.level(level));
+  }
+}
+
+// As the kernels see it.
+SensorRow Sensor::row(std::size_t blocks) const {
+  return {blocks, weights_.data() + 1, static_cast<std::size_t>(radius_)};
 }
 
 template <typename Value>
@@ -152,25 +225,10 @@ void Sensor::read_band(const Image<float>& light, const NoiseStream& stream, int
   if (first < 0 || first > last || last > height_) throw std::invalid_argument("no such rows in the image");
   reserve(rows);
   const int begin = std::max(first - radius_, 0);
-  int pushed = begin;
+  int taken = begin;
   for (int v = first; v < last; ++v) {
-    const float* row = rows.conditioned.data();
-    if (radius_ == 0) {
-      condition(light, v, rows);
-    } else {
-      for (; pushed <= std::min(v + radius_, height_ - 1); ++pushed)
-        push(light, pushed, pushed == begin, rows);
-      row = blurred(v, rows);
-    }
-    kernels_->levels(row, rows.levels.data(), padded_, channels_, levels_, noise_of(stream, v));
-    Value* const to = image.row(v).data();
-    if (!gamma_.empty()) {
-      for (std::size_t i = 0; i < count_; ++i) to[i] = static_cast<Value>(gamma_.level(rows.levels[i]));
-    } else if constexpr (std::is_same_v<Value, std::uint8_t>) {
-      kernels_->to_bytes(rows.levels.data(), to, count_);
-    } else {
-      kernels_->to_words(rows.levels.data(), to, count_);
-    }
+    for (; taken <= std::min(v + radius_, height_ - 1); ++taken) take(light, taken, taken == begin, rows);
+    deliver(v, stream, rows, image.row(v).data());
   }
 }
 

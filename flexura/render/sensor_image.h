@@ -20,19 +20,24 @@ struct NoiseStream {
   std::uint64_t frame = 0;   ///< Its number.
 };
 
-/// The rows that a sensor works on; reused, it allocates no more. One for each thread.
+/// What a sensor works on, row by row; reused, it allocates no more. One for each thread.
 struct SensorRows {
-  std::vector<float> conditioned, blurred, light, levels;
+  std::vector<float> left, right;  ///< Light at a row's ends, with what continues it.
+  std::vector<float> conditioned;  ///< As many rows as the PSF needs at a time, and one more.
+  std::vector<std::uint8_t> same;  ///< SameAs of their blocks.
+  std::vector<std::uint8_t> age;   ///< By block: so many of the last rows were equal to the one before them.
+  std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;  ///< Of the row under way, by block.
+  std::vector<BlockWork> work;
   std::vector<const float*> window;
-  std::vector<int> changed;  ///< By block: the row at which it last differed from the row above it.
-  std::vector<unsigned char> flags;
+  std::vector<float> light, levels;
+  std::vector<std::uint8_t> bytes;
 };
 
 /// A sensor ready to turn light into the numbers that a camera delivers. In physical order, for each value:
 ///
 /// 1. Light that is negative or not a number counts as 0, and beyond 2^20 as 2^20.
 /// 2. Vignetting: times 1 - vignetting (r/R)^2, r from the middle of the image, R the corner pixel's.
-/// 3. PSF: a Gaussian along rows, then columns, cut at 3.5 standard deviations, of unit sum and just the
+/// 3. PSF: a Gaussian along columns and rows, cut at 3.5 standard deviations, of unit sum and just the
 ///    variance asked for; beyond the image its edge goes on. What is flat stays exactly as it is.
 /// 4. Shot noise: normal, of the variance light / full_well (Poisson's for many electrons); times gain.
 /// 5. Read noise: normal.
@@ -61,14 +66,16 @@ class Sensor {
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<std::uint16_t>& image) const;
 
-  /// The PSF's weights on one side, the middle one first; that one alone without a PSF.
-  [[nodiscard]] const std::vector<float>& psf_weights() const { return weights_; }
-
  private:
   void reserve(SensorRows& rows) const;
-  void condition(const Image<float>& light, int v, SensorRows& rows) const;
-  void push(const Image<float>& light, int v, bool is_first, SensorRows& rows) const;
-  const float* blurred(int v, SensorRows& rows) const;
+  [[nodiscard]] std::size_t slot(int v) const;
+  void take(const Image<float>& light, int v, bool is_first, SensorRows& rows) const;
+  void plan(int v, SensorRows& rows) const;
+  [[nodiscard]] SensorRow row(std::size_t blocks) const;
+  [[nodiscard]] float lost(int x, int n) const;
+  const float* blur_down(int v, SensorRows& rows) const;
+  template <typename Value>
+  void deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* to) const;
   template <typename Value>
   void read_all(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
                 Image<Value>& image) const;
@@ -80,10 +87,11 @@ class Sensor {
 
   SensorConfig config_;
   const SensorKernels* kernels_;
-  int width_, height_, radius_;
-  std::size_t channels_, count_, padded_;  // Values in a row, and up to a whole number of blocks.
+  int width_, height_, radius_ = 0;
   std::vector<float> weights_;
-  std::vector<float> lost_across_;  // Of vignetting, by value.
+  std::size_t channels_, count_, values_;  // A pixel's values, a row's, a block's.
+  std::size_t margin_, blocks_;            // Blocks that continue a row at each end; with them and the row's.
+  std::vector<float> lost_across_;         // Of vignetting, by value.
   SensorLevels levels_;
   GammaTable gamma_;
 };

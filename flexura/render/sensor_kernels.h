@@ -8,9 +8,7 @@
 // could be compiled for AVX there, and the linker could pick that copy for everybody.
 namespace flexura {
 
-enum class SimdPath;
-
-/// Values that the kernels take at a time. Rows are padded to a multiple of it times the channels.
+/// Pixels that the kernels take at a time: a block. Rows are padded to whole ones.
 constexpr std::size_t sensor_block = 32;
 
 /// How light becomes a level: light * scale + offset, with noise of the variance light * shot + read, cut to
@@ -22,35 +20,52 @@ struct SensorLevels {
 
 /// Noise of one row: a value's deviate depends on this key and its place in the row alone.
 struct NoiseRow {
-  std::uint32_t start, mix;
+  std::uint32_t start = 0, mix = 0;
 };
 
-/// One instruction set's functions. `count` is a multiple of sensor_block * channels.
+/// A row of light on its way through the sensor.
+struct SensorRow {
+  std::size_t blocks = 0;
+  const float* weights = nullptr;  ///< Of the PSF: the nearest pixel's first, without the middle one.
+  std::size_t radius = 0;          ///< Their number.
+};
+
+/// What a block is equal to, bit for bit.
+enum SameAs : unsigned char { same_as_left = 1, same_as_above = 2 };
+
+/// What is done with a block of a row, so that what is known already is not worked out again.
+enum class BlockWork : unsigned char {
+  none,  ///< Nobody looks at it.
+  copy,  ///< All rows that are blurred into it are equal.
+  blur,
+};
+
+/// One instruction set's functions.
 struct SensorKernels {
   /// to = from, between 0 and the largest light (what is not a number counts as 0), times 1 - (across + down)
-  /// unless `across` is null.
-  void (*condition)(const float* from, const float* across, float down, float* to, std::size_t count);
-  /// Blurs along the row: taps lie `channels` apart, `radius` of them (weights[0] the nearest) on each side.
-  /// `from` can be read radius * channels values beyond both ends.
-  void (*blur_across)(const float* from, float* to, std::size_t count, std::size_t channels,
-                      const float* weights, std::size_t radius);
-  /// Blurs across 2 * radius + 1 rows, `rows[radius]` in the middle. Where `is_same[block]` they are all
-  /// equal and the middle one is copied.
-  void (*blur_down)(const float* const* rows, float* to, std::size_t count, std::size_t channels,
-                    const float* weights, std::size_t radius, const unsigned char* is_same);
-  /// is_equal[block] = whether the rows' values are.
-  void (*compare)(const float* a, const float* b, std::size_t count, std::size_t channels,
-                  unsigned char* is_equal);
-  /// Levels of a row.
-  void (*levels)(const float* light, float* to, std::size_t count, std::size_t channels,
-                 const SensorLevels& levels, NoiseRow noise);
-  void (*to_bytes)(const float* from, std::uint8_t* to, std::size_t count);
-  void (*to_words)(const float* from, std::uint16_t* to, std::size_t count);
+  /// unless `across` is null. `above` is what came out for the row before; `has_left` says that a block
+  /// stands before `to`.
+  void (*condition)(const SensorRow& row, const float* from, const float* across, float down,
+                    const float* above, bool has_left, float* to, unsigned char* same);
+  /// Blurs across 2 * radius + 1 rows, `rows[radius]` in the middle.
+  void (*blur_down)(const SensorRow& row, const float* const* rows, const BlockWork* work, float* to);
+  /// Blurs `light` along the row, as far as there are weights, and gives its levels, as they are or cut to
+  /// whole numbers. Where `is_known[block]` the light and what is blurred into it are as they were a block
+  /// before, and are not looked at.
+  void (*to_levels)(const SensorRow& row, const float* light, const unsigned char* is_known,
+                    const SensorLevels& levels, NoiseRow noise, float* to);
+  void (*to_bytes)(const SensorRow& row, const float* light, const unsigned char* is_known,
+                   const SensorLevels& levels, NoiseRow noise, std::uint8_t* to);
 };
 
-const SensorKernels* baseline_sensor_kernels();
+/// Those for gray pixels and for coloured ones.
+struct SensorKernelPair {
+  SensorKernels gray, color;
+};
+
+const SensorKernelPair* baseline_sensor_kernels();
 // None where the compiler did not build for the set.
-const SensorKernels* avx2_sensor_kernels();
-const SensorKernels* avx512_sensor_kernels();
+const SensorKernelPair* avx2_sensor_kernels();
+const SensorKernelPair* avx512_sensor_kernels();
 
 }  // namespace flexura

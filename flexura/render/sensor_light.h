@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "flexura/base/image.h"
+#include "flexura/camera/sensor.h"
+
+namespace flexura {
+
+/// Rows first, first + step, ... below last.
+struct Rows {
+  int first = 0, last = 0, step = 1;
+};
+
+/// Draws rows of the light on the image plane at an instant, s, into an image of the sensor's size, and
+/// leaves the others alone.
+using DrawLight = std::function<void(double time, const Rows& rows, Image<float>& light)>;
+
+/// How long after the frame's own beginning row v begins to gather light, s: v row times with a rolling
+/// shutter, half a frame for the odd rows of an interlaced image, else 0.
+[[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
+
+/// The light that a frame gathers which begins at `start`, s: in each row the mean over `instants` instants
+/// of its exposure, in the middle of as many equal parts (at its beginning when the exposure is 0). `light`
+/// takes the sensor's size; `scratch` is used where several instants are averaged. Draws once an instant with
+/// a global shutter, twice with an interlaced one, and row by row with a rolling one. std::invalid_argument:
+/// fewer than 1 instant.
+void gather_light(const SensorConfig& sensor, double start, int instants, const DrawLight& draw,
+                  Image<float>& light, Image<float>& scratch);
+
+}  // namespace flexura

@@ -1,0 +1,100 @@
+#include "flexura/sim/axis_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+
+namespace flexura {
+
+AxisMotion::State AxisMotion::Plan::at(double time) const {
+  if (time >= end || count == 0) return {target, 0};
+  int i = count - 1;
+  while (i > 0 && pieces[static_cast<std::size_t>(i)].start > time) --i;
+  const Piece& piece = pieces[static_cast<std::size_t>(i)];
+  const double t = std::max(time - piece.start, 0.0);
+  return {piece.position + t * (piece.rate + 0.5 * t * piece.acceleration),
+          piece.rate + t * piece.acceleration};
+}
+
+// Goes on from `end` with this rate and acceleration for a while; `target` is where that leads.
+void AxisMotion::Plan::add(double duration, double rate, double acceleration) {
+  pieces[static_cast<std::size_t>(count++)] = {end, target, rate, acceleration};
+  end += duration;
+  target += duration * (rate + 0.5 * duration * acceleration);
+}
+
+AxisMotion::AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon)
+    : axis_(axis), play_(play), delay_(delay), horizon_(horizon) {
+  Plan& rest = plans_.emplace_back();
+  rest.start = rest.end = rest.turn = -std::numeric_limits<double>::infinity();
+  rest.target = rest.carried = start;
+}
+
+void AxisMotion::command(double time, double target) {
+  if (!std::isfinite(target)) throw std::invalid_argument(fmt::format("an axis cannot go to {}", target));
+  go(time, commandable(axis_, target));
+}
+
+void AxisMotion::halt(double time) {
+  const State now = plans_.back().at(time + delay_);
+  go(time, now.position + now.rate * std::abs(now.rate) / (2 * axis_.max_acceleration));
+}
+
+void AxisMotion::go(double time, double target) {
+  const double start = time + delay_;
+  if (!(std::isfinite(start) && start >= plans_.back().start))
+    throw std::invalid_argument(
+        fmt::format("a command at {} s, after one that holds from {} s on", time, plans_.back().start));
+  const State from = plans_.back().at(start);
+  Plan plan;
+  plan.start = plan.end = plan.turn = start;
+  plan.carried = carried(plans_.back(), start);
+  plan.target = from.position;
+  if (target != from.position || from.rate != 0) fill(plan, from, target);
+  plans_.push_back(plan);
+  while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
+}
+
+// The fastest way from a position and rate to rest at `target`: full acceleration to a peak rate, on at
+// that rate where it is the largest, full deceleration.
+void AxisMotion::fill(Plan& plan, const State& from, double target) const {
+  const double a = axis_.max_acceleration, fastest = axis_.max_rate;
+  if (std::isinf(a)) {
+    const double way = target - from.position;
+    plan.add(std::abs(way) / fastest, std::copysign(fastest, way), 0);
+    plan.target = target;
+    return;
+  }
+  // Seen in the direction in which the brake, applied now, would leave some way to go.
+  const double left = target - (from.position + from.rate * std::abs(from.rate) / (2 * a));
+  const double sense = std::copysign(1.0, left);
+  const double way = sense * (target - from.position), rate = sense * from.rate;
+  const double peak = std::min(std::sqrt(std::max(a * way + 0.5 * rate * rate, 0.0)), fastest);
+  const double cruise = way - (2 * peak * peak - rate * rate) / (2 * a);
+  const double speeding = std::max((peak - rate) / a, 0.0);
+  plan.add(speeding, sense * rate, sense * a);
+  if (peak == fastest && cruise > 0) plan.add(cruise / peak, sense * peak, 0);
+  plan.add(peak / a, sense * peak, -sense * a);
+  if (rate < 0) plan.turn = plan.start - rate / a;
+  plan.target = target;  // to the bit
+}
+
+const AxisMotion::Plan& AxisMotion::plan_at(double time) const {
+  const auto after = std::ranges::upper_bound(plans_, time, {}, &Plan::start);
+  return after == plans_.begin() ? plans_.front() : *(after - 1);
+}
+
+double AxisMotion::carried(const Plan& plan, double time) const {
+  const auto follow = [&](double position, double motor) {
+    return std::clamp(position, motor + play_.low, motor + play_.high);
+  };
+  double position = plan.carried;
+  if (plan.turn > plan.start && plan.turn < time) position = follow(position, plan.at(plan.turn).position);
+  return follow(position, plan.at(time).position);
+}
+
+}  // namespace flexura

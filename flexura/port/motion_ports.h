@@ -29,8 +29,10 @@ class ArmPort {
   ArmPort(const ArmPort&) = delete;
   ArmPort& operator=(const ArmPort&) = delete;
 
-  /// Sends the drives to where the model has this shape.
-  [[nodiscard]] virtual CommandOutcome command(const ArmState& state) = 0;
+  /// Sends the drives to where the model has this shape, to arrive together `duration` s from now, or each as
+  /// soon after that as it can; 0 is as soon as each can. A motion is followed by commands that each last
+  /// until the next one. Refused besides: a duration that is negative or not finite.
+  [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
   /// As fast as the drives can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
   [[nodiscard]] virtual Outcome<ArmReading> read() = 0;

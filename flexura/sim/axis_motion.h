@@ -23,9 +23,9 @@ class AxisMotion {
   /// axis can be asked for times back to `horizon` s before the last command.
   AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon);
 
-  /// To the nearest position that can be commanded, at `time` + delay; never before the last command, else
-  /// std::invalid_argument.
-  void command(double time, double target);
+  /// To the nearest position that can be commanded, from `time` + delay on; never before the last command,
+  /// else std::invalid_argument. It takes `duration` s, or as long as it must.
+  void command(double time, double target, double duration = 0);
   /// Stops at `time` + delay, as fast as the acceleration allows.
   void halt(double time);
 
@@ -57,8 +57,9 @@ class AxisMotion {
 
   [[nodiscard]] const Plan& plan_at(double time) const;
   [[nodiscard]] double carried(const Plan& plan, double time) const;
-  void go(double time, double target);
-  void fill(Plan& plan, const State& from, double target) const;
+  void go(double time, double target, double duration);
+  void fill(Plan& plan, const State& from, double target, double duration) const;
+  [[nodiscard]] double peak_rate(double way, double rate, double duration) const;
 
   AxisConfig axis_;
   Play play_;

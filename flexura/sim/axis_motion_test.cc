@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double forever = 1e9;  // s of horizon
 
 struct Command {
-  double time, target;
+  double time, target, duration;
   bool is_halt;
 };
 
@@ -39,7 +39,8 @@ struct RandomCase {
     double time = 0;
     for (int count = random.integer(1, 20); count > 0; --count) {
       time += random.integer(0, 4) == 0 ? 0 : std::pow(10.0, random.uniform(-3, 0.5));
-      commands.push_back({time, random.uniform(-4, 4), random.integer(0, 9) == 0});
+      const double duration = random.integer(0, 1) == 0 ? 0 : random.uniform(0, 2);
+      commands.push_back({time, random.uniform(-4, 4), duration, random.integer(0, 9) == 0});
     }
   }
 
@@ -55,7 +56,7 @@ struct RandomCase {
     if (command.is_halt) {
       motion.halt(command.time);
     } else {
-      motion.command(command.time, command.target);
+      motion.command(command.time, command.target, command.duration);
     }
   }
   [[nodiscard]] double end() const { return commands.back().time + delay + 3; }
@@ -157,6 +158,34 @@ TEST(AxisMotion, TakesNoLongerThanItMust) {
   EXPECT_NEAR(turned.rate(1.5), 0, 1e-14);
   EXPECT_NEAR(turned.motor(3), 0, 1e-14);
   EXPECT_FALSE(turned.is_moving(3.0001));
+}
+
+TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
+  for_random_cases(500, [](TestRandom& random) {
+    RandomCase one(random);
+    one.commands.back().is_halt = false;
+    one.commands.back().duration = 0;
+    const double start = one.commands.back().time + one.delay;
+    const AxisMotion fast = one.commanded();
+    one.commands.back().duration = random.uniform(0, 3);
+    const AxisMotion slow = one.commanded();
+    const double target = commandable(one.axis, one.commands.back().target);
+    // It may be there, or come to rest there by itself on its way to the same place.
+    const double rate = fast.rate(start);
+    const double stop = fast.motor(start) + rate * std::abs(rate) / (2 * one.axis.max_acceleration);
+    if (std::abs(stop - target) < 1e-9) return;
+    // When it comes to rest, by bisection.
+    const auto end = [&](const AxisMotion& motion) {
+      double low = start, high = start + 1e4;
+      while (high - low > 1e-9) (motion.is_moving(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+      return low - start;
+    };
+    EXPECT_NEAR(end(slow), std::max(end(fast), one.commands.back().duration), 1e-6);
+    // Without a jump: what is left before the end is what the brake takes.
+    if (!std::isfinite(one.axis.max_acceleration)) return;
+    const double before = start + end(slow) - 1e-6;
+    EXPECT_NEAR(slow.motor(before), target, 1e-6 * one.axis.max_acceleration * 1e-5 + 1e-9);
+  });
 }
 
 TEST(AxisMotion, WithoutLimitsIsThereAtOnce) {

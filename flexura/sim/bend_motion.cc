@@ -38,7 +38,7 @@ bool BendMotion::is_moving(double time) const {
   return std::ranges::any_of(plan.durations, [&](double duration) { return plan.start + duration > time; });
 }
 
-void BendMotion::command(double time, const ArmState& target) {
+void BendMotion::command(double time, const ArmState& target, double duration) {
   if (target.bends.size() != sections_.size() || target.stretches.size() != sections_.size())
     throw std::invalid_argument(
         fmt::format("a shape of {} sections for an arm of {}", target.bends.size(), sections_.size()));
@@ -51,18 +51,19 @@ void BendMotion::command(double time, const ArmState& target) {
     const auto [least, most] = sections_[i].stretch_limits;
     inside.stretches[i] = std::clamp(inside.stretches[i], least, most);
   }
-  go(time, std::move(inside));
+  go(time, std::move(inside), duration);
 }
 
-void BendMotion::halt(double time) { go(time, at(time)); }
+void BendMotion::halt(double time) { go(time, at(time), 0); }
 
-void BendMotion::go(double time, ArmState target) {
+void BendMotion::go(double time, ArmState target, double duration) {
   if (!(std::isfinite(time) && time >= plans_.back().start))
     throw std::invalid_argument(
         fmt::format("a command at {} s, after one at {} s", time, plans_.back().start));
   Plan plan{time, at(time), std::move(target), {}};
   for (std::size_t i = 0; i < sections_.size(); ++i)
-    plan.durations.push_back((plan.to.bends[i] - plan.from.bends[i]).norm() / sections_[i].max_bend_rate);
+    plan.durations.push_back(
+        std::max(duration, (plan.to.bends[i] - plan.from.bends[i]).norm() / sections_[i].max_bend_rate));
   plans_.push_back(std::move(plan));
   while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
 }

@@ -1,5 +1,7 @@
 #include "flexura/sim/simulated_arm.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -94,7 +96,7 @@ SimulatedDrive::SimulatedDrive(const ArmSetup& model, const ArmSetup& truth, dou
       believed_zero_(zeros(model, commander_.positions())),
       true_zero_(zeros(truth, commander_.positions())) {}
 
-bool SimulatedDrive::command(double time, const ArmState& state) {
+bool SimulatedDrive::command(double time, const ArmState& state, double duration) {
   constexpr double most_microsteps = 1e15;
   const TendonDisplacements wanted = tendon_displacements(model_.arm, *model_.drive, state);
   for (std::size_t i = 0; i < wanted.pulled.size(); ++i) {
@@ -104,8 +106,8 @@ bool SimulatedDrive::command(double time, const ArmState& state) {
   commander_.follow(wanted);
   for (std::size_t i = 0; i < true_.size(); ++i) {
     const auto position = static_cast<double>(commander_.positions()[i]);
-    believed_[i].command(time, sense(model_.drive->axes[i]) * position);
-    true_[i].command(time, sense(truth_.drive->axes[i]) * position);
+    believed_[i].command(time, sense(model_.drive->axes[i]) * position, duration);
+    true_[i].command(time, sense(truth_.drive->axes[i]) * position, duration);
   }
   return true;
 }
@@ -134,13 +136,15 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
   offset_ = sum(truth.initial, -1, model.initial);
 }
 
-CommandOutcome SimulatedArm::command(const ArmState& state) {
+CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   if (auto fault = link_.fault()) return *fault;
   if (!fits(state, arm_)) return link_.refusal("the shape is not one of this arm");
+  if (!(duration >= 0 && std::isfinite(duration)))
+    return link_.refusal(fmt::format("a motion cannot take {} s", duration));
   if (auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) {
-    if (!drive->command(link_.now(), state)) return link_.refusal("a motor cannot count so far");
+    if (!drive->command(link_.now(), state, duration)) return link_.refusal("a motor cannot count so far");
   } else {
-    std::get<BendMotion>(moved_by_).command(link_.now(), sum(state, 1, offset_));
+    std::get<BendMotion>(moved_by_).command(link_.now(), sum(state, 1, offset_), duration);
   }
   return Accepted{};
 }

@@ -22,7 +22,7 @@ class SimulatedDrive {
   SimulatedDrive(const ArmSetup& model, const ArmSetup& truth, double horizon);
 
   /// False when a motor's position could not be counted; nothing moves then.
-  [[nodiscard]] bool command(double time, const ArmState& state);
+  [[nodiscard]] bool command(double time, const ArmState& state, double duration);
   void halt(double time);
   [[nodiscard]] ArmReading reading(double time) const;
   [[nodiscard]] ArmState truth(double time) const;
@@ -42,7 +42,7 @@ class SimulatedArm : public ArmPort {
   /// std::invalid_argument when the truth is another arm (truth_problem).
   SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon);
 
-  CommandOutcome command(const ArmState& state) override;
+  CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 

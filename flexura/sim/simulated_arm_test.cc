@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 #include "flexura/kinematics/tendons.h"
@@ -64,7 +65,7 @@ TEST(SimulatedArm, GoesWhereItIsToldThroughPlayAndSteps) {
     SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
     for (int i = 0; i < 6; ++i) {
       const ArmState target = random_shape(random);
-      ASSERT_TRUE(arm.command(target));
+      ASSERT_TRUE(arm.command(target, 0));
       clock.wait_until(clock.now() + 10);
       EXPECT_LE(difference(arm.truth(clock.now()), target), rounding(rig));
       EXPECT_LE(difference(arm.read().value().state, target), rounding(rig));
@@ -80,7 +81,7 @@ TEST(SimulatedArm, ItsMotorsObeyTheirSpeedAndAcceleration) {
     SimulatedClock clock;
     SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
     for (int i = 0; i < 8; ++i) {
-      ASSERT_TRUE(arm.command(random_shape(random)));
+      ASSERT_TRUE(arm.command(random_shape(random), 0));
       clock.wait_until(clock.now() + random.uniform(0, 0.5));
     }
     const ArmSetup setup(rig);
@@ -102,9 +103,9 @@ TEST(SimulatedArm, TruePlayThatTheModelDoesNotKnowKeepsItAway) {
   SimulatedArm arm(ArmSetup{model}, ArmSetup{truth}, clock, forever);
   ArmState bent = ArmState::straight(2);
   bent.bends[0] = {0.5, 0};
-  ASSERT_TRUE(arm.command(bent));
+  ASSERT_TRUE(arm.command(bent, 0));
   clock.wait_until(20);
-  ASSERT_TRUE(arm.command(ArmState::straight(2)));
+  ASSERT_TRUE(arm.command(ArmState::straight(2), 0));
   clock.wait_until(40);
   // 0.1 rad of a spool of 10 mm are 1 mm of cable at 15 mm from the backbone.
   EXPECT_GT(difference(arm.truth(40), ArmState::straight(2)), 0.02);
@@ -118,7 +119,7 @@ TEST(SimulatedArm, TrueTendonsBendItOtherwise) {
   SimulatedArm arm(ArmSetup{model}, ArmSetup{truth}, clock, forever);
   ArmState bent = ArmState::straight(2);
   bent.bends[0] = {0.5, 0};
-  ASSERT_TRUE(arm.command(bent));
+  ASSERT_TRUE(arm.command(bent, 0));
   clock.wait_until(20);
   EXPECT_NEAR(arm.truth(20).bends[0].x(), 0.5 / 1.1, rounding(model));
   EXPECT_NEAR(arm.read().value().state.bends[0].x(), 0.5, rounding(model));
@@ -132,12 +133,12 @@ TEST(SimulatedArm, WithoutDrivesItsSectionsObeyTheirBendRates) {
     ArmState target;
     for (int i = 0; i < 8; ++i) {
       target = random_shape(random);
-      ASSERT_TRUE(arm.command(target));
+      ASSERT_TRUE(arm.command(target, 0));
       clock.wait_until(clock.now() + random.uniform(0, 3));
       const bool halts = random.integer(0, 4) == 0;
       ASSERT_TRUE(!halts || arm.halt());
     }
-    ASSERT_TRUE(arm.command(target));
+    ASSERT_TRUE(arm.command(target, 0));
     constexpr double step = 1e-3;
     for (double t = step; t < clock.now() + 7; t += step)
       EXPECT_LE(difference(arm.truth(t), arm.truth(t - step)), 0.5 * step * (1 + 1e-9));
@@ -152,12 +153,39 @@ TEST(SimulatedArm, WithoutDrivesKeepsToTheLimitsOfItsSections) {
   SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
   ArmState target = ArmState::straight(2);
   target.bends[0] = {3, 4}, target.stretches[1] = 2;
-  ASSERT_TRUE(arm.command(target));
+  ASSERT_TRUE(arm.command(target, 0));
   EXPECT_TRUE(arm.read().value().moving);
   clock.wait_until(20);
   EXPECT_LE((arm.truth(20).bends[0] - Eigen::Vector2d(0.36, 0.48)).norm(), 1e-12);
   EXPECT_EQ(arm.truth(20).stretches[1], 1);
   EXPECT_FALSE(arm.read().value().moving);
+}
+
+// Commands that each last until the next one: the arm is where the motion is, between the commands too.
+TEST(SimulatedArm, FollowsAMotionCommandByCommand) {
+  const auto follow = [](const RigConfig& rig, double start, double tolerance) {
+    const auto motion = [](double time) {
+      ArmState state = ArmState::straight(2);
+      state.bends[0].x() = 0.1 * time, state.bends[1].y() = -0.2 * time;
+      return state;
+    };
+    SimulatedClock clock;
+    SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
+    constexpr double step = 0.02;
+    for (double time = 0; time < 2; time += step) {
+      clock.wait_until(time);
+      ASSERT_TRUE(arm.command(motion(time + step), step));
+    }
+    for (double time = start; time < 2; time += 0.003)
+      EXPECT_LE(difference(arm.truth(time), motion(time)), tolerance) << time;
+  };
+  follow(without_drive(), 0, 1e-12);
+  RigConfig driven = two_section_rig();
+  driven.drive->motor.max_acceleration = std::numeric_limits<double>::infinity();
+  follow(driven, 0.2, 2 * rounding(driven));
+  // A finite acceleration leaves it behind: by the way of the brake.
+  driven.drive->motor.max_acceleration = 100;
+  follow(driven, 0.2, 0.003);
 }
 
 TEST(SimulatedArm, RefusesShapesOfAnotherArm) {
@@ -166,15 +194,17 @@ TEST(SimulatedArm, RefusesShapesOfAnotherArm) {
     SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
     ArmState bad = ArmState::straight(2);
     bad.bends[1].x() = std::nan("");
-    EXPECT_EQ(arm.command(bad).fault()->kind, FaultKind::refused);
-    EXPECT_EQ(arm.command(ArmState::straight(3)).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(bad, 0).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(ArmState::straight(3), 0).fault()->kind, FaultKind::refused);
     bad = ArmState::straight(2);
     bad.stretches[0] = 0;
-    EXPECT_EQ(arm.command(bad).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(bad, 0).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(ArmState::straight(2), -1).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(ArmState::straight(2), std::nan("")).fault()->kind, FaultKind::refused);
     if (!rig.drive) return;
     bad = ArmState::straight(2);
     bad.bends[0].x() = 1e15;
-    EXPECT_EQ(arm.command(bad).fault()->kind, FaultKind::refused);
+    EXPECT_EQ(arm.command(bad, 0).fault()->kind, FaultKind::refused);
   };
   refuses(two_section_rig());
   refuses(without_drive());
@@ -189,8 +219,8 @@ TEST(SimulatedArm, IsTheSameToTheBitHoweverOftenItIsAsked) {
     double time = 0;
     for (int i = 0; i < 10; ++i) {
       const ArmState target = random_shape(random);
-      ASSERT_TRUE(asked.command(target));
-      ASSERT_TRUE(unasked.command(target));
+      ASSERT_TRUE(asked.command(target, 0));
+      ASSERT_TRUE(unasked.command(target, 0));
       const double next = time + random.uniform(0, 1);
       for (; time < next; time += random.uniform(0.01, 0.1)) {
         asked_clock.wait_until(time);

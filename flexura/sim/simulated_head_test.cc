@@ -38,7 +38,7 @@ HeadState anywhere(TestRandom& random) {
 }
 Eigen::Vector3d vector(const HeadState& state) { return {state.pan, state.tilt, state.zoom}; }
 
-TEST(SimulatedHead, ObeysLimitsRatesAccelerationsAndBacklashWhateverItIsTold) {
+TEST(SimulatedHead, ObeysItsLimitsRatesAndBacklashWhateverItIsTold) {
   for_random_cases(60, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     SimulatedClock clock;

@@ -43,7 +43,7 @@ Taken run(const RigConfig& model, const RigConfig& truth, std::uint64_t seed, Te
     look();
     ArmState state = ArmState::straight(2);
     for (Eigen::Vector2d& bend : state.bends) bend = commands.vector<2>(-1, 1);
-    EXPECT_TRUE(ports.arm->command(state));
+    EXPECT_TRUE(ports.arm->command(state, 0));
     EXPECT_TRUE(front.head->command({commands.uniform(-0.1, 0.1), commands.uniform(-0.1, 0.1), 1.5}));
   }
   return taken;
@@ -201,7 +201,7 @@ TEST_F(SimulatedCameraTest, SeesWhereTheArmWasWhenItWasExposed) {
   ArmState bent = ArmState::straight(2);
   bent.bends[0] = {1, 0};
   clock().wait_until(1);
-  ASSERT_TRUE(ports_.arm->command(bent));
+  ASSERT_TRUE(ports_.arm->command(bent, 0));
   clock().wait_until(1.55);
   const Frame frame = *camera().newest().value();
   ASSERT_EQ(frame.number, 10);

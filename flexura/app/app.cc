@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "flexura/app/commands.h"
+#include "flexura/app/render.h"
 #include "flexura/base/source.h"
 #include "flexura/base/version.h"
 
@@ -61,6 +62,26 @@ void add_answers(CLI::App& app, Command& chosen, const std::string& name, const 
       [&chosen, file, command] { chosen = [file, command] { return command(*file, std::cin, std::cout); }; });
 }
 
+void add_render(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* render = app.add_subcommand("render", "Write the image that a camera takes of an experiment");
+  render->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
+  render->add_option("--camera", arguments->camera, "The camera's name")->type_name("NAME")->required();
+  render->add_option("--time", arguments->time, "The experiment's time, s")
+      ->type_name("T")
+      ->capture_default_str();
+  render->add_option("--out", arguments->out, "The image file to write (.png)")
+      ->type_name("FILE")
+      ->required();
+  render->add_flag("--truth", arguments->truth,
+                   "Write beside it what it shows, from the geometry: depth, labels, curves");
+  render->add_option("--set", arguments->sets, "Change a value: camera.0.initial.pan_deg=2 (repeatable)")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  render->callback(
+      [&chosen, arguments] { chosen = [arguments] { return render_command(*arguments, std::cout); }; });
+}
+
 void add_export(CLI::App& app, Command& chosen) {
   auto results = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("csv");
@@ -93,6 +114,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_check(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
+  add_render(app, chosen);
   add_export(app, chosen);
   add_schema(app, chosen);
   try {

@@ -27,12 +27,11 @@ class Photographer {
 
  private:
   [[nodiscard]] const Sensor& sensor(const Shot& shot);
-  void expose(const Shot& shot, Image<float>& light);
 
   SceneMaker maker_;
   Renderer renderer_;
   LightImage instant_;
-  Image<float> light_;
+  Image<float> light_, scratch_;
   SensorRows rows_;
   std::map<std::size_t, Sensor> sensors_;  // by camera
 };

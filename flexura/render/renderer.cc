@@ -38,7 +38,7 @@ void Renderer::prepare(const Scene& scene, const View& view) {
   tiles_.build(stage_, rays_);
 }
 
-void Renderer::render_tile(int column, int row, PixelKind pixels, Picture& picture) const {
+void Renderer::render_tile(int column, int row, PixelKind pixels, LightImage& picture) const {
   const auto parts = tiles_.parts(column, row);
   const Tracer tracer(stage_, parts);
   const int u_end = std::min((column + 1) * Tiles::size, rays_.width());
@@ -62,7 +62,7 @@ void Renderer::render_tile(int column, int row, PixelKind pixels, Picture& pictu
   }
 }
 
-void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, Picture& picture) {
+void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture) {
   prepare(scene, view);
   fit(view.width, view.height, pixels == PixelKind::gray ? 1 : 3, picture.light);
   fit(view.width, view.height, 1, picture.depth);

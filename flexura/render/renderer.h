@@ -11,7 +11,7 @@
 namespace flexura {
 
 /// What reaches the image plane of an ideal camera: each pixel's light is the mean over its square.
-struct Picture {
+struct LightImage {
   Image<float> light;  ///< One channel (gray) or three (red, green, blue); linear, in the scene's units.
   Image<float>
       depth;  ///< In the middle of each pixel, along the optical axis, m; infinity: nothing is there.
@@ -24,7 +24,7 @@ class Renderer {
  public:
   /// Draws what `view` shows of `scene` into `picture`, which is made to fit.
   /// std::invalid_argument: a scene that check() refuses, a view that is not finite, an image without pixels.
-  void render(const Scene& scene, const View& view, PixelKind pixels, Picture& picture);
+  void render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture);
 
   /// The first step of render(), for those who ask further: everything as `view` sees it. `scene` must stay.
   void prepare(const Scene& scene, const View& view);
@@ -33,7 +33,7 @@ class Renderer {
   [[nodiscard]] const Tiles& tiles() const { return tiles_; }
 
  private:
-  void render_tile(int column, int row, PixelKind pixels, Picture& picture) const;
+  void render_tile(int column, int row, PixelKind pixels, LightImage& picture) const;
 
   RayField rays_;
   Stage stage_;

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace flexura {
+
+/// What can go wrong at a port in a good run.
+enum class FaultKind {
+  link_lost,  ///< The device does not answer.
+  refused,    ///< It answers, and does not do this: a position that is no number, a shape of another arm.
+};
+
+struct PortFault {
+  FaultKind kind = FaultKind::link_lost;
+  std::string what;  ///< In words, with the device's name.
+};
+
+/// "link lost: ...", "refused: ...".
+[[nodiscard]] std::string text(const PortFault& fault);
+
+/// What a port gives: a value, or the reason why there is none.
+template <class T>
+class [[nodiscard]] Outcome {
+ public:
+  Outcome(T value) : held_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
+  Outcome(PortFault fault) : held_(std::move(fault)) {}  // NOLINT(google-explicit-constructor)
+
+  explicit operator bool() const { return std::holds_alternative<T>(held_); }
+
+  /// std::runtime_error with the fault's text when there is no value.
+  [[nodiscard]] const T& value() const& {
+    require_value();
+    return std::get<T>(held_);
+  }
+  [[nodiscard]] T&& value() && {
+    require_value();
+    return std::get<T>(std::move(held_));
+  }
+  /// None when there is a value.
+  [[nodiscard]] std::optional<PortFault> fault() const {
+    if (*this) return std::nullopt;
+    return std::get<PortFault>(held_);
+  }
+
+ private:
+  void require_value() const {
+    if (!*this) throw std::runtime_error(text(std::get<PortFault>(held_)));
+  }
+  std::variant<T, PortFault> held_;
+};
+
+/// The value of a command that was taken.
+struct Accepted {};
+using CommandOutcome = Outcome<Accepted>;
+
+}  // namespace flexura

@@ -1,0 +1,125 @@
+#include "flexura/sim/rig_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "flexura/base/source.h"
+#include "flexura/base/unit.h"
+#include "flexura/kinematics/shape.h"
+
+namespace flexura {
+namespace {
+
+void lay(Node& under, Node over, std::string_view path);
+
+const std::string* name_of(const Node& entry) {
+  const Node* name = entry.find("name");
+  return name == nullptr ? nullptr : name->as<std::string>();
+}
+
+bool holds_tables(const Node::Array& entries) {
+  return !entries.empty() &&
+         std::ranges::all_of(entries, [](const Node& entry) { return entry.as<Node::Table>() != nullptr; });
+}
+
+void lay_by_name(Node::Array& below, Node entry, const std::string& path) {
+  const std::string name = *name_of(entry);
+  const auto found = std::ranges::find_if(below, [&](const Node& candidate) {
+    const std::string* other = name_of(candidate);
+    return other != nullptr && *other == name;
+  });
+  if (found == below.end()) {
+    throw InputError(std::vector<Problem>{
+        {entry.where, fmt::format("truth.{}: nothing is named \"{}\" outside [truth]", path, name)}});
+  }
+  lay(*found, std::move(entry), path);
+}
+
+// Whether the array was laid entry by entry.
+bool lay_entries(Node& under, Node& over, const std::string& path) {
+  auto* below = under.as<Node::Array>();
+  auto* above = over.as<Node::Array>();
+  if (below == nullptr || above == nullptr || !holds_tables(*below) || !holds_tables(*above)) return false;
+  const bool named = std::ranges::all_of(*above, [](const Node& entry) { return name_of(entry) != nullptr; });
+  if (!named && below->size() != above->size()) return false;
+  for (std::size_t i = 0; i < above->size(); ++i) {
+    if (named) {
+      lay_by_name(*below, std::move((*above)[i]), path);
+    } else {
+      lay((*below)[i], std::move((*above)[i]), path);
+    }
+  }
+  return true;
+}
+
+void lay(Node& under, Node over, std::string_view path) {
+  auto* below = under.as<Node::Table>();
+  auto* above = over.as<Node::Table>();
+  if (below == nullptr || above == nullptr) {
+    if (!lay_entries(under, over, std::string(path))) under = std::move(over);
+    return;
+  }
+  for (Node::Member& member : *above) {
+    const auto same = std::ranges::find_if(*below, [&](const Node::Member& candidate) {
+      return without_unit(candidate.key) == without_unit(member.key);
+    });
+    if (same == below->end()) {
+      below->push_back(std::move(member));
+    } else if (same->key == member.key) {
+      lay(same->node, std::move(member.node),
+          fmt::format("{}{}{}", path, path.empty() ? "" : ".", member.key));
+    } else {
+      *same = std::move(member);
+    }
+  }
+}
+
+}  // namespace
+
+ArmSetup::ArmSetup(const RigConfig& config) : arm(config.arm.arm()) {
+  initial = arm_state(arm, config.arm.initial);
+  if (config.drive) drive = config.drive->drive();
+}
+
+Node truth_of(Node document) {
+  auto* members = document.as<Node::Table>();
+  if (members == nullptr) return document;
+  const auto found = std::ranges::find(*members, "truth", &Node::Member::key);
+  if (found == members->end()) return document;
+  Node truth = std::move(found->node);
+  members->erase(found);
+  if (truth.as<Node::Table>() == nullptr) {
+    throw InputError(
+        std::vector<Problem>{{truth.where, fmt::format("truth = {}: expected a table", truth.brief())}});
+  }
+  lay(document, std::move(truth), "");
+  return document;
+}
+
+std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
+  if (truth.arm.kind != model.arm.kind) return "the true arm is of another kind than the model's";
+  if (truth.arm.section.size() != model.arm.section.size()) {
+    return fmt::format("the true arm has {} sections: expected {}, as the model's", truth.arm.section.size(),
+                       model.arm.section.size());
+  }
+  if (truth.drive.has_value() != model.drive.has_value())
+    return "expected a drive in the truth and in the model, or in neither";
+  if (truth.drive && truth.drive->tendon.size() != model.drive->tendon.size()) {
+    return fmt::format("the true drive has {} tendons: expected {}, as the model's",
+                       truth.drive->tendon.size(), model.drive->tendon.size());
+  }
+  if (!std::ranges::equal(truth.cameras, model.cameras, {}, &CameraConfig::name, &CameraConfig::name))
+    return "expected the model's cameras in the truth, by name and order";
+  for (std::size_t i = 0; i < model.cameras.size(); ++i) {
+    const SensorConfig &one = truth.cameras[i].sensor, &other = model.cameras[i].sensor;
+    if (one.width != other.width || one.height != other.height || one.bits != other.bits ||
+        one.pixels != other.pixels)
+      return fmt::format("the true camera {} makes other images than the model's", model.cameras[i].name);
+  }
+  return "";
+}
+
+}  // namespace flexura

@@ -1,0 +1,90 @@
+#include "flexura/sim/simulated_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+// Sebastiano Vigna's splitmix64: a number's place in a random sequence.
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
+  FrameTimes times;
+  times.start = static_cast<double>(frame) / sensor.frame_rate;
+  double last_row = 0;  // after the first one
+  if (sensor.readout == Readout::rolling) last_row = sensor.row_time * static_cast<double>(sensor.height - 1);
+  if (sensor.readout == Readout::interlaced) last_row = 0.5 / sensor.frame_rate;
+  times.middle = times.start + 0.5 * (last_row + sensor.exposure);
+  times.end = times.start + last_row + sensor.exposure;
+  times.received = times.end + sensor.delay;
+  return times;
+}
+
+double frame_horizon(const SensorConfig& sensor) {
+  return frame_times(sensor, 0).received + (frames_kept + 1) / sensor.frame_rate;
+}
+
+SimulatedCamera::SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock)
+    : link_("camera " + camera.config().name, clock),
+      sensor_(camera.config().sensor),
+      shot_(std::move(shot)),
+      take_picture_(std::move(take_picture)),
+      clock_(&clock) {
+  shot_.sensor = &sensor_;
+}
+
+bool SimulatedCamera::is_lost(std::int64_t frame) const {
+  const std::uint64_t number =
+      mixed(mixed(mixed(shot_.seed) + shot_.camera) + static_cast<std::uint64_t>(frame));
+  return static_cast<double>(number >> 11) * 0x1p-53 < sensor_.drop;
+}
+
+// The last frame received at `time` or before, lost ones counted; -1 before the first.
+std::int64_t SimulatedCamera::last_received(double time) const {
+  const double count = std::floor((time - frame_times(sensor_, 0).received) * sensor_.frame_rate);
+  auto frame = static_cast<std::int64_t>(std::max(count - 1, -1.0));
+  while (frame_times(sensor_, frame + 1).received <= time) ++frame;
+  return frame;
+}
+
+Frame SimulatedCamera::take(std::int64_t number) {
+  const FrameTimes times = frame_times(sensor_, number);
+  shot_.frame = number;
+  shot_.start = times.start;
+  next_ = number + 1;
+  return {number, times.middle, sensor_.exposure, times.received,
+          std::make_shared<const Picture>(take_picture_(shot_))};
+}
+
+Outcome<std::optional<Frame>> SimulatedCamera::newest() {
+  if (auto fault = link_.fault()) return *fault;
+  const std::int64_t last = last_received(link_.now());
+  const std::int64_t first = std::max(next_, last - frames_kept + 1);
+  for (std::int64_t frame = last; frame >= first; --frame)
+    if (!is_lost(frame)) return std::optional<Frame>(take(frame));
+  return std::optional<Frame>{};
+}
+
+Outcome<std::optional<Frame>> SimulatedCamera::wait(double timeout) {
+  const double until = link_.now() + std::max(timeout, 0.0);
+  for (;;) {
+    auto found = newest();
+    if (!found || found.value()) return found;
+    const double next = frame_times(sensor_, last_received(link_.now()) + 1).received;
+    if (!(next <= until)) break;
+    clock_->wait_until(next);
+  }
+  clock_->wait_until(until);
+  return newest();
+}
+
+}  // namespace flexura

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "flexura/camera/camera.h"
+#include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/port/clock_port.h"
+#include "flexura/sim/simulated_link.h"
+
+namespace flexura {
+
+/// What a frame shows: all that a take_picture needs to know of it.
+struct Shot {
+  std::size_t camera = 0;                    ///< Its place in the rig.
+  std::int64_t frame = 0;                    ///< With the seed and the camera: the key of its noise.
+  std::uint64_t seed = 0;                    ///< Of the run.
+  double start = 0;                          ///< When the exposure of the first row starts, s.
+  const SensorConfig* sensor = nullptr;      ///< How long it lasts, and how the rows follow. Never null.
+  std::function<View(double)> view;          ///< From start on: what the camera sees at a time,
+  std::function<Backbone(double)> backbone;  ///< and where the arm is.
+};
+
+/// Makes the image of a shot, of the sensor's size, channels and bits. The same image for the same shot.
+using TakePicture = std::function<Picture(const Shot&)>;
+
+/// When a sensor's frames are exposed and can be had; frame n starts at n / frame_rate.
+struct FrameTimes {
+  double start = 0;     ///< Of the first row's exposure, s.
+  double middle = 0;    ///< Of the exposure of the middle of the image.
+  double end = 0;       ///< Of the last row's exposure.
+  double received = 0;  ///< end + delay
+};
+[[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
+
+/// The newest frames that `SimulatedCamera::newest` looks at: where more than these were lost in a row, it
+/// has none.
+inline constexpr int frames_kept = 16;
+
+/// How long after the start of its exposure a frame can still be asked for, s: how far back views and
+/// backbones must be known.
+[[nodiscard]] double frame_horizon(const SensorConfig& sensor);
+
+/// A camera that exposes frames at its rate from time 0 on, delays and loses them. Nothing is rendered but
+/// what is asked for.
+class SimulatedCamera : public CameraPort {
+ public:
+  /// `shot` says what its frames show; its frame and start are filled in for each.
+  SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
+
+  Outcome<std::optional<Frame>> newest() override;
+  Outcome<std::optional<Frame>> wait(double timeout) override;
+
+  [[nodiscard]] SimulatedLink& link() { return link_; }
+
+ private:
+  [[nodiscard]] bool is_lost(std::int64_t frame) const;
+  [[nodiscard]] std::int64_t last_received(double time) const;
+  [[nodiscard]] Frame take(std::int64_t number);
+
+  SimulatedLink link_;
+  SensorConfig sensor_;
+  Shot shot_;
+  TakePicture take_picture_;
+  ClockPort* clock_;
+  std::int64_t next_ = 0;  // the first frame that was not passed over
+};
+
+}  // namespace flexura

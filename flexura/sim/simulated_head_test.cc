@@ -1,0 +1,191 @@
+#include "flexura/sim/simulated_head.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "flexura/sim/simulated_clock.h"
+#include "tests/support/cameras.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double forever = 1e9;  // s of horizon
+
+// A head in which nothing is ideal.
+CameraConfig real_camera(TestRandom& random) {
+  CameraConfig camera = random_camera(random);
+  HeadConfig& head = camera.head;
+  head.delay = random.uniform(0, 0.3);
+  head.pan.resolution = random.uniform(0.001, 0.02), head.tilt.resolution = random.uniform(0.001, 0.02);
+  head.pan.backlash = random.uniform(0, 0.02), head.tilt.backlash = random.uniform(0, 0.02);
+  head.zoom.backlash = random.uniform(0, 0.1), head.zoom.max_acceleration = random.uniform(1, 20);
+  camera.mount.stage.delay = random.uniform(0, 0.3);
+  camera.mount.stage.x.backlash = 0.003, camera.mount.stage.y.resolution = 0.01;
+  return camera;
+}
+
+HeadState anywhere(TestRandom& random) {
+  return {random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-5, 12)};
+}
+Eigen::Vector3d vector(const HeadState& state) { return {state.pan, state.tilt, state.zoom}; }
+
+TEST(SimulatedHead, ObeysItsLimitsRatesAndBacklashWhateverItIsTold) {
+  for_random_cases(60, [](TestRandom& random) {
+    const Camera camera(real_camera(random));
+    SimulatedClock clock;
+    SimulatedHead head(camera, clock, forever);
+    for (int i = 0; i < 12; ++i) {
+      ASSERT_TRUE(head.command(anywhere(random)));
+      clock.wait_until(clock.now() + random.uniform(0, 2));
+    }
+    constexpr double step = 1e-3;
+    for (double t = step; t < clock.now() + 5; t += step) {
+      const Eigen::Vector3d last = vector(head.truth(t - step)), now = vector(head.truth(t));
+      for (int i = 0; i < 3; ++i) {
+        const AxisConfig& axis = camera.head_axes()[static_cast<std::size_t>(i)];
+        // Of what is carried: its speed is the motor's or 0, so its acceleration has no bound.
+        const double slack = 0.5 * axis.backlash + 1e-9;
+        EXPECT_GE(now[i], axis.limits[0] - slack);
+        EXPECT_LE(now[i], axis.limits[1] + slack);
+        EXPECT_LE(std::abs(now[i] - last[i]), axis.max_rate * step * (1 + 1e-9) + 1e-12) << i;
+      }
+    }
+  });
+}
+
+TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Camera camera(real_camera(random));
+    SimulatedClock clock;
+    SimulatedHead head(camera, clock, forever);
+    for (int i = 0; i < 8; ++i) {
+      ASSERT_TRUE(head.command(anywhere(random)));
+      clock.wait_until(clock.now() + random.uniform(0, 2));
+      const HeadReading reading = head.read().value();
+      EXPECT_EQ(reading.time, clock.now());
+      const Eigen::Vector3d read = vector(reading.state), truth = vector(head.truth(reading.time));
+      for (int axis = 0; axis < 3; ++axis) {
+        const AxisConfig& config = camera.head_axes()[static_cast<std::size_t>(axis)];
+        EXPECT_LE(std::abs(read[axis] - truth[axis]), 0.5 * (config.backlash + config.resolution) + 1e-9);
+        if (config.resolution == 0) continue;
+        const double steps = read[axis] / config.resolution;
+        EXPECT_NEAR(steps, std::round(steps), 1e-9);
+      }
+    }
+  });
+}
+
+TEST(SimulatedHead, MovesAfterItsDelayAndArrives) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Camera camera(real_camera(random));
+    const double delay = camera.config().head.delay;
+    SimulatedClock clock;
+    SimulatedHead head(camera, clock, forever);
+    clock.wait_until(1);
+    const HeadState target = anywhere(random);
+    ASSERT_TRUE(head.command(target));
+    EXPECT_EQ(head.truth(1 + delay), camera.initial_head());
+    EXPECT_TRUE(head.read().value().moving);
+    clock.wait_until(60 + delay);
+    const HeadReading reading = head.read().value();
+    EXPECT_FALSE(reading.moving);
+    const auto& axes = camera.head_axes();
+    EXPECT_NEAR(reading.state.pan, commandable(axes[0], target.pan), 1e-12);
+    EXPECT_NEAR(reading.state.tilt, commandable(axes[1], target.tilt), 1e-12);
+    EXPECT_NEAR(reading.state.zoom, commandable(axes[2], target.zoom), 1e-9);
+  });
+}
+
+TEST(SimulatedHead, ItsLensStaysWithinTheTable) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Camera camera(real_camera(random));
+    SimulatedClock clock;
+    SimulatedHead head(camera, clock, forever);
+    for (const double zoom : {-1e6, 1e6, -1e6}) {
+      ASSERT_TRUE(head.command({0, 0, zoom}));
+      clock.wait_until(clock.now() + 20);
+      EXPECT_NO_THROW((void)camera.view({}, head.truth(clock.now())));
+    }
+  });
+}
+
+TEST(SimulatedHead, HaltsOnItsWay) {
+  CameraConfig config = cameras_at({5, 5})[0];
+  const Camera camera(config);
+  SimulatedClock clock;
+  SimulatedHead head(camera, clock, forever);
+  ASSERT_TRUE(head.command({2, 0, 1}));
+  clock.wait_until(1);
+  ASSERT_TRUE(head.halt());
+  const AxisConfig& pan = camera.head_axes()[0];
+  clock.wait_until(1 + pan.max_rate / pan.max_acceleration + 1e-9);
+  EXPECT_FALSE(head.read().value().moving);
+  // 50 deg/s for a second, less half of the time to speed up, and half of that to stop.
+  EXPECT_NEAR(head.truth(clock.now()).pan, pan.max_rate * 1.0, 1e-9);
+}
+
+TEST(SimulatedHead, RefusesNumbersThatAreNoneAndMovesNothing) {
+  const Camera camera(cameras_at({5, 5})[0]);
+  SimulatedClock clock;
+  SimulatedHead head(camera, clock, forever);
+  const CommandOutcome outcome = head.command({0.5, std::nan(""), 1});
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.fault()->kind, FaultKind::refused);
+  EXPECT_THAT(text(*outcome.fault()), HasSubstr("refused: the head of camera front"));
+  EXPECT_THROW((void)outcome.value(), std::runtime_error);
+  clock.wait_until(5);
+  EXPECT_EQ(head.read().value().state, camera.initial_head());
+}
+
+TEST(SimulatedHead, DoesNotAnswerWhileItsLinkIsLostAndGoesOn) {
+  const Camera camera(cameras_at({5, 5})[0]);
+  SimulatedClock clock;
+  SimulatedHead head(camera, clock, forever);
+  head.link().lose(1, 2);
+  ASSERT_TRUE(head.command({1, 0, 1}));
+  clock.wait_until(1.5);
+  EXPECT_EQ(head.read().fault()->kind, FaultKind::link_lost);
+  EXPECT_FALSE(head.command({0, 0, 1}));
+  EXPECT_FALSE(head.halt());
+  clock.wait_until(10);
+  EXPECT_EQ(head.read().value().state.pan, 1);
+}
+
+TEST(SimulatedStage, ObeysItsLimitsAndRates) {
+  for_random_cases(60, [](TestRandom& random) {
+    const Camera camera(real_camera(random));
+    SimulatedClock clock;
+    SimulatedStage stage(camera, clock, forever);
+    Eigen::Vector3d target;
+    for (int i = 0; i < 6; ++i) {
+      target = random.vector<3>(-1.5, 1.5);
+      ASSERT_TRUE(stage.command({target}));
+      clock.wait_until(clock.now() + random.uniform(0, 3));
+    }
+    EXPECT_FALSE(stage.command({{0, 0, std::nan("")}}));
+    constexpr double step = 1e-3;
+    for (double t = step; t < clock.now() + 20; t += step) {
+      const Eigen::Vector3d move = stage.truth(t).offset - stage.truth(t - step).offset;
+      for (int i = 0; i < 3; ++i)
+        EXPECT_LE(std::abs(move[i]),
+                  camera.stage_axes()[static_cast<std::size_t>(i)].max_rate * step * (1 + 1e-9));
+    }
+    clock.wait_until(clock.now() + 60);
+    for (int i = 0; i < 3; ++i) {
+      const AxisConfig& axis = camera.stage_axes()[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(stage.read().value().state.offset[i], commandable(axis, target[i]), 1e-12);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/port/clock_port.h"
+#include "flexura/port/outcome.h"
+
+namespace flexura {
+
+/// What connects a simulated device: its name, the rig's clock, and when it cannot be reached. Motion that
+/// was commanded before goes on.
+class SimulatedLink {
+ public:
+  SimulatedLink(std::string name, const ClockPort& clock) : name_(std::move(name)), clock_(&clock) {}
+
+  [[nodiscard]] double now() const { return clock_->now(); }
+  /// The link is lost in [from, to), s.
+  void lose(double from, double to) { outages_.push_back({from, to}); }
+  /// The fault now, if there is one.
+  [[nodiscard]] std::optional<PortFault> fault() const {
+    for (const auto& [from, to] : outages_) {
+      if (now() >= from && now() < to)
+        return PortFault{FaultKind::link_lost, fmt::format("{} does not answer at {:.6g} s", name_, now())};
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] PortFault refusal(const std::string& why) const {
+    return {FaultKind::refused, fmt::format("{}: {}", name_, why)};
+  }
+
+ private:
+  std::string name_;
+  const ClockPort* clock_;
+  std::vector<std::pair<double, double>> outages_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "flexura/camera/camera.h"
+#include "flexura/port/rig_ports.h"
+#include "flexura/sim/rig_config.h"
+#include "flexura/sim/simulated_arm.h"
+#include "flexura/sim/simulated_camera.h"
+#include "flexura/sim/simulated_clock.h"
+#include "flexura/sim/simulated_head.h"
+
+namespace flexura {
+
+/// A camera of the simulated world with what moves it.
+class SimulatedView {
+ public:
+  /// `shot` and `take_picture` as SimulatedCamera takes them; the shot's view is filled in.
+  SimulatedView(const CameraConfig& config, Shot shot, const TakePicture& take_picture, SimulatedClock& clock,
+                double horizon);
+
+  [[nodiscard]] const Camera& description() const { return description_; }
+  /// What the camera truly sees at a time: not for algorithms.
+  [[nodiscard]] View view(double time) const {
+    return description_.view(stage_.truth(time), head_.truth(time));
+  }
+  [[nodiscard]] SimulatedHead& head() { return head_; }
+  [[nodiscard]] SimulatedStage& stage() { return stage_; }
+  [[nodiscard]] SimulatedCamera& camera() { return camera_; }
+  [[nodiscard]] CameraPorts ports() { return {description_.config().name, &camera_, &head_, &stage_}; }
+
+ private:
+  Camera description_;
+  SimulatedHead head_;
+  SimulatedStage stage_;
+  SimulatedCamera camera_;
+};
+
+/// A rig in simulated time: an arm, its drives and cameras as they truly are, behind ports that tasks use
+/// with what they believe. The same configuration, pictures, seed and calls give the same readings and
+/// frames, bit for bit, and asking does not change what happens.
+class SimulatedRig {
+ public:
+  /// `truth` is the simulated world; of `model` only arm and drive are used, to turn commanded shapes into
+  /// motor positions. std::invalid_argument: truth_problem's text, or what is no arm or camera.
+  SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
+               std::uint64_t seed);
+
+  /// Valid as long as the rig.
+  [[nodiscard]] RigPorts ports();
+
+  [[nodiscard]] SimulatedClock& clock() { return clock_; }
+  [[nodiscard]] SimulatedArm& arm() { return arm_; }
+  /// In the order of the truth's cameras.
+  [[nodiscard]] SimulatedView& camera(std::size_t index) { return *cameras_.at(index); }
+  [[nodiscard]] std::size_t camera_count() const { return cameras_.size(); }
+
+ private:
+  SimulatedClock clock_;
+  SimulatedArm arm_;
+  std::vector<std::unique_ptr<SimulatedView>> cameras_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,230 @@
+#include "flexura/sim/simulated_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "tests/support/random_cases.h"
+#include "tests/support/rigs.h"
+
+namespace flexura {
+namespace {
+
+using Taken = std::map<std::int64_t, Frame>;
+
+void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.number, b.number);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.received, b.received);
+  EXPECT_TRUE(*a.picture == *b.picture);
+}
+
+// Commands at fixed times, and frames asked for at whatever times besides.
+Taken run(const RigConfig& model, const RigConfig& truth, std::uint64_t seed, TestRandom* asks) {
+  SimulatedRig rig(model, truth, numbers_renderer, seed);
+  const RigPorts ports = rig.ports();
+  const CameraPorts& front = ports.cameras[0];
+  TestRandom commands(7);
+  Taken taken;
+  const auto look = [&] {
+    const auto frame = front.camera->newest().value();
+    if (frame) taken.emplace(frame->number, *frame);
+  };
+  for (double time = 0; time < 4; time += 0.4) {
+    while (asks != nullptr && ports.clock->now() < time - 0.05) {
+      ports.clock->wait_until(ports.clock->now() + asks->uniform(0, 0.05));
+      look();
+      (void)ports.arm->read();
+      (void)front.head->read();
+    }
+    ports.clock->wait_until(time);
+    look();
+    ArmState state = ArmState::straight(2);
+    for (Eigen::Vector2d& bend : state.bends) bend = commands.vector<2>(-1, 1);
+    EXPECT_TRUE(ports.arm->command(state, 0));
+    EXPECT_TRUE(front.head->command({commands.uniform(-0.1, 0.1), commands.uniform(-0.1, 0.1), 1.5}));
+  }
+  return taken;
+}
+
+RigConfig with_slow_cameras() {
+  RigConfig rig = two_section_rig();
+  for (CameraConfig& camera : rig.cameras) {
+    camera.sensor.delay = 0.07, camera.sensor.exposure = 0.01, camera.sensor.drop = 0.2;
+    camera.head.delay = 0.05, camera.head.pan.backlash = 0.01, camera.head.pan.resolution = 0.001;
+  }
+  return rig;
+}
+
+TEST(SimulatedRig, GivesTheSameFramesForTheSameSeedToTheBit) {
+  const RigConfig rig = with_slow_cameras();
+  const Taken once = run(rig, rig, 5, nullptr), again = run(rig, rig, 5, nullptr);
+  ASSERT_GE(once.size(), 8);
+  ASSERT_EQ(once.size(), again.size());
+  for (const auto& [number, frame] : once) expect_same(frame, again.at(number));
+}
+
+TEST(SimulatedRig, ShowsTheSameWhoeverElseAsksAndWhen) {
+  const RigConfig rig = with_slow_cameras();
+  const Taken seldom = run(rig, rig, 5, nullptr);
+  for_random_cases(10, [&](TestRandom& random) {
+    const Taken often = run(rig, rig, 5, &random);
+    EXPECT_GT(often.size(), 2 * seldom.size());
+    int both = 0;
+    for (const auto& [number, frame] : seldom) {
+      if (!often.contains(number)) continue;
+      ++both;
+      expect_same(frame, often.at(number));
+    }
+    EXPECT_GT(both, 0);
+  });
+}
+
+TEST(SimulatedRig, AnotherSeedLosesOtherFrames) {
+  const RigConfig rig = with_slow_cameras();
+  TestRandom one(1), other(1);
+  const Taken a = run(rig, rig, 5, &one), b = run(rig, rig, 6, &other);
+  std::vector<std::int64_t> in_a, in_b;
+  for (const auto& [number, frame] : a) in_a.push_back(number);
+  for (const auto& [number, frame] : b) in_b.push_back(number);
+  EXPECT_NE(in_a, in_b);
+}
+
+TEST(SimulatedRig, ShowsTheTrueWorldAndNotTheModel) {
+  const RigConfig model = two_section_rig();
+  RigConfig truth = model;
+  truth.cameras[0].lens.fx = 88;  // a tenth longer
+  truth.cameras[0].mount.position[0] += 0.1;
+  truth.cameras[0].mount.look_at = {{0.1, 0, 0}};
+  SimulatedRig believed(model, model, numbers_renderer, 1), real(model, truth, numbers_renderer, 1);
+  const auto a = numbers_of(*believed.ports().cameras[0].camera->newest().value());
+  const auto b = numbers_of(*real.ports().cameras[0].camera->newest().value());
+  const double distance = model.cameras[0].mount.position[2];
+  EXPECT_NEAR(b[8], 31.5 - 88 * 0.1 / distance, 1e-9);  // the tip
+  EXPECT_NEAR(23.5 - b[9], 1.1 * (23.5 - a[9]), 1e-9);
+}
+
+TEST(SimulatedRig, RefusesAWorldThatTheModelCannotBeBelievedIn) {
+  const RigConfig model = two_section_rig();
+  const auto refuses = [&](auto&& spoil) {
+    RigConfig truth = model;
+    spoil(truth);
+    EXPECT_NE(truth_problem(model, truth), "");
+    EXPECT_THROW(SimulatedRig(model, truth, numbers_renderer, 1), std::invalid_argument);
+  };
+  refuses([](RigConfig& truth) { truth.arm.kind = ArmKind::planar; });
+  refuses([](RigConfig& truth) { truth.arm.section.resize(3); });
+  refuses([](RigConfig& truth) { truth.drive.reset(); });
+  refuses([](RigConfig& truth) { truth.drive->tendon.pop_back(); });
+  refuses([](RigConfig& truth) { truth.cameras.pop_back(); });
+  refuses([](RigConfig& truth) { std::swap(truth.cameras[0], truth.cameras[1]); });
+  refuses([](RigConfig& truth) { truth.cameras[0].sensor.width = 32; });
+}
+
+// Follows an arm's command with the newest frames, and knows nothing of who answers.
+class SimulatedCameraTest : public testing::Test {
+ protected:
+  void start(double rate, double exposure, double delay, double drop) {
+    RigConfig rig = two_section_rig();
+    SensorConfig& sensor = rig.cameras[0].sensor;
+    sensor.frame_rate = rate, sensor.exposure = exposure, sensor.delay = delay, sensor.drop = drop;
+    rig_ = std::make_unique<SimulatedRig>(rig, rig, numbers_renderer, 3);
+    ports_ = rig_->ports();
+  }
+  [[nodiscard]] CameraPort& camera() { return *ports_.cameras[0].camera; }
+  [[nodiscard]] ClockPort& clock() { return *ports_.clock; }
+
+  std::unique_ptr<SimulatedRig> rig_;
+  RigPorts ports_;
+};
+
+TEST_F(SimulatedCameraTest, FramesCanBeHadAfterExposureAndDelay) {
+  start(10, 0.02, 0.13, 0);
+  EXPECT_FALSE(camera().newest().value());
+  clock().wait_until(0.1499999);
+  EXPECT_FALSE(camera().newest().value());
+  clock().wait_until(0.1500001);
+  const auto frame = camera().newest().value();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->number, 0);
+  EXPECT_NEAR(frame->time, 0.01, 1e-15);
+  EXPECT_NEAR(frame->received, 0.15, 1e-15);
+  EXPECT_EQ(frame->exposure, 0.02);
+  EXPECT_EQ(numbers_of(*frame)[10], 0);
+  EXPECT_FALSE(camera().newest().value()) << "given before";
+  clock().wait_until(0.96);
+  EXPECT_EQ(camera().newest().value()->number, 8) << "older ones are passed over";
+}
+
+TEST_F(SimulatedCameraTest, WaitsForTheNextFrameAndNoLonger) {
+  start(10, 0.02, 0.13, 0);
+  EXPECT_EQ(camera().wait(1).value()->number, 0);
+  EXPECT_NEAR(clock().now(), 0.15, 1e-15);
+  EXPECT_EQ(camera().wait(1).value()->number, 1);
+  EXPECT_FALSE(camera().wait(0.04).value());
+  EXPECT_NEAR(clock().now(), 0.29, 1e-15);
+  EXPECT_EQ(camera().wait(0.1).value()->number, 2);
+}
+
+TEST_F(SimulatedCameraTest, LosesItsShareOfFrames) {
+  start(100, 0, 0, 0.3);
+  int count = 0;
+  std::int64_t last = -1;
+  while (const auto frame = camera().wait(1).value()) {
+    EXPECT_GT(frame->number, last);
+    last = frame->number, ++count;
+    if (last > 5000) break;
+  }
+  EXPECT_NEAR(count / 5000.0, 0.7, 0.02);  // three standard deviations
+}
+
+TEST_F(SimulatedCameraTest, ThatLosesAllHasNone) {
+  start(100, 0, 0, 1);
+  EXPECT_FALSE(camera().wait(2).value());
+  EXPECT_NEAR(clock().now(), 2, 1e-12);
+}
+
+TEST_F(SimulatedCameraTest, DoesNotAnswerWhileItsLinkIsLost) {
+  start(10, 0, 0, 0);
+  rig_->camera(0).camera().link().lose(1, 2);
+  clock().wait_until(1.5);
+  EXPECT_EQ(camera().newest().fault()->kind, FaultKind::link_lost);
+  EXPECT_FALSE(camera().wait(1));
+  clock().wait_until(2);
+  EXPECT_EQ(camera().newest().value()->number, 20);
+}
+
+TEST_F(SimulatedCameraTest, SeesWhereTheArmWasWhenItWasExposed) {
+  start(10, 0, 0.5, 0);
+  ArmState bent = ArmState::straight(2);
+  bent.bends[0] = {1, 0};
+  clock().wait_until(1);
+  ASSERT_TRUE(ports_.arm->command(bent, 0));
+  clock().wait_until(1.55);
+  const Frame frame = *camera().newest().value();
+  ASSERT_EQ(frame.number, 10);
+  const auto before = rig_->camera(0).view(1.0).project(rig_->arm().backbone(1.0).tip().position);
+  EXPECT_NEAR(numbers_of(frame)[8], before->x(), 1e-9);
+  clock().wait_until(1.85);
+  const Frame later = *camera().newest().value();
+  ASSERT_EQ(later.number, 13);
+  EXPECT_GT(std::abs(numbers_of(later)[8] - before->x()), 0.1);
+}
+
+TEST(FrameTimes, FollowTheReadout) {
+  SensorConfig sensor;
+  sensor.height = 101, sensor.frame_rate = 10, sensor.exposure = 0.02, sensor.delay = 0.5;
+  EXPECT_NEAR(frame_times(sensor, 3).start, 0.3, 1e-15);
+  EXPECT_NEAR(frame_times(sensor, 3).middle, 0.31, 1e-15);
+  EXPECT_NEAR(frame_times(sensor, 3).received, 0.82, 1e-15);
+  sensor.readout = Readout::rolling, sensor.row_time = 1e-4;
+  EXPECT_NEAR(frame_times(sensor, 3).middle, 0.315, 1e-15);
+  EXPECT_NEAR(frame_times(sensor, 3).end, 0.33, 1e-15);
+  sensor.readout = Readout::interlaced, sensor.row_time = 0;
+  EXPECT_NEAR(frame_times(sensor, 3).end, 0.37, 1e-15);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -45,6 +45,7 @@ struct Spec {
   NumberRange range = {};
   Count count = {};  ///< Of the outermost array.
   bool required = false;
+  bool partial = false;           ///< A table of which a file may write parts; the reader is given the whole.
   bool one_for_all = false;       ///< An array may be written as one value, meant for every entry.
   std::string default_text = {};  ///< What leaving it out means, where the default's value does not say it.
 };

@@ -25,6 +25,10 @@ constexpr std::size_t max_cameras = 100;
 void check_experiment(const Experiment& experiment, Reader& reader) {
   if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
   check_cameras(experiment.camera, "camera", reader);
+  if (experiment.truth) {
+    const std::string problem = truth_problem(experiment.model_rig(), experiment.true_rig());
+    if (!problem.empty()) reader.problem_at("truth", problem);
+  }
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     check_task(experiment.task[i], experiment.arm.kind, experiment.arm.section.size(),
                fmt::format("task[{}]", i), reader);
@@ -54,6 +58,19 @@ void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesy
     told.what += problem.what;
   }
   if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+// The document with each table of [truth] completed by what the rest of the file says.
+Node with_whole_truth(Node document) {
+  Node* truth = document.find("truth");
+  if (truth == nullptr || truth->as<Node::Table>() == nullptr) return document;
+  const Node world = truth_of(document);
+  for (Node::Member& member : *truth->as<Node::Table>()) {
+    const Node* whole = world.find(member.key);
+    if (whole != nullptr && fields_of(static_cast<const TruthConfig*>(nullptr)).info().find(member.key) != nullptr)
+      member.node = *whole;
+  }
+  return document;
 }
 
 // The checks that need every file read; reported at the places in `document`.
@@ -116,6 +133,7 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
                  {.meaning = "Steps from one state in the log to the next; the last one is always kept.",
                   .range = between(1, 1e9)})
           .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."})
+          .field("cameras", &RecordConfig::cameras, {.meaning = "Keep the cameras' images in the log."})
           .field(
               "curve", &RecordConfig::curve,
               {.meaning =
@@ -124,6 +142,20 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
                    "with exact tangents."})
           .field("tension", &RecordConfig::tension,
                  {.meaning = "Tension of the Catmull-Rom spline.", .range = between(0, 1)});
+  return table;
+}
+
+const Table<TruthConfig>& fields_of(const TruthConfig*) {
+  static const auto table =
+      Table<TruthConfig>("truth",
+                         "The simulated world, where it differs from what the rest of the file says and the tasks "
+                         "believe: parts of the same tables, laid upon them. Cameras are told apart by their names, "
+                         "sections and tendons by their places.")
+          .field("arm", &TruthConfig::arm, {.meaning = "The arm as it is.", .partial = true, .default_text = "as believed"})
+          .field("drive", &TruthConfig::drive,
+                 {.meaning = "What moves it.", .partial = true, .default_text = "as believed"})
+          .field("camera", &TruthConfig::camera,
+                 {.meaning = "The cameras as they are.", .count = {0, max_cameras}, .partial = true, .default_text = "as believed"});
   return table;
 }
 
@@ -159,10 +191,24 @@ const Table<Experiment>& fields_of(const Experiment*) {
                   .count = {0, max_cameras},
                   .default_text =
                       "two, \"front\" on +Z and \"side\" on -X, with all of the arm's reach in view"})
+          .field("truth", &Experiment::truth,
+                 {.meaning = "Where the simulated world differs from what the tasks believe.",
+                  .default_text = "nowhere"})
           .field("task", &Experiment::task,
                  {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);
   return table;
+}
+
+RigConfig Experiment::model_rig() const { return {arm, drive, cameras()}; }
+
+RigConfig Experiment::true_rig() const {
+  RigConfig rig = model_rig();
+  if (!truth) return rig;
+  if (truth->arm) rig.arm = *truth->arm;
+  if (truth->drive) rig.drive = truth->drive;
+  if (!truth->camera.empty()) rig.cameras = truth->camera;
+  return rig;
 }
 
 std::vector<CameraConfig> Experiment::cameras() const {
@@ -175,7 +221,7 @@ std::vector<CameraConfig> Experiment::cameras() const {
 
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
   const Node document = resolved_overrides(read_toml_file(file), overrides);
-  auto experiment = read_as<Experiment>(document);
+  auto experiment = read_as<Experiment>(with_whole_truth(document));
   if (experiment.title.empty()) experiment.title = file.stem().string();
   for (TaskConfig& task : experiment.task) {
     auto* keyframes = std::get_if<KeyframesTask>(&task);
@@ -188,7 +234,7 @@ Experiment load_experiment(const std::filesystem::path& file, const Overrides& o
 
 Experiment parse_experiment(std::string_view text, const std::string& source) {
   const Node document = parse_toml(text, source);
-  auto experiment = read_as<Experiment>(document);
+  auto experiment = read_as<Experiment>(with_whole_truth(document));
   for (const TaskConfig& task : experiment.task) {
     const auto* keyframes = std::get_if<KeyframesTask>(&task);
     if (keyframes != nullptr && !keyframes->file.empty())

@@ -14,6 +14,7 @@
 #include "flexura/model/drive_config.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/model/stand.h"
+#include "flexura/sim/rig_config.h"
 
 namespace flexura {
 
@@ -26,8 +27,17 @@ struct ClockConfig {
 struct RecordConfig {
   std::int64_t every = 1;  ///< Steps from one state in the log to the next; the last one is always kept.
   bool report = true;      ///< Write report.html and figures/.
+  bool cameras = false;    ///< Keep the cameras' images in the log.
   CurveKind curve = CurveKind::arcs;  ///< Drawn over the arm in the report.
   double tension = 0.5;               ///< Of the Catmull-Rom curve.
+};
+
+/// The table [truth]: where the simulated world differs from what the rest of the file believes. What it leaves out is
+/// as believed; a file may write parts of these tables, which the reader completes.
+struct TruthConfig {
+  std::optional<ArmConfig> arm;
+  std::optional<DriveConfig> drive;
+  std::vector<CameraConfig> camera;
 };
 
 /// An experiment file: a rig and the tasks it does, one after another.
@@ -43,7 +53,12 @@ struct Experiment {
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
   std::vector<CameraConfig> camera;  ///< None: the paper's two (cameras()).
+  std::optional<TruthConfig> truth;
   std::vector<TaskConfig> task;
+
+  /// The rig as tasks believe it to be, and as it is.
+  [[nodiscard]] RigConfig model_rig() const;
+  [[nodiscard]] RigConfig true_rig() const;
 
   /// The file's cameras, or the paper's two, which have all of the arm's reach in view.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
@@ -52,6 +67,7 @@ struct Experiment {
 const std::vector<std::string>& names_of(const CurveKind*);
 const Table<ClockConfig>& fields_of(const ClockConfig*);
 const Table<RecordConfig>& fields_of(const RecordConfig*);
+const Table<TruthConfig>& fields_of(const TruthConfig*);
 const Table<Experiment>& fields_of(const Experiment*);
 
 /// What the command line changes in a file before it is read.

@@ -1,10 +1,13 @@
 #include "flexura/experiment/recorder.h"
 
+#include <map>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/store/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_writer.h"
 #include "flexura/store/schema.h"
@@ -35,6 +38,7 @@ struct Recorder::Channels {
   std::uint16_t poses;
   std::uint16_t events;
   std::optional<std::uint16_t> commands;
+  std::map<std::string, std::uint16_t> images;  // by camera
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Arm& arm)
@@ -69,6 +73,17 @@ void Recorder::event(double time, Level level, std::string_view source, std::str
 void Recorder::commands(const DriveCommandsMessage& message) {
   if (!channels_->commands) channels_->commands = channels_->add<DriveCommandsMessage>(drive_commands_topic);
   channels_->write(*channels_->commands, nanoseconds(message.time), message);
+}
+
+void Recorder::image(const std::string& camera, const Frame& frame) {
+  const std::string topic = image_topic(camera);
+  const auto [channel, is_new] = channels_->images.try_emplace(camera);
+  if (is_new) channel->second = channels_->add<ImageMessage>(topic);
+  // A run waits for every frame: quickly made rather than small.
+  constexpr PngConfig quick{.level = 1};
+  const ImageMessage message{time_message(nanoseconds(frame.time)), topic.substr(1),
+                             {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
+  channels_->write(channel->second, nanoseconds(frame.received), message);
 }
 
 void Recorder::close() { channels_->log.close(); }

@@ -9,6 +9,7 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
 
 namespace flexura {
 
@@ -28,6 +29,9 @@ class Recorder {
 
   /// The first command opens the channel: logs of arms without a drive have none.
   void commands(const DriveCommandsMessage& message);
+
+  /// A frame, as PNG. The first one of a camera opens its channel.
+  void image(const std::string& camera, const Frame& frame);
 
   /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
   void close();

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "flexura/base/version.h"
+#include "flexura/camera/camera.h"
 #include "flexura/experiment/drive_commands.h"
+#include "flexura/experiment/filming.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
@@ -42,6 +45,20 @@ Node reason_nodes(const std::vector<std::string>& reasons) {
   Node::Array lines;
   for (const std::string& reason : reasons) lines.push_back({reason, {}});
   return {std::move(lines), {}};
+}
+
+// Each camera, what it gave, and how it is turned about its optical axis: a head cannot correct that.
+Node camera_nodes(const std::vector<CameraConfig>& cameras, const Witness& witness) {
+  Node::Array list;
+  for (const CameraConfig& config : cameras) {
+    const Camera camera(config);
+    const auto roll = roll_of(camera.pose(camera.initial_stage(), camera.initial_head()).rotation);
+    Node::Table entry{{"name", {}, {config.name, {}}}};
+    if (roll) entry.push_back({"roll", {}, {*roll, {}}});
+    entry.push_back({"frames", {}, {witness.frames_of(config.name), {}}});
+    list.push_back({std::move(entry), {}});
+  }
+  return {std::move(list), {}};
 }
 
 // How far a run came.
@@ -112,6 +129,14 @@ class Witness {
     times_.push_back(time);
     states_.push_back(state);
   }
+  void image(const std::string& camera, const Frame& frame) {
+    recorder_.image(camera, frame);
+    ++frames_[camera];
+  }
+  [[nodiscard]] std::int64_t frames_of(const std::string& camera) const {
+    const auto found = frames_.find(camera);
+    return found == frames_.end() ? 0 : found->second;
+  }
   void write_commands(const Drive& drive, const std::filesystem::path& file) {
     commands_.emplace(arm_, drive, file);
   }
@@ -137,6 +162,7 @@ class Witness {
 
   Recorder recorder_;
   std::optional<DriveCommands> commands_;
+  std::map<std::string, std::int64_t> frames_;  // by camera
   Arm arm_;
   std::size_t last_step_;
   std::size_t kept_every_;
@@ -184,11 +210,16 @@ Played play(const Experiment& experiment, const Schedule& schedule, const Safety
   const auto every = static_cast<std::size_t>(experiment.record.every);
   Played played{0, 0, schedule.initial()};
   Events events(schedule, safety);
+  std::optional<Filming> filming;
+  if (experiment.record.cameras) filming.emplace(experiment);
   for (std::size_t step = 0; step <= schedule.steps(); ++step) {
     const double time = schedule.time_of_step(step);
     events.tell_up_to(time, witness);
     const ArmState state = schedule.state_at(time);
     if (!is_possible(state)) break;
+    if (filming) {
+      filming->play_to(time, state, [&](const std::string& camera, const Frame& frame) { witness.image(camera, frame); });
+    }
     if (step % every == 0 || step == schedule.steps()) witness.state(step, time, state);
     witness.command(time, state);
     played = {step + 1, time, state};

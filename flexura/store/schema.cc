@@ -19,7 +19,8 @@ void add(Node& table, std::string key, Node value) {
 
 Node object() { return {Node::Table{}, {}}; }
 
-Node table_schema(const TableInfo& info, bool tagged);
+// `partial`: nothing is required, here and below.
+Node table_schema(const TableInfo& info, bool tagged, bool partial);
 
 // A bound in the unit of a spelling, without the digits that the conversion's rounding makes.
 Node bound(double value, double factor) {
@@ -84,18 +85,18 @@ Node value_schema(const Type& type, const Spec& spec, const Count& count, double
       return schema;
     }
     case Type::Kind::table:
-      return table_schema(*type.table, false);
+      return table_schema(*type.table, false, spec.partial);
     case Type::Kind::one_of: {
       Node::Array alternatives;
       for (const TableInfo* alternative : type.alternatives)
-        alternatives.push_back(table_schema(*alternative, true));
+        alternatives.push_back(table_schema(*alternative, true, spec.partial));
       return any_of(std::move(alternatives));
     }
   }
   return schema;
 }
 
-Node table_schema(const TableInfo& info, bool tagged) {
+Node table_schema(const TableInfo& info, bool tagged, bool partial) {
   Node properties = object();
   Node::Array required;
   Node::Array required_quantities;
@@ -107,10 +108,12 @@ Node table_schema(const TableInfo& info, bool tagged) {
   }
   for (const FieldInfo& field : info.fields) {
     const auto ways = spellings(field.spec.unit);
+    Spec spec = field.spec;
+    spec.partial = spec.partial || partial;
     Node::Array one_of_ways;
     for (const UnitSpelling& way : ways) {
       const std::string name = field.name + std::string(way.suffix);
-      Node schema = value_schema(field.type, field.spec, field.spec.count, way.factor);
+      Node schema = value_schema(field.type, spec, spec.count, way.factor);
       std::string meaning = field.spec.meaning;
       if (!way.symbol.empty()) meaning += fmt::format(" [{}]", way.symbol);
       if (!field.default_text.empty()) meaning += fmt::format(" Default: {}.", field.default_text);
@@ -120,7 +123,7 @@ Node table_schema(const TableInfo& info, bool tagged) {
       add(way_required, "required", {Node::Array{text(name)}, {}});
       one_of_ways.push_back(std::move(way_required));
     }
-    if (!field.spec.required) continue;
+    if (!spec.required || partial) continue;
     if (ways.size() == 1) {
       required.push_back(text(field.name));
     } else {
@@ -212,6 +215,7 @@ void add_table_section(const TableInfo& info, const std::string& path, const std
                        field.spec.required ? "required" : field.default_text, field.spec.meaning);
   }
   for (const FieldInfo& field : info.fields) {
+    if (field.spec.partial) continue;  // Parts of tables that have their sections elsewhere.
     add_sections_below(field.type, path + (path.empty() ? "" : ".") + field.name, false, out);
   }
 }
@@ -222,7 +226,7 @@ Node json_schema(const TableInfo& info) {
   Node schema = object();
   add(schema, "$schema", text("http://json-schema.org/draft-07/schema#"));
   add(schema, "title", text(info.name));
-  Node body = table_schema(info, false);
+  Node body = table_schema(info, false, false);
   for (Node::Member& member : *body.as<Node::Table>()) {
     add(schema, std::move(member.key), std::move(member.node));
   }

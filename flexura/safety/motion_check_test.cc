@@ -51,6 +51,7 @@ TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
   EXPECT_EQ(violation.hazard, Hazard::bend);
   EXPECT_NEAR(violation.start, 2, 1e-6);
   EXPECT_EQ(violation.end, 4);
+  EXPECT_EQ(violation.worst_time, 4);
   EXPECT_EQ(violation.section, 0u);
   EXPECT_EQ(violation.value, 2);
   EXPECT_EQ(violation.limit, 1);

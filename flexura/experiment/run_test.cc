@@ -181,7 +181,7 @@ TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
       "archings = ['1 - sqrt(1 - t)']\n",
       "x.toml"));
   EXPECT_EQ(result.outcome, Outcome::unsafe);
-  EXPECT_EQ(result.reasons.at(0), "1.1 s: expression: section 1: no possible value");
+  EXPECT_EQ(result.reasons.at(0), "at 1.1 s: expression: section 1: no possible value");
   EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.0);
   EXPECT_EQ(result.summary.find("tasks"), nullptr);
 }

@@ -181,7 +181,7 @@ TEST(Tasks, ALawThatStartsElsewhereJumps) {
   const Experiment experiment = experiment_of("kind='expression'\narchings='0.2+t'\n");
   const SafetyReport report = Schedule(experiment).check();
   ASSERT_EQ(report.violations.size(), 1U);
-  EXPECT_EQ(report.violations[0].text(), "0 s: expression: section 1: jump 0.4");
+  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 0.4");
   EXPECT_THAT(report.caveats.at(0), HasSubstr("sampled every 0.02 s"));
 }
 

@@ -75,9 +75,8 @@ class MotionCheck {
       sample(impossible - 1);
       for (const Jump& jump : find_jumps(motion_, step_, time_of(impossible - 1))) add_jump(jump);
     }
-    report_.caveats.push_back(
-        fmt::format("{:.6g} s to {:.6g} s: sampled every {:.6g} s: the law has no bound on its rates", start_,
-                    start_ + motion_.duration(), step_));
+    report_.caveats.push_back(fmt::format("{}: sampled every {:.6g} s: the law has no bound on its rates",
+                                          span_text(whole(), start_), step_));
   }
 
   void add_impossible(double time) {
@@ -141,9 +140,9 @@ class MotionCheck {
 
   void add_undecided(const std::string& what, const FoundSpans& found) {
     if (!found.undecided) return;
-    report_.caveats.push_back(fmt::format(
-        "{} undecided between {:.6g} s and {:.6g} s: too near its limit to tell, sampled every {:.3g} s",
-        what, start_ + found.undecided->start, start_ + found.undecided->end, found.sampled_every));
+    report_.caveats.push_back(
+        fmt::format("{} undecided, {}: too near its limit to tell, sampled every {:.3g} s", what,
+                    span_text(*found.undecided, start_), found.sampled_every));
   }
 
   void add_limit(Hazard hazard, std::size_t section, double sign, double limit,

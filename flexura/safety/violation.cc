@@ -12,6 +12,8 @@
 #include <tuple>
 #include <utility>
 
+#include "flexura/safety/spans.h"
+
 namespace flexura {
 namespace {
 
@@ -82,11 +84,7 @@ std::string Violation::finding() const {
   }
 }
 
-std::string Violation::text() const {
-  const std::string from = fmt::format("{:.6g} s", start);
-  const std::string to = fmt::format("{:.6g} s", end);
-  return (from == to ? from : from + " to " + to) + ": " + place() + finding();
-}
+std::string Violation::text() const { return span_text({start, end}) + ": " + place() + finding(); }
 
 std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most) {
   const std::vector<Violation>& all = report.violations;

@@ -37,7 +37,7 @@ struct Violation {
   double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
 
-  /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg".
+  /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg"; the times as span_text (spans.h) writes them.
   [[nodiscard]] std::string text() const;
 
  private:

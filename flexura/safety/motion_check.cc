@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -247,29 +245,6 @@ class MotionCheck {
   SafetyReport& report_;
 };
 
-// Tubes i and j may meet within half a turn where what is between them is shorter than half a circle around
-// them, and thin enough to bend sharper than they could: that is not looked at.
-void warn_of_thin_sections(const Arm& arm, SafetyReport& report) {
-  const auto thickness = [&](std::size_t i) {
-    return std::max(arm.sections[i].radius[0], arm.sections[i].radius[1]);
-  };
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    double between = 0;
-    double thinnest = std::numeric_limits<double>::infinity();
-    for (std::size_t j = i + 1; j < arm.sections.size(); ++j) {
-      const double mean = (thickness(i) + thickness(j)) / 2;
-      if (thinnest < mean && between < std::numbers::pi * mean) {
-        report.caveats.push_back(
-            fmt::format("sections {} and {} are thicker than what is between them: whether they touch each "
-                        "other within half a turn is not looked at",
-                        i + 1, j + 1));
-      }
-      between += arm.sections[j].length * arm.sections[j].stretch_limits[0];
-      thinnest = std::min(thinnest, thickness(j));
-    }
-  }
-}
-
 void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
   if (!is_possible(state)) return;
   const TipFreedom freedom = tip_freedom(arm, state);
@@ -295,7 +270,6 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
   SafetyReport report;
   std::vector<ContactWatch> contacts{ContactWatch(arm)};
   for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
-  warn_of_thin_sections(arm, report);
   note_singular(arm, initial, 0, report);
   ArmState before = initial;
   for (const TimedMotion& timed : motions) {

@@ -50,8 +50,8 @@ class SampledArm {
   }
 
   /// Of the arm to itself, between points that are no neighbours: between which the backbone has half a turn
-  /// or more, or, where something is thinner than they are, is longer than half a circle of their mean radius;
-  /// as above.
+  /// or more, or, where something is thinner than they are, is longer than half a circle of their mean
+  /// radius; as above.
   [[nodiscard]] double clearance(double need) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < turns_.size(); ++i) {

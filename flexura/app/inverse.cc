@@ -164,7 +164,7 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
                       {"reason", {}, {std::string(reason_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);
   if (!result.converged()) {
-    if (request.position) members.push_back({"nearest", {}, point_node(result.tip)});
+    members.push_back({"nearest", {}, point_node(result.tip)});
     members.push_back({"distance", {}, {result.position_error, {}}});
     members.push_back({"proven", {}, {result.is_proven, {}}});
   }

@@ -110,7 +110,27 @@ TEST(AnswerInverse, LaysTheArmAlongACurve) {
   EXPECT_LE(number(straight, "position_error"), 1e-9);
   const Node longer = parsed(answer_inverse(spatial_arm(), R"({"curve":[[0,0,0],[0,1.9,0]]})"));
   EXPECT_EQ(text(longer, "reason"), "not_reachable");
-  EXPECT_EQ(longer.find("nearest"), nullptr);
+}
+
+TEST(AnswerInverse, SaysWhatIsNearestInEveryAnswerThatDidNotConverge) {
+  const Arm arm = spatial_arm();
+  for (const char* line :
+       {R"({"curve":[[0,0,0],[0,1.9,0]]})", R"({"curve":[[0,0,0],[0.3,0.1,0],[0,0.2,0],[0.3,0.3,0.2]]})",
+        R"({"curve":[[0,0,0],[0.2,0,0],[0,0,0],[0.2,0,0],[0,0,0]]})", R"({"curve":[[0,0.01,0],[0,0.9,0]]})",
+        R"({"position":[0,2,0]})", R"({"position":[0,0.8,0],"direction":[0,-1,0]})",
+        R"({"position":[0,0.01,0],"rotation":[1,0,0,0]})", R"({"position":[0,2,0],"all":true})"}) {
+    SCOPED_TRACE(line);
+    const Node answer = parsed(answer_inverse(arm, line));
+    ASSERT_FALSE(flag(answer, "converged"));
+    const Node shape{Node::Table{{"bends", {}, *answer.find("bends")}}, {}};
+    const Node tip = *parsed(answer_forward(arm, write_json(shape))).find("tip");
+    ASSERT_NE(answer.find("nearest"), nullptr);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(*answer.find("nearest")->as<Node::Array>()->at(i).as<double>(),
+                  *tip.find("position")->as<Node::Array>()->at(i).as<double>(), 1e-9);
+    }
+    EXPECT_GT(number(answer, "distance"), 0);
+  }
 }
 
 TEST(AnswerInverse, BeginsAtTheStartAndFollowsTheWish) {

@@ -54,10 +54,13 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   return {};
 }
 
-// A value given as length_mm takes the place of one given as length.
-void erase_other_spellings(Node& node, std::string_view key) {
+// A value given as length_mm takes the place of one given as length; and a key belongs where its value is.
+void make_way(Node& node, std::string_view key, const SourcePosition& where) {
   auto* members = node.as<Node::Table>();
   if (members == nullptr) return;
+  for (Node::Member& member : *members) {
+    if (member.key == key) member.where = where;
+  }
   std::erase_if(*members, [key](const Node::Member& member) {
     return member.key != key && without_unit(member.key) == without_unit(key);
   });
@@ -93,10 +96,13 @@ void merge(Node& under, Node over) {
     return;
   }
   for (Node::Member& member : *above) {
-    if (Node* found = under.find(member.key)) {
-      merge(*found, std::move(member.node));
-    } else {
+    const auto found = std::ranges::find(*below, member.key, &Node::Member::key);
+    if (found == below->end()) {
       below->push_back(std::move(member));
+    } else {
+      // Tables keep the place of the first; anything else belongs where its value is.
+      if (member.node.as<Node::Table>() == nullptr) found->where = member.where;
+      merge(found->node, std::move(member.node));
     }
   }
 }
@@ -108,7 +114,7 @@ std::string set_at_path(Node& root, std::string_view path, Node value) {
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())
       return fmt::format("\"{}\" is no path: expected names and numbers joined by dots", path);
-    if (dot == std::string_view::npos) erase_other_spellings(*node, part);
+    if (dot == std::string_view::npos) make_way(*node, part, value.where);
     if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
     if (dot == std::string_view::npos) break;
     rest.remove_prefix(dot + 1);

@@ -33,17 +33,32 @@ std::string Reader::below(std::string_view name) const {
 
 void Reader::problem(std::string what) { problem_at("", std::move(what)); }
 
+// Of what was written at `path`, or at its nearest part that was.
+SourcePosition Reader::place_of(std::string path) const {
+  auto found = written_.find(path);
+  while (found == written_.end() && !path.empty()) {
+    const std::size_t cut = path.find_last_of(".[");
+    path.resize(cut == std::string::npos ? 0 : cut);
+    found = written_.find(path);
+  }
+  return found == written_.end() ? SourcePosition{} : found->second;
+}
+
 void Reader::problem_at(std::string_view path, std::string what) {
   const std::string whole = below(path);
-  std::string place = whole;
-  auto found = written_.find(place);
-  while (found == written_.end() && !place.empty()) {
-    const std::size_t cut = place.find_last_of(".[");
-    place.resize(cut == std::string::npos ? 0 : cut);
-    found = written_.find(place);
+  problems_.push_back({place_of(whole), whole.empty() ? std::move(what) : whole + ": " + what});
+}
+
+void Reader::problem_in_text(std::string_view path, const std::string& text, std::size_t offset,
+                             std::string what) {
+  const std::string whole = below(path);
+  SourcePosition where = place_of(whole);
+  if (where.text_column > 0) {
+    where.column = where.text_column + static_cast<int>(offset);
+  } else {
+    what += fmt::format(" at character {} of {}", offset + 1, Node{text, {}}.brief());
   }
-  const SourcePosition where = found == written_.end() ? SourcePosition{} : found->second;
-  problems_.push_back({where, whole.empty() ? std::move(what) : whole + ": " + what});
+  problems_.push_back({where, whole + ": " + what});
 }
 
 void Reader::unexpected(const Node& node, std::string_view expected) {

@@ -38,6 +38,9 @@ class Reader {
   /// Reports a problem at `path`, relative to the current place ("task[0].to.bends"), or at its nearest part
   /// that was written.
   void problem_at(std::string_view path, std::string what);
+  /// The same for the character `offset` (from 0) of the text at `path`: at its place in the file where that
+  /// is known, else followed by "at character N of TEXT".
+  void problem_in_text(std::string_view path, const std::string& text, std::size_t offset, std::string what);
   /// "PATH = VALUE: expected ...".
   void unexpected(const Node& node, std::string_view expected);
 
@@ -58,6 +61,7 @@ class Reader {
 
  private:
   [[nodiscard]] std::string below(std::string_view name) const;
+  [[nodiscard]] SourcePosition place_of(std::string path) const;
 
   std::string path_;
   std::unordered_map<std::string, SourcePosition> written_;  ///< Every place read so far.

@@ -14,6 +14,9 @@ struct SourcePosition {
       source;  ///< What to call it: a file's path, "--set", "stdin"; may be null.
   int line = 0;
   int column = 0;
+  /// Where the characters of a text begin, when they stand on one line as they are: after its quotes. 0 for
+  /// other values, and where escapes have changed the text.
+  int text_column = 0;
 
   /// "file:line:column", "file" without a line, "" without a source.
   [[nodiscard]] std::string text() const;

@@ -68,7 +68,11 @@ class Table {
     const std::vector<FoundField> found = find_fields(node, info_, reader, tag);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (found[i].member == nullptr) continue;
-      const Reader::Scope scope(reader, info_.fields[i].name, found[i].member->key, found[i].member->where);
+      const Node::Member& member = *found[i].member;
+      SourcePosition where = member.where;  // the key's, which problems point at; texts stand behind it
+      if (member.node.where.source == where.source && member.node.where.line == where.line)
+        where.text_column = member.node.where.text_column;
+      const Reader::Scope scope(reader, info_.fields[i].name, member.key, where);
       reader.spelling = found[i].spelling;
       bindings_[i].read(found[i].member->node, info_.fields[i].spec, reader, value);
       reader.spelling = {"", 1.0, ""};

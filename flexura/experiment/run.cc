@@ -13,6 +13,7 @@
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/recorder.h"
+#include "flexura/experiment/report_safety.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
@@ -91,19 +92,6 @@ Node summary_of(const Experiment& experiment, const Arm& arm, const Schedule& sc
   return {std::move(summary), {}};
 }
 
-ReportData::Safety shown_safety(const SafetyReport& safety) {
-  ReportData::Safety shown;
-  for (const Violation& violation : safety.violations) {
-    auto& told = shown.violations.emplace_back();
-    told.start = violation.start, told.end = violation.end, told.text = violation.text();
-    for (const auto& section : {violation.section, violation.other_section})
-      if (section) told.sections.push_back(*section);
-  }
-  shown.remarks = safety.caveats;
-  shown.remarks.insert(shown.remarks.end(), safety.notes.begin(), safety.notes.end());
-  return shown;
-}
-
 const char* name_of(Recorder::Level level) {
   if (level == Recorder::Level::info) return "info";
   return level == Recorder::Level::warning ? "warning" : "error";
@@ -149,11 +137,22 @@ class Witness {
     if (commands_) commands_->close();
   }
 
-  ReportData report_data(const Experiment& experiment, const SafetyReport& safety) && {
-    return {
-        experiment.title,     experiment.flexura,  experiment_toml(experiment), std::move(arm_),
-        std::move(times_),    std::move(states_),  std::move(marks_),           recorded_,
-        shown_safety(safety), experiment.obstacle, experiment.record.curve,     experiment.record.tension};
+  ReportData report_data(const Experiment& experiment, const Schedule& schedule,
+                         const SafetyReport& safety) && {
+    ReportData data{.title = experiment.title,
+                    .version = experiment.flexura,
+                    .experiment_text = experiment_toml(experiment),
+                    .arm = std::move(arm_),
+                    .times = std::move(times_),
+                    .states = std::move(states_),
+                    .events = std::move(marks_),
+                    .recorded = recorded_,
+                    .safety = {},
+                    .obstacles = experiment.obstacle,
+                    .curve = experiment.record.curve,
+                    .tension = experiment.record.tension};
+    add_safety(safety, schedule, data);
+    return data;
   }
 
  private:
@@ -263,7 +262,8 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   witness.close();
   result.summary = summary_of(experiment, arm, schedule, safety, played, result);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
-  if (experiment.record.report) write_report(folder, std::move(witness).report_data(experiment, safety));
+  if (experiment.record.report)
+    write_report(folder, std::move(witness).report_data(experiment, schedule, safety));
   return result;
 }
 

@@ -159,13 +159,29 @@ TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
   EXPECT_THAT(report, HasSubstr("class=\"warning\""));
 }
 
+TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
+  const RunResult result =
+      run(parse_experiment("[clock]\nstep = 0.2\n[[arm.section]]\nlength = 1\nmax_bend = 0.9\n[[task]]\n"
+                           "kind = 'sine'\nduration = 0.6\nperiod = 1.2\namplitude.archings = [0.5]\n",
+                           "x.toml"));
+  ASSERT_THAT(result.reasons, SizeIs(1));
+  const auto& violation = result.summary.find("violations")->as<Node::Array>()->at(0);
+  EXPECT_NEAR(*violation.find("worst_time")->as<double>(), 0.3, 1e-9);
+  const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
+  EXPECT_THAT(report, HasSubstr("data-time=\"0.3\">0.300</button> " + result.reasons[0] + "</figcaption>"));
+  EXPECT_THAT(report, HasSubstr("\"times\":[0,0.2,0.3,0.4,0.6]"));
+  const std::string figure =
+      read_text_file(result.folder / figures_folder_name / "arm-unsafe-1.svg", 1 << 24);
+  EXPECT_THAT(figure, HasSubstr("class=\"warning\""));
+}
+
 TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
   const RunResult result = run(parse_experiment(
       "[clock]\nstep = 0.1\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'expression'\nduration = 2\n"
       "archings = ['1 - sqrt(1 - t)']\n",
       "x.toml"));
   EXPECT_EQ(result.outcome, Outcome::unsafe);
-  EXPECT_EQ(result.reasons.at(0), "1.1 s: expression: section 1: no possible value");
+  EXPECT_EQ(result.reasons.at(0), "at 1.1 s: expression: section 1: no possible value");
   EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.0);
   EXPECT_EQ(result.summary.find("tasks"), nullptr);
 }

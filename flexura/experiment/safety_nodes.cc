@@ -21,7 +21,8 @@ const char* name_key(Hazard hazard) {
 Node violation_node(const Violation& violation) {
   Node::Table table{{"hazard", {}, {std::string(name_of(violation.hazard)), {}}},
                     {"start", {}, {violation.start, {}}},
-                    {"end", {}, {violation.end, {}}}};
+                    {"end", {}, {violation.end, {}}},
+                    {"worst_time", {}, {violation.worst_time, {}}}};
   if (violation.section) table.push_back({"section", {}, section_node(*violation.section)});
   if (violation.other_section) table.push_back({"other_section", {}, section_node(*violation.other_section)});
   if (!violation.name.empty()) table.push_back({name_key(violation.hazard), {}, {violation.name, {}}});

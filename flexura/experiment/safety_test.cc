@@ -115,7 +115,7 @@ TEST(TipTargets, AfterAFormulaWithoutAValueAreNotACrash) {
       "[[task]]\nkind = 'expression'\nbends = [['sqrt(0.5-t)', '0']]\n"
       "[[task]]\nkind = 'move'\nto.position = [0.6, 0.9, -0.3]\n");
   ASSERT_FALSE(report.is_safe());
-  EXPECT_EQ(report.violations.back().text(), "1 s: move: section 1: no possible value");
+  EXPECT_EQ(report.violations.back().text(), "at 1 s: move: section 1: no possible value");
 }
 
 TEST(TipTargets, BesideAShapeAreRefused) {

@@ -41,6 +41,7 @@ void Schedule::add(const TaskConfig& task, const ArmState& from) {
   missed_targets_.push_back({.hazard = Hazard::workspace,
                              .start = legs_.back().start,
                              .end = duration_,
+                             .worst_time = duration_,
                              .name = legs_.back().name,
                              .value = missed});
 }

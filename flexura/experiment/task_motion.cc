@@ -80,8 +80,7 @@ void check_formula(const std::string& text, const std::string& path, Reader& rea
   try {
     const Expression expression(text);
   } catch (const ExpressionError& error) {
-    reader.problem_at(path, fmt::format("{} at character {} of {}", error.what(), error.position() + 1,
-                                        Node{text, {}}.brief()));
+    reader.problem_in_text(path, text, error.position(), error.what());
   }
 }
 

@@ -151,7 +151,12 @@ TEST(Tasks, BadOnesGetAClearLine) {
        "column arching_2 is there twice"},
       {"kind='keyframes'\nfile='a.csv'\ncolumns=['time']\n", "task[0].file: stands beside columns or rows"},
       {"kind='expression'\n", "task[0]: says nothing: expected cord_angles"},
-      {"kind='expression'\narchings='sin(t'\n", "x.toml:7:1: task[0].archings[0]: "},
+      {"kind='expression'\narchings='sin(t'\n", "x.toml:7:16: task[0].archings[0]: missing parenthesis"},
+      {"kind='expression'\narchings = ['t', \"2*phi + 1\"]\n",
+       "x.toml:7:21: task[0].archings[1]: unexpected token \"phi\""},
+      {"kind='expression'\narchings='t = 3'\n", "x.toml:7:13: task[0].archings[0]: assigns a value"},
+      {"kind='expression'\narchings=\"2*\\u0070hi\"\n",
+       "x.toml:7:1: task[0].archings[0]: unexpected token \"phi\" at character 3 of \"2*phi\""},
       {"kind='expression'\narchings=['t','t','t']\n", "task[0].archings: 3 given"},
       {"kind='expression'\narchings='phi'\n", "phi"},
       {"kind='expression'\narchings='t'\ncord_angles='t'\n", "more than one way"},
@@ -176,7 +181,7 @@ TEST(Tasks, ALawThatStartsElsewhereJumps) {
   const Experiment experiment = experiment_of("kind='expression'\narchings='0.2+t'\n");
   const SafetyReport report = Schedule(experiment).check();
   ASSERT_EQ(report.violations.size(), 1U);
-  EXPECT_EQ(report.violations[0].text(), "0 s: expression: section 1: jump 0.4");
+  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 0.4");
   EXPECT_THAT(report.caveats.at(0), HasSubstr("sampled every 0.02 s"));
 }
 

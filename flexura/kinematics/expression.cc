@@ -4,6 +4,7 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -40,6 +41,41 @@ void check_text(const std::string& text) {
   }
 }
 
+// muParser tells positions within its messages, from 0, and as its own: one behind a call for what is wrong
+// with its arguments. Here the message tells what, and the position where.
+std::string message_of(const mu::ParserError& error) {
+  std::string message = error.GetMsg();
+  for (const char* place : {" found at position", " at position", " at expression position",
+                            " starting at position", " (position"}) {
+    message.resize(std::min(message.find(place), message.size()));
+  }
+  while (!message.empty() && (message.back() == '.' || message.back() == '\n')) message.pop_back();
+  // It puts a space behind the formula.
+  if (message.ends_with(" \"")) message.erase(message.size() - 2, 1);
+  if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
+  return message;
+}
+
+// Where the name of the function stands whose brackets close last up to `position`.
+std::size_t find_call(const std::string& text, const std::string& function, std::size_t position) {
+  std::size_t at = text.find_last_of(')', position);
+  if (at == std::string::npos) return text.rfind(function, position);
+  for (int depth = 1; depth > 0 && at > 0;) {
+    --at;
+    if (text[at] == ')') ++depth;
+    if (text[at] == '(') --depth;
+  }
+  return text.rfind(function, at);
+}
+
+std::size_t position_of(const mu::ParserError& error, const std::string& text) {
+  const auto told = static_cast<std::size_t>(error.GetPos());
+  if (error.GetPos() < 0) return 0;  // what is wrong with the whole
+  const bool is_of_call = error.GetCode() == mu::ecTOO_MANY_PARAMS || error.GetCode() == mu::ecTOO_FEW_PARAMS;
+  const std::size_t found = is_of_call ? find_call(text, error.GetToken(), told) : told;
+  return std::min(found == std::string::npos ? told : found, text.size());
+}
+
 }  // namespace
 
 struct Expression::Parser {
@@ -61,11 +97,7 @@ Expression::Expression(const std::string& text) : parser_(std::make_unique<Parse
     if (parser_->parser.GetNumResults() != 1)
       throw ExpressionError("has several values: expected one", text.find(','));
   } catch (const mu::ParserError& error) {
-    std::string message = error.GetMsg();
-    while (!message.empty() && (message.back() == '.' || message.back() == '\n')) message.pop_back();
-    // muParser gives no position (-1) for what is wrong with the whole.
-    const auto position = static_cast<std::size_t>(error.GetPos());
-    throw ExpressionError(message, position > text.size() ? 0 : position);
+    throw ExpressionError(message_of(error), position_of(error, text));
   }
 }
 

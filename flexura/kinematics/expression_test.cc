@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace flexura {
 namespace {
@@ -35,13 +38,31 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(wrong("sin(t").what, HasSubstr("parenthesis"));
   EXPECT_THAT(wrong("2*phi").what, HasSubstr("phi"));
   EXPECT_EQ(wrong("2*phi").position, 2U);
-  EXPECT_THAT(wrong("").what, HasSubstr("empty"));
+  EXPECT_THAT(wrong("").what, HasSubstr("is empty"));
   EXPECT_THAT(wrong("t = 3").what, HasSubstr("assigns a value"));
   EXPECT_EQ(wrong("t = 3").position, 2U);
   EXPECT_EQ(wrong("t == 3 ? 1 : (t >= 2) + (t != 1)").what, "no error");
   EXPECT_THAT(wrong("1, 2").what, HasSubstr("several values"));
   EXPECT_THAT(wrong("2*\n3").what, HasSubstr("character"));
   EXPECT_THAT(wrong(std::string(1001, '1')).what, HasSubstr("longer than"));
+}
+
+TEST(Expression, TellsOnePlaceAndOnlyBesideTheMessage) {
+  const std::vector<std::pair<std::string, std::size_t>> formulas = {
+      {"2*phi", 2},          {"sin(t", 5},
+      {"1 + sin(t,2)", 4},   {"max()", 0},
+      {"sin(cos(t), 2)", 0}, {"t+", 2},
+      {"(t))", 3},           {"t t", 2},
+      {"sin(t)*cos()", 7},   {"\"abc", 0},
+      {"2*(t+)", 5},         {"1 : 2", 3},
+      {"2**3", 2},           {"max(1, cos(t), sin(1, 2))", 15},
+      {"t ? 1", 0}};
+  for (const auto& [formula, position] : formulas) {
+    EXPECT_EQ(wrong(formula).position, position) << formula;
+    EXPECT_EQ(wrong(formula).what.find("position"), std::string::npos) << wrong(formula).what;
+  }
+  EXPECT_EQ(wrong("2*phi").what, "unexpected token \"phi\"");
+  EXPECT_EQ(wrong("3 @ t").what, "unexpected token \"@ t\"");
 }
 
 TEST(Expression, HasNoFiniteValueWhereTheFormulaHasNone) {

@@ -76,6 +76,24 @@ std::function<double(const Eigen::Vector3d&)> distance_of(const BoxConfig& box) 
   };
 }
 
+std::vector<Obstacle::Side> sides_of(const BoxConfig& box) {
+  const auto& q = box.rotation;
+  const Eigen::Matrix3d R_WX = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  std::vector<Obstacle::Side> sides;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::Vector3d normal = sign * R_WX.col(axis);
+      sides.push_back({normal, normal.dot(vector(box.center)) + vector(box.half_sizes)[axis]});
+    }
+  }
+  return sides;
+}
+
+template <class Other>
+std::vector<Obstacle::Side> sides_of(const Other&) {
+  return {};
+}
+
 }  // namespace
 
 const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
@@ -132,8 +150,8 @@ std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs) {
     std::visit(
         [&]<class One>(const One& one) {
           const std::string called = fmt::format("{} {}", Codec<One>::table().info().name, result.size() + 1);
-          result.push_back(
-              {one.name.empty() ? called : one.name, one.ignore_base, distance_of(one), normal_of(one)});
+          result.push_back({one.name.empty() ? called : one.name, one.ignore_base, distance_of(one),
+                            normal_of(one), sides_of(one)});
         },
         config);
   }

@@ -20,6 +20,13 @@ struct Obstacle {
   std::function<double(const Eigen::Vector3d& p_W)> distance;
   /// Of a plane: its unit normal in W, along which `distance` grows.
   std::optional<Eigen::Vector3d> normal{};
+  /// Of a box: the planes of its sides, n p_W = offset, n unit and outwards. `distance` is nowhere below the
+  /// height above any of them.
+  struct Side {
+    Eigen::Vector3d normal;
+    double offset = 0;
+  };
+  std::vector<Side> sides{};
 };
 
 /// A half space: all that is not on the side of the plane to which the normal points.

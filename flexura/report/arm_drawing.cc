@@ -150,15 +150,9 @@ std::vector<std::pair<std::size_t, std::string>> named_tips(const ReportMotion& 
   return names;
 }
 
-}  // namespace
-
-std::string section_class(std::size_t index) {
-  const std::size_t dash = index / 8 % 4;
-  return dash == 0 ? fmt::format("s{}", index % 8) : fmt::format("s{} dash{}", index % 8, dash);
-}
-
-Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
-                    std::string_view when) {
+// The arm at state i, with a warning around these sections and those that are unsafe then.
+Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
+                       std::string_view when, const std::vector<std::size_t>& warned) {
   const std::string tip = motion.tip_text(i);
   const bool one_view = scene.views.size() == 1;
   const std::string heading = fmt::format("{}, {}{}", when, moment(motion, i), one_view ? "" : ": " + tip);
@@ -169,7 +163,8 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
     draw_obstacles(svg, scene, v, motion);
     draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
-      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, motion.is_unsafe(k, i));
+      const bool is_warned = motion.is_unsafe(k, i) || std::ranges::count(warned, k) > 0;
+      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, is_warned);
     }
     draw_curve(svg, scene, v, motion, backbone);
     if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
@@ -180,6 +175,25 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
   return {scene.width, scene.height,
           fmt::format("The arm at the {}, {}, with its end effector at {} m", when, moment(motion, i), tip),
           svg.text()};
+}
+
+}  // namespace
+
+std::string section_class(std::size_t index) {
+  const std::size_t dash = index / 8 % 4;
+  return dash == 0 ? fmt::format("s{}", index % 8) : fmt::format("s{} dash{}", index % 8, dash);
+}
+
+Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
+                    std::string_view when) {
+  return picture_of_arm(motion, scene, i, when, {});
+}
+
+Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene, const UnsafeMoment& moment) {
+  const auto& violation = motion.violations[moment.violation];
+  Drawing drawing = picture_of_arm(motion, scene, moment.state, "worst moment", violation.sections);
+  drawing.label += ": " + violation.text;
+  return drawing;
 }
 
 Drawing tip_path_picture(const ReportMotion& motion) {

@@ -18,6 +18,10 @@ namespace flexura {
 [[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                                   std::string_view when);
 
+/// The arm at the worst moment of a violation.
+[[nodiscard]] Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene,
+                                     const UnsafeMoment& moment);
+
 /// The tip's way from start to end.
 [[nodiscard]] Drawing tip_path_picture(const ReportMotion& motion);
 

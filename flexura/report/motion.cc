@@ -50,6 +50,15 @@ void require_usable(const ReportData& data) {
   }
 }
 
+// When violations are drawn in pictures of their own.
+std::vector<double> pictured_times(const ReportMotion& motion) {
+  std::vector<double> times;
+  for (const auto& violation : motion.violations) {
+    if (violation.pictured_at) times.push_back(*violation.pictured_at);
+  }
+  return times;
+}
+
 std::vector<double> event_times(const ReportData& data) {
   std::vector<double> times;
   for (const ReportData::Mark& event : data.events) {
@@ -116,11 +125,18 @@ ReportMotion motion_of(const ReportData& data) {
 
   const std::size_t numbers = 3 * std::max<std::size_t>(data.arm.sections.size(), 1);
   const std::size_t most = std::clamp<std::size_t>(max_shown_numbers / numbers, 2, max_shown_states);
-  for (const std::size_t i : kept_indices(data.times, marks, most)) {
+  std::vector<std::size_t> kept = kept_indices(data.times, marks, most);
+  for (const double time : pictured_times(motion)) kept.push_back(nearest_index(data.times, time));
+  keep_each_once(kept);
+  for (const std::size_t i : kept) {
     motion.times.push_back(data.times[i]);
     motion.states.push_back(data.states[i]);
     motion.backbones.emplace_back(data.arm, data.states[i]);
     for (const double stretch : data.states[i].stretches) motion.stretches_change |= stretch != 1.0;
+  }
+  for (std::size_t i = 0; i < motion.violations.size(); ++i) {
+    const auto& when = motion.violations[i].pictured_at;
+    if (when) motion.unsafe_moments.push_back({i, nearest_index(motion.times, *when)});
   }
   motion.middle = nearest_index(motion.times, (motion.times.front() + motion.times.back()) / 2);
   return motion;

@@ -20,6 +20,12 @@ inline constexpr std::size_t max_shown_numbers = 200'000;
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& wanted, std::size_t most);
 
+/// A violation to be drawn in a picture of its own.
+struct UnsafeMoment {
+  std::size_t violation = 0;  ///< Its place in ReportMotion::violations.
+  std::size_t state = 0;      ///< Index of the state nearest to the moment asked for.
+};
+
 /// The part of a run that its report shows.
 struct ReportMotion {
   Arm arm;
@@ -29,6 +35,7 @@ struct ReportMotion {
   std::vector<double> event_times;  ///< s, each once, inside the run; empty when there are too many to mark.
   std::size_t recorded = 0;         ///< States in the run.
   std::size_t middle = 0;           ///< Index of the state nearest to half time.
+  std::vector<UnsafeMoment> unsafe_moments;
   std::vector<ReportData::Safety::Violation> violations;
   std::vector<ObstacleConfig> obstacles;
   CurveKind curve = CurveKind::arcs;  ///< As in ReportData.

@@ -29,6 +29,15 @@ std::vector<NamedDrawing> arm_drawings(const ReportMotion& motion, const PlotSce
           {"arm-end", arm_picture(motion, scene, motion.end(), "end")}};
 }
 
+std::vector<NamedDrawing> unsafe_drawings(const ReportMotion& motion, const PlotScene& scene) {
+  std::vector<NamedDrawing> drawings;
+  for (const UnsafeMoment& moment : motion.unsafe_moments) {
+    drawings.push_back(
+        {fmt::format("arm-unsafe-{}", drawings.size() + 1), unsafe_picture(motion, scene, moment)});
+  }
+  return drawings;
+}
+
 std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
   std::vector<NamedDrawing> drawings;
   for (const LineChart& chart : charts_of(motion)) {
@@ -129,6 +138,26 @@ std::string safety_html(const ReportData& data) {
   return html + "</section>\n";
 }
 
+// Violations at their worst moments, each with what is wrong and a button that takes the player there.
+std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
+  if (motion.unsafe_moments.empty()) return "";
+  std::string html = fmt::format(
+      "<section aria-labelledby=\"worst-title\">\n<h2 id=\"worst-title\">The worst moments</h2>\n<div "
+      "class=\"pictures {}\">\n",
+      motion.in_plane ? "one" : "two");
+  const std::vector<NamedDrawing> drawings = unsafe_drawings(motion, scene);
+  for (std::size_t k = 0; k < drawings.size(); ++k) {
+    const UnsafeMoment& moment = motion.unsafe_moments[k];
+    const double time = motion.times[moment.state];
+    html += fmt::format(
+        "<figure id=\"picture-{}\">\n{}<figcaption><button type=\"button\" class=\"jump\" "
+        "data-time=\"{:.9g}\">{}</button> {}</figcaption>\n</figure>\n",
+        drawings[k].name, inline_svg(drawings[k].drawing), time, fixed(time, 3),
+        xml_escape(motion.violations[moment.violation].text));
+  }
+  return html + "</div>\n</section>\n";
+}
+
 std::string thinned_html(const ReportMotion& motion) {
   if (motion.count() == motion.recorded) return "";
   return fmt::format(
@@ -166,7 +195,9 @@ std::string policy() {
 
 std::vector<Figure> report_figures(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
-  std::vector<NamedDrawing> drawings = arm_drawings(motion, motion_scene(motion));
+  const PlotScene scene = motion_scene(motion);
+  std::vector<NamedDrawing> drawings = arm_drawings(motion, scene);
+  for (NamedDrawing& unsafe : unsafe_drawings(motion, scene)) drawings.push_back(std::move(unsafe));
   drawings.push_back({"tip-path", tip_path_picture(motion)});
   for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
   std::vector<Figure> figures;
@@ -198,7 +229,7 @@ std::string report_html(const ReportData& data) {
                                         {"report_js", std::string(embedded::report_js)},
                                         {"summary", summary_html(motion)},
                                         {"thinned", curve_html(motion) + thinned_html(motion)},
-                                        {"safety", safety_html(data)},
+                                        {"safety", safety_html(data) + unsafe_html(motion, scene)},
                                         {"views", motion.in_plane ? "one" : "two"},
                                         {"arms", figures_html(arms)},
                                         {"player", inline_svg(player_picture(motion, scene))},

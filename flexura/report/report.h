@@ -27,6 +27,8 @@ struct ReportData {
       double end = 0.0;                   ///< s
       std::vector<std::size_t> sections;  ///< From 0; drawn with a warning in that time.
       std::string text;
+      /// When to draw it in a picture of its own, s; such a time should be among the report's times.
+      std::optional<double> pictured_at = {};
     };
     std::vector<Violation> violations;
     std::vector<std::string> remarks;
@@ -57,7 +59,8 @@ struct Figure {
 /// when times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
-/// The report's pictures: arm-start, arm-middle, arm-end, tip-path, bends (a spatial arm: bends-x and
+/// The report's pictures: arm-start, arm-middle, arm-end, arm-unsafe-1 and on (violations at their worst
+/// moments), tip-path, bends (a spatial arm: bends-x and
 /// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip. Throws as
 /// report_html does.
 [[nodiscard]] std::vector<Figure> report_figures(const ReportData& data);

@@ -90,6 +90,14 @@ std::string xml_fault(std::string_view xml) {
   return open.empty() ? "" : "not closed: " + open.back();
 }
 
+std::size_t warnings_in(const std::string& svg) {
+  std::size_t count = 0;
+  for (std::size_t at = svg.find("class=\"warning\""); at != std::string::npos;
+       at = svg.find("class=\"warning\"", at + 1))
+    ++count;
+  return count;
+}
+
 TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
   ReportData data = paper_run(50);
   EXPECT_EQ(report_html(data).find("safety-title"), std::string::npos);
@@ -99,16 +107,32 @@ TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
   for (const char* part : {"section 2 &lt; 7", "<li>a note</li>", R"("unsafe":[[4,5,1],[4,5,6]])"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   const std::vector<Figure> figures = report_figures(data);
-  const auto warnings = [&](const std::string& name) {
-    std::size_t count = 0;
-    const std::string& svg = svg_of(figures, name);
-    for (std::size_t at = svg.find("class=\"warning\""); at != std::string::npos;
-         at = svg.find("class=\"warning\"", at + 1))
-      ++count;
-    return count;
-  };
-  EXPECT_EQ(warnings("arm-start.svg"), 0U);
-  EXPECT_EQ(warnings("arm-end.svg"), 2U);
+  EXPECT_EQ(warnings_in(svg_of(figures, "arm-start.svg")), 0U);
+  EXPECT_EQ(warnings_in(svg_of(figures, "arm-end.svg")), 2U);
+}
+
+TEST(Report, DrawsViolationsAtTheirWorstMoments) {
+  ReportData data = paper_run(50'000);
+  data.safety = {
+      .violations = {{.start = 1, .end = 2, .sections = {3}, .text = "no picture of its own"},
+                     {.start = 3.1, .end = 3.2, .sections = {2}, .text = "3 < 4", .pictured_at = 3.12345},
+                     {.start = 6, .end = 6, .sections = {5}, .text = "after the end", .pictured_at = 6}},
+      .remarks = {}};
+  data.times.insert(data.times.begin() + 31235, 3.12345);
+  data.states.insert(data.states.begin() + 31235, data.states[31235]);
+  const std::string html = report_html(data);
+  const std::string caption =
+      R"(<figcaption><button type="button" class="jump" data-time="3.12345">3.123</button> 3 &lt; 4</figcaption>)";
+  EXPECT_NE(html.find(caption), std::string::npos);
+  EXPECT_NE(html.find(",3.12345,"), std::string::npos) << "the player's times";
+  EXPECT_EQ(report_html(paper_run(10)).find("worst moment"), std::string::npos);
+  const std::vector<Figure> figures = report_figures(data);
+  EXPECT_FALSE(names_of(figures).contains("arm-unsafe-3.svg"));
+  const std::string& first = svg_of(figures, "arm-unsafe-1.svg");
+  EXPECT_EQ(xml_fault(first), "");
+  EXPECT_EQ(warnings_in(first), 1U);
+  EXPECT_NE(first.find("worst moment, t = 3.123 s"), std::string::npos);
+  EXPECT_EQ(warnings_in(svg_of(figures, "arm-unsafe-2.svg")), 1U) << "outside its span, too";
 }
 
 TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/motion_check.h"
+#include "tests/support/arms.h"
+#include "tests/support/sampled_clearance.h"
 
 namespace flexura {
 namespace {
@@ -85,19 +88,74 @@ TEST(Contact, NamesEverySectionThatTouches) {
   EXPECT_LT(report.violations[2].end, 0.1);
 }
 
-TEST(Contact, SaysWhereAThinSectionBetweenThickOnesIsNotSeen) {
+TEST(Contact, FindsThickSectionsThatMeetRoundAThinOneWithinHalfATurn) {
   Arm arm = even_arm(3, 0.1);
-  const auto caveats = [&] {
-    const MotionPtr hold = hold_motion(bent(3, 0), 1);
-    return check_motions(arm, {}, bent(3, 0), {{hold, 0}}, 0.02).caveats;
-  };
   arm.sections[1].length = 0.1;
-  EXPECT_TRUE(caveats().empty());
   arm.sections[1].radius = {0.02, 0.02};
-  ASSERT_EQ(caveats().size(), 1u);
-  EXPECT_EQ(caveats()[0].substr(0, 32), "sections 1 and 3 are thicker tha");
-  arm.sections[1].length = 0.32;
-  EXPECT_TRUE(caveats().empty());
+  const auto folded_by = [&](double bend) {
+    ArmState state = bent(3, 0);
+    state.bends[1].x() = bend;
+    return state;
+  };
+  const MotionPtr fold =
+      point_to_point_motion(folded_by(0), folded_by(0.9 * pi), std::vector(3, Profile::linear(9)));
+  const SafetyReport report = check_motions(arm, {}, folded_by(0), {{fold, 0}}, 0.02);
+  EXPECT_TRUE(report.caveats.empty());
+  ASSERT_FALSE(report.is_safe());
+  const Violation& contact = report.violations.front();
+  EXPECT_EQ(contact.hazard, Hazard::self_contact);
+  EXPECT_EQ(contact.section, 0U);
+  EXPECT_EQ(contact.other_section, 2U);
+  // Neighbours are less than half a circle of 0.1 m apart along the arm: the first that are not are as far
+  // from the middle of the thin section on either side, at the ends of straight parts and half of the arc.
+  double touching = pi / 2;
+  for (double low = 0.3 * pi, high = 0.9 * pi; high - low > 1e-12;) {
+    touching = (low + high) / 2;
+    const double straight = (pi * 0.1 - 0.1) / 2;
+    const double apart = 2 * (0.1 / touching * std::sin(touching / 2) + straight * std::cos(touching / 2));
+    (apart > 0.2 ? low : high) = touching;
+  }
+  EXPECT_NEAR(contact.start, 9 * touching / (0.9 * pi), 1e-3);
+  EXPECT_EQ(contact.end, 9);
+}
+
+TEST(Contact, OfThickAndThinSectionsIsThatOfSamples) {
+  std::size_t contacts = 0;
+  for_random_cases(300, [&](TestRandom& random) {
+    Arm arm = even_arm(static_cast<std::size_t>(random.integer(2, 4)), 0.1);
+    arm.kind = ArmKind::spatial;
+    const auto thick = static_cast<std::size_t>(random.integer(0, 1));
+    ArmState state = bent(arm.sections.size(), 0);
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const bool is_thick = i % 2 == thick;
+      arm.sections[i].length = is_thick ? random.uniform(0.2, 1) : random.uniform(0.05, 0.3);
+      const double radius = is_thick ? random.uniform(0.05, 0.15) : 0.01;
+      arm.sections[i].radius = {radius, radius * random.uniform(0.8, 1)};
+      // Thin sections bend by less than half a turn, so that only the way along the arm tells neighbours.
+      const double way = random.uniform(-pi, pi);
+      const double bend = is_thick ? random.uniform(0, 0.05) : random.uniform(1.5, 3);
+      state.bends[i] = {bend * std::cos(way), bend * std::sin(way)};
+    }
+    const double found = ContactWatch(arm).contact(state).clearance;
+    const double sampled = SampledArm(arm, state).clearance(1);
+    if (found < -1e-6) {
+      EXPECT_LT(sampled, found + 1e-2);  // the samples are coarse where neighbours begin
+    }
+    if (sampled >= -2e-6) return;
+    ++contacts;
+    EXPECT_LE(found, sampled + 1e-6);
+  });
+  EXPECT_GT(contacts, 20U);
+}
+
+TEST(Contact, AStraightArmOfSectionsThickAndThinTouchesNothingOfItself) {
+  Arm arm = even_arm(6, 0.1);
+  for (std::size_t i = 0; i < 6; ++i) {
+    arm.sections[i].length = i % 2 == 0 ? 0.05 : 0.02;
+    arm.sections[i].radius = {i % 2 == 0 ? 0.1 : 0.01, i % 3 == 0 ? 0.2 : 0.02};
+  }
+  EXPECT_EQ(ContactWatch(arm).contact(ArmState::straight(6)).clearance, no_distance);
+  EXPECT_GT(ContactWatch(arm).contact(bent(6, 0.1)).clearance, 0);
 }
 
 TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {

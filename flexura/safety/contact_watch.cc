@@ -28,6 +28,39 @@ double apart(const TubeArc& a, const Eigen::Vector3d& middle_a, const TubeArc& b
   return (middle_a - middle_b).norm() - (a.length + b.length) / 2 - largest_radius(a) - largest_radius(b);
 }
 
+// What is between two sections, from the first on: whether points of theirs with less than half a turn
+// between them can meet. They cannot where nothing is thinner than the two on average, nor where the backbone
+// bends no sharper than a circle of that radius.
+class Between {
+ public:
+  // Adds section `tube`, whose bend and length may be other by so much.
+  void extend(const TubeArc& tube, double turn, double stretch) {
+    const double length = tube.length - stretch;
+    sharpest_ = length > 0 ? std::min(sharpest_, length / (tube.bend.norm() + turn)) : 0;
+    thinnest_ = std::min(thinnest_, largest_radius(tube));
+    turned_ += turn;
+    stretched_ += stretch;
+  }
+  // Which pairs of points of the sections a and b to ask of, where what may change counts (sign -1: all that
+  // may count; 1: those that surely do).
+  [[nodiscard]] PairRule rule(const TubeArc& a, const TubeArc& b, double sign) const {
+    constexpr double rounding = 1e-9;
+    const double mean = (largest_radius(a) + largest_radius(b)) / 2;
+    const bool is_gentle = std::max(sharpest_, thinnest_) >= mean * (1 - rounding);
+    return {half_turn + sign * turned_, is_gentle ? no_distance : sign * stretched_};
+  }
+
+ private:
+  double sharpest_ = no_distance;  // least radius of curvature, m
+  double thinnest_ = no_distance;
+  double turned_ = 0;
+  double stretched_ = 0;
+};
+
+bool has_pairs(const TubeArc& a, const TubeArc& b, const PairRule& rule) {
+  return turn_between(a, b) >= rule.turn || rule.gap < no_distance;
+}
+
 // The tube with its radius changed by so much at its start and end.
 TubeArc grown(TubeArc tube, double at_start, double at_end) {
   tube.radius[0] += at_start;
@@ -111,14 +144,17 @@ QuantityBounds ContactWatch::self_bounds(const std::vector<TubeArc>& tubes, cons
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     double moved = 0;
     double turned = 0;
+    Between between;
     for (std::size_t j = i; j < tubes.size(); ++j) {
       const double moved_before = moved;
       reach.extend(j, moved, turned);
-      if (turn_between(tubes[i], tubes[j]) < half_turn - turned) continue;
+      between.extend(tubes[j], reach.turn[j], reach.stretch[j]);
+      const PairRule possible = between.rule(tubes[i], tubes[j], -1);
+      if (!has_pairs(tubes[i], tubes[j], possible)) continue;
       if (apart(tubes[i], at[i], tubes[j], at[j]) >= moved) continue;
-      is_free =
-          is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), half_turn - turned, deepest);
-      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), half_turn + turned, deepest))
+      is_free = is_free && stay_apart(tubes[i], grown(tubes[j], moved_before, moved), possible, deepest);
+      if (come_within(tubes[i], grown(tubes[j], -moved_before, -moved), between.rule(tubes[i], tubes[j], 1),
+                      deepest))
         return in_contact;
     }
     most_moved = std::max(most_moved, moved);
@@ -155,10 +191,13 @@ Contact ContactWatch::self_contact(const std::vector<TubeArc>& tubes, double cap
   const std::vector<Eigen::Vector3d> at = middles(tubes);
   Contact nearest{.clearance = cap};
   for (std::size_t i = 0; i < tubes.size(); ++i) {
+    Between between;
     for (std::size_t j = i; j < tubes.size(); ++j) {
-      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      between.extend(tubes[j], 0, 0);
+      const PairRule rule = between.rule(tubes[i], tubes[j], 1);
+      if (!has_pairs(tubes[i], tubes[j], rule)) continue;
       if (apart(tubes[i], at[i], tubes[j], at[j]) >= nearest.clearance) continue;
-      const double distance = tube_distance(tubes[i], tubes[j], half_turn, nearest.clearance);
+      const double distance = tube_distance(tubes[i], tubes[j], rule, nearest.clearance);
       if (distance < nearest.clearance) nearest = {distance, i, j};
     }
   }
@@ -169,10 +208,13 @@ std::vector<Contact> ContactWatch::self_contacts(const std::vector<TubeArc>& tub
   const std::vector<Eigen::Vector3d> at = middles(tubes);
   std::vector<Contact> found;
   for (std::size_t i = 0; i < tubes.size(); ++i) {
+    Between between;
     for (std::size_t j = i; j < tubes.size(); ++j) {
-      if (turn_between(tubes[i], tubes[j]) < half_turn) continue;
+      between.extend(tubes[j], 0, 0);
+      const PairRule rule = between.rule(tubes[i], tubes[j], 1);
+      if (!has_pairs(tubes[i], tubes[j], rule)) continue;
       if (apart(tubes[i], at[i], tubes[j], at[j]) >= deepest) continue;
-      const double distance = tube_distance(tubes[i], tubes[j], half_turn, deepest);
+      const double distance = tube_distance(tubes[i], tubes[j], rule, deepest);
       if (distance < deepest) found.push_back({distance, i, j});
     }
   }

@@ -28,8 +28,9 @@ struct Contact {
 /// Watches one thing the arm may touch: itself or an obstacle.
 ///
 /// Of itself, all pairs of backbone points count between which the backbone turns by half a turn (pi) or
-/// more. With curvature times radius below 1 nearer neighbours cannot meet: of all such curves the half
-/// circle brings its ends nearest, to two radii (Schur's theorem).
+/// more; and, where some section of theirs or between them is thinner than the two on average, those between
+/// which it is longer than half a circle of their mean radius. Others cannot meet, or are neighbours
+/// (docs/safety.md).
 class ContactWatch {
  public:
   explicit ContactWatch(Arm arm);

@@ -32,9 +32,9 @@ class AxisLimit {
       close(report);
       return;
     }
-    if (!std::exchange(is_open_, true)) found_.start = span.start, found_.value = value;
+    if (!std::exchange(is_open_, true)) found_.start = span.start, found_.value = 0;
     found_.end = span.end;
-    found_.value = std::max(found_.value, value);
+    if (value > found_.value) found_.value = value, found_.worst_time = span.end;
   }
   void close(SafetyReport& report) {
     if (std::exchange(is_open_, false)) report.violations.push_back(found_);

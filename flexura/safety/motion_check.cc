@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +12,7 @@
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/jumps.h"
 #include "flexura/safety/limits.h"
+#include "flexura/safety/sampled_spans.h"
 #include "flexura/safety/singular.h"
 #include "flexura/safety/spans.h"
 
@@ -27,41 +26,6 @@ constexpr double contact_resolution = 1e-4;  // s
 constexpr std::size_t limit_intervals = 200'000;
 constexpr std::size_t contact_intervals = 5'000;
 constexpr std::size_t intervals_of_step = 4;
-
-// A span that grows with samples: a sample stands for the time up to the next.
-class SampledSpans {
- public:
-  void sample(std::size_t step, double time, double value, bool is_bad) {
-    if (!is_bad) return;
-    if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({{time, time}, value});
-    last_step_ = step;
-    Found& found = spans_.back();
-    found.span.end = time;
-    found.worst = std::max(found.worst, value);
-  }
-  struct Found {
-    Span span;
-    double worst = 0;
-  };
-  [[nodiscard]] const std::vector<Found>& spans() const { return spans_; }
-
- private:
-  std::vector<Found> spans_;
-  std::size_t last_step_ = 0;
-};
-
-// When the value is largest in a span, of its ends and what lies evenly between.
-double worst_time(const std::function<double(double)>& value, const Span& span) {
-  constexpr int samples = 200;
-  double worst = span.start;
-  double most = -std::numeric_limits<double>::infinity();
-  for (int k = 0; k <= samples; ++k) {
-    const double time = k == samples ? span.end : span.start + (span.end - span.start) * k / samples;
-    const double now = value(time);
-    if (now > most) most = now, worst = time;
-  }
-  return worst;
-}
 
 class MotionCheck {
  public:
@@ -109,29 +73,30 @@ class MotionCheck {
       sample(impossible - 1);
       for (const Jump& jump : find_jumps(motion_, step_, time_of(impossible - 1))) add_jump(jump);
     }
-    report_.caveats.push_back(
-        fmt::format("{:.6g} s to {:.6g} s: sampled every {:.6g} s: the law has no bound on its rates", start_,
-                    start_ + motion_.duration(), step_));
+    report_.caveats.push_back(fmt::format("{}: sampled every {:.6g} s: the law has no bound on its rates",
+                                          span_text(whole(), start_), step_));
   }
 
   void add_impossible(double time) {
     report_.violations.push_back({.hazard = Hazard::not_finite,
                                   .start = start_ + time,
                                   .end = start_ + time,
+                                  .worst_time = start_ + time,
                                   .section = impossible_section(motion_.at(time)),
                                   .name = task_});
   }
 
-  void add_jump(const Jump& jump) { add_jump({jump.time, jump.time}, jump.section, jump.size); }
+  void add_jump(const Jump& jump) { add_jump({jump.time, jump.time}, jump.section, {jump.time, jump.size}); }
 
  private:
-  void add_jump(const Span& span, std::size_t section, double size) {
+  void add_jump(const Span& span, std::size_t section, const WorstValue& size) {
     report_.violations.push_back({.hazard = Hazard::jump,
                                   .start = start_ + span.start,
                                   .end = start_ + span.end,
+                                  .worst_time = start_ + size.time,
                                   .section = section,
                                   .name = task_,
-                                  .value = size});
+                                  .value = size.value});
   }
 
   // Where a law that knows its rates is faster than anything that moves: keyframes a moment apart.
@@ -142,8 +107,8 @@ class MotionCheck {
     for (const Span& span : spans_above(jump_rate, rate, whole(), search).spans) {
       const ArmState before = motion_.at(span.start);
       const auto change = [&](double t) { return largest_change(before, motion_.at(t)); };
-      const double size = change(worst_time(change, span));
-      if (size > smallest_jump) add_jump(span, section, size);
+      const WorstValue size = worst_in(change, span);
+      if (size.value > smallest_jump) add_jump(span, section, size);
     }
   }
 
@@ -163,10 +128,8 @@ class MotionCheck {
                                           .value = std::abs(limit) * limit_tolerance,
                                           .most_intervals = most_intervals(limit_intervals)});
     add_undecided(fmt::format("section {}: {}", section + 1, name_of(hazard)), found);
-    for (const Span& span : found.spans) {
-      const double worst = quantity.value(worst_time(quantity.value, span));
-      add_limit(hazard, section, span, sign * worst, limit);
-    }
+    for (const Span& span : found.spans)
+      add_limit(hazard, section, sign, limit, {span, worst_in(quantity.value, span)});
   }
 
   [[nodiscard]] std::size_t most_intervals(std::size_t at_least) const {
@@ -175,17 +138,19 @@ class MotionCheck {
 
   void add_undecided(const std::string& what, const FoundSpans& found) {
     if (!found.undecided) return;
-    report_.caveats.push_back(fmt::format(
-        "{} undecided between {:.6g} s and {:.6g} s: too near its limit to tell, sampled every {:.3g} s",
-        what, start_ + found.undecided->start, start_ + found.undecided->end, found.sampled_every));
+    report_.caveats.push_back(
+        fmt::format("{} undecided, {}: too near its limit to tell, sampled every {:.3g} s", what,
+                    span_text(*found.undecided, start_), found.sampled_every));
   }
 
-  void add_limit(Hazard hazard, std::size_t section, const Span& span, double value, double limit) {
+  void add_limit(Hazard hazard, std::size_t section, double sign, double limit,
+                 const SampledSpans::Found& found) {
     report_.violations.push_back({.hazard = hazard,
-                                  .start = start_ + span.start,
-                                  .end = start_ + span.end,
+                                  .start = start_ + found.span.start,
+                                  .end = start_ + found.span.end,
+                                  .worst_time = start_ + found.worst.time,
                                   .section = section,
-                                  .value = value,
+                                  .value = sign * found.worst.value,
                                   .limit = limit});
   }
 
@@ -209,14 +174,17 @@ class MotionCheck {
                                                           .name = contact.obstacle_name()})
                                    .first->second;
         violation.end = start_ + time_of_sample(k + 1);
-        violation.value = std::max(violation.value, -now.clearance);
+        if (-now.clearance <= violation.value) continue;
+        violation.value = -now.clearance;
+        violation.worst_time = start_ + time_of_sample(k);
       }
     }
     const auto depth = [](const auto& one) { return one.second.value; };
     const auto deepest = std::ranges::max_element(found, {}, depth);
     if (deepest == found.end()) {  // between two samples only, and hardly
-      found.try_emplace({0, std::nullopt},
-                        Violation{.hazard = contact.hazard(), .name = contact.obstacle_name()});
+      found.try_emplace({0, std::nullopt}, Violation{.hazard = contact.hazard(),
+                                                     .worst_time = start_ + (span.start + span.end) / 2,
+                                                     .name = contact.obstacle_name()});
     }
     Violation& whole = (deepest == found.end() ? found.begin() : deepest)->second;
     whole.start = start_ + span.start;
@@ -250,12 +218,11 @@ class MotionCheck {
     }
     for (std::size_t w = 0; w < watches.size(); ++w) {
       for (const auto& found : limits[w].spans())
-        add_limit(watches[w].hazard, watches[w].section, found.span, watches[w].sign * found.worst,
-                  watches[w].limit);
+        add_limit(watches[w].hazard, watches[w].section, watches[w].sign, watches[w].limit, found);
     }
     for (std::size_t i = 0; i < rates.size(); ++i) {
       for (const auto& found : rates[i].spans())
-        add_limit(Hazard::bend_rate, i, found.span, found.worst, arm_.sections[i].max_bend_rate);
+        add_limit(Hazard::bend_rate, i, 1, arm_.sections[i].max_bend_rate, found);
     }
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       for (const auto& found : contacts[c].spans()) add_contact(contacts_[c], found.span);
@@ -277,29 +244,6 @@ class MotionCheck {
   double step_;
   SafetyReport& report_;
 };
-
-// Tubes i and j may meet within half a turn where what is between them is shorter than half a circle around
-// them, and thin enough to bend sharper than they could: that is not looked at.
-void warn_of_thin_sections(const Arm& arm, SafetyReport& report) {
-  const auto thickness = [&](std::size_t i) {
-    return std::max(arm.sections[i].radius[0], arm.sections[i].radius[1]);
-  };
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    double between = 0;
-    double thinnest = std::numeric_limits<double>::infinity();
-    for (std::size_t j = i + 1; j < arm.sections.size(); ++j) {
-      const double mean = (thickness(i) + thickness(j)) / 2;
-      if (thinnest < mean && between < std::numbers::pi * mean) {
-        report.caveats.push_back(
-            fmt::format("sections {} and {} are thicker than what is between them: whether they touch each "
-                        "other within half a turn is not looked at",
-                        i + 1, j + 1));
-      }
-      between += arm.sections[j].length * arm.sections[j].stretch_limits[0];
-      thinnest = std::min(thinnest, thickness(j));
-    }
-  }
-}
 
 void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
   if (!is_possible(state)) return;
@@ -326,7 +270,6 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
   SafetyReport report;
   std::vector<ContactWatch> contacts{ContactWatch(arm)};
   for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
-  warn_of_thin_sections(arm, report);
   note_singular(arm, initial, 0, report);
   ArmState before = initial;
   for (const TimedMotion& timed : motions) {

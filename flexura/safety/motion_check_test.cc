@@ -51,10 +51,21 @@ TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
   EXPECT_EQ(violation.hazard, Hazard::bend);
   EXPECT_NEAR(violation.start, 2, 1e-6);
   EXPECT_EQ(violation.end, 4);
+  EXPECT_EQ(violation.worst_time, 4);
   EXPECT_EQ(violation.section, 0u);
   EXPECT_EQ(violation.value, 2);
   EXPECT_EQ(violation.limit, 1);
   EXPECT_THAT(violation.text(), HasSubstr("s to 4 s: section 1: bend 114.592 deg, limit 57.2958 deg"));
+}
+
+TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {
+  Arm arm = one_section();
+  arm.sections[0].max_bend = 1;
+  const SafetyReport report =
+      check(arm, point_to_point_motion(bent(0), bent(1 + 1e-8), {Profile::linear(1)}));
+  ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_THAT(report.violations[0].text(),
+              testing::MatchesRegex("0\\.999999[0-9]+ s to 1 s: section 1: bend .*"));
 }
 
 TEST(MotionCheck, LimitsThatAreJustTouchedAreKept) {
@@ -142,7 +153,7 @@ TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   ASSERT_FALSE(report.is_safe());
   EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
   EXPECT_NEAR(report.violations[0].start, 1.1, 1e-9);
-  EXPECT_EQ(report.violations[0].text(), "1.1 s: section 1: no possible value");
+  EXPECT_EQ(report.violations[0].text(), "at 1.1 s: section 1: no possible value");
   const auto no_length = function_motion(2, [](double t) -> ArmState { return {{{0, 0}}, {1 - t}}; });
   const SafetyReport shrunk = check(one_section(), no_length, 0.1);
   ASSERT_FALSE(shrunk.is_safe());
@@ -159,10 +170,10 @@ TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
   });
   const SafetyReport report = check_motions(arm, {}, law->at(0), {{law, 3, "reach"}}, 0.1);
   ASSERT_EQ(report.violations.size(), 3u);
-  EXPECT_THAT(report.violations[0].text(), testing::StartsWith("3.4 s: reach: section 2: jump 0.1"));
+  EXPECT_THAT(report.violations[0].text(), testing::StartsWith("at 3.4 s: reach: section 2: jump 0.1"));
   EXPECT_EQ(report.violations[1].hazard, Hazard::bend);
   EXPECT_NEAR(report.violations[1].end, 4, 1e-9);
-  EXPECT_EQ(report.violations[2].text(), "4.1 s: reach: section 2: no possible value");
+  EXPECT_EQ(report.violations[2].text(), "at 4.1 s: reach: section 2: no possible value");
 }
 
 TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {

@@ -1,5 +1,7 @@
 #include "flexura/safety/spans.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -39,6 +41,18 @@ std::vector<Span> joined(std::vector<Span> spans) {
 }
 
 }  // namespace
+
+std::string span_text(const Span& span, double shift) {
+  const double start = shift + span.start;
+  const double end = shift + span.end;
+  if (start == end) return fmt::format("at {:.6g} s", start);
+  // 17 digits tell any two doubles apart.
+  for (int digits = 6;; ++digits) {
+    const std::string from = fmt::format("{:.{}g}", start, digits);
+    const std::string to = fmt::format("{:.{}g}", end, digits);
+    if (from != to || digits == 17) return fmt::format("{} s to {} s", from, to);
+  }
+}
 
 WatchedQuantity with_rate(std::function<double(double time)> value,
                           std::function<double(double start, double end)> rate) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace flexura {
@@ -12,6 +13,10 @@ struct Span {
   double start = 0;
   double end = 0;
 };
+
+/// "0.5 s to 2 s" of a span moved by `shift` s, in six digits or as many as tell its ends apart; "at 2 s" of
+/// one time.
+[[nodiscard]] std::string span_text(const Span& span, double shift = 0);
 
 /// Between what a quantity stays.
 struct QuantityBounds {

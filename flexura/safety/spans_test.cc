@@ -36,6 +36,16 @@ TEST(Spans, FindANeedleThatNoGridWouldHit) {
   });
 }
 
+TEST(SpanText, TellsStartAndEndApart) {
+  EXPECT_EQ(span_text({0, 2.5}), "0 s to 2.5 s");
+  EXPECT_EQ(span_text({1, 1 + 3e-9}), "1 s to 1.000000003 s");
+  EXPECT_EQ(span_text({0.123456789, 0.1234567891}), "0.123456789 s to 0.1234567891 s");
+  EXPECT_EQ(span_text({86400, 86400.04}), "86400 s to 86400.04 s");
+  EXPECT_EQ(span_text({1, std::nextafter(1, 2)}), "1 s to 1.0000000000000002 s");
+  EXPECT_EQ(span_text({1, 1}), "at 1 s");
+  EXPECT_EQ(span_text({0.5, 0.5}, 3), "at 3.5 s");
+}
+
 TEST(Spans, WhatTouchesTheLimitIsNotAboveIt) {
   const auto sine = with_rate([](double t) { return std::sin(t); }, [](double, double) { return 1.0; });
   EXPECT_TRUE(spans_above(1.0, sine, {0, 10}, {1e-3, 1e-3}).spans.empty());

@@ -72,7 +72,7 @@ double brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
 
 void expect_as_brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
   const double expected = brute_force(a, b, least_turn);
-  const double found = tube_distance(a, b, least_turn);
+  const double found = tube_distance(a, b, {least_turn});
   if (expected == no_distance) return;  // the grid may miss a sliver of pairs
   EXPECT_LE(found, expected + 1e-6);
   EXPECT_GE(found, expected - 1e-6);  // brute force may stay above the least
@@ -96,7 +96,7 @@ TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
   for_random_cases(60, [](TestRandom& random) {
     const TubeArc a = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.01);
     const TubeArc b = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.02);
-    const double found = tube_distance(a, b, -100);
+    const double found = tube_distance(a, b, {-100});
     for (int k = 0; k < 2000; ++k) {
       const Eigen::Vector3d p = a.point(random.uniform(0, 1));
       ASSERT_GE((p - b.point(random.uniform(0, 1))).norm() - 0.03, found - 1e-6);
@@ -105,37 +105,74 @@ TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
   });
 }
 
+// Of a grid of pairs that the rule counts.
+double least_of_grid(const TubeArc& a, const TubeArc& b, const PairRule& rule, int n) {
+  double least = no_distance;
+  for (int i = 0; i <= n; ++i) {
+    const double u = static_cast<double>(i) / n;
+    for (int j = 0; j <= n; ++j) {
+      const double v = static_cast<double>(j) / n;
+      const double gap = b.arc_at(v) - a.arc_at(u) - pi / 2 * (a.radius_at(u) + b.radius_at(v));
+      if (b.turn_at(v) - a.turn_at(u) < rule.turn && gap < rule.gap) continue;
+      least = std::min(least, (a.point(u) - b.point(v)).norm() - a.radius_at(u) - b.radius_at(v));
+    }
+  }
+  return least;
+}
+
+TEST(TubeDistance, CountsWhatIsFarAlongTheArmToo) {
+  for_random_cases(60, [](TestRandom& random) {
+    Arm arm = random_arm(random);
+    for (Section& section : arm.sections)
+      section.radius = {random.uniform(0.01, 0.1), random.uniform(0.01, 0.1)};
+    const std::vector<TubeArc> tubes = tube_arcs(arm, random_state(random, arm));
+    const auto last = static_cast<int>(tubes.size()) - 1;
+    const TubeArc& a = tubes[static_cast<std::size_t>(random.integer(0, last))];
+    for (const TubeArc& b : tubes) {
+      if (b.start < a.start) continue;
+      const PairRule rule{pi, random.uniform(-0.01, 0.01)};
+      const double found = tube_distance(a, b, rule);
+      const double sampled = least_of_grid(a, b, rule, 200);
+      EXPECT_LE(found, sampled + 1e-6);
+      EXPECT_GE(found, sampled - 2 * (a.length + b.length) / 200);
+      if (found == no_distance) continue;
+      EXPECT_FALSE(stay_apart(a, b, rule, found + 1e-5));
+      EXPECT_FALSE(come_within(a, b, rule, found - 1e-5));
+    }
+  });
+}
+
 TEST(TubeDistance, OfParallelAndCrossingStraightTubesIsExact) {
   const TubeArc a = tube_at({0, 0, 0}, {0, 0}, 1, 0.1);
-  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0.2}, {0, 0}, 1, 0.1), -1), 0.3, 1e-12);
-  EXPECT_NEAR(tube_distance(a, tube_at({0, 0, 1.5}, {0, 0}, 1, 0.1), -1), 0.3, 1e-12);
-  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0}, {1e-9, 0}, 1, 0.1), -1), 0.3, 1e-6);
+  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0.2}, {0, 0}, 1, 0.1), {-1}), 0.3, 1e-12);
+  EXPECT_NEAR(tube_distance(a, tube_at({0, 0, 1.5}, {0, 0}, 1, 0.1), {-1}), 0.3, 1e-12);
+  EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0}, {1e-9, 0}, 1, 0.1), {-1}), 0.3, 1e-6);
 }
 
 TEST(TubeDistance, OfAHalfTurnIsTheDiameter) {
   const TubeArc half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // radius of curvature 1
-  EXPECT_NEAR(tube_distance(half, half, pi - 1e-9), 1.5, 1e-6);
-  EXPECT_EQ(tube_distance(half, half, pi + 1e-9), no_distance);
+  EXPECT_NEAR(tube_distance(half, half, {pi - 1e-9}), 1.5, 1e-6);
+  EXPECT_EQ(tube_distance(half, half, {pi + 1e-9}), no_distance);
 }
 
 TEST(TubeDistance, OfAFullCircleIsItsOverlap) {
   for (const double bend : {2 * pi, 2.5 * pi, 4 * pi}) {
     const TubeArc circle = tube_at({0, 0, 0}, {0, bend}, 1, 0.01);
-    EXPECT_NEAR(tube_distance(circle, circle, pi), -0.02, 1e-6) << bend;
+    EXPECT_NEAR(tube_distance(circle, circle, {pi}), -0.02, 1e-6) << bend;
   }
   const TubeArc open = tube_at({0, 0, 0}, {1.9 * pi, 0}, 1.9 * pi, 0.01);
-  EXPECT_NEAR(tube_distance(open, open, pi), 2 * std::sin(0.05 * pi) - 0.02, 1e-6);
+  EXPECT_NEAR(tube_distance(open, open, {pi}), 2 * std::sin(0.05 * pi) - 0.02, 1e-6);
 }
 
 TEST(TubeDistance, StopsWhereItsQuestionIsAnswered) {
   const TubeArc a = tube_at({0, 0, 0}, {1, 0}, 1, 0.1);
   const TubeArc b = tube_at({0.7, 0.3, 0}, {-1, 2}, 1, 0.1);
-  const double exact = tube_distance(a, b, -100);
-  EXPECT_EQ(tube_distance(a, b, -100, exact - 1e-3), exact - 1e-3);
-  EXPECT_TRUE(stay_apart(a, b, -100, exact - 1e-5));
-  EXPECT_FALSE(stay_apart(a, b, -100, exact + 1e-5));
-  EXPECT_TRUE(come_within(a, b, -100, exact + 1e-5));
-  EXPECT_FALSE(come_within(a, b, -100, exact - 1e-5));
+  const double exact = tube_distance(a, b, {-100});
+  EXPECT_EQ(tube_distance(a, b, {-100}, exact - 1e-3), exact - 1e-3);
+  EXPECT_TRUE(stay_apart(a, b, {-100}, exact - 1e-5));
+  EXPECT_FALSE(stay_apart(a, b, {-100}, exact + 1e-5));
+  EXPECT_TRUE(come_within(a, b, {-100}, exact + 1e-5));
+  EXPECT_FALSE(come_within(a, b, {-100}, exact - 1e-5));
 }
 
 std::vector<Obstacle> random_obstacles(TestRandom& random) {
@@ -174,6 +211,18 @@ TEST(ObstacleDistance, IsThatOfBruteForce) {
       EXPECT_NEAR(obstacle_distance(tube, from, obstacle, {}), expected, 1e-6) << obstacle.name;
     }
   });
+}
+
+TEST(ObstacleDistance, OfWhatLiesFlatOnABoxIsSoonProved) {
+  // Its chords would have to be told from its arcs to a part of a micrometre.
+  const Obstacle table = obstacles({BoxConfig{.center = {0, 0, -0.05}, .half_sizes = {2, 2, 0.05}}}).front();
+  const Eigen::Matrix3d along = so3_exp({0, pi / 2, 0});
+  for (const double gap : {0.0, 1e-7, -1e-5, -0.01}) {
+    const TubeArc flat{{along, {0, 0, 0.02 + gap}}, {0, 2}, 0.3, {0.02, 0.02}, 0};
+    EXPECT_NEAR(obstacle_distance(flat, 0, table, {}), gap, 1e-9);
+    EXPECT_TRUE(stays_clear(flat, 0, table, gap - 1e-9));
+    EXPECT_TRUE(comes_within(flat, 0, table, gap + 1e-6));
+  }
 }
 
 TEST(ObstacleDistance, CountsFromTheFractionOnAndAlongAPlane) {

@@ -4,8 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <tuple>
+#include <utility>
+
+#include "flexura/safety/spans.h"
 
 namespace flexura {
 namespace {
@@ -77,10 +84,28 @@ std::string Violation::finding() const {
   }
 }
 
-std::string Violation::text() const {
-  const std::string from = fmt::format("{:.6g} s", start);
-  const std::string to = fmt::format("{:.6g} s", end);
-  return (from == to ? from : from + " to " + to) + ": " + place() + finding();
+std::string Violation::text() const { return span_text({start, end}) + ": " + place() + finding(); }
+
+std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most) {
+  const std::vector<Violation>& all = report.violations;
+  const auto excess = [&](std::size_t i) { return std::abs(all[i].value - all[i].limit); };
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, excess);
+  std::vector<std::size_t> rank(all.size());  // among those of its kind
+  std::map<std::pair<Hazard, std::string>, std::size_t> ranked;
+  for (const std::size_t i : order)
+    rank[i] = ranked[{all[i].hazard, all[i].hazard == Hazard::obstacle ? all[i].name : ""}]++;
+  std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(rank[i], !all[i].section, i); });
+  std::vector<std::size_t> told;
+  for (const std::size_t i : order) {
+    if (told.size() >= most) break;
+    const bool is_new = std::ranges::none_of(
+        told, [&](std::size_t other) { return all[other].worst_time == all[i].worst_time; });
+    if (is_new) told.push_back(i);
+  }
+  std::ranges::sort(told);
+  return told;
 }
 
 void SafetyReport::sort() {

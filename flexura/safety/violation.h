@@ -30,13 +30,14 @@ struct Violation {
   Hazard hazard = Hazard::bend;
   double start = 0;                               ///< s
   double end = 0;                                 ///< s
+  double worst_time = 0;                          ///< When `value` is found, s.
   std::optional<std::size_t> section = {};        ///< From 0.
   std::optional<std::size_t> other_section = {};  ///< From 0; which `section` touches.
   std::string name = {};                          ///< Of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
 
-  /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg".
+  /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg"; the times as span_text (spans.h) writes them.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -56,6 +57,11 @@ struct SafetyReport {
   /// Puts the violations in their order.
   void sort();
 };
+
+/// Which violations tell most when no more than `most` can be shown: the worst of every hazard (of every
+/// obstacle) before others, those of a section before those of a motor or a task. Places in
+/// `report.violations`, ascending; of several with one worst time only the first is told.
+[[nodiscard]] std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most);
 
 /// The hazard's name in reports: "bend", "bend rate", ...
 [[nodiscard]] const char* name_of(Hazard hazard);

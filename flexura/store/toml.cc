@@ -35,6 +35,17 @@ SourcePosition position(const Source& source, const toml::source_position& at) {
   return {source, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
 
+// Where a text's characters begin, if they stand there as they are: after one quote or three.
+int text_column(const toml::value<std::string>& text) {
+  const auto& [begin, end, path] = text.source();
+  if (begin.line != end.line) return 0;
+  const std::size_t written = end.column - begin.column;
+  for (const std::size_t quotes : {std::size_t{1}, std::size_t{3}}) {
+    if (written == text.get().size() + 2 * quotes) return static_cast<int>(begin.column + quotes);
+  }
+  return 0;
+}
+
 template <class T>
 Node::Other other(const char* kind, const T& value) {
   std::ostringstream text;
@@ -69,6 +80,7 @@ Node convert(const toml::node& node, const Source& source) {
     result.value = real->get();
   } else if (const auto* text = node.as_string()) {
     result.value = text->get();
+    result.where.text_column = text_column(*text);
   } else if (const auto* date = node.as_date()) {
     result.value = other("date", date->get());
   } else if (const auto* time = node.as_time()) {
@@ -132,6 +144,23 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
   document = std::move(below);
 }
 
+// Moves everything on the first line by so many columns.
+void shift(Node& node, int columns) {
+  if (node.where.line == 1) {
+    node.where.column += columns;
+    if (node.where.text_column > 0) node.where.text_column += columns;
+  }
+  if (auto* entries = node.as<Node::Array>()) {
+    for (Node& entry : *entries) shift(entry, columns);
+  }
+  if (auto* members = node.as<Node::Table>()) {
+    for (Node::Member& member : *members) {
+      if (member.where.line == 1) member.where.column += columns;
+      shift(member.node, columns);
+    }
+  }
+}
+
 }  // namespace
 
 Node parse_toml(std::string_view text, const std::string& source) {
@@ -155,16 +184,18 @@ Node parse_toml_value(std::string_view text, const std::string& source, int line
       std::ranges::all_of(text, [](unsigned char c) { return std::isalpha(c) || c == '_' || c == '-'; }) &&
       text != "true" && text != "false" && text != "inf" && text != "nan" && text != "-inf" && text != "-nan";
   if (is_word) return {std::string(text), where};
+  constexpr std::string_view before = "value = ";
   Node document;
   try {
-    document = parse_toml(fmt::format("value = {}", text), source);
+    document = parse_toml(std::string(before) + std::string(text), source);
   } catch (const InputError& error) {
     throw InputError({{where, error.problems().front().what}});
   }
   const auto* members = document.as<Node::Table>();
   if (members->size() != 1) throw InputError({{where, "expected one value"}});
   Node value = members->front().node;
-  value.where = where;
+  shift(value, column - static_cast<int>(before.size()) - 1);
+  value.where.line = line;
   return value;
 }
 

@@ -75,6 +75,16 @@ TEST(ParseTomlValue, ReadsAValueOrABareWord) {
   EXPECT_THROW(value("1\nb = 2"), InputError);
 }
 
+TEST(ParseTomlValue, KnowsThePlacesOfEntriesAndOfTheCharactersOfTexts) {
+  const Node node = parse_toml_value(R"(['ab', """c""", "\u0041b"])", "--set", 1, 5);
+  const auto& entries = *node.as<Node::Array>();
+  EXPECT_EQ(node.where.column, 5);
+  EXPECT_EQ(entries[0].where.column, 6);
+  EXPECT_EQ(entries[0].where.text_column, 7);
+  EXPECT_EQ(entries[1].where.text_column, 15);
+  EXPECT_EQ(entries[2].where.text_column, 0) << "escapes";
+}
+
 class TomlFile : public ::testing::Test {
  protected:
   void write(const std::string& name, std::string_view text) {

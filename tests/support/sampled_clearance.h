@@ -19,8 +19,11 @@ class SampledArm {
  public:
   SampledArm(const Arm& arm, const ArmState& state) : arm_(arm), backbone_(arm, state) {
     double turn = 0;
+    double length = 0;
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       turns_.push_back(turn);
+      lengths_.push_back(length);
+      length += backbone_.arcs()[i].length;
       turn += backbone_.arcs()[i].bend.norm();
       for (int k = 0; k <= cuts; ++k) points_.push_back(point(i, fraction(k)));
     }
@@ -46,7 +49,9 @@ class SampledArm {
     return least;
   }
 
-  /// Of the arm to itself, between points with half a turn or more between them; as above.
+  /// Of the arm to itself, between points that are no neighbours: between which the backbone has half a turn
+  /// or more, or, where something is thinner than they are, is longer than half a circle of their mean
+  /// radius; as above.
   [[nodiscard]] double clearance(double need) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < turns_.size(); ++i) {
@@ -78,6 +83,22 @@ class SampledArm {
   [[nodiscard]] double turn(std::size_t i, double u) const {
     return turns_[i] + u * backbone_.arcs()[i].bend.norm();
   }
+  // Whether some section of these and between them is thinner than the two on average.
+  [[nodiscard]] bool is_thinner_between(std::size_t i, std::size_t j) const {
+    const auto thickness = [&](std::size_t k) {
+      return std::max(arm_.sections[k].radius[0], arm_.sections[k].radius[1]);
+    };
+    double thinnest = thickness(i);
+    for (std::size_t k = i + 1; k <= j; ++k) thinnest = std::min(thinnest, thickness(k));
+    return thinnest < (thickness(i) + thickness(j)) / 2 * (1 - 1e-9);
+  }
+  [[nodiscard]] bool are_neighbours(std::size_t i, double u, std::size_t j, double v) const {
+    if (turn(j, v) - turn(i, u) >= half_turn) return false;
+    if (!is_thinner_between(i, j)) return true;
+    const double length =
+        lengths_[j] + v * backbone_.arcs()[j].length - lengths_[i] - u * backbone_.arcs()[i].length;
+    return length < half_turn * (radius(i, u) + radius(j, v)) / 2;
+  }
   // How much nearer something may be between two points.
   [[nodiscard]] double spacing(std::size_t i) const {
     const auto& r = arm_.sections[i].radius;
@@ -85,12 +106,13 @@ class SampledArm {
   }
 
   [[nodiscard]] double clearance(std::size_t i, std::size_t j, double need) const {
-    if (turn(j, 1) - turns_[i] < half_turn) return std::numeric_limits<double>::infinity();
+    if (turn(j, 1) - turns_[i] < half_turn && !is_thinner_between(i, j))
+      return std::numeric_limits<double>::infinity();
     double nearest = std::numeric_limits<double>::infinity();
     std::pair<int, int> best;
     for (int k = 0; k <= cuts; ++k) {
       for (int m = 0; m <= cuts; ++m) {
-        if (turn(j, fraction(m)) - turn(i, fraction(k)) < half_turn) continue;
+        if (are_neighbours(i, fraction(k), j, fraction(m))) continue;
         const double now = (points_[index(i, k)] - points_[index(j, m)]).norm() - radius(i, fraction(k)) -
                            radius(j, fraction(m));
         if (now < nearest) nearest = now, best = {k, m};
@@ -98,7 +120,7 @@ class SampledArm {
     }
     if (nearest - spacing(i) - spacing(j) >= need) return nearest;
     const auto at = [&](double u, double v) {
-      if (turn(j, v) - turn(i, u) < half_turn) return std::numeric_limits<double>::infinity();
+      if (are_neighbours(i, u, j, v)) return std::numeric_limits<double>::infinity();
       return (point(i, u) - point(j, v)).norm() - radius(i, u) - radius(j, v);
     };
     return descended(at, fraction(best.first), fraction(best.second), nearest);
@@ -125,6 +147,7 @@ class SampledArm {
   const Arm& arm_;
   Backbone backbone_;
   std::vector<double> turns_;            // from the base to each section's start, rad
+  std::vector<double> lengths_;          // to there, m
   std::vector<Eigen::Vector3d> points_;  // cuts + 1 a section
 };
 

@@ -1,0 +1,45 @@
+#include "flexura/experiment/report_safety.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+ReportData::Safety shown_safety(const SafetyReport& safety) {
+  ReportData::Safety shown;
+  for (const Violation& violation : safety.violations) {
+    auto& told = shown.violations.emplace_back();
+    told.start = violation.start, told.end = violation.end, told.text = violation.text();
+    for (const auto& section : {violation.section, violation.other_section})
+      if (section) told.sections.push_back(*section);
+  }
+  shown.remarks = safety.caveats;
+  shown.remarks.insert(shown.remarks.end(), safety.notes.begin(), safety.notes.end());
+  return shown;
+}
+
+// Between the steps of the clock, too.
+void add_state(double time, const Schedule& schedule, ReportData& data) {
+  const auto next = std::ranges::lower_bound(data.times, time);
+  if (next == data.times.end() || *next == time) return;
+  ArmState state = schedule.state_at(time);
+  if (!is_possible(state)) return;
+  data.states.insert(data.states.begin() + (next - data.times.begin()), std::move(state));
+  data.times.insert(next, time);
+}
+
+}  // namespace
+
+void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data) {
+  data.safety = shown_safety(safety);
+  for (const std::size_t i : most_telling(safety, max_pictured_violations)) {
+    const double when = safety.violations[i].worst_time;
+    data.safety->violations[i].pictured_at = when;
+    add_state(when, schedule, data);
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "flexura/safety/tube.h"
+
+// What the searches for least distances (tube_pairs.cc, tube_obstacles.cc) share.
+namespace flexura {
+
+// Thousands are rare; this keeps a case that nobody thought of from filling the memory.
+inline constexpr int most_steps = 200'000;
+
+// A piece of a tube between two fractions.
+struct Piece {
+  double from = 0;
+  double to = 1;
+  Eigen::Vector3d start;
+  Eigen::Vector3d end;
+
+  [[nodiscard]] double middle() const { return (from + to) / 2; }
+  [[nodiscard]] double at(double chord_fraction) const { return from + chord_fraction * (to - from); }
+};
+
+inline Piece piece_of(const TubeArc& tube, double from, double to) {
+  return {from, to, tube.point(from), tube.point(to)};
+}
+
+// How far the backbone may be from the chord.
+inline double slack_of(const TubeArc& tube, const Piece& piece) {
+  const double part = piece.to - piece.from;
+  return tube.length * part * std::min(tube.bend.norm() * part / 8, 0.5);
+}
+
+// The node of least bound first.
+template <class Node>
+class Queue {
+ public:
+  void push(Node node) {
+    nodes_.push_back(std::move(node));
+    std::ranges::push_heap(nodes_, later);
+  }
+  Node pop() {
+    std::ranges::pop_heap(nodes_, later);
+    Node node = std::move(nodes_.back());
+    nodes_.pop_back();
+    return node;
+  }
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+
+ private:
+  static bool later(const Node& a, const Node& b) { return a.low > b.low; }
+  std::vector<Node> nodes_;
+};
+
+}  // namespace flexura

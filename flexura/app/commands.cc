@@ -42,7 +42,7 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   const auto coordinate = [&](std::size_t i) { return *position[i].as<double>(); };
   const bool planar = experiment.arm.kind == ArmKind::planar;
   const std::string z = planar ? "" : fmt::format(", {:.3f}", coordinate(2));
-  if (result.outcome == Outcome::done) {
+  if (result.outcome == RunOutcome::done) {
     out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
   }
   out << fmt::format("results: {}\n", result.folder.string());
@@ -100,7 +100,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   } else {
     print_result(experiment, result, out);
   }
-  return result.outcome == Outcome::done ? exit_done : exit_missed;
+  return result.outcome == RunOutcome::done ? exit_done : exit_missed;
 }
 
 int check_command(const CheckArguments& arguments, std::ostream& out) {

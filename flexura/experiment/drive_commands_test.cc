@@ -74,7 +74,7 @@ class LaboratoryArm : public ::testing::Test {
 TEST_F(LaboratoryArm, RunsToTheSameBytesEachTimeAndFromItsOwnFile) {
   const Experiment experiment = load_experiment(laboratory_arm);
   const RunResult first = run(experiment);
-  EXPECT_EQ(first.outcome, Outcome::done) << (first.reasons.empty() ? "" : first.reasons[0]);
+  EXPECT_EQ(first.outcome, RunOutcome::done) << (first.reasons.empty() ? "" : first.reasons[0]);
   const auto files = files_in(first.folder);
   EXPECT_TRUE(files.contains("commands.csv"));
   EXPECT_EQ(files, files_in(run(experiment).folder));
@@ -145,12 +145,12 @@ TEST_F(LaboratoryArm, WritesNoCommandsForAMotionThatIsUnsafeOrWithoutADrive) {
   Experiment experiment = load_experiment(laboratory_arm);
   experiment.arm.section[1].max_bend = 0.1;
   const RunResult unsafe = run(experiment);
-  EXPECT_EQ(unsafe.outcome, Outcome::unsafe);
+  EXPECT_EQ(unsafe.outcome, RunOutcome::unsafe);
   EXPECT_FALSE(std::filesystem::exists(unsafe.folder / commands_file_name));
   experiment = load_experiment(laboratory_arm);
   experiment.drive.reset();
   const RunResult bare = run(experiment);
-  EXPECT_EQ(bare.outcome, Outcome::done);
+  EXPECT_EQ(bare.outcome, RunOutcome::done);
   EXPECT_FALSE(std::filesystem::exists(bare.folder / commands_file_name));
   const McapReader log(bare.folder / log_file_name);
   for (const McapMessage& message : log.messages()) ASSERT_NE(message.channel->topic, drive_commands_topic);

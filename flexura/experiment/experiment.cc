@@ -67,7 +67,8 @@ Node with_whole_truth(Node document) {
   const Node world = truth_of(document);
   for (Node::Member& member : *truth->as<Node::Table>()) {
     const Node* whole = world.find(member.key);
-    if (whole != nullptr && fields_of(static_cast<const TruthConfig*>(nullptr)).info().find(member.key) != nullptr)
+    if (whole != nullptr &&
+        fields_of(static_cast<const TruthConfig*>(nullptr)).info().find(member.key) != nullptr)
       member.node = *whole;
   }
   return document;
@@ -147,15 +148,20 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
 
 const Table<TruthConfig>& fields_of(const TruthConfig*) {
   static const auto table =
-      Table<TruthConfig>("truth",
-                         "The simulated world, where it differs from what the rest of the file says and the tasks "
-                         "believe: parts of the same tables, laid upon them. Cameras are told apart by their names, "
-                         "sections and tendons by their places.")
-          .field("arm", &TruthConfig::arm, {.meaning = "The arm as it is.", .partial = true, .default_text = "as believed"})
+      Table<TruthConfig>(
+          "truth",
+          "The simulated world, where it differs from what the rest of the file says and the tasks "
+          "believe: parts of the same tables, laid upon them. Cameras are told apart by their names, "
+          "sections and tendons by their places.")
+          .field("arm", &TruthConfig::arm,
+                 {.meaning = "The arm as it is.", .partial = true, .default_text = "as believed"})
           .field("drive", &TruthConfig::drive,
                  {.meaning = "What moves it.", .partial = true, .default_text = "as believed"})
           .field("camera", &TruthConfig::camera,
-                 {.meaning = "The cameras as they are.", .count = {0, max_cameras}, .partial = true, .default_text = "as believed"});
+                 {.meaning = "The cameras as they are.",
+                  .count = {0, max_cameras},
+                  .partial = true,
+                  .default_text = "as believed"});
   return table;
 }
 

@@ -32,8 +32,8 @@ struct RecordConfig {
   double tension = 0.5;               ///< Of the Catmull-Rom curve.
 };
 
-/// The table [truth]: where the simulated world differs from what the rest of the file believes. What it leaves out is
-/// as believed; a file may write parts of these tables, which the reader completes.
+/// The table [truth]: where the simulated world differs from what the rest of the file believes. What it
+/// leaves out is as believed; a file may write parts of these tables, which the reader completes.
 struct TruthConfig {
   std::optional<ArmConfig> arm;
   std::optional<DriveConfig> drive;

@@ -10,8 +10,10 @@ namespace flexura {
 
 Filming::Filming(const Experiment& experiment)
     : photographer_(experiment.true_rig().arm.arm(), experiment),
-      rig_(experiment.model_rig(), experiment.true_rig(), [this](const Shot& shot) { return photographer_.take(shot); },
-           static_cast<std::uint64_t>(experiment.seed)),
+      rig_(
+          experiment.model_rig(), experiment.true_rig(),
+          [this](const Shot& shot) { return photographer_.take(shot); },
+          static_cast<std::uint64_t>(experiment.seed)),
       cameras_(experiment.true_rig().cameras),
       frames_(cameras_.size(), 0) {}
 

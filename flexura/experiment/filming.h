@@ -13,15 +13,16 @@
 
 namespace flexura {
 
-/// Plays an experiment's motion on its simulated rig and hands out the frames that its cameras deliver on the way.
+/// Plays an experiment's motion on its simulated rig and hands out the frames that its cameras deliver on the
+/// way.
 class Filming {
  public:
   explicit Filming(const Experiment& experiment);
 
   using TakeFrame = std::function<void(const std::string& camera, const Frame& frame)>;
 
-  /// Commands the arm to be in `state` at `time` s, not before the call's before, and gives every frame received until
-  /// then, in the order of time and then of the cameras.
+  /// Commands the arm to be in `state` at `time` s, not before the call's before, and gives every frame
+  /// received until then, in the order of time and then of the cameras.
   void play_to(double time, const ArmState& state, const TakeFrame& take);
 
  private:

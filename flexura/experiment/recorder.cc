@@ -81,8 +81,10 @@ void Recorder::image(const std::string& camera, const Frame& frame) {
   if (is_new) channel->second = channels_->add<ImageMessage>(topic);
   // A run waits for every frame: quickly made rather than small.
   constexpr PngConfig quick{.level = 1};
-  const ImageMessage message{time_message(nanoseconds(frame.time)), topic.substr(1),
-                             {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
+  const ImageMessage message{
+      time_message(nanoseconds(frame.time)),
+      topic.substr(1),
+      {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
   channels_->write(channel->second, nanoseconds(frame.received), message);
 }
 

@@ -49,14 +49,16 @@ Node reason_nodes(const std::vector<std::string>& reasons) {
 }
 
 // Each camera, what it gave, and how it is turned about its optical axis: a head cannot correct that.
-Node camera_nodes(const std::vector<CameraConfig>& cameras, const Witness& witness) {
+Node camera_nodes(const std::vector<CameraConfig>& cameras,
+                  const std::map<std::string, std::int64_t>& frames) {
   Node::Array list;
   for (const CameraConfig& config : cameras) {
     const Camera camera(config);
     const auto roll = roll_of(camera.pose(camera.initial_stage(), camera.initial_head()).rotation);
     Node::Table entry{{"name", {}, {config.name, {}}}};
     if (roll) entry.push_back({"roll", {}, {*roll, {}}});
-    entry.push_back({"frames", {}, {witness.frames_of(config.name), {}}});
+    const auto count = frames.find(config.name);
+    entry.push_back({"frames", {}, {count == frames.end() ? std::int64_t{0} : count->second, {}}});
     list.push_back({std::move(entry), {}});
   }
   return {std::move(list), {}};
@@ -71,7 +73,7 @@ struct Played {
 
 Node summary_of(const Experiment& experiment, const Arm& arm, const Schedule& schedule,
                 const SafetyReport& safety, const Played& played, const RunResult& result) {
-  const bool done = result.outcome == Outcome::done;
+  const bool done = result.outcome == RunOutcome::done;
   Node::Table summary{
       {"flexura", {}, {experiment.flexura, {}}},
       {"title", {}, {experiment.title, {}}},
@@ -121,10 +123,8 @@ class Witness {
     recorder_.image(camera, frame);
     ++frames_[camera];
   }
-  [[nodiscard]] std::int64_t frames_of(const std::string& camera) const {
-    const auto found = frames_.find(camera);
-    return found == frames_.end() ? 0 : found->second;
-  }
+  // Of each camera that gave any.
+  [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
   void write_commands(const Drive& drive, const std::filesystem::path& file) {
     commands_.emplace(arm_, drive, file);
   }
@@ -217,7 +217,8 @@ Played play(const Experiment& experiment, const Schedule& schedule, const Safety
     const ArmState state = schedule.state_at(time);
     if (!is_possible(state)) break;
     if (filming) {
-      filming->play_to(time, state, [&](const std::string& camera, const Frame& frame) { witness.image(camera, frame); });
+      filming->play_to(time, state,
+                       [&](const std::string& camera, const Frame& frame) { witness.image(camera, frame); });
     }
     if (step % every == 0 || step == schedule.steps()) witness.state(step, time, state);
     witness.command(time, state);
@@ -253,7 +254,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   Witness witness(folder, arm, schedule);
   const SafetyReport safety = schedule.check();
   for (const Violation& violation : safety.violations) result.reasons.push_back(violation.text());
-  if (!safety.is_safe()) result.outcome = Outcome::unsafe;
+  if (!safety.is_safe()) result.outcome = RunOutcome::unsafe;
   // Nobody should send motors where the arm would come to harm: an unsafe motion is simulated only.
   if (experiment.drive && safety.is_safe())
     witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
@@ -261,6 +262,10 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   witness.event(played.time, Recorder::Level::info, "run", safety.is_safe() ? "done" : "unsafe");
   witness.close();
   result.summary = summary_of(experiment, arm, schedule, safety, played, result);
+  if (experiment.record.cameras || !experiment.camera.empty()) {
+    result.summary.as<Node::Table>()->push_back(
+        {"cameras", {}, camera_nodes(experiment.cameras(), witness.frames())});
+  }
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report)
     write_report(folder, std::move(witness).report_data(experiment, schedule, safety));

@@ -12,14 +12,14 @@
 namespace flexura {
 
 /// How a run ended.
-enum class Outcome {
+enum class RunOutcome {
   done,
   unsafe,  ///< A task would break a limit of the arm or touch something; simulated to be looked at.
 };
 
 /// What a run says of itself at its end.
 struct RunResult {
-  Outcome outcome = Outcome::done;
+  RunOutcome outcome = RunOutcome::done;
   std::vector<std::string> reasons;  ///< Why it is not done, a line each.
   std::filesystem::path folder;
   Node summary;  ///< As in summary.json.

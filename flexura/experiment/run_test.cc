@@ -63,7 +63,7 @@ class Run : public ::testing::Test {
 
 TEST_F(Run, ReachesThePapersEndEffector) {
   const RunResult result = run(load_experiment(paper_arm));
-  EXPECT_EQ(result.outcome, Outcome::done);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
   const auto [x, y] = tip_of(result);
   EXPECT_EQ(std::round(x * 1000), -10738);
   EXPECT_EQ(std::round(y * 1000), 5201);
@@ -127,11 +127,11 @@ to = { archings_deg = [30.0], stretches = [1.2] }
 
 TEST_F(Run, GoesToALimitButNotBeyond) {
   Experiment experiment = parse_experiment(limited, "x.toml");
-  EXPECT_EQ(run(experiment).outcome, Outcome::done);
+  EXPECT_EQ(run(experiment).outcome, RunOutcome::done);
   auto& move = std::get<MoveTask>(experiment.task[0]);
   move.to.archings->at(0) = -31 * std::numbers::pi / 180;
   RunResult result = run(experiment);
-  EXPECT_EQ(result.outcome, Outcome::unsafe);
+  EXPECT_EQ(result.outcome, RunOutcome::unsafe);
   ASSERT_THAT(result.reasons, SizeIs(1));
   EXPECT_EQ(result.reasons[0], "1.93548 s to 2 s: section 1: bend 62 deg, limit 60 deg");
 
@@ -149,7 +149,7 @@ TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
   std::get<MoveTask>(experiment.task[0]).to.archings->at(0) = 0.6;
   experiment.obstacle.emplace_back(SphereConfig{.name = "ball", .center = {0, 0.5, 0}, .radius = 0.1});
   const RunResult result = run(experiment);
-  EXPECT_EQ(result.outcome, Outcome::unsafe);
+  EXPECT_EQ(result.outcome, RunOutcome::unsafe);
   EXPECT_EQ(*result.summary.find("duration")->as<double>(), 2.0);
   const auto& violations = *result.summary.find("violations")->as<Node::Array>();
   ASSERT_THAT(violations, SizeIs(2));
@@ -180,7 +180,7 @@ TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
       "[clock]\nstep = 0.1\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'expression'\nduration = 2\n"
       "archings = ['1 - sqrt(1 - t)']\n",
       "x.toml"));
-  EXPECT_EQ(result.outcome, Outcome::unsafe);
+  EXPECT_EQ(result.outcome, RunOutcome::unsafe);
   EXPECT_EQ(result.reasons.at(0), "at 1.1 s: expression: section 1: no possible value");
   EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.0);
   EXPECT_EQ(result.summary.find("tasks"), nullptr);

@@ -13,11 +13,8 @@ Camera::Camera(const CameraConfig& config)
     : config_(config),
       lens_(config.lens, config.sensor.width, config.sensor.height),
       X_WM_(config.mount.pose()),
-      head_axes_{config.head.pan, config.head.tilt, config.head.zoom.axis(lens_)} {}
-
-std::array<AxisConfig, 3> Camera::stage_axes() const {
-  return {config_.mount.stage.x, config_.mount.stage.y, config_.mount.stage.z};
-}
+      head_axes_{config.head.pan, config.head.tilt, config.head.zoom.axis(lens_)},
+      stage_axes_{config.mount.stage.x, config.mount.stage.y, config.mount.stage.z} {}
 
 HeadState Camera::initial_head() const {
   const CameraStartConfig& start = config_.initial;

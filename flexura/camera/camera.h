@@ -42,7 +42,7 @@ class Camera {
   /// How pan, tilt and zoom move, the zoom's defaults filled in from the lens.
   [[nodiscard]] const std::array<AxisConfig, 3>& head_axes() const { return head_axes_; }
   /// How the stage's x, y and z move.
-  [[nodiscard]] std::array<AxisConfig, 3> stage_axes() const;
+  [[nodiscard]] const std::array<AxisConfig, 3>& stage_axes() const { return stage_axes_; }
 
   /// Where it stands when a run starts.
   [[nodiscard]] HeadState initial_head() const;
@@ -63,7 +63,7 @@ class Camera {
   CameraConfig config_;
   ZoomTable lens_;
   Pose X_WM_;
-  std::array<AxisConfig, 3> head_axes_;
+  std::array<AxisConfig, 3> head_axes_, stage_axes_;
 };
 
 }  // namespace flexura

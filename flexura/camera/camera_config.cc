@@ -91,7 +91,7 @@ std::vector<CameraConfig> cameras_at(const std::array<double, 2>& distances,
   std::vector<CameraConfig> cameras(2);
   const std::array<const char*, 2> names = {"front", "side"};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!(std::isfinite(distances[i]) && distances[i] > 0))
+    if (!std::isfinite(distances[i]) || distances[i] <= 0)
       throw std::invalid_argument("a camera's distance must be a positive number");
     cameras[i].name = names[i];
     cameras[i].mount.position = center;

@@ -123,8 +123,8 @@ std::optional<Eigen::Vector2d> Lens::project(const Eigen::Vector3d& p_CP) const 
     if (point.norm() > largest_radius_) return std::nullopt;
     point = distort(point, intrinsics_.distortion).point;
   }
-  const Eigen::Vector2d pixel(intrinsics_.fx * point.x() + intrinsics_.cx,
-                              intrinsics_.fy * point.y() + intrinsics_.cy);
+  Eigen::Vector2d pixel(intrinsics_.fx * point.x() + intrinsics_.cx,
+                        intrinsics_.fy * point.y() + intrinsics_.cy);
   if (!pixel.allFinite()) return std::nullopt;
   return pixel;
 }
@@ -149,8 +149,8 @@ std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& 
 }
 
 std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d wanted((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
-                               (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
+  Eigen::Vector2d wanted((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
+                         (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
   if (!wanted.allFinite()) return std::nullopt;
   if (!intrinsics_.is_distorted()) return wanted;
   // From the radial part alone, which is inverted for certain, by Newton's method, damped so that the error

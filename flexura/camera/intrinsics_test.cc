@@ -145,36 +145,38 @@ TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
   });
 }
 
-// Points of a circle's inscribed square and of its top, in a plane tilted towards the camera.
-class TiltedCircle : public testing::Test {
- protected:
-  static constexpr double f_ = 800, R_ = 0.5, D_ = 2.5;
-  const double a_ = R_ / std::numbers::sqrt2;
-  const double X_ = 20 * std::numbers::pi / 180;
+// A circle of radius R in a plane whose top edge leans towards the camera; the camera stands at a distance in
+// front of the plane's middle.
+constexpr double focal_length = 800, circle_radius = 0.5, distance = 2.5;
+constexpr double half_side = circle_radius / std::numbers::sqrt2;  // of the inscribed square
+constexpr double twenty_degrees = std::numbers::pi / 9;
 
-  // In the image of a camera `D_` in front of the plane's centre: the point (x, y) of the plane (right, up),
-  // whose top edge leans towards the camera by `tilt`; the camera itself looks up by `camera_tilt`.
-  [[nodiscard]] Eigen::Vector2d pixel(double x, double y, double tilt, double camera_tilt) const {
-    View view;
-    view.lens = Lens({f_, f_, 0, 0, {}});
-    view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks along -Z, W's Y up
-    view.X_WC.rotation *= so3_exp({camera_tilt, 0, 0});
-    view.X_WC.position = {0, 0, D_};
-    return *view.project(so3_exp({tilt, 0, 0}) * Eigen::Vector3d(x, y, 0));
-  }
-};
+// In the image's axes from the principal point: the point (x, y) of the plane (right, up), leaning by `tilt`;
+// the camera itself looks up by `camera_tilt`.
+Eigen::Vector2d pixel(double x, double y, double tilt, double camera_tilt) {
+  View view;
+  view.lens = Lens({focal_length, focal_length, 0, 0, {}});
+  view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks along -Z, W's Y up
+  view.X_WC.rotation *= so3_exp({camera_tilt, 0, 0});
+  view.X_WC.position = {0, 0, distance};
+  return *view.project(so3_exp({tilt, 0, 0}) * Eigen::Vector3d(x, y, 0));
+}
 
-TEST_F(TiltedCircle, HasTheFormOfFigures10To13) {
-  const auto corner = [&](double right, double up) { return pixel(right * a_, up * a_, X_, 0); };
+TEST(TiltedCircle, HasTheFormOfFigures10To13) {
+  const auto corner = [](double right, double up) {
+    return pixel(right * half_side, up * half_side, twenty_degrees, 0);
+  };
   EXPECT_NEAR((corner(1, 1) - corner(-1, 1)).norm(), 237.7751, 5e-5);
   EXPECT_NEAR((corner(1, -1) - corner(-1, -1)).norm(), 215.8345, 5e-5);
   EXPECT_NEAR(corner(1, -1).y() - corner(1, 1).y(), 213.1268, 5e-5);
   EXPECT_NEAR(corner(1, 1).norm(), 163.1414, 5e-5);
-  EXPECT_NEAR(-pixel(0, R_, X_, 0).y(), 161.3906, 5e-5);
+  EXPECT_NEAR(-pixel(0, circle_radius, twenty_degrees, 0).y(), 161.3906, 5e-5);
 }
 
-TEST_F(TiltedCircle, LooksOtherwiseWhenTheCameraTiltsInstead) {
-  const auto corner = [&](double right, double up) { return pixel(right * a_, up * a_, 0, X_); };
+TEST(TiltedCircle, LooksOtherwiseWhenTheCameraTiltsInstead) {
+  const auto corner = [](double right, double up) {
+    return pixel(right * half_side, up * half_side, 0, twenty_degrees);
+  };
   EXPECT_NEAR((corner(1, 1) - corner(-1, 1)).norm(), 229.0082, 5e-5);
   EXPECT_NEAR((corner(1, -1) - corner(-1, -1)).norm(), 253.8631, 5e-5);
   EXPECT_NEAR(corner(1, -1).y() - corner(1, 1).y(), 256.9304, 5e-5);

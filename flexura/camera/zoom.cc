@@ -101,7 +101,7 @@ std::string ZoomTable::problem(const LensConfig& config) {
     if (i == 0) continue;
     const Intrinsics before = lens_at(rows[i - 1], one), here = lens_at(rows[i], one);
     if (!(rows[i].ratio > rows[i - 1].ratio)) return fmt::format("[{}]: expected a rising ratio", i);
-    if (!(here.fx > before.fx && here.fy > before.fy))
+    if (!(here.fx > before.fx) || !(here.fy > before.fy))
       return fmt::format("[{}]: expected rising focal lengths", i);
     if (counts && !((*rows[i].count - *rows[i - 1].count) * (*rows[1].count - *rows[0].count) > 0))
       return fmt::format("[{}]: expected counts that all rise or all fall", i);

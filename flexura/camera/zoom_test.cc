@@ -128,7 +128,7 @@ TEST(Zoom, RefusesATableThatIsNone) {
     LensConfig config;
     config.zoom = sony_zoom();
     spoil(config.zoom);
-    const std::string what = ZoomTable::problem(config);
+    std::string what = ZoomTable::problem(config);
     EXPECT_THROW(ZoomTable(config, 640, 480), std::invalid_argument);
     return what;
   };

@@ -71,7 +71,7 @@ double MonotoneCubic::value(double x) const {
 }
 
 double MonotoneCubic::slope(double x) const {
-  if (x_.size() == 1 || !(x >= x_.front() && x <= x_.back())) return 0;
+  if (x_.size() == 1 || !(x >= x_.front()) || x > x_.back()) return 0;
   const Piece piece = piece_at(x);
   const double u = (x - piece.start) / piece.width, v = 1 - u;
   return 6 * u * v * piece.rise / piece.width + piece.slope * v * (1 - 3 * u) -

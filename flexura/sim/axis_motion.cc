@@ -46,7 +46,7 @@ void AxisMotion::halt(double time) {
 
 void AxisMotion::go(double time, double target, double duration) {
   const double start = time + delay_;
-  if (!(std::isfinite(start) && start >= plans_.back().start))
+  if (!std::isfinite(start) || start < plans_.back().start)
     throw std::invalid_argument(
         fmt::format("a command at {} s, after one that holds from {} s on", time, plans_.back().start));
   const State from = plans_.back().at(start);

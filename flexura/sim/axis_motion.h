@@ -47,10 +47,10 @@ class AxisMotion {
   };
   struct Plan {
     double start = 0, end = 0, target = 0;
-    double carried = 0;           // at the start
-    double turn = 0;              // when the motor reverses on the way; the start when it does not
-    int count = 0;                // of pieces
-    std::array<Piece, 3> pieces;  // from the start to the end
+    double carried = 0;             // at the start
+    double turn = 0;                // when the motor reverses on the way; the start when it does not
+    int count = 0;                  // of pieces
+    std::array<Piece, 3> pieces{};  // from the start to the end
     [[nodiscard]] State at(double time) const;
     void add(double duration, double rate, double acceleration);
   };

@@ -57,7 +57,7 @@ void BendMotion::command(double time, const ArmState& target, double duration) {
 void BendMotion::halt(double time) { go(time, at(time), 0); }
 
 void BendMotion::go(double time, ArmState target, double duration) {
-  if (!(std::isfinite(time) && time >= plans_.back().start))
+  if (!std::isfinite(time) || time < plans_.back().start)
     throw std::invalid_argument(
         fmt::format("a command at {} s, after one at {} s", time, plans_.back().start));
   Plan plan{time, at(time), std::move(target), {}};

@@ -139,7 +139,7 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
 CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   if (auto fault = link_.fault()) return *fault;
   if (!fits(state, arm_)) return link_.refusal("the shape is not one of this arm");
-  if (!(duration >= 0 && std::isfinite(duration)))
+  if (!std::isfinite(duration) || duration < 0)
     return link_.refusal(fmt::format("a motion cannot take {} s", duration));
   if (auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) {
     if (!drive->command(link_.now(), state, duration)) return link_.refusal("a motor cannot count so far");

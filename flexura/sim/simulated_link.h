@@ -20,7 +20,7 @@ class SimulatedLink {
 
   [[nodiscard]] double now() const { return clock_->now(); }
   /// The link is lost in [from, to), s.
-  void lose(double from, double to) { outages_.push_back({from, to}); }
+  void lose(double from, double to) { outages_.emplace_back(from, to); }
   /// The fault now, if there is one.
   [[nodiscard]] std::optional<PortFault> fault() const {
     for (const auto& [from, to] : outages_) {

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace flexura {
 namespace {
 
-const RigConfig& checked(const RigConfig& truth, const RigConfig& model) {
+ArmSetup true_arm(const RigConfig& model, const RigConfig& truth) {
   if (const std::string problem = truth_problem(model, truth); !problem.empty())
     throw std::invalid_argument(problem);
-  return truth;
+  return ArmSetup(truth);
 }
 
 // How far back the slowest camera may look.
@@ -37,7 +38,7 @@ SimulatedView::SimulatedView(const CameraConfig& config, Shot shot, const TakePi
 
 SimulatedRig::SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
                            std::uint64_t seed)
-    : arm_(ArmSetup(model), ArmSetup(checked(truth, model)), clock_, horizon_of(truth.cameras)) {
+    : arm_(ArmSetup(model), true_arm(model, truth), clock_, horizon_of(truth.cameras)) {
   for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
     Shot shot;
     shot.camera = i;

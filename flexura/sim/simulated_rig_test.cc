@@ -133,8 +133,8 @@ class SimulatedCameraTest : public testing::Test {
     rig_ = std::make_unique<SimulatedRig>(rig, rig, numbers_renderer, 3);
     ports_ = rig_->ports();
   }
-  [[nodiscard]] CameraPort& camera() { return *ports_.cameras[0].camera; }
-  [[nodiscard]] ClockPort& clock() { return *ports_.clock; }
+  [[nodiscard]] CameraPort& camera() const { return *ports_.cameras[0].camera; }
+  [[nodiscard]] ClockPort& clock() const { return *ports_.clock; }
 
   std::unique_ptr<SimulatedRig> rig_;
   RigPorts ports_;

@@ -14,9 +14,15 @@ struct Circle {
   Eigen::Vector3d center, normal;  ///< m; unit.
   Eigen::Vector3d x, y;            ///< Unit, in its plane, perpendicular.
   double radius;                   ///< m; > 0.
+  /// Where a ray of direction d meets the circle's plane is, from the center along x and y, (d . by_x, d . by_y)
+  /// / (d . by_z); by_z is positive in front of the camera.
+  Eigen::Vector3d by_x, by_y, by_z;
+  double steepness;  ///< Bound on the derivative of CircleView::value by (a, b).
 };
 
-[[nodiscard]] Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, double radius);
+/// In the plane of the frame's x and y around its origin; `is_turned`: its normal is -z.
+[[nodiscard]] Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, double radius,
+                               bool is_turned = false);
 
 /// Whether the ray meets the disc within the circle in front of the camera: negative then, and zero on the
 /// circle's image, whose border near the ray it gives too. Linear along rays through the camera; defined for

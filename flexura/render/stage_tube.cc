@@ -89,9 +89,8 @@ void add_disc(const TubeArc& tube_arc, std::size_t index, bool at_end, bool poin
               int body, Stage& stage) {
   const double along = at_end ? tube_arc.arc.length : 0.0;
   const Pose X_CS = X_CW * tube_arc.arc.pose(along);
-  Circle circle = circle_at(X_CS.rotation, X_CS.position, tube_arc.radius[at_end ? 1 : 0]);
-  if (points_back) circle.normal = -circle.normal;
-  stage.discs.push_back({circle, body, index, along});
+  const double radius = tube_arc.radius[at_end ? 1 : 0];
+  stage.discs.push_back({circle_at(X_CS.rotation, X_CS.position, radius, points_back), body, index, along});
 }
 
 }  // namespace

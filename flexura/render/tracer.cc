@@ -266,6 +266,7 @@ Hit Tracer::hit(const Ray& ray) const {
   return sights.first;
 }
 
+
 Trace Tracer::trace(const Ray& ray) const {
   Sights sights;
   for (const Part part : parts_) meet(stage_, part, ray, sights);

@@ -39,9 +39,6 @@ struct Trace {
   Border nearest, second;  ///< Infinitely far: none within border_reach.
 };
 
-/// Borders are told when they are as near as this, px.
-inline constexpr double border_reach = 3;
-
 /// Holds rays against some of a stage's primitives, in the order given. Surfaces are seen from outside only:
 /// a camera within a body does not see that body (screens have two sides).
 class Tracer {

@@ -4,30 +4,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace flexura {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Depth of the circle's point in the local direction (x, y), not zero; and, when the circle is seen so flat
-// that the point opposite to it (across the image's long axis) is as near to the ray, that one's if smaller.
-double rim_depth(const Circle& circle, double x, double y, const Ray& ray) {
-  const double to_camera_x = circle.x.dot(circle.center), to_camera_y = circle.y.dot(circle.center);
-  const double square = to_camera_x * to_camera_x + to_camera_y * to_camera_y;
-  const double length = std::hypot(x, y);
-  x /= length, y /= length;
-  const Eigen::Vector3d near = circle.center + circle.radius * (x * circle.x + y * circle.y);
-  if (!(square > 0)) return near.z();
-  const double along = 2 * (x * to_camera_x + y * to_camera_y) / square;
-  const Eigen::Vector3d other = circle.center + circle.radius * ((x - along * to_camera_x) * circle.x +
-                                                                 (y - along * to_camera_y) * circle.y);
-  if (other.z() >= near.z() || !(other.z() > 0)) return near.z();
-  if (!(near.z() > 0)) return other.z();
-  constexpr double close = 3;  // px
-  const Eigen::Vector2d apart = (other / other.z() - near / near.z()).head<2>();
-  const double pixel = ray.by_pixel.norm() * 0.7;
-  return apart.norm() < close * pixel ? other.z() : near.z();
+// The border where the circle's image crosses the line from the ray along `normal`, `distance` px away.
+Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& normal, double distance) {
+  Border border;
+  Eigen::Vector3d direction = ray.direction;
+  direction.head<2>() += ray.by_pixel * (distance * normal);
+  if (!(circle.by_z.dot(direction) > 0)) return border;
+  const double x = circle.by_x.dot(direction), y = circle.by_y.dot(direction);
+  const double length = std::sqrt(x * x + y * y);
+  if (!(length > 0)) return border;
+  border.depth = circle.center.z() + circle.radius / length * (x * circle.x.z() + y * circle.y.z());
+  if (!(border.depth > 0)) return border;
+  border.distance = std::abs(distance);
+  border.towards = distance < 0 ? Eigen::Vector2d(-normal) : normal;
+  return border;
 }
 
 }  // namespace
@@ -54,14 +51,25 @@ CircleView view_of(const Circle& circle, const Ray& ray) {
   view.value = length - circle.radius * w;
   if (!(std::abs(view.value) < border_reach * circle.steepness * ray.by_pixel.norm())) return view;
   if (!(length > 0)) return view;
-  const Eigen::Vector3d slope =
-      (x * circle.by_x + y * circle.by_y) / length - circle.radius * circle.by_z;
-  view.border = border_of(view.value, slope.head<2>(), ray, 0);
-  if (view.border.distance < border_reach) {
-    const double sign = w < 0 ? -1 : 1;
-    view.border.depth = rim_depth(circle, sign * x, sign * y, ray);
-    if (!(view.border.depth > 0)) view.border.distance = infinity;
+  const Eigen::Vector3d slope = (x * circle.by_x + y * circle.by_y) / length - circle.radius * circle.by_z;
+  const Border straight = border_of(view.value, slope.head<2>(), ray, 0);
+  // On the line that way x^2 + y^2 = (radius z)^2 is quadratic in the distance.
+  const Eigen::Vector2d step = ray.by_pixel * straight.towards;
+  const double x_step = circle.by_x.head<2>().dot(step), y_step = circle.by_y.head<2>().dot(step);
+  const double z = circle.radius * w, z_step = circle.radius * circle.by_z.head<2>().dot(step);
+  const double A = x_step * x_step + y_step * y_step - z_step * z_step,
+               B = x * x_step + y * y_step - z * z_step;
+  const double C = x * x + y * y - z * z, discriminant = B * B - A * C;
+  if (!(discriminant >= 0)) {
+    // It passes the tip of a flat image.
+    view.borders[0] = straight;
+    view.borders[0].depth = std::max(1e-300, circle.center.z() - circle.radius);
+    return view;
   }
+  const double q = -(B + std::copysign(std::sqrt(discriminant), B));
+  if (A != 0) view.borders[0] = rim_border(circle, ray, straight.towards, q / A);
+  if (q != 0) view.borders[1] = rim_border(circle, ray, straight.towards, C / q);
+  if (view.borders[1] < view.borders[0]) std::swap(view.borders[0], view.borders[1]);
   return view;
 }
 

@@ -91,7 +91,7 @@ void meet_disc(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
     const auto depth = meet_plane(circle.center, circle.normal, ray);
     if (depth) sights.add_hit(*depth, part);
   }
-  sights.add(view.border);
+  for (const Border& border : view.borders) sights.add(border);
 }
 
 void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
@@ -137,11 +137,16 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     const LocalRay local = local_ray(piece, ray);
     const DepthRange range = range_of(piece, local, piece.near_radius);
     if (range.is_empty()) break;
-    const double lowest = first_minimum(piece, local, depth, range);
+    const double lowest = first_slowdown(piece, local, depth, range, steps > 0);
     if (lowest < infinity) return contour_at(piece, ray, lowest);
     if (range.to <= depth) break;
     depth = range.to;
     index = piece_behind(piece, range);
+    if (index >= 0) continue;
+    // Out through the tube's end: its contour and the end's rim meet near by, at an angle that no line tells.
+    Border corner = contour_at(piece, ray, depth);
+    corner.distance *= 0.7;
+    return corner;
   }
   return {};
 }
@@ -218,8 +223,10 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     const auto& edges = stage.ring_edges;
     const auto next = std::ranges::lower_bound(edges, hit.s, {}, &RingEdge::s) - edges.begin();
     const auto last = std::min(next + 3, static_cast<std::ptrdiff_t>(edges.size()));
-    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i)
-      sights.add(view_of(edges[static_cast<std::size_t>(i)].circle, ray).border);
+    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i) {
+      const CircleView view = view_of(edges[static_cast<std::size_t>(i)].circle, ray);
+      for (const Border& border : view.borders) sights.add(border);
+    }
   }
   if (body.is_etalon) {
     const double angle = etalon_angle(stage, hit.depth * ray.direction);
@@ -266,7 +273,6 @@ Hit Tracer::hit(const Ray& ray) const {
   return sights.first;
 }
 
-
 Trace Tracer::trace(const Ray& ray) const {
   Sights sights;
   for (const Part part : parts_) meet(stage_, part, ray, sights);
@@ -278,7 +284,9 @@ Trace Tracer::trace(const Ray& ray) const {
       sights.add(border_of(sights.second.depth - sights.first.depth, slope, ray, sights.first.depth));
   }
   if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::piece) {
-    sights.add(own_contour(stage_, ray, sights.first));
+    Border contour = own_contour(stage_, ray, sights.first);
+    contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
+    sights.add(contour);
     add_color_edges(stage_, ray, sights);
   }
   Trace trace;

@@ -8,6 +8,9 @@
 
 namespace flexura {
 
+/// Borders are told when they are as near as this, px.
+inline constexpr double border_reach = 3;
+
 /// A curve in the image near a point of it, as the straight line that it is close by.
 struct Border {
   double distance = std::numeric_limits<double>::infinity();  ///< From the point, px; >= 0.

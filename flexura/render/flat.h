@@ -14,16 +14,21 @@ struct Circle {
   Eigen::Vector3d center, normal;  ///< m; unit.
   Eigen::Vector3d x, y;            ///< Unit, in its plane, perpendicular.
   double radius;                   ///< m; > 0.
+  /// Where a ray of direction d meets the circle's plane is, from the center along x and y, (d . by_x, d .
+  /// by_y) / (d . by_z); by_z is positive in front of the camera.
+  Eigen::Vector3d by_x, by_y, by_z;
+  double steepness;  ///< Bound on the derivative of CircleView::value by (a, b).
 };
 
-[[nodiscard]] Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, double radius);
+/// In the plane of the frame's x and y around its origin; `is_turned`: its normal is -z.
+[[nodiscard]] Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, double radius,
+                               bool is_turned = false);
 
 /// Whether the ray meets the disc within the circle in front of the camera: negative then, and zero on the
-/// circle's image, whose border near the ray it gives too. Linear along rays through the camera; defined for
-/// every ray. `depth` of the border is the circle's where it is nearest to the ray in the image.
+/// circle's image, which crosses the steepest way down or up at the two borders, the nearer one first.
 struct CircleView {
   double value;
-  Border border;
+  std::array<Border, 2> borders;
 };
 [[nodiscard]] CircleView view_of(const Circle& circle, const Ray& ray);
 
@@ -37,7 +42,7 @@ struct Face {
   Eigen::Vector3d normal;                ///< Unit.
   std::array<Eigen::Vector3d, 4> edges;  ///< Of the planes through the camera and the edges, inwards where
                                          ///< the camera sees the face's front.
-  bool is_front = true;  ///< Whether the camera is on the normal's side.
+  bool is_front = true;                  ///< Whether the camera is on the normal's side.
 };
 [[nodiscard]] Face face_of(const std::array<Eigen::Vector3d, 4>& corners);
 

@@ -12,6 +12,9 @@ constexpr double largest_turn = std::numbers::pi / 6;
 // What passes a piece as near as this in the image is told as a near miss, px.
 constexpr double near_miss = 3;
 
+// By which a piece reaches into the next one, of its size.
+constexpr double overlap = 1e-10;
+
 // What follows from the rest.
 void complete(TubePiece& piece, double pixel) {
   const double turn = piece.curvature * piece.length;
@@ -34,7 +37,10 @@ void add_piece(TubePiece& piece, bool goes_on, Stage& stage) {
   const int here = static_cast<int>(stage.pieces.size());
   if (goes_on) {
     piece.before = here - 1;
-    stage.pieces.back().after = here;
+    TubePiece& last = stage.pieces.back();
+    last.after = here;
+    // Lest a ray slip through between the two by rounding.
+    last.end_offset += overlap * (last.length + last.radius);
   }
   complete(piece, stage.pixel);
   stage.pieces.push_back(piece);
@@ -89,9 +95,8 @@ void add_disc(const TubeArc& tube_arc, std::size_t index, bool at_end, bool poin
               int body, Stage& stage) {
   const double along = at_end ? tube_arc.arc.length : 0.0;
   const Pose X_CS = X_CW * tube_arc.arc.pose(along);
-  Circle circle = circle_at(X_CS.rotation, X_CS.position, tube_arc.radius[at_end ? 1 : 0]);
-  if (points_back) circle.normal = -circle.normal;
-  stage.discs.push_back({circle, body, index, along});
+  const double radius = tube_arc.radius[at_end ? 1 : 0];
+  stage.discs.push_back({circle_at(X_CS.rotation, X_CS.position, radius, points_back), body, index, along});
 }
 
 }  // namespace

@@ -14,6 +14,9 @@ const T& at(const std::vector<T>& list, std::uint32_t index) {
   return list[static_cast<std::size_t>(index)];
 }
 
+// Hits that are closer together in depth, by this share, are one.
+constexpr double same_hit = 1e-9;
+
 // The two nearest surfaces and all borders near a ray, as the parts tell them.
 struct Sights {
   static constexpr std::size_t most = 12;
@@ -31,6 +34,8 @@ struct Sights {
     if (border < *farthest) *farthest = border;
   }
   void add_hit(double depth, Part part) {
+    // Where two pieces of a tube overlap by a hair both tell of it.
+    if (std::abs(depth - first.depth) <= same_hit * depth) return;
     Hit* place = nullptr;
     if (depth < first.depth) {
       second = first;
@@ -91,7 +96,7 @@ void meet_disc(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
     const auto depth = meet_plane(circle.center, circle.normal, ray);
     if (depth) sights.add_hit(*depth, part);
   }
-  sights.add(view.border);
+  for (const Border& border : view.borders) sights.add(border);
 }
 
 void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
@@ -137,11 +142,16 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     const LocalRay local = local_ray(piece, ray);
     const DepthRange range = range_of(piece, local, piece.near_radius);
     if (range.is_empty()) break;
-    const double lowest = first_minimum(piece, local, depth, range);
+    const double lowest = first_slowdown(piece, local, depth, range, steps > 0);
     if (lowest < infinity) return contour_at(piece, ray, lowest);
     if (range.to <= depth) break;
     depth = range.to;
     index = piece_behind(piece, range);
+    if (index >= 0) continue;
+    // Out through the tube's end: its contour and the end's rim meet near by, at an angle that no line tells.
+    Border corner = contour_at(piece, ray, depth);
+    corner.distance *= 0.7;
+    return corner;
   }
   return {};
 }
@@ -183,15 +193,16 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
       const Eigen::Vector3d p = hit.depth * ray.direction;
       const TubePoint point = tube_point(piece, p);
       hit.normal = point.normal;
-      hit.s = point.s;
       hit.label = skin_label(stage, piece, point.s, p);
+      if (at(stage.bodies, static_cast<std::uint32_t>(piece.body)).is_arm) hit.s = point.s;
+      if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
       return;
     }
     case Part::Kind::disc: {
       const DiscPart& disc = at(stage.discs, hit.part.index);
       hit.normal = disc.circle.normal;
-      if (!stage.scene->arm.tube.empty() && disc.tube_arc < stage.scene->arm.tube.size())
-        hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
+      const Body& end = at(stage.bodies, static_cast<std::uint32_t>(disc.body));
+      if (end.label.kind == SurfaceKind::cap) hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
       body = disc.body;
       break;
     }
@@ -207,6 +218,29 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
       break;
   }
   hit.label = stage.bodies[static_cast<std::size_t>(body)].label;
+  if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
+}
+
+// How the depth of a hit changes in the image, by (a, b).
+Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
+  const double towards = hit.normal.dot(ray.direction);
+  if (towards == 0) return {infinity, infinity};
+  return hit.normal.head<2>() * (-hit.depth / towards);
+}
+
+// The edge of a ring near a hit, from how s changes on the surface; or, where that says the same, from the
+// circle's image, which is more exact.
+Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slope, double depth,
+                   const Ray& ray) {
+  const Border straight = border_of(s - edge.s, s_slope, ray, depth);
+  if (!(straight.distance < border_reach)) return straight;
+  const CircleView view = view_of(edge.circle, ray);
+  for (const Border& border : view.borders) {
+    const bool is_same = border.towards.dot(straight.towards) > 0.9 &&
+                         std::abs(border.distance - straight.distance) < 0.2 * straight.distance + 1e-6;
+    if (is_same) return {border.distance, border.towards, depth};
+  }
+  return straight;
 }
 
 // Edges of colour on the tube near the hit.
@@ -218,8 +252,13 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     const auto& edges = stage.ring_edges;
     const auto next = std::ranges::lower_bound(edges, hit.s, {}, &RingEdge::s) - edges.begin();
     const auto last = std::min(next + 3, static_cast<std::ptrdiff_t>(edges.size()));
+    const TubePoint point = tube_point(piece, hit.depth * ray.direction);
+    const Eigen::Vector2d slope =
+        (hit.depth * point.tangent.head<2>() + point.tangent.dot(ray.direction) * depth_slope(hit, ray)) /
+        point.shrink;
+    if (!slope.allFinite()) return;
     for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i)
-      sights.add(view_of(edges[static_cast<std::size_t>(i)].circle, ray).border);
+      sights.add(ring_border(edges[static_cast<std::size_t>(i)], hit.s, slope, hit.depth, ray));
   }
   if (body.is_etalon) {
     const double angle = etalon_angle(stage, hit.depth * ray.direction);
@@ -228,13 +267,6 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
         sights.add(line_border(edge.from, edge.to, ray));
     }
   }
-}
-
-// How the depth of a hit changes in the image, by (a, b).
-Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
-  const double towards = hit.normal.dot(ray.direction);
-  if (towards == 0) return {infinity, infinity};
-  return hit.normal.head<2>() * (-hit.depth / towards);
 }
 
 // Keeps the two nearest of the borders that what is seen does not hide.
@@ -277,7 +309,9 @@ Trace Tracer::trace(const Ray& ray) const {
       sights.add(border_of(sights.second.depth - sights.first.depth, slope, ray, sights.first.depth));
   }
   if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::piece) {
-    sights.add(own_contour(stage_, ray, sights.first));
+    Border contour = own_contour(stage_, ray, sights.first);
+    contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
+    sights.add(contour);
     add_color_edges(stage_, ray, sights);
   }
   Trace trace;
@@ -288,17 +322,21 @@ Trace Tracer::trace(const Ray& ray) const {
 
 int Tracer::entries_into_arm(const Ray& ray, double depth) const {
   int count = 0;
+  double last = -1;
   for (const Part part : parts_) {
     Sights sights;
     const auto index = static_cast<int>(part.index);
     if (part.kind == Part::Kind::piece && index >= stage_.first_arm_piece && index <= stage_.last_arm_piece)
       meet_piece(stage_, part, ray, sights);
-    const bool is_disc = part.kind == Part::Kind::disc;
-    if (is_disc &&
+    const bool is_end =
+        part.kind == Part::Kind::disc &&
         at(stage_.bodies, static_cast<std::uint32_t>(at(stage_.discs, part.index).body)).label.kind ==
-            SurfaceKind::cap)
-      meet_disc(stage_, part, ray, sights);
-    if (sights.first.depth < depth) ++count;
+            SurfaceKind::cap;
+    if (is_end) meet_disc(stage_, part, ray, sights);
+    const double entry = sights.first.depth;
+    if (!(entry < depth) || std::abs(entry - last) <= same_hit * entry) continue;
+    last = entry;
+    ++count;
   }
   return count;
 }

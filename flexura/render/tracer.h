@@ -26,7 +26,8 @@ struct Hit {
   double depth = std::numeric_limits<double>::infinity();  ///< m; infinite: none.
   Part part = {Part::Kind::piece, 0};
   Eigen::Vector3d normal = {0, 0, -1};  ///< C, unit; towards the camera's side.
-  double s = 0;                         ///< On the arm: arc length from the base, m.
+  /// On the arm: arc length from the base, m; on anything else no number.
+  double s = std::numeric_limits<double>::quiet_NaN();
   SurfaceLabel label;
 
   [[nodiscard]] bool is_none() const { return depth == std::numeric_limits<double>::infinity(); }
@@ -38,9 +39,6 @@ struct Trace {
   Hit hit;
   Border nearest, second;  ///< Infinitely far: none within border_reach.
 };
-
-/// Borders are told when they are as near as this, px.
-inline constexpr double border_reach = 3;
 
 /// Holds rays against some of a stage's primitives, in the order given. Surfaces are seen from outside only:
 /// a camera within a body does not see that body (screens have two sides).

@@ -198,7 +198,14 @@ double entry_in_convex(const TubePiece& piece, const LocalRay& ray, double low, 
   return root_between(piece, ray, low, lowest, lowest - back);
 }
 
-// The same where it is concave: no minimum; one entry if it ends inside, the highest value outside.
+// The minimum in such a stretch; infinity when the value still falls at its end.
+double minimum_in_convex(const TubePiece& piece, const LocalRay& ray, double low, double high) {
+  if (inside_at(piece, ray, high).slope < 0) return infinity;
+  if (inside_at(piece, ray, low).slope >= 0) return low;
+  return minimum_between(piece, ray, low, high);
+}
+
+// The entry where it is a concave one: there if it ends inside and is outside where it is highest.
 double entry_in_concave(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   const Inside at_low = inside_at(piece, ray, low), at_high = inside_at(piece, ray, high);
   if (at_high.value >= 0) return infinity;
@@ -242,11 +249,17 @@ double first_minimum(const TubePiece& piece, const LocalRay& ray, double depth, 
   DepthRange rest = range;
   rest.from = std::max(depth, range.from);
   return over_parts(piece, ray, rest, [&](double low, double high, bool is_concave) {
-    if (is_concave) return infinity;
-    const Inside at_high = inside_at(piece, ray, high);
-    if (at_high.slope < 0) return infinity;
-    if (inside_at(piece, ray, low).slope >= 0) return low;
-    return minimum_between(piece, ray, low, high);
+    return is_concave ? infinity : minimum_in_convex(piece, ray, low, high);
+  });
+}
+
+double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth, const DepthRange& range,
+                      bool has_entered) {
+  DepthRange rest = range;
+  rest.from = std::max(depth, range.from);
+  return over_parts(piece, ray, rest, [&](double low, double high, bool is_concave) {
+    if (!is_concave) return minimum_in_convex(piece, ray, low, high);
+    return has_entered || low > rest.from ? low : infinity;
   });
 }
 

@@ -85,9 +85,14 @@ struct NearMisses {
 [[nodiscard]] double first_entry(const TubePiece& piece, const LocalRay& ray, const DepthRange& range,
                                  NearMisses& misses);
 
-/// Where the ray comes nearest to the centreline for the first time at `depth` or behind, in the range, the
-/// value falling there at first; infinity when it still falls at the range's end.
+/// Where a ray that is inside at `depth`, on its way inwards, is deepest for the first time, in the range;
+/// infinity when it still goes inwards at the range's end.
 [[nodiscard]] double first_minimum(const TubePiece& piece, const LocalRay& ray, double depth,
                                    const DepthRange& range);
+
+/// The same, but also where it goes inwards ever more slowly and then faster again: there a small step in the
+/// image opens a gap. `has_entered`: `depth` is in the piece before.
+[[nodiscard]] double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth,
+                                    const DepthRange& range, bool has_entered);
 
 }  // namespace flexura

@@ -73,6 +73,8 @@ void add_render(CLI::App& app, Command& chosen) {
   render->add_option("--out", arguments->out, "The image file to write (.png)")
       ->type_name("FILE")
       ->required();
+  render->add_flag("--model", arguments->model,
+                   "The rig as the tasks believe it to be, whatever [truth] says");
   render->add_flag("--truth", arguments->truth,
                    "Write beside it what it shows, from the geometry: depth, labels, curves");
   render->add_option("--set", arguments->sets, "Change a value: camera.0.initial.pan_deg=2 (repeatable)")

@@ -89,7 +89,7 @@ void add_export(CLI::App& app, Command& chosen) {
   auto format = std::make_shared<std::string>("csv");
   CLI::App* command = app.add_subcommand("export", "Write a run's log in another format");
   command->add_option("RESULTS", *results, "A folder made by `flexura run`")->required();
-  command->add_option("--to", *format, "The format")->check(CLI::IsMember({"csv"}))->required();
+  command->add_option("--to", *format, "The format")->check(CLI::IsMember({"csv", "mp4"}))->required();
   command->callback([&chosen, results, format] {
     chosen = [results, format] { return export_command(*results, *format, std::cout, std::cerr); };
   });

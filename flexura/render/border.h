@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+
+#include "flexura/render/ray.h"
+
+namespace flexura {
+
+/// Borders are told when they are as near as this, px.
+inline constexpr double border_reach = 3;
+
+/// A curve in the image near a point of it, as the straight line that it is close by.
+struct Border {
+  double distance = std::numeric_limits<double>::infinity();  ///< From the point, px; >= 0.
+  Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
+  double depth = 0;                                           ///< Where in space it is drawn, m.
+
+  bool operator<(const Border& other) const { return distance < other.distance; }
+};
+
+/// The border where a function of the image is zero, from its `value` at the ray and its derivative by the
+/// ray's (a, b): exact to first order.
+[[nodiscard]] inline Border border_of(double value, const Eigen::Vector2d& by_direction, const Ray& ray,
+                                      double depth) {
+  const Eigen::Vector2d by_pixel = ray.by_pixel.transpose() * by_direction;
+  const double slope = by_pixel.norm();
+  Border border;
+  border.depth = depth;
+  if (!(slope > 0)) return border;
+  border.distance = std::abs(value) / slope;
+  border.towards = by_pixel * ((value > 0 ? -1 : 1) / slope);
+  return border;
+}
+
+}  // namespace flexura

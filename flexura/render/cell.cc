@@ -1,0 +1,111 @@
+#include "flexura/render/cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace flexura {
+namespace {
+
+// Distances to borders are exact to first order only: nothing nearer than this many times the distance asked
+// for.
+constexpr double safety = 1.15;
+
+double farthest_corner(const SquarePart& part, const Eigen::Vector2d& from) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < part.count; ++i) farthest = std::max(farthest, (part.corners[i] - from).norm());
+  return farthest;
+}
+
+// Where the trace's nearest border crosses the line through `point` along `normal`, in px from the point;
+// none when it is another one or runs elsewhere.
+std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal, double most) {
+  const double along = trace.nearest.towards.dot(normal);
+  if (std::abs(along) < 0.9) return std::nullopt;
+  const double result = trace.nearest.distance / along;
+  if (!(std::abs(result) < most)) return std::nullopt;
+  return result;
+}
+
+// How far a border bends away from its tangent towards `normal` on half the square's width to either side;
+// none when it is no smooth curve there.
+std::optional<double> bulge_of(const Tracer& tracer, const Ray& middle, double half,
+                               const Eigen::Vector2d& normal, double offset) {
+  const Eigen::Vector2d along(-normal.y(), normal.x());
+  double sum = 0;
+  for (const double side : {-half, half}) {
+    const auto found = crossing(tracer.trace(moved(middle, side * along)), normal, 2 * half);
+    if (!found || std::abs(*found - offset) > 0.16 * half) return std::nullopt;
+    sum += *found - offset;
+  }
+  const double bulge = 0.5 * sum;
+  if (std::abs(bulge) > 0.06 * half) return std::nullopt;
+  return bulge;
+}
+
+bool is_continued(const Trace& here, const Trace& there) {
+  if (!(here.hit.label == there.hit.label)) return false;
+  if (here.hit.is_none()) return true;
+  return std::abs(here.hit.depth - there.hit.depth) < 0.02 * here.hit.depth;
+}
+
+}  // namespace
+
+SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset) {
+  const std::array<Eigen::Vector2d, 4> square = {
+      Eigen::Vector2d(-half, -half), {half, -half}, {half, half}, {-half, half}};
+  SquarePart part;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d &p = square[i], &q = square[(i + 1) % 4];
+    const double at_p = p.dot(normal) - offset, at_q = q.dot(normal) - offset;
+    if (at_p > 0) part.corners[part.count++] = p;
+    if ((at_p > 0) != (at_q > 0)) part.corners[part.count++] = p + at_p / (at_p - at_q) * (q - p);
+  }
+  for (std::size_t i = 1; i + 1 < part.count; ++i) {
+    const Eigen::Vector2d a = part.corners[i] - part.corners[0], b = part.corners[i + 1] - part.corners[0];
+    const double area = 0.5 * (a.x() * b.y() - a.y() * b.x());
+    part.area += area;
+    part.centroid += area * (part.corners[0] + (a + b) / 3);
+  }
+  if (part.area > 0) part.centroid /= part.area;
+  return part;
+}
+
+Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half,
+              const Trace& here, bool is_last, Division& division) {
+  const double diagonal = half * std::numbers::sqrt2;
+  if (here.nearest.distance > safety * diagonal) return Verdict::uniform;
+  const Verdict otherwise = is_last ? Verdict::uniform : Verdict::unclear;
+  if (!is_last && here.second.distance <= safety * diagonal) return otherwise;
+  const Ray middle = moved(pixel, center);
+  division.normal = here.nearest.towards;
+  division.offset = here.nearest.distance;
+  SquarePart far = part_beyond(half, division.normal, division.offset);
+  if (far.area == 0) far.centroid = division.normal * diagonal;
+  // Well beyond the border, even if little of the square is.
+  const double beyond = far.centroid.dot(division.normal) - division.offset;
+  const Eigen::Vector2d probe = far.centroid + std::max(0.0, 0.1 * half - beyond) * division.normal;
+  const Trace there = tracer.trace(moved(middle, probe));
+  const auto back = crossing(there, division.normal, 4 * half);
+  const bool is_seen =
+      back && *back < 0 && std::abs(probe.dot(division.normal) + *back - division.offset) < 0.1 * half;
+  if (!is_seen) {
+    const bool is_no_border =
+        is_continued(here, there) && there.nearest.distance > diagonal + probe.norm() * 0.5;
+    return is_no_border ? Verdict::uniform : otherwise;
+  }
+  if (!is_last) {
+    if (there.second.distance <= safety * farthest_corner(far, probe)) return Verdict::unclear;
+    const auto bulge = bulge_of(tracer, middle, half, division.normal, division.offset);
+    if (!bulge) return Verdict::unclear;
+    // The mean of a parabola's height over its chord.
+    division.offset += *bulge / 3;
+  }
+  division.far_part = part_beyond(half, division.normal, division.offset);
+  if (!(division.far_part.area > 0)) return Verdict::uniform;
+  division.far = there.hit;
+  return Verdict::divided;
+}
+
+}  // namespace flexura

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "flexura/render/ray.h"
+#include "flexura/render/tracer.h"
+
+namespace flexura {
+
+/// The ray of the pixel point that lies `offset` px from that of `ray`; the lens is taken for linear between.
+[[nodiscard]] inline Ray moved(const Ray& ray, const Eigen::Vector2d& offset) {
+  Ray result = ray;
+  result.direction.head<2>() += ray.by_pixel * offset;
+  return result;
+}
+
+/// What lies beyond a straight line in a square of side 2 half around the origin.
+struct SquarePart {
+  std::array<Eigen::Vector2d, 6> corners;
+  std::size_t count = 0;
+  double area = 0;
+  Eigen::Vector2d centroid = {0, 0};
+};
+/// The line is where x . normal = offset; `normal` is a unit vector and points beyond.
+[[nodiscard]] SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset);
+
+/// A square of the image that one straight border divides, both sides uniform.
+struct Division {
+  Eigen::Vector2d normal;  ///< From the near to the far side.
+  double offset;           ///< Of the border from the square's centre, px.
+  Hit far;
+  SquarePart far_part;
+};
+
+enum class Verdict { uniform, divided, unclear };
+
+/// Judges the square of side 2 half around `center` (px from the pixel ray) from what is seen there, `here`,
+/// and, if need be, from a few rays more. `is_last`: unclear is no answer; the best guess is.
+[[nodiscard]] Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center,
+                            double half, const Trace& here, bool is_last, Division& division);
+
+/// Squares are halved at most so many times.
+inline constexpr int most_halvings = 4;
+
+/// Adds up what the square of side 2 half around `center` shows: calls sink(hit, ray, area) for parts of
+/// it, area in px^2, the ray within the part or next to it. The areas add up to the square's.
+template <typename Sink>
+void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
+           const Trace& here, Sink&& sink) {
+  const double area = 4 * half * half;
+  Division division;
+  const Ray ray = moved(pixel, center);
+  switch (judge(tracer, pixel, center, half, here, halvings == most_halvings, division)) {
+    case Verdict::uniform:
+      sink(here.hit, ray, area);
+      return;
+    case Verdict::divided: {
+      const double near_area = area - division.far_part.area;
+      sink(division.far, moved(ray, division.far_part.centroid), division.far_part.area);
+      // The middle of what is seen on this side shows its mean light better than the square's.
+      if (near_area > 0) {
+        const Ray middle = moved(ray, division.far_part.centroid * (-division.far_part.area / near_area));
+        const Hit near = tracer.hit(middle);
+        const bool is_same = near.label == here.hit.label;
+        sink(is_same ? near : here.hit, is_same ? middle : ray, near_area);
+      }
+      return;
+    }
+    case Verdict::unclear:
+      break;
+  }
+  for (const double v : {-0.5, 0.5}) {
+    for (const double u : {-0.5, 0.5}) {
+      const Eigen::Vector2d quarter = center + half * Eigen::Vector2d(u, v);
+      cover(tracer, pixel, quarter, 0.5 * half, halvings + 1, tracer.trace(moved(pixel, quarter)), sink);
+    }
+  }
+}
+
+}  // namespace flexura

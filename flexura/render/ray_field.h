@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "flexura/camera/intrinsics.h"
+#include "flexura/render/ray.h"
+
+namespace flexura {
+
+/// The ray of a point of the image; none where the lens shows no direction.
+[[nodiscard]] std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel);
+
+/// The rays of all pixels of an image. Without distortion nothing is kept; with it, every pixel's ray, worked
+/// out anew only when the lens or the size has changed.
+class RayField {
+ public:
+  /// std::invalid_argument: a size that is not positive or over 65536 px.
+  void set(const Lens& lens, int width, int height);
+
+  /// None where the lens shows no direction.
+  [[nodiscard]] std::optional<Ray> ray(int u, int v) const;
+  /// The largest step in (a, b) from one pixel to its neighbours.
+  [[nodiscard]] double largest_step() const { return largest_step_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+ private:
+  std::optional<Intrinsics> intrinsics_;
+  int width_ = 0, height_ = 0;
+  double largest_step_ = 0;
+  std::vector<Ray> rays_;  // Direction (0, 0, 0): none.
+};
+
+}  // namespace flexura

@@ -1,0 +1,73 @@
+#include "flexura/render/renderer.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "flexura/render/cell.h"
+#include "flexura/render/tracer.h"
+
+namespace flexura {
+namespace {
+
+void store(const Color& light, int u, int v, PixelKind pixels, Image<float>& image) {
+  if (pixels == PixelKind::gray) {
+    image.at(u, v) = static_cast<float>(gray_of(light));
+    return;
+  }
+  for (int channel = 0; channel < 3; ++channel) image.at(u, v, channel) = static_cast<float>(light[channel]);
+}
+
+void fit(int width, int height, int channels, Image<float>& image) {
+  if (image.width() == width && image.height() == height && image.channels() == channels) return;
+  image = Image<float>(width, height, channels);
+}
+
+}  // namespace
+
+void Renderer::prepare(const Scene& scene, const View& view) {
+  check(scene);
+  const Eigen::Matrix3d& R = view.X_WC.rotation;
+  if (!view.X_WC.position.allFinite() || !R.allFinite() ||
+      !((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6))
+    throw std::invalid_argument("the camera's pose is not a finite position and a rotation");
+  rays_.set(view.lens, view.width, view.height);
+  build_stage(scene, view.X_WC, rays_.largest_step(), stage_);
+  tiles_.build(stage_, rays_);
+}
+
+void Renderer::render_tile(int column, int row, PixelKind pixels, Picture& picture) const {
+  const auto parts = tiles_.parts(column, row);
+  const Tracer tracer(stage_, parts);
+  const int u_end = std::min((column + 1) * Tiles::size, rays_.width());
+  const int v_end = std::min((row + 1) * Tiles::size, rays_.height());
+  constexpr float nothing = std::numeric_limits<float>::infinity();
+  for (int v = row * Tiles::size; v < v_end; ++v) {
+    for (int u = column * Tiles::size; u < u_end; ++u) {
+      const auto ray = rays_.ray(u, v);
+      if (parts.empty() || !ray) {
+        store(stage_.scene->background, u, v, pixels, picture.light);
+        picture.depth.at(u, v) = nothing;
+        continue;
+      }
+      const Trace here = tracer.trace(*ray);
+      Color sum = Color::Zero();
+      cover(tracer, *ray, {0, 0}, 0.5, 0, here,
+            [&](const Hit& hit, const Ray& at, double area) { sum += area * light_of(stage_, hit, at); });
+      store(sum, u, v, pixels, picture.light);
+      picture.depth.at(u, v) = static_cast<float>(here.hit.depth);
+    }
+  }
+}
+
+void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, Picture& picture) {
+  prepare(scene, view);
+  fit(view.width, view.height, pixels == PixelKind::gray ? 1 : 3, picture.light);
+  fit(view.width, view.height, 1, picture.depth);
+  for (int row = 0; row < tiles_.rows(); ++row)
+    for (int column = 0; column < tiles_.columns(); ++column) render_tile(column, row, pixels, picture);
+}
+
+}  // namespace flexura

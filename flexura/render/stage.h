@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "flexura/camera/view.h"
+#include "flexura/render/flat.h"
+#include "flexura/render/scene.h"
+#include "flexura/render/tube_piece.h"
+
+namespace flexura {
+
+/// What kind of surface a pixel shows.
+enum class SurfaceKind : std::uint8_t {
+  background,
+  section,  ///< The arm's skin; the index is the section's.
+  cap,      ///< A flat end of the arm: 0 at the base, 1 at the tip, 2 where the radius steps.
+  marker,   ///< The index is the ring's in the scene.
+  disk,     ///< A tendon guide.
+  screen,
+  etalon,       ///< 0: the skin; 1, 2: its ends at +Y, -Y.
+  etalon_line,  ///< 0 at +Z, then counter-clockwise seen from +Y.
+  obstacle,
+};
+
+/// Which surface.
+struct SurfaceLabel {
+  SurfaceKind kind = SurfaceKind::background;
+  std::uint16_t index = 0;
+  bool operator==(const SurfaceLabel&) const = default;
+};
+
+/// What a body's primitives have in common.
+struct Body {
+  SurfaceLabel label;
+  Color albedo;
+  bool is_arm = false;     ///< Its skin shows sections and markers.
+  bool is_etalon = false;  ///< Its skin shows the lines.
+  bool takes_shadow = false;
+};
+
+struct DiscPart {
+  Circle circle;  ///< Its normal points out of the body.
+  int body;
+  std::size_t tube_arc = 0;  ///< Where it is on an arm: the arc
+  double along = 0;          ///< and the distance from the arc's start, m.
+};
+struct FacePart {
+  Face face;
+  int body;
+  int screen = -1;
+};
+struct PlanePart {
+  Eigen::Vector3d point, normal;  ///< C; unit, out of the body.
+  int body;
+};
+
+/// The edge of a marker ring.
+struct RingEdge {
+  double s;
+  Circle circle;
+};
+
+/// A red line's edge: it leaves the camera in a plane.
+struct LineEdge {
+  Eigen::Vector3d from, to;  ///< Its ends, C.
+  double angle;              ///< Around the etalon's +Y from its +Z, rad in (-pi, pi].
+};
+
+/// A scene as one camera sees it, in C: primitives that rays can be held against. Its vectors are used again
+/// from frame to frame.
+struct Stage {
+  std::vector<Body> bodies;
+  std::vector<TubePiece> pieces;
+  std::vector<DiscPart> discs;
+  std::vector<FacePart> faces;
+  std::vector<PlanePart> planes;
+  std::vector<RingEdge> ring_edges;  ///< By s.
+  std::vector<LineEdge> line_edges;
+  Eigen::Vector3d light = {0, 0, 0};  ///< C, unit, towards it.
+  int first_arm_piece = 0, last_arm_piece = -1;
+  double arm_length = 0;
+  double pixel = 0;  ///< Length of the largest step in (a, b) by one pixel.
+  Pose X_CE;
+  const Scene* scene = nullptr;
+};
+
+/// Fills `stage`. `pixel`: the largest step in (a, b) between neighbouring pixels. The scene must have passed
+/// check().
+void build_stage(const Scene& scene, const Pose& X_WC, double pixel, Stage& stage);
+
+/// How a tube ends.
+struct TubeEnd {
+  TipShape shape = TipShape::flat;
+  int body = 0;  ///< Of a flat end's disc.
+};
+
+/// Adds the pieces and ends of a tube; where the radius jumps from one arc to the next a disc of `step_body`
+/// closes the wider one.
+void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int step_body,
+              const std::array<TubeEnd, 2>& ends, Stage& stage);
+
+}  // namespace flexura

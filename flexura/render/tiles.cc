@@ -1,0 +1,130 @@
+#include "flexura/render/tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flexura {
+namespace {
+
+// All directions (a, b, 1) within `radius` of (a, b) in the plane z = 1.
+struct Cone {
+  Eigen::Vector3d direction;
+  double radius;
+};
+
+// A piece of the image, and all that passes as near to it as borders are told.
+Cone cone_of(const RayField& rays, int u0, int v0, int u1, int v1) {
+  Cone cone{{0, 0, 1}, std::numeric_limits<double>::infinity()};
+  const auto middle = rays.ray((u0 + u1) / 2, (v0 + v1) / 2);
+  if (!middle) return cone;
+  cone.direction = middle->direction;
+  double radius = 0;
+  for (const int u : {u0, (u0 + u1) / 2, u1}) {
+    for (const int v : {v0, (v0 + v1) / 2, v1}) {
+      const auto ray = rays.ray(u, v);
+      if (!ray) return cone;
+      radius = std::max(radius, (ray->direction - middle->direction).norm());
+    }
+  }
+  cone.radius = radius * 1.02 + (border_reach + 1.5) * rays.largest_step();
+  return cone;
+}
+
+// Whether something of the cone comes within `radius` of the segment from p to q, C. Never a false no.
+bool may_touch(const Cone& cone, const Eigen::Vector3d& p, const Eigen::Vector3d& q, double radius) {
+  const double deepest = std::max(p.z(), q.z()) + radius;
+  if (!(deepest > 0)) return false;
+  const double reach = radius + cone.radius * deepest;
+  if (!(reach < std::numeric_limits<double>::infinity())) return true;
+  // Nearest points of the ray depth * direction and the segment.
+  const Eigen::Vector3d &d = cone.direction, edge = q - p;
+  const double dd = d.squaredNorm(), de = d.dot(edge), ee = edge.squaredNorm(), dp = d.dot(p),
+               ep = edge.dot(p);
+  const double scale = dd * ee - de * de;
+  double part = scale > 1e-12 * dd * ee ? std::clamp((de * dp - dd * ep) / scale, 0.0, 1.0) : 0.5;
+  double depth = std::max(0.0, (dp + part * de) / dd);
+  if (ee > 0) part = std::clamp((depth * de - ep) / ee, 0.0, 1.0);
+  depth = std::max(0.0, (dp + part * de) / dd);
+  double square = (p + part * edge - depth * d).squaredNorm();
+  if (scale <= 1e-12 * dd * ee) square = std::min(square, 0.0);
+  return square <= reach * reach;
+}
+
+bool may_touch(const Cone& cone, const TubePiece& piece) {
+  // An arc of up to 30 degrees stays within a fifteenth of its length from its chord.
+  const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
+  const double widest = std::max(piece.radius, piece.radius + piece.widening * piece.length);
+  return may_touch(cone, piece.p_CP, end, widest + piece.length * piece.length * piece.curvature / 8);
+}
+
+bool may_touch(const Cone& cone, const Face& face) {
+  for (const Eigen::Vector3d& edge : face.edges) {
+    if (edge.dot(cone.direction) < -cone.radius * edge.head<2>().norm()) return false;
+  }
+  return true;
+}
+
+bool may_touch(const Cone& cone, const PlanePart& plane) {
+  return plane.normal.dot(cone.direction) <= cone.radius * plane.normal.head<2>().norm();
+}
+
+bool may_touch(const Stage& stage, const Cone& cone, Part part) {
+  if (!(cone.radius < std::numeric_limits<double>::infinity())) return true;
+  switch (part.kind) {
+    case Part::Kind::piece:
+      return may_touch(cone, stage.pieces[part.index]);
+    case Part::Kind::disc: {
+      const Circle& circle = stage.discs[part.index].circle;
+      return may_touch(cone, circle.center, circle.center, circle.radius);
+    }
+    case Part::Kind::face:
+      return may_touch(cone, stage.faces[part.index].face);
+    case Part::Kind::plane:
+      return may_touch(cone, stage.planes[part.index]);
+  }
+  return true;
+}
+
+template <typename List>
+void add_all(Part::Kind kind, const List& list, std::vector<Part>& parts) {
+  for (std::size_t i = 0; i < list.size(); ++i) parts.push_back({kind, static_cast<std::uint32_t>(i)});
+}
+
+}  // namespace
+
+void Tiles::build(const Stage& stage, const RayField& rays) {
+  constexpr int block = 4;
+  columns_ = (rays.width() + size - 1) / size;
+  rows_ = (rays.height() + size - 1) / size;
+  all_.clear();
+  add_all(Part::Kind::piece, stage.pieces, all_);
+  add_all(Part::Kind::disc, stage.discs, all_);
+  add_all(Part::Kind::face, stage.faces, all_);
+  add_all(Part::Kind::plane, stage.planes, all_);
+  parts_.clear();
+  starts_.clear();
+  block_parts_.resize(static_cast<std::size_t>((columns_ + block - 1) / block));
+  const auto cone = [&](int column, int row, int tiles) {
+    return cone_of(rays, column * size, row * size, std::min((column + tiles) * size, rays.width()) - 1,
+                   std::min((row + tiles) * size, rays.height()) - 1);
+  };
+  const auto keep = [&](const Cone& in, const std::vector<Part>& from, std::vector<Part>& to) {
+    for (const Part part : from)
+      if (may_touch(stage, in, part)) to.push_back(part);
+  };
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      std::vector<Part>& near = block_parts_[static_cast<std::size_t>(column / block)];
+      if (row % block == 0 && column % block == 0) {
+        near.clear();
+        keep(cone(column, row, block), all_, near);
+      }
+      starts_.push_back(parts_.size());
+      keep(cone(column, row, 1), near, parts_);
+    }
+  }
+  starts_.push_back(parts_.size());
+}
+
+}  // namespace flexura

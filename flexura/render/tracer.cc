@@ -1,0 +1,315 @@
+#include "flexura/render/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flexura {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <typename T>
+const T& at(const std::vector<T>& list, std::uint32_t index) {
+  return list[static_cast<std::size_t>(index)];
+}
+
+// The two nearest surfaces and all borders near a ray, as the parts tell them.
+struct Sights {
+  static constexpr std::size_t most = 12;
+  std::array<Border, most> borders;
+  std::size_t count = 0;
+  Hit first, second;
+
+  void add(const Border& border) {
+    if (!(border.distance < border_reach)) return;
+    if (count < most) {
+      borders[count++] = border;
+      return;
+    }
+    const auto farthest = std::max_element(borders.begin(), borders.end());
+    if (border < *farthest) *farthest = border;
+  }
+  void add_hit(double depth, Part part) {
+    Hit* place = nullptr;
+    if (depth < first.depth) {
+      second = first;
+      place = &first;
+    } else if (depth < second.depth) {
+      place = &second;
+    }
+    if (place == nullptr) return;
+    place->depth = depth;
+    place->part = part;
+  }
+};
+
+// The piece that the ray enters where it leaves this one; -1: none.
+int piece_behind(const TubePiece& piece, const DepthRange& range) {
+  if (range.leaves_after) return piece.after;
+  return range.leaves_before ? piece.before : -1;
+}
+
+Border contour_at(const TubePiece& piece, const Ray& ray, double depth) {
+  const TubePoint point = tube_point(piece, depth * ray.direction);
+  Eigen::Vector3d slope = point.outward;
+  if (piece.widening != 0) slope -= piece.widening / point.shrink * point.tangent;
+  return border_of(point.gap, depth * slope.head<2>(), ray, depth);
+}
+
+// Where the radius grows at another rate from the next piece on, the ray may be nearest just there.
+void add_kink_miss(const Stage& stage, const TubePiece& piece, const Ray& ray, const LocalRay& local,
+                   const DepthRange& range, NearMisses& misses) {
+  const int next = piece_behind(piece, range);
+  if (next < 0 || misses.count == 2) return;
+  const TubePiece& neighbour = stage.pieces[static_cast<std::size_t>(next)];
+  if (neighbour.widening == piece.widening) return;
+  const Inside here = inside_at(piece, local, range.to);
+  if (here.value <= 0 || here.slope >= 0) return;
+  if (inside_at(neighbour, local_ray(neighbour, ray), range.to).slope < 0) return;
+  misses.depths[static_cast<std::size_t>(misses.count++)] = range.to;
+}
+
+void meet_piece(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+  const TubePiece& piece = at(stage.pieces, part.index);
+  const LocalRay local = local_ray(piece, ray);
+  const DepthRange range = range_of(piece, local, piece.near_radius);
+  if (range.is_empty()) return;
+  NearMisses misses;
+  const double entry = first_entry(piece, local, range, misses);
+  if (entry < infinity) sights.add_hit(entry, part);
+  if (entry == infinity) add_kink_miss(stage, piece, ray, local, range, misses);
+  for (int i = 0; i < misses.count; ++i) {
+    sights.add(contour_at(piece, ray, misses.depths[static_cast<std::size_t>(i)]));
+  }
+}
+
+void meet_disc(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+  const Circle& circle = at(stage.discs, part.index).circle;
+  const CircleView view = view_of(circle, ray);
+  if (view.value < 0 && circle.normal.dot(circle.center) < 0) {
+    const auto depth = meet_plane(circle.center, circle.normal, ray);
+    if (depth) sights.add_hit(*depth, part);
+  }
+  for (const Border& border : view.borders) sights.add(border);
+}
+
+void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+  const FacePart& face_part = at(stage.faces, part.index);
+  if (!face_part.face.is_front && face_part.screen < 0) return;
+  const FaceView view = view_of(face_part.face, ray);
+  if (view.is_hit) {
+    const auto depth = meet_plane(face_part.face.corners[0], face_part.face.normal, ray);
+    if (depth) sights.add_hit(*depth, part);
+  }
+  for (const Border& border : view.borders) sights.add(border);
+}
+
+void meet_half_space(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+  const PlanePart& plane = at(stage.planes, part.index);
+  if (!(plane.normal.dot(plane.point) < 0)) return;
+  const double towards = plane.normal.dot(ray.direction);
+  std::optional<double> depth;
+  if (towards < 0) depth = meet_plane(plane.point, plane.normal, ray);
+  if (depth) sights.add_hit(*depth, part);
+  sights.add(border_of(towards, plane.normal.head<2>(), ray, depth.value_or(infinity)));
+}
+
+void meet(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+  switch (part.kind) {
+    case Part::Kind::piece:
+      return meet_piece(stage, part, ray, sights);
+    case Part::Kind::disc:
+      return meet_disc(stage, part, ray, sights);
+    case Part::Kind::face:
+      return meet_face(stage, part, ray, sights);
+    case Part::Kind::plane:
+      return meet_half_space(stage, part, ray, sights);
+  }
+}
+
+// The contour of the tube that the ray has entered: where it leaves again when the pixel moves on.
+Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
+  auto index = static_cast<int>(hit.part.index);
+  double depth = hit.depth;
+  for (int steps = 0; index >= 0 && steps < 64; ++steps) {
+    const TubePiece& piece = stage.pieces[static_cast<std::size_t>(index)];
+    const LocalRay local = local_ray(piece, ray);
+    const DepthRange range = range_of(piece, local, piece.near_radius);
+    if (range.is_empty()) break;
+    const double lowest = first_slowdown(piece, local, depth, range, steps > 0);
+    if (lowest < infinity) return contour_at(piece, ray, lowest);
+    if (range.to <= depth) break;
+    depth = range.to;
+    index = piece_behind(piece, range);
+    if (index >= 0) continue;
+    // Out through the tube's end: its contour and the end's rim meet near by, at an angle that no line tells.
+    Border corner = contour_at(piece, ray, depth);
+    corner.distance *= 0.7;
+    return corner;
+  }
+  return {};
+}
+
+// Angle around the etalon's +Y from its +Z of a point in C.
+double etalon_angle(const Stage& stage, const Eigen::Vector3d& p_CQ) {
+  const Eigen::Vector3d p = stage.X_CE.rotation.transpose() * (p_CQ - stage.X_CE.position);
+  return std::atan2(p.x(), p.z());
+}
+
+SurfaceLabel skin_label(const Stage& stage, const TubePiece& piece, double s, const Eigen::Vector3d& p_CQ) {
+  const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
+  if (body.is_arm) {
+    const auto& markers = stage.scene->arm.markers;
+    for (std::size_t i = markers.size(); i-- > 0;) {
+      if (s >= markers[i].s_from && s < markers[i].s_to)
+        return {SurfaceKind::marker, static_cast<std::uint16_t>(i)};
+    }
+    return {SurfaceKind::section, static_cast<std::uint16_t>(stage.scene->arm.tube[piece.tube_arc].section)};
+  }
+  if (body.is_etalon) {
+    const Etalon& etalon = *stage.scene->etalon;
+    const double quarters = etalon_angle(stage, p_CQ) / (std::numbers::pi / 2);
+    const double line = std::round(quarters);
+    const double off = std::abs(quarters - line) * (std::numbers::pi / 2) * etalon.radius;
+    if (off < 0.5 * etalon.line_width)
+      return {SurfaceKind::etalon_line, static_cast<std::uint16_t>((static_cast<int>(line) + 4) % 4)};
+  }
+  return body.label;
+}
+
+// Fills in the rest of a hit.
+void complete(const Stage& stage, const Ray& ray, Hit& hit) {
+  if (hit.is_none()) return;
+  int body = 0;
+  switch (hit.part.kind) {
+    case Part::Kind::piece: {
+      const TubePiece& piece = at(stage.pieces, hit.part.index);
+      const Eigen::Vector3d p = hit.depth * ray.direction;
+      const TubePoint point = tube_point(piece, p);
+      hit.normal = point.normal;
+      hit.s = point.s;
+      hit.label = skin_label(stage, piece, point.s, p);
+      return;
+    }
+    case Part::Kind::disc: {
+      const DiscPart& disc = at(stage.discs, hit.part.index);
+      hit.normal = disc.circle.normal;
+      if (!stage.scene->arm.tube.empty() && disc.tube_arc < stage.scene->arm.tube.size())
+        hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
+      body = disc.body;
+      break;
+    }
+    case Part::Kind::face: {
+      const FacePart& face = at(stage.faces, hit.part.index);
+      hit.normal = face.face.is_front ? face.face.normal : Eigen::Vector3d(-face.face.normal);
+      body = face.body;
+      break;
+    }
+    case Part::Kind::plane:
+      hit.normal = at(stage.planes, hit.part.index).normal;
+      body = at(stage.planes, hit.part.index).body;
+      break;
+  }
+  hit.label = stage.bodies[static_cast<std::size_t>(body)].label;
+}
+
+// Edges of colour on the tube near the hit.
+void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
+  const Hit& hit = sights.first;
+  const TubePiece& piece = at(stage.pieces, hit.part.index);
+  const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
+  if (body.is_arm) {
+    const auto& edges = stage.ring_edges;
+    const auto next = std::ranges::lower_bound(edges, hit.s, {}, &RingEdge::s) - edges.begin();
+    const auto last = std::min(next + 3, static_cast<std::ptrdiff_t>(edges.size()));
+    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i) {
+      const CircleView view = view_of(edges[static_cast<std::size_t>(i)].circle, ray);
+      for (const Border& border : view.borders) sights.add(border);
+    }
+  }
+  if (body.is_etalon) {
+    const double angle = etalon_angle(stage, hit.depth * ray.direction);
+    for (const LineEdge& edge : stage.line_edges) {
+      if (std::abs(std::remainder(edge.angle - angle, 2 * std::numbers::pi)) < 1.2)
+        sights.add(line_border(edge.from, edge.to, ray));
+    }
+  }
+}
+
+// How the depth of a hit changes in the image, by (a, b).
+Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
+  const double towards = hit.normal.dot(ray.direction);
+  if (towards == 0) return {infinity, infinity};
+  return hit.normal.head<2>() * (-hit.depth / towards);
+}
+
+// Keeps the two nearest of the borders that what is seen does not hide.
+void choose(const Sights& sights, const Ray& ray, Trace& trace) {
+  const double slope =
+      trace.hit.is_none() ? 0 : (ray.by_pixel.transpose() * depth_slope(trace.hit, ray)).norm();
+  const auto is_same = [](const Border& a, const Border& b) {
+    return std::abs(a.distance - b.distance) < 2e-3 && a.towards.dot(b.towards) > 0.999;
+  };
+  for (std::size_t i = 0; i < sights.count; ++i) {
+    const Border& border = sights.borders[i];
+    const double margin = 1e-6 * trace.hit.depth + 2 * slope * (1 + border.distance);
+    if (!(border.depth <= trace.hit.depth + margin)) continue;
+    if (border < trace.nearest) {
+      if (!is_same(border, trace.nearest)) trace.second = trace.nearest;
+      trace.nearest = border;
+    } else if (border < trace.second && !is_same(border, trace.nearest)) {
+      trace.second = border;
+    }
+  }
+}
+
+}  // namespace
+
+Hit Tracer::hit(const Ray& ray) const {
+  Sights sights;
+  for (const Part part : parts_) meet(stage_, part, ray, sights);
+  complete(stage_, ray, sights.first);
+  return sights.first;
+}
+
+Trace Tracer::trace(const Ray& ray) const {
+  Sights sights;
+  for (const Part part : parts_) meet(stage_, part, ray, sights);
+  complete(stage_, ray, sights.first);
+  if (!sights.second.is_none()) {
+    complete(stage_, ray, sights.second);
+    const Eigen::Vector2d slope = depth_slope(sights.second, ray) - depth_slope(sights.first, ray);
+    if (slope.allFinite())
+      sights.add(border_of(sights.second.depth - sights.first.depth, slope, ray, sights.first.depth));
+  }
+  if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::piece) {
+    Border contour = own_contour(stage_, ray, sights.first);
+    contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
+    sights.add(contour);
+    add_color_edges(stage_, ray, sights);
+  }
+  Trace trace;
+  trace.hit = sights.first;
+  choose(sights, ray, trace);
+  return trace;
+}
+
+int Tracer::entries_into_arm(const Ray& ray, double depth) const {
+  int count = 0;
+  for (const Part part : parts_) {
+    Sights sights;
+    const auto index = static_cast<int>(part.index);
+    if (part.kind == Part::Kind::piece && index >= stage_.first_arm_piece && index <= stage_.last_arm_piece)
+      meet_piece(stage_, part, ray, sights);
+    const bool is_disc = part.kind == Part::Kind::disc;
+    if (is_disc &&
+        at(stage_.bodies, static_cast<std::uint32_t>(at(stage_.discs, part.index).body)).label.kind ==
+            SurfaceKind::cap)
+      meet_disc(stage_, part, ray, sights);
+    if (sights.first.depth < depth) ++count;
+  }
+  return count;
+}
+
+}  // namespace flexura

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "flexura/camera/view.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+
+/// A tube for tests to hold the renderer against: many frustums of cones between poses of the backbone, each
+/// met by a ray in closed form. It shares no equation with flexura/render.
+class FrustumTube {
+ public:
+  struct Frustum {
+    Eigen::Vector3d from, to;  ///< W.
+    double radius_from, radius_to;
+    double s_from, s_to;
+  };
+  struct Meeting {
+    double depth = std::numeric_limits<double>::infinity();
+    double s = -1;
+  };
+
+  /// `count` frustums a section.
+  FrustumTube(const Arm& arm, const Backbone& backbone, int count) {
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const Arc& arc = backbone.arcs()[i];
+      const auto& radius = arm.sections[i].radius;
+      for (int part = 0; part < count; ++part) {
+        const double a = static_cast<double>(part) / count, b = static_cast<double>(part + 1) / count;
+        const auto mixed = [&](double share) { return radius[0] + (radius[1] - radius[0]) * share; };
+        frustums_.push_back({arc.pose(a * arc.length).position, arc.pose(b * arc.length).position, mixed(a),
+                             mixed(b), arc.s + a * arc.length, arc.s + b * arc.length});
+      }
+    }
+  }
+
+  [[nodiscard]] const std::vector<Frustum>& frustums() const { return frustums_; }
+
+  /// Those that rays from `eye` near `direction` may meet: at depth z no farther off than z * spread.
+  [[nodiscard]] std::vector<Frustum> near(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction,
+                                          double spread) const {
+    std::vector<Frustum> result;
+    const Eigen::Vector3d d = direction.normalized();
+    for (const Frustum& frustum : frustums_) {
+      const Eigen::Vector3d middle = 0.5 * (frustum.from + frustum.to) - eye;
+      const double size = 0.5 * (frustum.to - frustum.from).norm() +
+                          std::max(frustum.radius_from, frustum.radius_to);
+      const double off = (middle - middle.dot(d) * d).norm();
+      if (middle.dot(d) > -size && off < size + spread * (middle.norm() + size)) result.push_back(frustum);
+    }
+    return result;
+  }
+
+  /// Where eye + depth * direction, depth > 0, first meets one of the frustums from outside.
+  [[nodiscard]] static Meeting meet(const std::vector<Frustum>& frustums, const Eigen::Vector3d& eye,
+                                    const Eigen::Vector3d& direction) {
+    Meeting nearest;
+    for (const Frustum& frustum : frustums) meet_side(frustum, eye, direction, nearest);
+    for (const Frustum& frustum : frustums) {
+      meet_disc(frustum.from, frustum.to - frustum.from, frustum.radius_from, frustum.s_from, eye, direction,
+                nearest);
+      meet_disc(frustum.to, frustum.to - frustum.from, frustum.radius_to, frustum.s_to, eye, direction,
+                nearest);
+    }
+    return nearest;
+  }
+
+ private:
+  static void meet_side(const Frustum& frustum, const Eigen::Vector3d& eye, const Eigen::Vector3d& direction,
+                        Meeting& nearest) {
+    const Eigen::Vector3d axis = frustum.to - frustum.from, off = eye - frustum.from;
+    const double square = axis.squaredNorm(), widening = frustum.radius_to - frustum.radius_from;
+    // The part of the axis at depth t is a + b t, the radius there radius_from + widening (a + b t).
+    const double a = off.dot(axis) / square, b = direction.dot(axis) / square;
+    const Eigen::Vector3d across = off - a * axis, moving = direction - b * axis;
+    const double radius = frustum.radius_from + widening * a, growing = widening * b;
+    const double A = moving.squaredNorm() - growing * growing;
+    const double B = across.dot(moving) - radius * growing;
+    const double C = across.squaredNorm() - radius * radius;
+    const double discriminant = B * B - A * C;
+    if (discriminant < 0 || A == 0) return;
+    for (const double sign : {-1.0, 1.0}) {
+      const double t = (-B + sign * std::sqrt(discriminant)) / A;
+      const double share = a + b * t;
+      if (t > 0 && t < nearest.depth && share >= 0 && share <= 1)
+        nearest = {t, frustum.s_from + share * (frustum.s_to - frustum.s_from)};
+    }
+  }
+  static void meet_disc(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius, double s,
+                        const Eigen::Vector3d& eye, const Eigen::Vector3d& direction, Meeting& nearest) {
+    const double t = normal.dot(center - eye) / normal.dot(direction);
+    if (t > 0 && t < nearest.depth && (eye + t * direction - center).norm() <= radius) nearest = {t, s};
+  }
+
+  std::vector<Frustum> frustums_;
+};
+
+}  // namespace flexura

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "flexura/render/sensor_kernels.h"
-#include "flexura/render/sensor_vectors.h"
+#include "flexura/render/vectors.h"
 
 // The sensor's arithmetic, for sensor_*.cc alone. Every operation works on each value by itself and rounds
 // once, so that the width of the vectors changes no bit.

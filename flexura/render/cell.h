@@ -48,8 +48,12 @@ inline constexpr int most_halvings = 4;
 /// it, area in px^2, the ray within the part or next to it. The areas add up to the square's.
 template <typename Sink>
 void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
-           const Trace& here, Sink&& sink) {
+           const Trace& seen, Sink&& sink) {
   const double area = 4 * half * half;
+  // On a border there are two sides to stand on; one step back there is one.
+  constexpr double step = 1e-5;
+  const bool is_on_border = seen.nearest.distance < 0.01 * step;
+  const Trace here = is_on_border ? tracer.trace(moved(pixel, center - step * seen.nearest.towards)) : seen;
   Division division;
   const Ray ray = moved(pixel, center);
   switch (judge(tracer, pixel, center, half, here, halvings == most_halvings, division)) {

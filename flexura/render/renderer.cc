@@ -33,6 +33,7 @@ void Renderer::prepare(const Scene& scene, const View& view) {
   if (!view.X_WC.position.allFinite() || !R.allFinite() ||
       !((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6))
     throw std::invalid_argument("the camera's pose is not a finite position and a rotation");
+  view_ = view;
   rays_.set(view.lens, view.width, view.height);
   build_stage(scene, view.X_WC, rays_.largest_step(), stage_);
   tiles_.build(stage_, rays_);

@@ -26,8 +26,10 @@ class Renderer {
   /// std::invalid_argument: a scene that check() refuses, a view that is not finite, an image without pixels.
   void render(const Scene& scene, const View& view, PixelKind pixels, Picture& picture);
 
-  /// The first step of render(), for those who ask further: everything as `view` sees it. `scene` must stay.
+  /// The first step of render(), for those who ask for truth: everything as `view` sees it. What is asked
+  /// then reads `scene`, which must stay as it is until the next call.
   void prepare(const Scene& scene, const View& view);
+  [[nodiscard]] const View& view() const { return view_; }
   [[nodiscard]] const Stage& stage() const { return stage_; }
   [[nodiscard]] const RayField& rays() const { return rays_; }
   [[nodiscard]] const Tiles& tiles() const { return tiles_; }
@@ -35,6 +37,7 @@ class Renderer {
  private:
   void render_tile(int column, int row, PixelKind pixels, Picture& picture) const;
 
+  View view_;
   RayField rays_;
   Stage stage_;
   Tiles tiles_;

@@ -188,15 +188,16 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
       const Eigen::Vector3d p = hit.depth * ray.direction;
       const TubePoint point = tube_point(piece, p);
       hit.normal = point.normal;
-      hit.s = point.s;
       hit.label = skin_label(stage, piece, point.s, p);
+      if (at(stage.bodies, static_cast<std::uint32_t>(piece.body)).is_arm) hit.s = point.s;
+      if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
       return;
     }
     case Part::Kind::disc: {
       const DiscPart& disc = at(stage.discs, hit.part.index);
       hit.normal = disc.circle.normal;
-      if (!stage.scene->arm.tube.empty() && disc.tube_arc < stage.scene->arm.tube.size())
-        hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
+      const Body& end = at(stage.bodies, static_cast<std::uint32_t>(disc.body));
+      if (end.label.kind == SurfaceKind::cap) hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
       body = disc.body;
       break;
     }
@@ -212,6 +213,7 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
       break;
   }
   hit.label = stage.bodies[static_cast<std::size_t>(body)].label;
+  if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
 }
 
 // Edges of colour on the tube near the hit.

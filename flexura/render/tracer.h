@@ -26,7 +26,8 @@ struct Hit {
   double depth = std::numeric_limits<double>::infinity();  ///< m; infinite: none.
   Part part = {Part::Kind::piece, 0};
   Eigen::Vector3d normal = {0, 0, -1};  ///< C, unit; towards the camera's side.
-  double s = 0;                         ///< On the arm: arc length from the base, m.
+  /// On the arm: arc length from the base, m; on anything else no number.
+  double s = std::numeric_limits<double>::quiet_NaN();
   SurfaceLabel label;
 
   [[nodiscard]] bool is_none() const { return depth == std::numeric_limits<double>::infinity(); }

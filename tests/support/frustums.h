@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "flexura/camera/view.h"
@@ -21,6 +20,10 @@ class FrustumTube {
     Eigen::Vector3d from, to;  ///< W.
     double radius_from, radius_to;
     double s_from, s_to;
+    bool is_first, is_last;  ///< The tube is closed by discs there.
+    /// How far it goes on beyond its ends, of its length: on the outside of a bend wedges would gape between
+    /// it and its neighbours.
+    double overlap;
   };
   struct Meeting {
     double depth = std::numeric_limits<double>::infinity();
@@ -34,9 +37,12 @@ class FrustumTube {
       const auto& radius = arm.sections[i].radius;
       for (int part = 0; part < count; ++part) {
         const double a = static_cast<double>(part) / count, b = static_cast<double>(part + 1) / count;
+        const double length = arc.length / count, turn = arc.bend.norm() / count;
         const auto mixed = [&](double share) { return radius[0] + (radius[1] - radius[0]) * share; };
         frustums_.push_back({arc.pose(a * arc.length).position, arc.pose(b * arc.length).position, mixed(a),
-                             mixed(b), arc.s + a * arc.length, arc.s + b * arc.length});
+                             mixed(b), arc.s + a * arc.length, arc.s + b * arc.length, i == 0 && part == 0,
+                             i + 1 == arm.sections.size() && part + 1 == count,
+                             0.5 * turn * mixed(a) / length});
       }
     }
   }
@@ -50,8 +56,8 @@ class FrustumTube {
     const Eigen::Vector3d d = direction.normalized();
     for (const Frustum& frustum : frustums_) {
       const Eigen::Vector3d middle = 0.5 * (frustum.from + frustum.to) - eye;
-      const double size = 0.5 * (frustum.to - frustum.from).norm() +
-                          std::max(frustum.radius_from, frustum.radius_to);
+      const double size =
+          0.5 * (frustum.to - frustum.from).norm() + std::max(frustum.radius_from, frustum.radius_to);
       const double off = (middle - middle.dot(d) * d).norm();
       if (middle.dot(d) > -size && off < size + spread * (middle.norm() + size)) result.push_back(frustum);
     }
@@ -64,10 +70,11 @@ class FrustumTube {
     Meeting nearest;
     for (const Frustum& frustum : frustums) meet_side(frustum, eye, direction, nearest);
     for (const Frustum& frustum : frustums) {
-      meet_disc(frustum.from, frustum.to - frustum.from, frustum.radius_from, frustum.s_from, eye, direction,
-                nearest);
-      meet_disc(frustum.to, frustum.to - frustum.from, frustum.radius_to, frustum.s_to, eye, direction,
-                nearest);
+      const Eigen::Vector3d axis = frustum.to - frustum.from;
+      if (frustum.is_first)
+        meet_disc(frustum.from, axis, frustum.radius_from, frustum.s_from, eye, direction, nearest);
+      if (frustum.is_last)
+        meet_disc(frustum.to, axis, frustum.radius_to, frustum.s_to, eye, direction, nearest);
     }
     return nearest;
   }
@@ -89,7 +96,9 @@ class FrustumTube {
     for (const double sign : {-1.0, 1.0}) {
       const double t = (-B + sign * std::sqrt(discriminant)) / A;
       const double share = a + b * t;
-      if (t > 0 && t < nearest.depth && share >= 0 && share <= 1)
+      const double low = frustum.is_first ? 0 : -frustum.overlap,
+                   high = 1 + (frustum.is_last ? 0 : frustum.overlap);
+      if (t > 0 && t < nearest.depth && share >= low && share <= high)
         nearest = {t, frustum.s_from + share * (frustum.s_to - frustum.s_from)};
     }
   }

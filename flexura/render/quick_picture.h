@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "flexura/base/image.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/math/simd_path.h"
@@ -25,7 +26,7 @@ class QuickPicture {
   /// std::invalid_argument: the path is not available.
   explicit QuickPicture(SimdPath path = best_simd_path());
 
-  /// Draws into `picture`, whose images have the right size. False, with nothing drawn, for scenes that it
+  /// Draws into `picture`, whose images have the right size. False, with nothing of use drawn, for what it
   /// does not know: a lens with distortion, shadows, infinite planes, a camera close to something.
   bool draw(const Stage& stage, const Intrinsics& intrinsics, PixelKind pixels, Picture& picture);
 
@@ -33,30 +34,28 @@ class QuickPicture {
   [[nodiscard]] const std::vector<Pixel>& left_out() const { return left_out_; }
 
  private:
-  // Where something may be seen: in each row from first to last, the columns [from, to).
-  struct Region {
-    int first = 0, last = -1;
-    std::vector<int> from, to;
-  };
-  struct Candidate {
-    int u, v;
+  // A piece as it was drawn, and the pixels where its contour may be.
+  struct Drawn {
+    SpanPiece piece;
+    std::size_t first_edge = 0;
+    std::vector<Pixel> contour;
   };
 
-  [[nodiscard]] bool is_known(const Stage& stage) const;
-  [[nodiscard]] bool region_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q, double radius);
   void draw_screens(const Stage& stage);
-  void draw_screen(const Stage& stage, const FacePart& part);
-  void draw_arm(const Stage& stage);
+  void draw_screen(const Stage& stage, const FacePart& part, bool is_first);
+  bool draw_pieces(const Stage& stage);
   bool draw_piece(const Stage& stage, const TubePiece& piece);
-  void draw_disc(const Stage& stage, const DiscPart& disc);
-  void divide(const SpanPiece& piece, const std::vector<Candidate>& candidates);
-  void leave_region();
-  void leave(int u, int v) { state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact); }
+  bool draw_disc(const Stage& stage, const DiscPart& disc);
+  bool leave_faces(const Stage& stage);
+  void divide(const Drawn& drawn);
+  void merge(const SpanPiece& piece, Pixel pixel, const BorderPixels& borders, std::size_t i);
+  void fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn);
+  void add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn);
   [[nodiscard]] std::uint8_t& state(int u, int v) {
     return states_[static_cast<std::size_t>(v) * stride_ + static_cast<std::size_t>(u)];
   }
-  SpanPiece span_piece(const Stage& stage, const TubePiece& piece);
-  void store(int u, int v, const float* light);
+  void leave(int u, int v) { state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact); }
+  void store(int u, int v, const Color& light);
 
   const SpanKernels* kernels_;
   Intrinsics intrinsics_;
@@ -64,13 +63,8 @@ class QuickPicture {
   std::size_t channels_ = 1, stride_ = 0;
   Picture* picture_ = nullptr;
   std::vector<std::uint8_t> states_;
-  Region region_;
-  struct DrawnPiece {
-    SpanPiece piece;
-    std::size_t first_edge = 0;
-    std::vector<Candidate> candidates;
-  };
-  std::vector<DrawnPiece> drawn_;
+  std::vector<float> row_depth_;
+  std::vector<Drawn> drawn_;
   std::size_t drawn_count_ = 0;
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;

@@ -26,9 +26,9 @@ struct Linear {
   float value, by_u, by_v;
 };
 
-/// A plane across the tube where its colour changes: at sine * x + cosine * z = offset in the piece's frame.
+/// A plane across the tube where its colour changes: where p . normal = offset in the piece's frame.
 struct SpanEdge {
-  float sine, cosine, offset;
+  float normal[3], offset;
   float far;        ///< m; farther from it no pixel is divided.
   float change[3];  ///< Of the albedo, towards larger arc lengths.
 };

@@ -32,6 +32,7 @@ struct Vector {
 [[gnu::always_inline]] inline Floats dot(const Vector& a, const float (&b)[3]) {
   return a.x * b[0] + a.y * b[1] + a.z * b[2];
 }
+inline float dot(const float (&a)[3], const float (&b)[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 [[gnu::always_inline]] inline Vector along(const Vector& p, const Vector& d, const Floats& way) {
   return {p.x + way * d.x, p.y + way * d.y, p.z + way * d.z};
 }
@@ -154,11 +155,11 @@ struct SquarePart {
 [[gnu::always_inline]] inline Floats share_beyond(const SpanPiece& piece, const SpanEdge& edge,
                                                   const RayLanes& ray, const Floats& depth,
                                                   const Vector& normal, const Floats& distance) {
-  const Floats along_ray = edge.sine * ray.direction.x + edge.cosine * ray.direction.z;
+  const Floats along_ray = dot(ray.direction, edge.normal);
   const Floats slant = along_ray / dot(normal, ray.direction);
   const auto slope = [&](float Linear::* by) {
     const float d[3] = {piece.direction[0].*by, piece.direction[1].*by, piece.direction[2].*by};
-    return depth * ((edge.sine * d[0] + edge.cosine * d[2]) - slant * dot(normal, d));
+    return depth * (dot(edge.normal, d) - slant * dot(normal, d));
   };
   const Floats by_u = slope(&Linear::by_u), by_v = slope(&Linear::by_v);
   const Floats scale = 1 / square_root(at_least(1e-30f, by_u * by_u + by_v * by_v));
@@ -172,7 +173,7 @@ struct SquarePart {
   for (std::size_t c = 0; c < piece.channels; ++c) light[c] = Floats{} + piece.albedo[c];
   for (std::size_t i = 0; i < piece.edge_count; ++i) {
     const SpanEdge& edge = piece.edges[i];
-    const Floats distance = edge.sine * p.x + edge.cosine * p.z - edge.offset;
+    const Floats distance = dot(p, edge.normal) - edge.offset;
     Floats share = choose(distance > 0, Floats{} + 1, Floats{});
     const Mask is_near = (distance < edge.far) & (distance > -edge.far);
     if (any(is_near)) share = choose(is_near, share_beyond(piece, edge, ray, depth, normal, distance), share);
@@ -255,13 +256,16 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
     const RayLanes ray = ray_of(piece, u, v);
     const Lowest lowest = lowest_of<4>(ray, square);
     const Floats contour = ray.depth + lowest.t;
-    const Floats gap = square_root(at_least(0, lowest.value + square)) - piece.radius;
+    // Of sqrt(h^2 + y^2), which is the radius on the contour.
+    const Floats distance = square_root(at_least(1e-30f, lowest.value + square));
+    const Floats gap = distance - piece.radius;
     const Vector near = along(ray.point, ray.direction, lowest.t);
-    const Vector normal = normal_of(piece, ray, near, lowest.t);
-    const Floats scale = contour / square_root(at_least(1e-30f, dot(normal, normal)));
+    const Floats h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2), k = Floats{} + piece.curvature;
+    const Vector gradient{h * (k * near.x - 1), near.y, h * (k * near.z)};
+    const Floats scale = contour / distance;
     const auto slope = [&](float Linear::* by) {
       const float d[3] = {piece.direction[0].*by, piece.direction[1].*by, piece.direction[2].*by};
-      return scale * dot(normal, d);
+      return scale * dot(gradient, d);
     };
     const Floats by_u = slope(&Linear::by_u), by_v = slope(&Linear::by_v);
     const Floats steepness = 1 / square_root(at_least(1e-30f, by_u * by_u + by_v * by_v));
@@ -275,8 +279,8 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
     Mask is_simple = gap == gap;
     for (std::size_t j = 0; j < piece.edge_count; ++j) {
       const SpanEdge& edge = piece.edges[j];
-      const Floats distance = edge.sine * p.x + edge.cosine * p.z - edge.offset;
-      is_simple &= (distance > edge.far) | (distance < -edge.far);
+      const Floats off = dot(p, edge.normal) - edge.offset;
+      is_simple &= (off > edge.far) | (off < -edge.far);
     }
     Floats light[3];
     skin_light(piece, inner, inner.depth + inner_t, p, normal_of(piece, inner, p, inner_t), light);

@@ -172,7 +172,7 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, D
   const Eigen::Vector3d by_u = R_PC.col(0) / intrinsics_.fx, by_v = R_PC.col(1) / intrinsics_.fy;
   const Eigen::Vector3d start = piece.p_PC + depth0 * d, chord = piece.bound_center.normalized();
   const Light& light = stage.scene->light;
-  const Eigen::Vector3d towards = R_PC * stage.light * light.directional;
+  const Eigen::Vector3d towards = R_PC * stage.light * (light.directional / piece.radius);
   const auto number = [](double x) { return static_cast<float>(x); };
   for (Eigen::Index i = 0; i < 3; ++i) {
     span.direction[i] = {number(d[i]), number(by_u[i]), number(by_v[i])};
@@ -193,7 +193,8 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, D
 // The planes of marker edges at the piece and what they do to its colour.
 void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn) {
   const ArmLook& arm = stage.scene->arm;
-  const double far = 8 / 0.9 * static_cast<double>(drawn.piece.reach);
+  const double pixel = static_cast<double>(drawn.piece.reach) / 0.9;
+  const double margin = 8 * pixel;
   const auto albedo_at = [&](double s) {
     for (std::size_t i = arm.markers.size(); i-- > 0;)
       if (s >= arm.markers[i].s_from && s < arm.markers[i].s_to) return arm.markers[i].albedo;
@@ -203,8 +204,8 @@ void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
     return channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)];
   };
   const auto& rings = stage.ring_edges;
-  const auto begin = std::ranges::lower_bound(rings, piece.s - 2 * far, {}, &RingEdge::s);
-  const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + 2 * far, {}, &RingEdge::s);
+  const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
+  const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
   Color before = begin == end ? albedo_at(piece.s + 0.5 * piece.length) : Color();
   if (begin != end) before = albedo_at(std::nextafter(begin->s, -1e9));
   for (std::size_t c = 0; c < channels_; ++c) drawn.piece.albedo[c] = static_cast<float>(channel(before, c));
@@ -217,7 +218,10 @@ void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
     SpanEdge edge{};
     for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = static_cast<float>(normal[i]);
     edge.offset = static_cast<float>(ring->circle.normal.dot(ring->circle.center - piece.p_CP));
-    edge.far = static_cast<float>(far);
+    // Towards the contour the edge of a ring that is seen aslant runs along it.
+    const double aslant = std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
+                          2 * piece.radius / ring->circle.center.z();
+    edge.far = static_cast<float>(pixel * (1 + aslant * std::sqrt(2.8 * piece.radius / pixel)));
     for (std::size_t c = 0; c < channels_; ++c)
       edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));
     edges_.push_back(edge);
@@ -289,7 +293,7 @@ bool QuickPicture::draw_disc(const Stage& stage, const DiscPart& disc) {
     const CircleView view = view_of(circle, ray);
     const double before = static_cast<double>(picture_->depth.at(u, v));
     for (const Border& border : view.borders) {
-      if (border.distance > 1.2) continue;
+      if (border.distance > 0.9) continue;
       if (border.depth < before + 0.2 * circle.radius) leave(u, v);
     }
     if (!(view.value < 0) || !is_front) return;
@@ -343,7 +347,7 @@ void QuickPicture::merge(const SpanPiece& piece, Pixel pixel, const BorderPixels
   const float contour = borders.contour[i];
   if (here == state_arm && depth < contour - 2 * piece.radius) return;
   const bool is_clear = here == state_behind || (here == state_arm && depth > contour + 2 * piece.radius);
-  if (!is_clear || borders.is_simple[i] == 0 || !(depth > contour)) {
+  if (!is_clear || !(depth > contour)) {
     leave(pixel.u, pixel.v);
     return;
   }
@@ -351,9 +355,13 @@ void QuickPicture::merge(const SpanPiece& piece, Pixel pixel, const BorderPixels
   const float share = borders.coverage[i];
   depth = std::min(depth, borders.depth[i]);
   if (!(share > 0)) return;
+  float within[3];
+  for (std::size_t c = 0; c < channels_; ++c) within[c] = borders.light[c * span_step + i];
+  if (borders.is_simple[i] == 0)
+    kernels_->sample(piece, static_cast<float>(pixel.u), static_cast<float>(pixel.v), within);
   for (std::size_t c = 0; c < channels_; ++c) {
     float& light = picture_->light.at(pixel.u, pixel.v, static_cast<int>(c));
-    light += share * (borders.light[c * span_step + i] - light);
+    light += share * (within[c] - light);
   }
 }
 

@@ -42,7 +42,7 @@ struct SpanPiece {
   float middle[3], chord[3];  ///< Of its centreline's ends; unit.
   float end_sine, end_cosine, end_offset;
   float reach;     ///< m: contours this near may divide the pixel.
-  float light[3];  ///< The directional light's strength times the direction towards it.
+  float light[3];  ///< The directional light's strength over the radius times the direction towards it.
   float ambient;
   float albedo[3];  ///< At its start.
   const SpanEdge* edges;
@@ -73,6 +73,8 @@ struct SpanKernels {
   std::uint32_t (*draw)(const SpanPiece& piece, const SpanPixels& pixels);
   /// Works out pixels with contours.
   void (*divide)(const SpanPiece& piece, const float* u, const float* v, BorderPixels& borders);
+  /// The mean light of what of the piece is in the pixel, from 256 points; left as it is when none is within.
+  void (*sample)(const SpanPiece& piece, float u, float v, float* light);
   /// depth[i] = scale / (value + by_u * i) where that is less than what is there; sets where.
   void (*plane)(float scale, float value, float by_u, float* depth, std::size_t count);
 };

@@ -116,7 +116,7 @@ template <int steps>
 }
 
 [[gnu::always_inline]] inline Floats shade(const SpanPiece& piece, const Vector& normal) {
-  return piece.ambient + at_least(0, dot(normal, piece.light) / piece.radius);
+  return piece.ambient + at_least(0, dot(normal, piece.light));
 }
 
 // The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length.
@@ -166,7 +166,8 @@ struct SquarePart {
   return part_beyond(by_u * scale, by_v * scale, -distance * scale).area;
 }
 
-// The light of the skin at p, channel by channel.
+// The light of the skin at p, channel by channel; of its pixel, or of the point alone.
+template <bool is_pixel>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes& ray,
                                               const Floats& depth, const Vector& p, const Vector& normal,
                                               Floats (&light)[3]) {
@@ -176,7 +177,8 @@ struct SquarePart {
     const Floats distance = dot(p, edge.normal) - edge.offset;
     Floats share = choose(distance > 0, Floats{} + 1, Floats{});
     const Mask is_near = (distance < edge.far) & (distance > -edge.far);
-    if (any(is_near)) share = choose(is_near, share_beyond(piece, edge, ray, depth, normal, distance), share);
+    if (is_pixel && any(is_near))
+      share = choose(is_near, share_beyond(piece, edge, ray, depth, normal, distance), share);
     for (std::size_t c = 0; c < piece.channels; ++c) light[c] += share * edge.change[c];
   }
   const Floats factor = shade(piece, normal);
@@ -239,7 +241,7 @@ std::uint32_t draw(const SpanPiece& piece, const SpanPixels& pixels) {
     const Mask is_drawn = is_inside & is_here & (depth < before);
     if (!any(is_drawn)) continue;
     Floats light[3];
-    skin_light(piece, ray, depth, p, normal_of(piece, ray, p, t), light);
+    skin_light<true>(piece, ray, depth, p, normal_of(piece, ray, p, t), light);
     store(pixels.depth + i, choose(is_drawn, depth, before));
     store_light(light, piece.channels, is_drawn, pixels.light + i * piece.channels);
     const std::uint32_t drawn = bits_of(is_drawn);
@@ -283,7 +285,7 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
       is_simple &= (off > edge.far) | (off < -edge.far);
     }
     Floats light[3];
-    skin_light(piece, inner, inner.depth + inner_t, p, normal_of(piece, inner, p, inner_t), light);
+    skin_light<true>(piece, inner, inner.depth + inner_t, p, normal_of(piece, inner, p, inner_t), light);
     store(borders.coverage + i, within.area);
     for (std::size_t c = 0; c < piece.channels; ++c) store(borders.light + c * span_step + i, light[c]);
     const Floats entry = ray.depth + entry_of(ray, square, lowest);
@@ -295,6 +297,39 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
   }
 }
 
+// Points evenly spread over the pixel: a lattice of the golden ratio.
+constexpr std::size_t sample_count = 256;
+
+// The sums go by the points' numbers modulo span_step, so that the width does not change their order.
+void sample(const SpanPiece& piece, float u, float v, float* light) {
+  const float square = piece.radius * piece.radius;
+  float sums[4][span_step] = {};
+  for (std::size_t i = 0; i < sample_count; i += lanes) {
+    const std::size_t slot = i % span_step;
+    const Floats number = counted() + static_cast<float>(i);
+    const Floats turns = number * 0.618034f;
+    Floats part = turns;
+    for (std::size_t j = 0; j < lanes; ++j)
+      part[j] = turns[j] - static_cast<float>(static_cast<int>(turns[j]));
+    const Floats x = (number + 0.5f) / static_cast<float>(sample_count) - 0.5f;
+    const RayLanes ray = ray_of(piece, x + (u - piece.u0), part - 0.5f + (v - piece.v0));
+    const Lowest lowest = lowest_of<3>(ray, square);
+    const Mask is_inside = lowest.value < 0;
+    const Floats t = entry_of(ray, square, lowest);
+    const Vector p = along(ray.point, ray.direction, t);
+    Floats here[3];
+    skin_light<false>(piece, ray, ray.depth + t, p, normal_of(piece, ray, p, t), here);
+    for (std::size_t c = 0; c < piece.channels; ++c)
+      store(sums[c] + slot, load(sums[c] + slot) + choose(is_inside, here[c], Floats{}));
+    store(sums[3] + slot, load(sums[3] + slot) + choose(is_inside, Floats{} + 1, Floats{}));
+  }
+  float totals[4] = {};
+  for (std::size_t c = 0; c < 4; ++c)
+    for (const float sum : sums[c]) totals[c] += sum;
+  if (totals[3] == 0) return;
+  for (std::size_t c = 0; c < piece.channels; ++c) light[c] = totals[c] / totals[3];
+}
+
 void plane(float scale, float value, float by_u, float* depth, std::size_t count) {
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
@@ -304,7 +339,7 @@ void plane(float scale, float value, float by_u, float* depth, std::size_t count
   for (; i < count; ++i) depth[i] = scale / (value + by_u * static_cast<float>(i));
 }
 
-constexpr SpanKernels span_kernels = {draw, divide, plane};
+constexpr SpanKernels span_kernels = {draw, divide, sample, plane};
 
 }  // namespace
 }  // namespace flexura

@@ -216,6 +216,28 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
   if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
 }
 
+// How the depth of a hit changes in the image, by (a, b).
+Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
+  const double towards = hit.normal.dot(ray.direction);
+  if (towards == 0) return {infinity, infinity};
+  return hit.normal.head<2>() * (-hit.depth / towards);
+}
+
+// The edge of a ring near a hit, from how s changes on the surface; or, where that says the same, from the
+// circle's image, which is more exact.
+Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slope, double depth,
+                   const Ray& ray) {
+  const Border straight = border_of(s - edge.s, s_slope, ray, depth);
+  if (!(straight.distance < border_reach)) return straight;
+  const CircleView view = view_of(edge.circle, ray);
+  for (const Border& border : view.borders) {
+    const bool is_same = border.towards.dot(straight.towards) > 0.9 &&
+                         std::abs(border.distance - straight.distance) < 0.2 * straight.distance + 1e-6;
+    if (is_same) return {border.distance, border.towards, depth};
+  }
+  return straight;
+}
+
 // Edges of colour on the tube near the hit.
 void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
   const Hit& hit = sights.first;
@@ -225,10 +247,13 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     const auto& edges = stage.ring_edges;
     const auto next = std::ranges::lower_bound(edges, hit.s, {}, &RingEdge::s) - edges.begin();
     const auto last = std::min(next + 3, static_cast<std::ptrdiff_t>(edges.size()));
-    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i) {
-      const CircleView view = view_of(edges[static_cast<std::size_t>(i)].circle, ray);
-      for (const Border& border : view.borders) sights.add(border);
-    }
+    const TubePoint point = tube_point(piece, hit.depth * ray.direction);
+    const Eigen::Vector2d slope =
+        (hit.depth * point.tangent.head<2>() + point.tangent.dot(ray.direction) * depth_slope(hit, ray)) /
+        point.shrink;
+    if (!slope.allFinite()) return;
+    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i)
+      sights.add(ring_border(edges[static_cast<std::size_t>(i)], hit.s, slope, hit.depth, ray));
   }
   if (body.is_etalon) {
     const double angle = etalon_angle(stage, hit.depth * ray.direction);
@@ -237,13 +262,6 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
         sights.add(line_border(edge.from, edge.to, ray));
     }
   }
-}
-
-// How the depth of a hit changes in the image, by (a, b).
-Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
-  const double towards = hit.normal.dot(ray.direction);
-  if (towards == 0) return {infinity, infinity};
-  return hit.normal.head<2>() * (-hit.depth / towards);
 }
 
 // Keeps the two nearest of the borders that what is seen does not hide.

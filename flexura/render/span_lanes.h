@@ -221,33 +221,61 @@ template <bool is_pixel>
   return count;
 }
 
+// Step by step for all vectors of a span: what is computed for one waits for what was computed just before,
+// and the others fill the time.
+constexpr std::size_t vectors = span_step / lanes;
+
+struct SpanLanes {
+  RayLanes ray[vectors];
+  Lowest lowest[vectors];
+  Floats t[vectors];
+};
+
+[[gnu::always_inline]] inline void draw_lanes(const SpanPiece& piece, const SpanLanes& span, std::size_t i,
+                                              const Mask& is_inside, const SpanPixels& pixels) {
+  const RayLanes& ray = span.ray[i];
+  const Vector p = along(ray.point, ray.direction, span.t[i]);
+  float* const depths = pixels.depth + i * lanes;
+  const Floats depth = ray.depth + span.t[i], before = load(depths);
+  const Mask is_drawn = is_inside & is_within(piece, p) & (depth < before);
+  const std::uint32_t drawn = bits_of(is_drawn);
+  if (drawn == 0) return;
+  Floats light[3];
+  skin_light<true>(piece, ray, depth, p, normal_of(piece, ray, p, span.t[i]), light);
+  store(depths, choose(is_drawn, depth, before));
+  store_light(light, piece.channels, is_drawn, pixels.light + i * lanes * piece.channels);
+  for (std::size_t j = 0; j < lanes; ++j) {
+    std::uint8_t& state = pixels.state[i * lanes + j];
+    state = static_cast<std::uint8_t>(state | (drawn >> j & 1));
+  }
+}
+
 std::uint32_t draw(const SpanPiece& piece, const SpanPixels& pixels) {
   const float radius = piece.radius, square = radius * radius, reach = piece.reach;
   const Floats v = Floats{} + (static_cast<float>(pixels.v) - piece.v0);
-  std::uint32_t borders = 0;
-  for (std::size_t i = 0; i < span_step; i += lanes) {
-    const Floats u = counted() + (static_cast<float>(pixels.u + static_cast<int>(i)) - piece.u0);
-    const RayLanes ray = ray_of(piece, u, v);
-    const Lowest lowest = lowest_of<2>(ray, square);
-    const Mask is_near = lowest.value < reach * (2 * radius + reach);
-    if (!any(is_near)) continue;
-    const Mask is_inside = lowest.value < -reach * (2 * radius - reach);
-    const Floats t = entry_of(ray, square, lowest);
-    const Vector p = along(ray.point, ray.direction, t);
-    const Mask is_here = is_within(piece, p);
-    const Mask is_passing = is_within(piece, along(ray.point, ray.direction, lowest.t));
-    borders |= bits_of(is_near & ~is_inside & (is_passing | (is_here & (lowest.value < 0)))) << i;
-    const Floats depth = ray.depth + t, before = load(pixels.depth + i);
-    const Mask is_drawn = is_inside & is_here & (depth < before);
-    if (!any(is_drawn)) continue;
-    Floats light[3];
-    skin_light<true>(piece, ray, depth, p, normal_of(piece, ray, p, t), light);
-    store(pixels.depth + i, choose(is_drawn, depth, before));
-    store_light(light, piece.channels, is_drawn, pixels.light + i * piece.channels);
-    const std::uint32_t drawn = bits_of(is_drawn);
-    for (std::size_t j = 0; j < lanes; ++j)
-      pixels.state[i + j] = static_cast<std::uint8_t>(pixels.state[i + j] | (drawn >> j & 1));
+  SpanLanes span;
+  Mask is_near[vectors], is_inside[vectors], any_near = {};
+  for (std::size_t i = 0; i < vectors; ++i)
+    span.ray[i] =
+        ray_of(piece, counted() + (static_cast<float>(pixels.u + static_cast<int>(i * lanes)) - piece.u0), v);
+  for (std::size_t i = 0; i < vectors; ++i) {
+    span.lowest[i] = lowest_of<2>(span.ray[i], square);
+    is_near[i] = span.lowest[i].value < reach * (2 * radius + reach);
+    is_inside[i] = span.lowest[i].value < -reach * (2 * radius - reach);
+    any_near |= is_near[i];
   }
+  if (!any(any_near)) return 0;
+  std::uint32_t borders = 0;
+  for (std::size_t i = 0; i < vectors; ++i) span.t[i] = entry_of(span.ray[i], square, span.lowest[i]);
+  for (std::size_t i = 0; i < vectors; ++i) {
+    const Mask is_border = is_near[i] & ~is_inside[i];
+    if (!any(is_border)) continue;
+    const RayLanes& ray = span.ray[i];
+    const Mask is_here = is_within(piece, along(ray.point, ray.direction, span.t[i]));
+    const Mask is_passing = is_within(piece, along(ray.point, ray.direction, span.lowest[i].t));
+    borders |= bits_of(is_border & (is_passing | (is_here & (span.lowest[i].value < 0)))) << (i * lanes);
+  }
+  for (std::size_t i = 0; i < vectors; ++i) draw_lanes(piece, span, i, is_inside[i], pixels);
   return borders;
 }
 

@@ -84,6 +84,8 @@ void QuickPicture::draw_screens(const Stage& stage) {
     if (part.screen < 0) continue;
     draw_screen(stage, part, is_first);
     is_first = false;
+    for (const FacePart& other : stage.faces)
+      if (&other != &part && other.screen >= 0) leave_crossing(part.face, other.face);
   }
   if (!is_first) return;
   std::ranges::fill(picture_->depth.values(), nothing);
@@ -151,6 +153,27 @@ void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is
   }
 }
 
+// Where the planes of two screens meet: the difference of their points' inverse depths is linear in the
+// image.
+void QuickPicture::leave_crossing(const Face& one, const Face& other) {
+  const Eigen::Vector3d difference =
+      one.normal / one.normal.dot(one.corners[0]) - other.normal / other.normal.dot(other.corners[0]);
+  if (!difference.allFinite()) return;
+  const double by_u = difference.x() / intrinsics_.fx, by_v = difference.y() / intrinsics_.fy;
+  const double reach = 1.2 * std::hypot(by_u, by_v), limit = width_;
+  for (int v = 0; v < height_; ++v) {
+    const double value = difference.dot(ray_of(intrinsics_, 0, v).direction);
+    double from = 0, to = limit;
+    if (by_u != 0) {
+      from = std::clamp((-value - std::copysign(reach, by_u)) / by_u, 0.0, limit);
+      to = std::clamp((-value + std::copysign(reach, by_u)) / by_u + 1, 0.0, limit);
+    } else if (std::abs(value) > reach) {
+      continue;
+    }
+    for (int u = static_cast<int>(from); u < static_cast<int>(to); ++u) leave(u, v);
+  }
+}
+
 bool QuickPicture::draw_pieces(const Stage& stage) {
   drawn_count_ = 0;
   edges_.clear();
@@ -190,8 +213,9 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, D
   span.channels = channels_;
 }
 
-// The planes of marker edges at the piece and what they do to its colour.
-void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn) {
+// The planes of marker edges at the piece and what they do to its colour; false when they are seen as curves
+// that no line stands for within a pixel.
+bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn) {
   const ArmLook& arm = stage.scene->arm;
   const double pixel = static_cast<double>(drawn.piece.reach) / 0.9;
   const double margin = 8 * pixel;
@@ -221,6 +245,7 @@ void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
     // Towards the contour the edge of a ring that is seen aslant runs along it.
     const double aslant = std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
                           2 * piece.radius / ring->circle.center.z();
+    if (aslant * pixel > 0.05 * piece.radius) return false;
     edge.far = static_cast<float>(pixel * (1 + aslant * std::sqrt(2.8 * piece.radius / pixel)));
     for (std::size_t c = 0; c < channels_; ++c)
       edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));
@@ -228,6 +253,7 @@ void QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
     before = after;
   }
   drawn.piece.edge_count = edges_.size() - drawn.first_edge;
+  return true;
 }
 
 bool QuickPicture::draw_piece(const Stage& stage, const TubePiece& piece) {
@@ -240,17 +266,19 @@ bool QuickPicture::draw_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
   const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
-  const bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
-                        piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;
+  bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
+                  piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;
+  if (is_quick) {
+    if (drawn_count_ == drawn_.size()) drawn_.emplace_back();
+    fill_span_piece(stage, piece, drawn_[drawn_count_]);
+    is_quick = add_edges(stage, piece, drawn_[drawn_count_]);
+  }
   if (!is_quick) {
     for_pixels(*region, width_, height_, [this](int u, int v) { leave(u, v); });
     return true;
   }
-  if (drawn_count_ == drawn_.size()) drawn_.emplace_back();
   Drawn& drawn = drawn_[drawn_count_++];
   drawn.contour.clear();
-  fill_span_piece(stage, piece, drawn);
-  add_edges(stage, piece, drawn);
   drawn.piece.edges = edges_.data() + drawn.first_edge;
   const auto rows = region->rows(height_);
   constexpr int step = span_step;

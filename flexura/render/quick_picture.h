@@ -43,6 +43,7 @@ class QuickPicture {
 
   void draw_screens(const Stage& stage);
   void draw_screen(const Stage& stage, const FacePart& part, bool is_first);
+  void leave_crossing(const Face& one, const Face& other);
   bool draw_pieces(const Stage& stage);
   bool draw_piece(const Stage& stage, const TubePiece& piece);
   bool draw_disc(const Stage& stage, const DiscPart& disc);
@@ -50,7 +51,7 @@ class QuickPicture {
   void divide(const Drawn& drawn);
   void merge(const SpanPiece& piece, Pixel pixel, const BorderPixels& borders, std::size_t i);
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn);
-  void add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn);
+  bool add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn);
   [[nodiscard]] std::uint8_t& state(int u, int v) {
     return states_[static_cast<std::size_t>(v) * stride_ + static_cast<std::size_t>(u)];
   }

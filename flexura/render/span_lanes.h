@@ -291,7 +291,7 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
     const Floats gap = distance - piece.radius;
     const Vector near = along(ray.point, ray.direction, lowest.t);
     const Floats h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2), k = Floats{} + piece.curvature;
-    const Vector gradient{h * (k * near.x - 1), near.y, h * (k * near.z)};
+    const Vector gradient{h * (k * near.x - 1), near.y * (1 + k * h), h * (k * near.z)};
     const Floats scale = contour / distance;
     const auto slope = [&](float Linear::* by) {
       const float d[3] = {piece.direction[0].*by, piece.direction[1].*by, piece.direction[2].*by};
@@ -313,7 +313,7 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
       is_simple &= (off > edge.far) | (off < -edge.far);
     }
     Floats light[3];
-    skin_light<true>(piece, inner, inner.depth + inner_t, p, normal_of(piece, inner, p, inner_t), light);
+    skin_light<false>(piece, inner, inner.depth + inner_t, p, normal_of(piece, inner, p, inner_t), light);
     store(borders.coverage + i, within.area);
     for (std::size_t c = 0; c < piece.channels; ++c) store(borders.light + c * span_step + i, light[c]);
     const Floats entry = ray.depth + entry_of(ray, square, lowest);
@@ -326,7 +326,7 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
 }
 
 // Points evenly spread over the pixel: a lattice of the golden ratio.
-constexpr std::size_t sample_count = 256;
+constexpr std::size_t sample_count = 128;
 
 // The sums go by the points' numbers modulo span_step, so that the width does not change their order.
 void sample(const SpanPiece& piece, float u, float v, float* light) {

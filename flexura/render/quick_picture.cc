@@ -97,7 +97,7 @@ void QuickPicture::draw_screens(const Stage& stage) {
 void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is_first) {
   const Screen& screen = stage.scene->screens[static_cast<std::size_t>(part.screen)];
   const Face& face = part.face;
-  const double sign = face.is_front ? 1 : -1, scale = face.normal.dot(face.corners[0]);
+  const double scale = face.normal.dot(face.corners[0]);
   const double limit = width_;
   const auto whole = [&](double x) { return static_cast<int>(std::clamp(std::ceil(x), 0.0, limit)); };
   const auto set_behind = [&](int v, int from, int to) {
@@ -111,7 +111,7 @@ void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is
     const double infinity = std::numeric_limits<double>::infinity();
     double inner_from = -infinity, inner_to = infinity, outer_from = -infinity, outer_to = infinity;
     for (const Eigen::Vector3d& edge : face.edges) {
-      const double value = sign * edge.dot(row.direction), by_u = sign * edge.x() / intrinsics_.fx;
+      const double value = edge.dot(row.direction), by_u = edge.x() / intrinsics_.fx;
       const double margin = 1.2 * std::hypot(by_u, edge.y() / intrinsics_.fy);
       const auto cut = [&](double least, double& from, double& to) {
         if (by_u > 0) from = std::max(from, (least - value) / by_u);
@@ -245,7 +245,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
     // Towards the contour the edge of a ring that is seen aslant runs along it.
     const double aslant = std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
                           2 * piece.radius / ring->circle.center.z();
-    if (aslant * pixel > 0.05 * piece.radius) return false;
+    if (aslant * pixel > 0.02 * piece.radius) return false;
     edge.far = static_cast<float>(pixel * (1 + aslant * std::sqrt(2.8 * piece.radius / pixel)));
     for (std::size_t c = 0; c < channels_; ++c)
       edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));

@@ -38,10 +38,16 @@ Scene some_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, c
   return scene;
 }
 
+// The arm's radius is 4 to 30 px.
+View some_view(TestRandom& random, const Backbone& backbone) {
+  const View view = random_view_of(random, backbone);
+  return pinhole_view(view.X_WC, 160, 120, 200 * random.uniform(1, 5));
+}
+
 struct Difference {
-  double worst = 0, square = 0;  // Of light.
-  int count = 0, many = 0;       // Of pixels that differ by more than 1/500, of all.
-  int bad_depths = 0;            // Of those that differ by more than 1e-6 of it.
+  double worst = 0;         // Of light.
+  int count = 0, many = 0;  // Of values of light that differ by more than 1/500, of all.
+  int bad_depths = 0;       // Of those that differ by more than 2e-6 of it.
 };
 
 Difference compare(const Picture& exact, const Picture& quick) {
@@ -49,23 +55,22 @@ Difference compare(const Picture& exact, const Picture& quick) {
   for (std::size_t i = 0; i < exact.light.values().size(); ++i) {
     const double off = std::abs(exact.light.values()[i] - quick.light.values()[i]);
     result.worst = std::max(result.worst, off);
-    result.square += off * off;
     if (off > 0.002) ++result.count;
     ++result.many;
   }
   for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {
     const double a = static_cast<double>(exact.depth.values()[i]),
                  b = static_cast<double>(quick.depth.values()[i]);
-    if (a != b && !(std::abs(a - b) <= 1e-6 * a)) ++result.bad_depths;
+    if (a != b && !(std::abs(a - b) <= 2e-6 * a)) ++result.bad_depths;
   }
   return result;
 }
 
 TEST(QuickPicture, AgreesWithTheExactWay) {
   int count = 0, many = 0, bad_depths = 0;
-  for_random_cases(60, [&](TestRandom& random) {
+  for_random_cases(100, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 3) == 0 ? 0.003 : 0);
-    const View view = random_view_of(random, bent.backbone());
+    const View view = some_view(random, bent.backbone());
     const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
     Renderer renderer;
@@ -73,19 +78,17 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
     renderer.render(scene, view, pixels, exact, true);
     renderer.render(scene, view, pixels, quick);
     const Difference off = compare(exact, quick);
-    EXPECT_LT(off.worst, 0.03);
-    if (off.worst > 0.002 || off.bad_depths > 0)
-      printf("worst %g count %d depths %d\n", off.worst, off.count, off.bad_depths);
+    EXPECT_LT(off.worst, 0.015);
     count += off.count, many += off.many, bad_depths += off.bad_depths;
   });
-  EXPECT_LT(count, 3e-4 * many);
+  EXPECT_LT(count, 5e-5 * many);
   EXPECT_EQ(bad_depths, 0);
 }
 
 TEST(QuickPicture, IsTheSameOnEveryPath) {
   for_random_cases(20, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0);
-    View view = random_view_of(random, bent.backbone());
+    View view = some_view(random, bent.backbone());
     view.width -= random.integer(0, 30);
     const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;

@@ -73,7 +73,8 @@ struct SpanKernels {
   std::uint32_t (*draw)(const SpanPiece& piece, const SpanPixels& pixels);
   /// Works out pixels with contours.
   void (*divide)(const SpanPiece& piece, const float* u, const float* v, BorderPixels& borders);
-  /// The mean light of what of the piece is in the pixel, from 128 points; left as it is when none is within.
+  /// The mean light of what of the piece is in the pixel, from 64 points (256 in colour); left as it is when
+  /// none is within.
   void (*sample)(const SpanPiece& piece, float u, float v, float* light);
   /// depth[i] = scale / (value + by_u * i) where that is less than what is there; sets where.
   void (*plane)(float scale, float value, float by_u, float* depth, std::size_t count);

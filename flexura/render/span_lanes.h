@@ -23,6 +23,8 @@ using Mask = decltype(Floats{} < Floats{});
   return mask ? a : b;
 }
 
+[[gnu::always_inline]] inline Floats larger(const Floats& a, const Floats& b) { return choose(a > b, a, b); }
+
 struct Vector {
   Floats x, y, z;
 };
@@ -280,7 +282,7 @@ std::uint32_t draw(const SpanPiece& piece, const SpanPixels& pixels) {
 }
 
 void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixels& borders) {
-  const float square = piece.radius * piece.radius;
+  const float radius = piece.radius, square = radius * radius;
   for (std::size_t i = 0; i < span_step; i += lanes) {
     const Floats u = load(us + i) - piece.u0, v = load(vs + i) - piece.v0;
     const RayLanes ray = ray_of(piece, u, v);
@@ -288,7 +290,7 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
     const Floats contour = ray.depth + lowest.t;
     // Of sqrt(h^2 + y^2), which is the radius on the contour.
     const Floats distance = square_root(at_least(1e-30f, lowest.value + square));
-    const Floats gap = distance - piece.radius;
+    const Floats gap = distance - radius;
     const Vector near = along(ray.point, ray.direction, lowest.t);
     const Floats h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2), k = Floats{} + piece.curvature;
     const Vector gradient{h * (k * near.x - 1), near.y * (1 + k * h), h * (k * near.z)};
@@ -299,7 +301,15 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
     };
     const Floats by_u = slope(&Linear::by_u), by_v = slope(&Linear::by_v);
     const Floats steepness = 1 / square_root(at_least(1e-30f, by_u * by_u + by_v * by_v));
-    const SquarePart within = part_beyond(-by_u * steepness, -by_v * steepness, gap * steepness);
+    // The contour bends as the centreline does, seen on the skin's normal: a parabola's mean height in the
+    // pixel.
+    const Floats bent = 1 + k * h,
+                 along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
+    const Floats across = at_least(0.1f, 1 - along_ray * along_ray / dot(ray.direction, ray.direction));
+    const Floats bending = -k * h / (radius * bent * steepness * across);
+    const Floats normal_u = -by_u * steepness, normal_v = -by_v * steepness;
+    const Floats widest = larger(normal_u * normal_u, normal_v * normal_v);
+    const SquarePart within = part_beyond(normal_u, normal_v, gap * steepness - bending / (24 * widest));
     // In the middle of what is within.
     const Mask is_some = within.area > 0;
     const RayLanes inner =
@@ -325,21 +335,23 @@ void divide(const SpanPiece& piece, const float* us, const float* vs, BorderPixe
   }
 }
 
-// Points evenly spread over the pixel: a lattice of the golden ratio.
-constexpr std::size_t sample_count = 128;
+// Points evenly spread over the pixel: a lattice of the golden ratio. Colours differ by more than their
+// grays.
+constexpr std::size_t gray_samples = 64, color_samples = 256;
 
 // The sums go by the points' numbers modulo span_step, so that the width does not change their order.
 void sample(const SpanPiece& piece, float u, float v, float* light) {
   const float square = piece.radius * piece.radius;
+  const std::size_t count = piece.channels == 1 ? gray_samples : color_samples;
   float sums[4][span_step] = {};
-  for (std::size_t i = 0; i < sample_count; i += lanes) {
+  for (std::size_t i = 0; i < count; i += lanes) {
     const std::size_t slot = i % span_step;
     const Floats number = counted() + static_cast<float>(i);
     const Floats turns = number * 0.618034f;
     Floats part = turns;
     for (std::size_t j = 0; j < lanes; ++j)
       part[j] = turns[j] - static_cast<float>(static_cast<int>(turns[j]));
-    const Floats x = (number + 0.5f) / static_cast<float>(sample_count) - 0.5f;
+    const Floats x = (number + 0.5f) / static_cast<float>(count) - 0.5f;
     const RayLanes ray = ray_of(piece, x + (u - piece.u0), part - 0.5f + (v - piece.v0));
     const Lowest lowest = lowest_of<3>(ray, square);
     const Mask is_inside = lowest.value < 0;

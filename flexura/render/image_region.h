@@ -14,10 +14,12 @@ namespace flexura {
 /// what is within a radius of a segment of the image. Never too small.
 class ImageRegion {
  public:
-  /// From p to q, C, m; none when the camera is too near.
+  /// From p to q, C, m; none when the camera is too near. With `beyond`, m, only what is no farther than that
+  /// beyond the ends, along the segment.
   static std::optional<ImageRegion> of(const Intrinsics& lens, const Eigen::Vector3d& p,
-                                       const Eigen::Vector3d& q, double radius) {
-    constexpr double pixels_around = 3;
+                                       const Eigen::Vector3d& q, double radius,
+                                       double beyond = std::numeric_limits<double>::infinity()) {
+    constexpr double pixels_around = 2;
     const double nearest = std::min(p.z(), q.z());
     if (!(nearest > 1.5 * radius)) return std::nullopt;
     ImageRegion region;
@@ -26,7 +28,10 @@ class ImageRegion {
     region.to_ = {lens.fx * b.x() + lens.cx, lens.fy * b.y() + lens.cy};
     // A ball at the angle t from the axis is seen longer by 1 / cos^2 t.
     const double off_axis = 1 + std::max(a.squaredNorm(), b.squaredNorm());
-    region.radius_ = std::max(lens.fx, lens.fy) * radius / (nearest - radius) * off_axis + pixels_around;
+    const double scale = std::max(lens.fx, lens.fy) / (nearest - radius) * off_axis;
+    region.radius_ = scale * radius + pixels_around;
+    region.is_cut_ = beyond < radius;
+    region.beyond_ = scale * beyond + pixels_around;
     return region;
   }
 
@@ -41,6 +46,7 @@ class ImageRegion {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     const auto add = [&](double a, double b) { low = std::min(low, a), high = std::max(high, b); };
     for (const Eigen::Vector2d& end : {from_, to_}) {
+      if (is_cut_) break;
       const double across = radius_ * radius_ - (v - end.y()) * (v - end.y());
       if (across >= 0) add(end.x() - std::sqrt(across), end.x() + std::sqrt(across));
     }
@@ -50,8 +56,9 @@ class ImageRegion {
       const Eigen::Vector2d d = way / length;
       const double up = v - from_.y();
       double a = -std::numeric_limits<double>::infinity(), b = -a;
-      // 0 <= u d.x + up d.y <= length and |up d.x - u d.y| <= radius, u from `from_`.
-      cut(d.x(), up * d.y(), 0, length, a, b);
+      // 0 <= u d.x + up d.y <= length and |up d.x - u d.y| <= radius, with u counted from `from_`.
+      const double more = is_cut_ ? beyond_ : 0;
+      cut(d.x(), up * d.y(), -more, length + more, a, b);
       cut(-d.y(), up * d.x(), -radius_, radius_, a, b);
       if (a <= b) add(from_.x() + a, from_.x() + b);
     }
@@ -75,7 +82,8 @@ class ImageRegion {
   }
 
   Eigen::Vector2d from_, to_;
-  double radius_ = 0;
+  double radius_ = 0, beyond_ = 0;
+  bool is_cut_ = false;
 };
 
 }  // namespace flexura

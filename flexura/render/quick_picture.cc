@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "flexura/render/image_region.h"
@@ -69,13 +70,22 @@ bool QuickPicture::draw(const Stage& stage, const Intrinsics& intrinsics, PixelK
     if (!draw_disc(stage, disc)) return false;
   if (!leave_faces(stage)) return false;
   for (std::size_t i = 0; i < drawn_count_; ++i) divide(drawn_[i]);
+  find_left_out();
+  return true;
+}
+
+void QuickPicture::find_left_out() {
   left_out_.clear();
   for (int v = 0; v < height_; ++v) {
-    const std::uint8_t* const row = &state(0, v);
-    for (int u = 0; u < width_; ++u)
-      if ((row[u] & state_exact) != 0) left_out_.push_back({u, v});
+    for (int begin = 0; begin < width_; begin += 8) {
+      // Eight at a time: hardly any are left out.
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, &state(begin, v), sizeof eight);
+      if ((eight & (0x0101010101010101 * state_exact)) == 0) continue;
+      for (int u = begin; u < std::min(begin + 8, width_); ++u)
+        if ((state(u, v) & state_exact) != 0) left_out_.push_back({u, v});
+    }
   }
-  return true;
 }
 
 void QuickPicture::draw_screens(const Stage& stage) {
@@ -259,12 +269,19 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Drawn& 
 bool QuickPicture::draw_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
   const double widest = std::max(piece.radius, piece.radius + piece.widening * piece.length);
-  const auto region = ImageRegion::of(intrinsics_, piece.p_CP, end,
-                                      widest + piece.length * piece.length * piece.curvature / 8);
-  if (!region) return false;
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
+  // Around the middle between the chord and the arc. The skin goes on beyond the chord's ends as far as the
+  // planes there lean, and as far as a ray gets from the axis' side to the skin.
+  const double turn = piece.curvature * piece.length, sagitta = piece.length * turn / 8;
+  const Eigen::Vector3d chord_P = piece.bound_center.normalized();
+  const Eigen::Vector3d aside = piece.R_CP * Eigen::Vector3d(-chord_P.z(), 0, chord_P.x()) * (0.5 * sagitta);
+  const double steepest = std::min(0.95, std::abs(slant) + 0.1);
+  const double lean = 1.2 * std::tan(0.5 * turn) + steepest / std::sqrt(1 - steepest * steepest);
+  const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
+                                      piece.is_ball ? 2 * widest : widest * (lean + 0.1));
+  if (!region) return false;
   const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
   bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
                   piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;

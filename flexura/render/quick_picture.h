@@ -42,6 +42,7 @@ class QuickPicture {
     std::vector<Pixel> contour;
   };
 
+  void find_left_out();
   void draw_screens(const Stage& stage);
   void draw_screen(const Stage& stage, const FacePart& part, bool is_first);
   void leave_crossing(const Face& one, const Face& other);

@@ -68,7 +68,7 @@ Difference compare(const Picture& exact, const Picture& quick) {
 
 TEST(QuickPicture, AgreesWithTheExactWay) {
   int count = 0, many = 0, bad_depths = 0;
-  for_random_cases(100, [&](TestRandom& random) {
+  for_random_cases(25, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 3) == 0 ? 0.003 : 0);
     const View view = some_view(random, bent.backbone());
     const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
@@ -86,7 +86,7 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
 }
 
 TEST(QuickPicture, IsTheSameOnEveryPath) {
-  for_random_cases(20, [&](TestRandom& random) {
+  for_random_cases(8, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0);
     View view = some_view(random, bent.backbone());
     view.width -= random.integer(0, 30);

@@ -28,20 +28,26 @@ std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal
   return result;
 }
 
-// How far a border bends away from its tangent towards `normal` on half the square's width to either side;
-// none when it is no smooth curve there.
-std::optional<double> bulge_of(const Tracer& tracer, const Ray& middle, double half,
-                               const Eigen::Vector2d& normal, double offset) {
-  const Eigen::Vector2d along(-normal.y(), normal.x());
-  double sum = 0;
-  for (const double side : {-half, half}) {
-    const auto found = crossing(tracer.trace(moved(middle, side * along)), normal, 2 * half);
-    if (!found || std::abs(*found - offset) > 0.16 * half) return std::nullopt;
-    sum += *found - offset;
+// How far over its chord in the square the border lies on the mean, px along the normal, by Simpson's rule
+// from its two ends and its middle, each looked at from close by; none when it is no smooth and nearly
+// straight curve.
+std::optional<double> mean_height(const Tracer& tracer, const Ray& middle, double half,
+                                  const Division& division, const SquarePart& far) {
+  const Eigen::Vector2d& normal = division.normal;
+  const Eigen::Vector2d center = 0.5 * (far.chord[0] + far.chord[1]);
+  const double back = 0.1 * half;
+  constexpr double reach = 0.9;  // of the chord
+  std::array<double, 3> heights{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double along = reach * (static_cast<double>(i) - 1);
+    const Eigen::Vector2d point = center + 0.5 * along * (far.chord[1] - far.chord[0]) - back * normal;
+    const auto found = crossing(tracer.trace(moved(middle, point)), normal, 2 * half);
+    if (!found || std::abs(*found - back) > 0.16 * half) return std::nullopt;
+    heights[i] = *found - back;
   }
-  const double bulge = 0.5 * sum;
+  const double bulge = 0.5 * (heights[0] + heights[2]) - heights[1];
   if (std::abs(bulge) > 0.06 * half) return std::nullopt;
-  return bulge;
+  return heights[1] + bulge / (3 * reach * reach);
 }
 
 bool is_continued(const Trace& here, const Trace& there) {
@@ -56,11 +62,14 @@ SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset
   const std::array<Eigen::Vector2d, 4> square = {
       Eigen::Vector2d(-half, -half), {half, -half}, {half, half}, {-half, half}};
   SquarePart part;
+  std::size_t ends = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Vector2d &p = square[i], &q = square[(i + 1) % 4];
     const double at_p = p.dot(normal) - offset, at_q = q.dot(normal) - offset;
     if (at_p > 0) part.corners[part.count++] = p;
-    if ((at_p > 0) != (at_q > 0)) part.corners[part.count++] = p + at_p / (at_p - at_q) * (q - p);
+    if ((at_p > 0) == (at_q > 0)) continue;
+    part.corners[part.count] = p + at_p / (at_p - at_q) * (q - p);
+    part.chord[std::min<std::size_t>(ends++, 1)] = part.corners[part.count++];
   }
   for (std::size_t i = 1; i + 1 < part.count; ++i) {
     const Eigen::Vector2d a = part.corners[i] - part.corners[0], b = part.corners[i + 1] - part.corners[0];
@@ -97,10 +106,10 @@ Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& cen
   }
   if (!is_last) {
     if (there.second.distance <= safety * farthest_corner(far, probe)) return Verdict::unclear;
-    const auto bulge = bulge_of(tracer, middle, half, division.normal, division.offset);
-    if (!bulge) return Verdict::unclear;
-    // The mean of a parabola's height over its chord.
-    division.offset += *bulge / 3;
+    if (far.area == 0) return Verdict::uniform;
+    const auto height = mean_height(tracer, middle, half, division, far);
+    if (!height) return Verdict::unclear;
+    division.offset += *height;
   }
   division.far_part = part_beyond(half, division.normal, division.offset);
   if (!(division.far_part.area > 0)) return Verdict::uniform;

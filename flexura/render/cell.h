@@ -22,6 +22,8 @@ struct SquarePart {
   std::size_t count = 0;
   double area = 0;
   Eigen::Vector2d centroid = {0, 0};
+  std::array<Eigen::Vector2d, 2>
+      chord;  ///< Where the line enters and leaves the square, if the area is not 0.
 };
 /// The line is where x . normal = offset; `normal` is a unit vector and points beyond.
 [[nodiscard]] SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset);

@@ -16,8 +16,17 @@ double share_over_edge(double height) {
   return 0.5 - (height * std::sqrt(1 - height * height) + std::asin(height)) / std::numbers::pi;
 }
 
+// The share of the light past a ball around `center`.
+double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen::Vector3d& p_CQ,
+                       const Eigen::Vector3d& light, double width) {
+  const Eigen::Vector3d way = center - p_CQ;
+  const double along = way.dot(light);
+  if (!(along > 0)) return 1;
+  return 1 - share_over_edge(((way - along * light).norm() - radius) / (width * along));
+}
+
 // How much of the light reaches the point past the arm: where the way to the light's middle comes nearest to
-// the tube, the tube's edge is taken for straight.
+// the tube, the tube's edge is taken for straight. The shadow's ends are round.
 double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
   const double width = stage.scene->light.angular_radius;
   double share = 1;
@@ -25,6 +34,12 @@ double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
     const TubePiece& piece = stage.pieces[static_cast<std::size_t>(i)];
     const LocalRay way = local_ray(piece, p_CQ, stage.light);
     const double farthest = (piece.bound_center - way.origin).norm() + piece.bound_radius;
+    const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
+    if (piece.before < 0)
+      share = std::min(share, share_past_ball(piece.p_CP, piece.radius, p_CQ, stage.light, width));
+    if (piece.after < 0)
+      share = std::min(share, share_past_ball(end, piece.radius + piece.widening * piece.length, p_CQ,
+                                              stage.light, width));
     const DepthRange range = range_of(piece, way, piece.bound_radius + width * farthest);
     if (range.is_empty()) continue;
     const double lowest = first_minimum(piece, way, range.from, range);

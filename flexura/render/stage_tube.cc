@@ -12,6 +12,9 @@ constexpr double largest_turn = std::numbers::pi / 6;
 // What passes a piece as near as this in the image is told as a near miss, px.
 constexpr double near_miss = 3;
 
+// By which a piece reaches into the next one, of its size.
+constexpr double overlap = 1e-10;
+
 // What follows from the rest.
 void complete(TubePiece& piece, double pixel) {
   const double turn = piece.curvature * piece.length;
@@ -34,7 +37,10 @@ void add_piece(TubePiece& piece, bool goes_on, Stage& stage) {
   const int here = static_cast<int>(stage.pieces.size());
   if (goes_on) {
     piece.before = here - 1;
-    stage.pieces.back().after = here;
+    TubePiece& last = stage.pieces.back();
+    last.after = here;
+    // Lest a ray slip through between the two by rounding.
+    last.end_offset += overlap * (last.length + last.radius);
   }
   complete(piece, stage.pixel);
   stage.pieces.push_back(piece);

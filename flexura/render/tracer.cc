@@ -14,6 +14,9 @@ const T& at(const std::vector<T>& list, std::uint32_t index) {
   return list[static_cast<std::size_t>(index)];
 }
 
+// Hits that are closer together in depth, by this share, are one.
+constexpr double same_hit = 1e-9;
+
 // The two nearest surfaces and all borders near a ray, as the parts tell them.
 struct Sights {
   static constexpr std::size_t most = 12;
@@ -31,6 +34,8 @@ struct Sights {
     if (border < *farthest) *farthest = border;
   }
   void add_hit(double depth, Part part) {
+    // Where two pieces of a tube overlap by a hair both tell of it.
+    if (std::abs(depth - first.depth) <= same_hit * depth) return;
     Hit* place = nullptr;
     if (depth < first.depth) {
       second = first;
@@ -317,17 +322,21 @@ Trace Tracer::trace(const Ray& ray) const {
 
 int Tracer::entries_into_arm(const Ray& ray, double depth) const {
   int count = 0;
+  double last = -1;
   for (const Part part : parts_) {
     Sights sights;
     const auto index = static_cast<int>(part.index);
     if (part.kind == Part::Kind::piece && index >= stage_.first_arm_piece && index <= stage_.last_arm_piece)
       meet_piece(stage_, part, ray, sights);
-    const bool is_disc = part.kind == Part::Kind::disc;
-    if (is_disc &&
+    const bool is_end =
+        part.kind == Part::Kind::disc &&
         at(stage_.bodies, static_cast<std::uint32_t>(at(stage_.discs, part.index).body)).label.kind ==
-            SurfaceKind::cap)
-      meet_disc(stage_, part, ray, sights);
-    if (sights.first.depth < depth) ++count;
+            SurfaceKind::cap;
+    if (is_end) meet_disc(stage_, part, ray, sights);
+    const double entry = sights.first.depth;
+    if (!(entry < depth) || std::abs(entry - last) <= same_hit * entry) continue;
+    last = entry;
+    ++count;
   }
   return count;
 }

@@ -1,0 +1,219 @@
+// Depths and normals against Embree, which meets triangles, and seams of the exact surface.
+#include <embree3/rtcore.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "flexura/render/renderer.h"
+#include "flexura/render/tracer.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/render_scenes.h"
+
+namespace flexura {
+namespace {
+
+// A tube's side in triangles, in the camera's frame; single precision, as Embree wants it.
+class TriangleTube {
+ public:
+  TriangleTube(const std::vector<TubeArc>& tube, const Pose& X_CW, int along, int around) {
+    device_ = rtcNewDevice(nullptr);
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    for (const TubeArc& arc : tube) add(arc, X_CW, along, around);
+    rtcCommitScene(scene_);
+  }
+  TriangleTube(const TriangleTube&) = delete;
+  TriangleTube& operator=(const TriangleTube&) = delete;
+  ~TriangleTube() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  /// Infinite when nothing is met.
+  [[nodiscard]] double depth(const Eigen::Vector3d& direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray.dir_x = static_cast<float>(direction.x());
+    query.ray.dir_y = static_cast<float>(direction.y());
+    query.ray.dir_z = static_cast<float>(direction.z());
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0U;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &query);
+    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                       : query.ray.tfar;
+  }
+
+ private:
+  void add(const TubeArc& arc, const Pose& X_CW, int along, int around) {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const auto columns = static_cast<std::size_t>(around), rows = static_cast<std::size_t>(along);
+    auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), (rows + 1) * columns));
+    auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 2 * rows * columns));
+    for (std::size_t row = 0; row <= rows; ++row) {
+      const double share = static_cast<double>(row) / along;
+      const Pose X_CS = X_CW * arc.arc.pose(arc.arc.length * share);
+      const double radius = arc.radius[0] + share * (arc.radius[1] - arc.radius[0]);
+      for (std::size_t column = 0; column < columns; ++column) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(column) / around;
+        const Eigen::Vector3d p =
+            X_CS * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0);
+        for (int axis = 0; axis < 3; ++axis) *corners++ = static_cast<float>(p[axis]);
+        if (row == rows) continue;
+        const auto a = static_cast<unsigned>(row * columns + column);
+        const auto b = static_cast<unsigned>(row * columns + (column + 1) % columns);
+        const auto up = static_cast<unsigned>(columns);
+        for (const unsigned corner : {a, b, a + up, b, b + up, a + up}) *triangles++ = corner;
+      }
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+TEST(Depth, IsEmbreesWhereRaysDoNotGraze) {
+  double largest = 0;
+  int compared = 0;
+  for_random_cases(6, [&](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0.005);
+    const Backbone backbone = bent.backbone();
+    Scene scene = plain_scene();
+    scene.arm.tube = tube_of(bent.arm, backbone);
+    const View view = random_view_of(random, backbone);
+    Renderer renderer;
+    renderer.prepare(scene, view);
+    const TriangleTube triangles(scene.arm.tube, view.X_WC.inverse(), 600, 720);
+    const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+    for (int v = 0; v < view.height; ++v) {
+      for (int u = 0; u < view.width; ++u) {
+        const Ray ray = *ray_at(view.lens, {u, v});
+        const Hit hit = tracer.hit(ray);
+        if (hit.label.kind != SurfaceKind::section) continue;
+        if (std::abs(hit.normal.dot(ray.direction.normalized())) < 0.2) continue;
+        // Rays that pass a silhouette by less than a triangle's height are another matter.
+        if (tracer.trace(ray).nearest.distance < 0.2) continue;
+        const double expected = triangles.depth(ray.direction);
+        largest = std::max(largest, std::abs(hit.depth - expected) / hit.depth);
+        ++compared;
+      }
+    }
+  });
+  std::printf("%d depths, largest relative difference %.2e\n", compared, largest);
+  EXPECT_GT(compared, 2000);
+  EXPECT_LT(largest, 1e-5);
+}
+
+// How much the depth and the normal jump on a line of pixels that crosses s, against how they change
+// elsewhere.
+TEST(Depth, HasNoSeamWhereSectionsMeet) {
+  for_random_cases(5, [](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0);
+    const Backbone backbone = bent.backbone();
+    Scene scene = plain_scene();
+    scene.arm.tube = tube_of(bent.arm, backbone);
+    const Pose X_WS = backbone.pose(0.33);  // Sections 0 and 1 meet here.
+    const double angle = random.uniform(-3, 3);
+    const Eigen::Vector3d out = X_WS.rotation * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    Renderer renderer;
+    renderer.prepare(
+        scene,
+        pinhole_view(look_at(X_WS.position + 0.5 * out, X_WS.position, X_WS.rotation.col(2)), 101, 101, 400));
+    const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+    Hit before;
+    for (int i = -400; i <= 400; ++i) {
+      const Hit hit = tracer.hit(*ray_at(renderer.view().lens, {50.2, 50 + 1e-3 * i}));
+      if (i > -400 && std::abs(hit.s - 0.33) < 2e-4) {
+        EXPECT_NEAR(hit.depth, before.depth, 2e-6);
+        EXPECT_LT((hit.normal - before.normal).norm(), 1e-4);
+        EXPECT_LT(std::abs(hit.s - before.s), 1e-5);
+      }
+      before = hit;
+    }
+  });
+}
+
+TEST(Depth, IsContinuousWhereASectionStraightens) {
+  // Through bends of 1e-3 to 0, past where the series take over.
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  arm.sections.push_back({.length = 1, .radius = {0.03, 0.02}});
+  const View view = pinhole_view(look_at({0.3, 0.4, 1.5}, {0, 0.5, 0}), 120, 120, 150);
+  const auto picture = [&](double bend) {
+    ArmState state = ArmState::straight(1);
+    state.bends[0] = {bend, 0.5 * bend};
+    Scene scene = plain_scene();
+    scene.arm.albedo = {1, 1, 1};
+    scene.arm.tube = tube_of(arm, Backbone(arm, state));
+    Renderer renderer;
+    Picture result;
+    renderer.render(scene, view, PixelKind::gray, result);
+    return result;
+  };
+  const Picture straight = picture(0);
+  for (const double bend : {1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3}) {
+    const Picture bent = picture(bend);
+    double light = 0, depth = 0;
+    for (std::size_t i = 0; i < bent.light.values().size(); ++i) {
+      light =
+          std::max(light, static_cast<double>(std::abs(bent.light.values()[i] - straight.light.values()[i])));
+      const double a = bent.depth.values()[i], b = straight.depth.values()[i];
+      if (std::isfinite(a) && std::isfinite(b)) depth = std::max(depth, std::abs(a - b));
+    }
+    // The tip moves by about bend/2 m, which is 60 px; and a little for the float.
+    EXPECT_LT(light, 70 * bend + 2e-4) << bend;
+    EXPECT_LT(depth, 3 * std::sqrt(bend) * 0.03 + 2e-6) << bend;
+  }
+}
+
+TEST(Coverage, OfAGeneralBackboneConvergesToTheArcs) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  for (int i = 0; i < 3; ++i) arm.sections.push_back({.length = 0.33, .radius = {0.02, 0.02}});
+  ArmState state = ArmState::straight(3);
+  state.bends = {{1.2, 0.4}, {-0.5, 1.5}, {-1.8, -1.0}};
+  const Backbone backbone(arm, state);
+  const View view = pinhole_view(look_at({0.4, 0.6, 1.8}, {0.1, 0.5, 0}), 160, 120, 150);
+  const auto light_of = [&](const std::vector<TubeArc>& tube) {
+    Scene scene = plain_scene();
+    scene.arm.albedo = {1, 1, 1};
+    scene.arm.tube = tube;
+    Renderer renderer;
+    Picture picture;
+    renderer.render(scene, view, PixelKind::gray, picture);
+    return picture.light;
+  };
+  const Image<float> exact = light_of(tube_of(arm, backbone));
+  double last = std::numeric_limits<double>::infinity();
+  // Samples that never fall on the sections' ends.
+  for (const int count : {8, 32, 128}) {
+    std::vector<TubeSample> samples;
+    for (int i = 0; i <= count; ++i) {
+      const double s = backbone.length() * i / count;
+      samples.push_back({backbone.pose(s), s, 0.02, 0});
+    }
+    const Image<float> light = light_of(tube_through(samples));
+    double largest = 0;
+    for (std::size_t i = 0; i < light.values().size(); ++i)
+      largest = std::max(largest, static_cast<double>(std::abs(light.values()[i] - exact.values()[i])));
+    std::printf("%d samples: largest difference of coverage %.5f\n", count, largest);
+    EXPECT_LT(largest, 0.3 * last);
+    last = largest;
+  }
+  EXPECT_LT(last, 0.01);
+}
+
+}  // namespace
+}  // namespace flexura

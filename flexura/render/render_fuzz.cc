@@ -1,0 +1,158 @@
+// Any bytes as a scene and a view: a picture whose every pixel is a number and its truth, or an
+// std::invalid_argument.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+#include "flexura/math/so3.h"
+#include "flexura/render/silhouette.h"
+#include "flexura/render/truth.h"
+
+namespace {
+
+using namespace flexura;
+
+// Reads numbers off the input; zeros when it is used up.
+class Bytes {
+ public:
+  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+
+  int choice(int count) { return next() % count; }
+  // Mostly ordinary; sometimes odd ones, or 8 bytes as they come.
+  double number(double low, double high) {
+    const int kind = next();
+    if (kind == 255) return raw();
+    if (kind == 254) return 0;
+    if (kind == 253) return low * 1e6;
+    if (kind == 252) return 1e-9 * high;
+    return low + (high - low) * (256 * next() + next()) / 65536.0;
+  }
+  Eigen::Vector3d vector(double low, double high) {
+    const double x = number(low, high), y = number(low, high);
+    return {x, y, number(low, high)};
+  }
+
+ private:
+  int next() { return at_ < size_ ? data_[at_++] : 0; }
+  double raw() {
+    double value = 0;
+    if (size_ - at_ >= sizeof value) {
+      std::memcpy(&value, data_ + at_, sizeof value);
+      at_ += sizeof value;
+    }
+    return value;
+  }
+
+  const std::uint8_t* data_;
+  std::size_t size_, at_ = 0;
+};
+
+std::array<double, 3> listed(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+void add_arm(Bytes& bytes, Scene& scene) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  const int count = bytes.choice(4);
+  if (count == 0) return;
+  ArmState state = ArmState::straight(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const double radius = bytes.number(0.005, 0.1);
+    arm.sections.push_back({.length = bytes.number(0.05, 1),
+                            .radius = {radius, bytes.choice(2) == 0 ? radius : bytes.number(0.005, 0.1)}});
+    state.bends[static_cast<std::size_t>(i)] = {bytes.number(-4, 4), bytes.number(-4, 4)};
+  }
+  const Backbone backbone(arm, state);
+  scene.arm.tube = tube_of(arm, backbone);
+  if (bytes.choice(4) == 0) {
+    const double from = bytes.number(0, 1);
+    scene.arm.markers.push_back({from, from + bytes.number(0.01, 0.3), {1, 0, 0}});
+  }
+  if (bytes.choice(4) == 0)
+    scene.arm.disks.push_back({bytes.number(0, 1), bytes.number(0.01, 0.2), bytes.number(0.001, 0.1)});
+  if (bytes.choice(3) == 0) scene.arm.tip = TipShape::round;
+}
+
+void add_stand(Bytes& bytes, Scene& scene) {
+  if (bytes.choice(2) == 0) {
+    Screen screen;
+    screen.X_WS = {so3_exp(bytes.vector(-2, 2)), bytes.vector(-2, 2)};
+    screen.size = {bytes.number(0.1, 3), bytes.number(0.1, 3)};
+    scene.screens.push_back(screen);
+  }
+  if (bytes.choice(3) == 0) {
+    Etalon etalon;
+    etalon.X_WE = {so3_exp(bytes.vector(-2, 2)), bytes.vector(-1, 1)};
+    etalon.radius = bytes.number(0.02, 0.3);
+    etalon.height = bytes.number(0.05, 1);
+    scene.etalon = etalon;
+  }
+  for (int count = bytes.choice(3); count > 0; --count) {
+    VisibleObstacle& obstacle = scene.obstacles.emplace_back();
+    const auto place = listed(bytes.vector(-1, 1));
+    switch (bytes.choice(4)) {
+      case 0:
+        obstacle.shape = SphereConfig{.center = place, .radius = bytes.number(0.02, 0.5)};
+        break;
+      case 1:
+        obstacle.shape = CapsuleConfig{
+            .from = place, .to = listed(bytes.vector(-1, 1)), .radius = bytes.number(0.02, 0.3)};
+        break;
+      case 2:
+        obstacle.shape = BoxConfig{.center = place, .half_sizes = listed(bytes.vector(0.02, 0.5))};
+        break;
+      default:
+        obstacle.shape = PlaneConfig{.point = place, .normal = listed(bytes.vector(-1, 1))};
+    }
+  }
+  scene.light.shadow = bytes.choice(4) == 0 ? 0.5 : 0;
+}
+
+View view_from(Bytes& bytes) {
+  View view;
+  Intrinsics intrinsics;
+  intrinsics.fx = bytes.number(5, 60);
+  intrinsics.fy = bytes.number(5, 60);
+  intrinsics.cx = bytes.number(0, 20);
+  intrinsics.cy = bytes.number(0, 15);
+  if (bytes.choice(3) == 0)
+    intrinsics.distortion = {bytes.number(-0.4, 0.4), bytes.number(-0.2, 0.2), 0.001, 0, 0};
+  view.lens = Lens(intrinsics);
+  view.X_WC = {so3_exp(bytes.vector(-3, 3)), bytes.vector(-1.5, 1.5)};
+  view.width = bytes.choice(24);
+  view.height = bytes.choice(20);
+  return view;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Bytes bytes(data, size);
+  try {
+    Scene scene;
+    add_arm(bytes, scene);
+    add_stand(bytes, scene);
+    const View view = view_from(bytes);
+    Renderer renderer;
+    Picture picture;
+    renderer.render(scene, view, bytes.choice(2) == 0 ? PixelKind::gray : PixelKind::color, picture);
+    for (const float value : picture.light.values())
+      if (!std::isfinite(value) || value < -1e-4F) std::abort();
+    for (const float value : picture.depth.values())
+      if (!(value > 0)) std::abort();
+    TruthMaps maps;
+    truth_maps(renderer, maps);
+    for (std::size_t i = 0; i < maps.depth.values().size(); ++i)
+      if (maps.depth.values()[i] != picture.depth.values()[i]) std::abort();
+    (void)marker_views(renderer);
+    (void)optical_flow(renderer, scene, view);
+    for (const Outline& outline : outlines(renderer, 5))
+      if (outline.points.size() < 2) std::abort();
+  } catch (const std::invalid_argument&) {
+    return 0;
+  }
+  return 0;
+}

@@ -287,8 +287,10 @@ bool QuickPicture::draw_piece(const Stage& stage, const TubePiece& piece) {
                   piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;
   if (is_quick) {
     if (drawn_count_ == drawn_.size()) drawn_.emplace_back();
-    fill_span_piece(stage, piece, drawn_[drawn_count_]);
-    is_quick = add_edges(stage, piece, drawn_[drawn_count_]);
+    Drawn& drawn = drawn_[drawn_count_];
+    fill_span_piece(stage, piece, drawn);
+    // Three pixels across the radius, so that no pixel has both contours.
+    is_quick = 3 * drawn.piece.reach < drawn.piece.radius && add_edges(stage, piece, drawn);
   }
   if (!is_quick) {
     for_pixels(*region, width_, height_, [this](int u, int v) { leave(u, v); });

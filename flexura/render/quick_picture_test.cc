@@ -38,10 +38,10 @@ Scene some_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, c
   return scene;
 }
 
-// The arm's radius is 4 to 30 px.
+// The arm's radius is 2 to 30 px.
 View some_view(TestRandom& random, const Backbone& backbone) {
   const View view = random_view_of(random, backbone);
-  return pinhole_view(view.X_WC, 160, 120, 200 * random.uniform(1, 5));
+  return pinhole_view(view.X_WC, 160, 120, 200 * random.uniform(0.5, 5));
 }
 
 struct Difference {

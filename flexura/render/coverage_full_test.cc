@@ -143,7 +143,7 @@ TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
     lens.distortion = {-0.2, 0.05, 0.001, 0.001, 0};
     view.lens = Lens(lens);
     Renderer renderer;
-    Picture picture;
+    LightImage picture;
     renderer.render(scene, view, PixelKind::gray, picture);
     for (int v = 0; v < view.height; ++v) {
       for (int u = 0; u < view.width; ++u) {

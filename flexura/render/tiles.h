@@ -22,7 +22,8 @@ class Tiles {
   [[nodiscard]] int rows() const { return rows_; }
   /// Those of tile (column, row), in the stage's order.
   [[nodiscard]] std::span<const Part> parts(int column, int row) const {
-    const auto tile = static_cast<std::size_t>(row * columns_ + column);
+    const auto tile =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     return std::span(parts_).subspan(starts_[tile], starts_[tile + 1] - starts_[tile]);
   }
   /// All primitives.

@@ -139,6 +139,12 @@ void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is
     for (int u = end; u < outer_end; ++u) leave(u, v);
     if (begin == end) continue;
     const double value = face.normal.dot(row.direction), by_u = face.normal.x() / intrinsics_.fx;
+    const auto depth_at = [&](int u) { return scale / (value + by_u * u); };
+    if (!(depth_at(begin) > 1e-6 && depth_at(end - 1) > 1e-6)) {
+      for (int u = begin; u < end; ++u) leave(u, v);
+      if (is_first) set_behind(v, begin, end);
+      continue;
+    }
     float* const depth = picture_->depth.row(v).data();
     const auto count = static_cast<std::size_t>(end - begin);
     kernels_->plane(static_cast<float>(scale), static_cast<float>(value + by_u * begin),

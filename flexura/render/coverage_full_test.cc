@@ -86,19 +86,19 @@ void compare_silhouettes(TestRandom& random, double taper, Errors& errors) {
 
 TEST(Coverage, OfTubesIsThatOfManySamples) {
   Errors errors;
-  for_random_cases(8, [&](TestRandom& random) { compare_silhouettes(random, 0, errors); });
+  for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0, errors); });
   expect_small(errors);
 }
 
 TEST(Coverage, OfTaperedTubesIsThatOfManySamples) {
   Errors errors;
-  for_random_cases(8, [&](TestRandom& random) { compare_silhouettes(random, 0.006, errors); });
+  for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0.006, errors); });
   expect_small(errors);
 }
 
 TEST(Coverage, OfMarkerRingsIsThatOfManySamples) {
   Errors errors;
-  for_random_cases(8, [&](TestRandom& random) {
+  for_random_cases(6, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0.004);
     const Backbone backbone = bent.backbone();
     const FrustumTube tube(bent.arm, backbone, frustums_a_section);
@@ -134,7 +134,7 @@ double mean_of_rays(const Tracer& tracer, const Ray& pixel, int samples) {
 // Where everything stands in the way of everything, areas are held against the same surfaces, sampled.
 TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
   Errors errors;
-  for_random_cases(8, [&](TestRandom& random) {
+  for_random_cases(5, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0.003);
     const Backbone backbone = bent.backbone();
     const Scene scene = crowded_scene(random, bent, backbone);

@@ -56,8 +56,8 @@ bool QuickPicture::draw(const Stage& stage, const Intrinsics& intrinsics, PixelK
   row_depth_.resize(stride_);
   draw_screens(stage);
   if (!draw_pieces(stage)) return false;
-  for (const DiscPart& disc : stage.discs)
-    if (!draw_disc(stage, disc)) return false;
+  if (!std::ranges::all_of(stage.discs, [&](const DiscPart& disc) { return draw_disc(stage, disc); }))
+    return false;
   if (!leave_faces(stage)) return false;
   for (std::size_t i = 0; i < drawn_count_; ++i) divide(drawn_[i]);
   find_left_out();
@@ -81,9 +81,7 @@ void QuickPicture::find_left_out() {
 bool QuickPicture::draw_pieces(const Stage& stage) {
   drawn_count_ = 0;
   edges_.clear();
-  for (const TubePiece& piece : stage.pieces)
-    if (!draw_piece(stage, piece)) return false;
-  return true;
+  return std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return draw_piece(stage, piece); });
 }
 
 void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn) {
@@ -232,7 +230,7 @@ bool QuickPicture::draw_disc(const Stage& stage, const DiscPart& disc) {
   for_pixels(*region, width_, height_, [&](int u, int v) {
     const Ray ray = straight_ray(intrinsics_, u, v);
     const CircleView view = view_of(circle, ray);
-    const double before = static_cast<double>(picture_->depth.at(u, v));
+    const auto before = static_cast<double>(picture_->depth.at(u, v));
     for (const Border& border : view.borders) {
       if (border.distance > 0.9) continue;
       if (border.depth < before + 0.2 * circle.radius) leave(u, v);
@@ -268,7 +266,7 @@ void QuickPicture::divide(const Drawn& drawn) {
   SpanPiece piece = drawn.piece;
   piece.edges = edges_.data() + drawn.first_edge;
   float us[span_step], vs[span_step];
-  BorderPixels borders;
+  BorderPixels borders{};
   for (std::size_t begin = 0; begin < drawn.contour.size(); begin += span_step) {
     const std::size_t count = std::min(span_step, drawn.contour.size() - begin);
     for (std::size_t i = 0; i < span_step; ++i) {

@@ -73,6 +73,8 @@ void add_render(CLI::App& app, Command& chosen) {
   render->add_option("--out", arguments->out, "The image file to write (.png)")
       ->type_name("FILE")
       ->required();
+  render->add_flag("--model", arguments->model,
+                   "The rig as the tasks believe it to be, whatever [truth] says");
   render->add_flag("--truth", arguments->truth,
                    "Write beside it what it shows, from the geometry: depth, labels, curves");
   render->add_option("--set", arguments->sets, "Change a value: camera.0.initial.pan_deg=2 (repeatable)")
@@ -87,7 +89,7 @@ void add_export(CLI::App& app, Command& chosen) {
   auto format = std::make_shared<std::string>("csv");
   CLI::App* command = app.add_subcommand("export", "Write a run's log in another format");
   command->add_option("RESULTS", *results, "A folder made by `flexura run`")->required();
-  command->add_option("--to", *format, "The format")->check(CLI::IsMember({"csv"}))->required();
+  command->add_option("--to", *format, "The format")->check(CLI::IsMember({"csv", "mp4"}))->required();
   command->callback([&chosen, results, format] {
     chosen = [results, format] { return export_command(*results, *format, std::cout, std::cerr); };
   });

@@ -12,6 +12,7 @@
 #include "flexura/app/terminal_progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"
+#include "flexura/experiment/export_mp4.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
@@ -92,6 +93,14 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   TerminalProgress progress(err);
   const RunResult result = run_experiment(experiment, folder, progress);
   progress.clear();
+  // A film is an extra: a run without ffmpeg is as good.
+  if (experiment.record.cameras) {
+    try {
+      (void)export_mp4(folder);
+    } catch (const std::exception& error) {
+      err << "no film: " << error.what() << '\n';
+    }
+  }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (const std::string& reason : result.reasons) err << "unsafe: " << reason << '\n';
   if (arguments.json) {
@@ -129,11 +138,12 @@ int inverse_command(const std::string& arm_file, std::istream& in, std::ostream&
 
 int export_command(const std::string& results, const std::string& format, std::ostream& out,
                    std::ostream& err) {
-  if (format != "csv") throw input_error("--to", fmt::format("\"{}\": expected csv", format));
-  const ExportResult result = export_csv(results);
+  if (format != "csv" && format != "mp4")
+    throw input_error("--to", fmt::format("\"{}\": expected csv or mp4", format));
+  const ExportResult result = format == "csv" ? export_csv(results) : export_mp4(results);
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
-  out << "tables: " << result.folder.string() << '\n';
+  out << (format == "csv" ? "tables: " : "films: ") << result.folder.string() << '\n';
   return exit_done;
 }
 

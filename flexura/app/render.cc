@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <variant>
@@ -14,6 +15,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/photographer.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/truth_files.h"
 #include "flexura/store/image_file.h"
 #include "flexura/store/text_file.h"
 
@@ -44,11 +46,11 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   const Schedule schedule(experiment);
   check_arguments(arguments, schedule);
-  const std::vector<CameraConfig> cameras = experiment.cameras();
-  const std::size_t place = place_of(cameras, arguments.camera);
-  const Camera camera(cameras[place]);
+  const RigConfig rig = arguments.model ? experiment.model_rig() : experiment.true_rig();
+  const std::size_t place = place_of(rig.cameras, arguments.camera);
+  const Camera camera(rig.cameras[place]);
   const View view = camera.view(camera.initial_stage(), camera.initial_head());
-  const Arm arm = experiment.arm.arm();
+  const Arm arm = rig.arm.arm();
 
   Shot shot;
   shot.camera = place;
@@ -65,6 +67,13 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   const Picture picture = photographer.take(shot);
   replace_file(arguments.out, std::visit([](const auto& image) { return png(image); }, picture));
   out << "image: " << arguments.out << '\n';
+  if (!arguments.truth) return exit_done;
+  const auto shown = [&](double time) { return ShownScene{photographer.scene(shot.backbone(time)), view}; };
+  const double next = arguments.time + 1 / shot.sensor->frame_rate;
+  const auto files =
+      write_truth(shown(arguments.time),
+                  next <= schedule.duration() ? std::optional(shown(next)) : std::nullopt, arguments.out);
+  for (const auto& file : files) out << "truth: " << file.string() << '\n';
   return exit_done;
 }
 

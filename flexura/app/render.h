@@ -13,6 +13,7 @@ struct RenderArguments {
   std::string camera;
   double time = 0;  ///< s
   std::string out;
+  bool model = false;  ///< Of the rig as tasks believe it to be, whatever [truth] says.
   bool truth = false;  ///< Write beside the image what it shows, from the geometry.
   std::vector<std::string> sets;
 };

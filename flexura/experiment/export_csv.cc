@@ -9,6 +9,7 @@
 
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
+#include "flexura/experiment/results_log.h"
 #include "flexura/store/csv.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
@@ -107,28 +108,11 @@ Tables tables_of(const McapReader& log, const std::string& name) {
   return tables;
 }
 
-// A damaged log is bad input like any other.
-template <class Read>
-auto from_log(Read&& read) {
-  try {
-    return read();
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw InputError(std::vector<Problem>{{{}, error.what()}});
-  }
-}
-
 }  // namespace
 
 ExportResult export_csv(const std::filesystem::path& results) {
-  const auto file = results / log_file_name;
-  if (!std::filesystem::exists(file)) {
-    throw input_error(results.string(),
-                      fmt::format("holds no {}: expected a folder made by `flexura run`", log_file_name));
-  }
-  const McapReader log = from_log([&] { return McapReader(file); });
-  const Tables tables = from_log([&] { return tables_of(log, file.string()); });
+  const McapReader log = open_log(results);
+  const Tables tables = from_log([&] { return tables_of(log, (results / log_file_name).string()); });
   ExportResult result{make_new_folder(results / "csv"), log.truncated()};
   write_new_file(result.folder / "states.csv", tables.states.text());
   write_new_file(result.folder / "events.csv", tables.events.text());

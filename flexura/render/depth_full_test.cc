@@ -172,8 +172,8 @@ TEST(Depth, IsContinuousWhereASectionStraightens) {
       const double a = bent.depth.values()[i], b = straight.depth.values()[i];
       if (std::isfinite(a) && std::isfinite(b)) depth = std::max(depth, std::abs(a - b));
     }
-    // The tip moves by about bend/2 m, which is 60 px; and a little for the float.
-    EXPECT_LT(light, 70 * bend + 2e-4) << bend;
+    // The tip moves by 0.56 bend m, up to 70 bend px; squares at its corners are sampled.
+    EXPECT_LT(light, 100 * bend + 2e-4) << bend;
     EXPECT_LT(depth, 3 * std::sqrt(bend) * 0.03 + 2e-6) << bend;
   }
 }

@@ -11,20 +11,62 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The border where the circle's image crosses the line from the ray along `normal`, `distance` px away.
-Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& normal, double distance) {
+// Where a ray meets a circle's plane, times a positive factor: x^2 + y^2 = (radius z)^2 on the circle.
+struct PlanePoint {
+  double x, y, z;
+};
+PlanePoint plane_point(const Circle& circle, const Eigen::Vector3d& direction) {
+  return {circle.by_x.dot(direction), circle.by_y.dot(direction), circle.by_z.dot(direction)};
+}
+
+// The border where the circle's image crosses the line from the ray along `way`, `distance` px away.
+Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& way, double distance) {
   Border border;
   Eigen::Vector3d direction = ray.direction;
-  direction.head<2>() += ray.by_pixel * (distance * normal);
-  if (!(circle.by_z.dot(direction) > 0)) return border;
-  const double x = circle.by_x.dot(direction), y = circle.by_y.dot(direction);
+  direction.head<2>() += ray.by_pixel * (distance * way);
+  const auto [x, y, z] = plane_point(circle, direction);
   const double length = std::sqrt(x * x + y * y);
-  if (!(length > 0)) return border;
+  if (!(z > 0 && length > 0)) return border;
   border.depth = circle.center.z() + circle.radius / length * (x * circle.x.z() + y * circle.y.z());
-  if (!(border.depth > 0)) return border;
-  border.distance = std::abs(distance);
-  border.towards = distance < 0 ? Eigen::Vector2d(-normal) : normal;
+  const Eigen::Vector3d slope =
+      x * circle.by_x + y * circle.by_y - circle.radius * circle.radius * z * circle.by_z;
+  const Eigen::Vector2d normal = (ray.by_pixel.transpose() * slope.head<2>()).normalized();
+  const double across = distance * normal.dot(way);
+  if (!(border.depth > 0) || !normal.allFinite()) return border;
+  border.distance = std::abs(across);
+  border.towards = across < 0 ? Eigen::Vector2d(-normal) : normal;
   return border;
+}
+
+// The borders where the circle's image crosses the line along `way`, the nearer one first; infinitely far
+// where it does not.
+std::array<Border, 2> crossings(const Circle& circle, const Ray& ray, const Eigen::Vector2d& way) {
+  std::array<Border, 2> borders;
+  Eigen::Vector3d step(0, 0, 0);
+  step.head<2>() = ray.by_pixel * way;
+  const PlanePoint at = plane_point(circle, ray.direction), by = plane_point(circle, step);
+  const double square = circle.radius * circle.radius;
+  const double A = by.x * by.x + by.y * by.y - square * by.z * by.z;
+  const double B = at.x * by.x + at.y * by.y - square * at.z * by.z;
+  const double C = at.x * at.x + at.y * at.y - square * at.z * at.z;
+  const double discriminant = B * B - A * C;
+  if (!(discriminant >= 0)) return borders;
+  const double q = -(B + std::copysign(std::sqrt(discriminant), B));
+  if (A != 0) borders[0] = rim_border(circle, ray, way, q / A);
+  if (q != 0) borders[1] = rim_border(circle, ray, way, C / q);
+  if (borders[1] < borders[0]) std::swap(borders[0], borders[1]);
+  return borders;
+}
+
+// The direction in (a, b) across which the circle's image is narrowest.
+Eigen::Vector2d narrow_way(const Circle& circle) {
+  const Eigen::Vector2d x = circle.by_x.head<2>(), y = circle.by_y.head<2>(),
+                        z = circle.radius * circle.by_z.head<2>();
+  const double difference =
+      x.x() * x.x() + y.x() * y.x() - z.x() * z.x() - (x.y() * x.y() + y.y() * y.y() - z.y() * z.y());
+  const double mixed = x.x() * x.y() + y.x() * y.y() - z.x() * z.y();
+  const double angle = 0.5 * std::atan2(2 * mixed, difference);
+  return {std::cos(angle), std::sin(angle)};
 }
 
 }  // namespace
@@ -40,36 +82,32 @@ Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, doubl
   circle.by_x = side * (circle.x * height - circle.normal * circle.x.dot(p_CS));
   circle.by_y = side * (circle.y * height - circle.normal * circle.y.dot(p_CS));
   circle.by_z = side * circle.normal;
+  circle.narrow_way = narrow_way(circle);
   circle.steepness = std::sqrt(circle.by_x.squaredNorm() + circle.by_y.squaredNorm()) + radius;
   return circle;
 }
 
 CircleView view_of(const Circle& circle, const Ray& ray) {
-  const double x = circle.by_x.dot(ray.direction), y = circle.by_y.dot(ray.direction);
-  const double w = circle.by_z.dot(ray.direction), length = std::sqrt(x * x + y * y);
+  const auto [x, y, z] = plane_point(circle, ray.direction);
+  const double length = std::sqrt(x * x + y * y);
   CircleView view;
-  view.value = length - circle.radius * w;
+  view.value = length - circle.radius * z;
   if (!(std::abs(view.value) < border_reach * circle.steepness * ray.by_pixel.norm())) return view;
-  if (!(length > 0)) return view;
-  const Eigen::Vector3d slope = (x * circle.by_x + y * circle.by_y) / length - circle.radius * circle.by_z;
-  const Border straight = border_of(view.value, slope.head<2>(), ray, 0);
-  // On the line that way x^2 + y^2 = (radius z)^2 is quadratic in the distance.
-  const Eigen::Vector2d step = ray.by_pixel * straight.towards;
-  const double x_step = circle.by_x.head<2>().dot(step), y_step = circle.by_y.head<2>().dot(step);
-  const double z = circle.radius * w, z_step = circle.radius * circle.by_z.head<2>().dot(step);
-  const double A = x_step * x_step + y_step * y_step - z_step * z_step,
-               B = x * x_step + y * y_step - z * z_step;
-  const double C = x * x + y * y - z * z, discriminant = B * B - A * C;
-  if (!(discriminant >= 0)) {
-    // It passes the tip of a flat image.
-    view.borders[0] = straight;
-    view.borders[0].depth = std::max(1e-300, circle.center.z() - circle.radius);
+  const auto narrow = crossings(circle, ray, circle.narrow_way);
+  if (!(length > 0)) {
+    view.borders = narrow;
     return view;
   }
-  const double q = -(B + std::copysign(std::sqrt(discriminant), B));
-  if (A != 0) view.borders[0] = rim_border(circle, ray, straight.towards, q / A);
-  if (q != 0) view.borders[1] = rim_border(circle, ray, straight.towards, C / q);
-  if (view.borders[1] < view.borders[0]) std::swap(view.borders[0], view.borders[1]);
+  const Eigen::Vector3d slope = (x * circle.by_x + y * circle.by_y) / length - circle.radius * circle.by_z;
+  const Border steepest = border_of(view.value, slope.head<2>(), ray, 0);
+  view.borders = crossings(circle, ray, steepest.towards);
+  // Along a flat image's middle the steepest way leads to its far tips.
+  if (narrow[0].distance < 0.8 * view.borders[0].distance) view.borders = narrow;
+  if (view.borders[0].distance == infinity) {
+    // Past the tip of a flat image.
+    view.borders[0] = steepest;
+    view.borders[0].depth = std::max(1e-300, circle.center.z() - circle.radius);
+  }
   return view;
 }
 

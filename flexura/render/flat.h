@@ -17,7 +17,8 @@ struct Circle {
   /// Where a ray of direction d meets the circle's plane is, from the center along x and y, (d . by_x, d .
   /// by_y) / (d . by_z); by_z is positive in front of the camera.
   Eigen::Vector3d by_x, by_y, by_z;
-  double steepness;  ///< Bound on the derivative of CircleView::value by (a, b).
+  Eigen::Vector2d narrow_way;  ///< The direction in (a, b) across which its image is narrowest.
+  double steepness;            ///< Bound on the derivative of CircleView::value by (a, b).
 };
 
 /// In the plane of the frame's x and y around its origin; `is_turned`: its normal is -z.
@@ -25,7 +26,7 @@ struct Circle {
                                bool is_turned = false);
 
 /// Whether the ray meets the disc within the circle in front of the camera: negative then, and zero on the
-/// circle's image, which crosses the steepest way down or up at the two borders, the nearer one first.
+/// circle's image. Two borders of the image on opposite sides, the nearer one first.
 struct CircleView {
   double value;
   std::array<Border, 2> borders;

@@ -39,36 +39,35 @@ void Renderer::prepare(const Scene& scene, const View& view) {
   tiles_.build(stage_, rays_);
 }
 
-void Renderer::render_tile(int column, int row, PixelKind pixels, LightImage& picture) const {
-  const auto parts = tiles_.parts(column, row);
+void Renderer::render_pixel(int u, int v, PixelKind pixels, LightImage& picture) const {
+  const auto parts = tiles_.parts(u / Tiles::size, v / Tiles::size);
   const Tracer tracer(stage_, parts);
-  const int u_end = std::min((column + 1) * Tiles::size, rays_.width());
-  const int v_end = std::min((row + 1) * Tiles::size, rays_.height());
-  constexpr float nothing = std::numeric_limits<float>::infinity();
-  for (int v = row * Tiles::size; v < v_end; ++v) {
-    for (int u = column * Tiles::size; u < u_end; ++u) {
-      const auto ray = rays_.ray(u, v);
-      if (parts.empty() || !ray) {
-        store(stage_.scene->background, u, v, pixels, picture.light);
-        picture.depth.at(u, v) = nothing;
-        continue;
-      }
-      const Trace here = tracer.trace(*ray);
-      Color sum = Color::Zero();
-      cover(tracer, *ray, {0, 0}, 0.5, 0, here,
-            [&](const Hit& hit, const Ray& at, double area) { sum += area * light_of(stage_, hit, at); });
-      store(sum, u, v, pixels, picture.light);
-      picture.depth.at(u, v) = static_cast<float>(here.hit.depth);
-    }
+  const auto ray = rays_.ray(u, v);
+  if (parts.empty() || !ray) {
+    store(stage_.scene->background, u, v, pixels, picture.light);
+    picture.depth.at(u, v) = std::numeric_limits<float>::infinity();
+    return;
   }
+  const Trace here = tracer.trace(*ray);
+  Color sum = Color::Zero();
+  cover(tracer, *ray, {0, 0}, 0.5, 0, here,
+        [&](const Hit& hit, const Ray& at, double area) { sum += area * light_of(stage_, hit, at); });
+  store(sum, u, v, pixels, picture.light);
+  picture.depth.at(u, v) = static_cast<float>(here.hit.depth);
 }
 
-void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture) {
+void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture,
+                      bool is_exact) {
   prepare(scene, view);
   fit(view.width, view.height, pixels == PixelKind::gray ? 1 : 3, picture.light);
   fit(view.width, view.height, 1, picture.depth);
-  for (int row = 0; row < tiles_.rows(); ++row)
-    for (int column = 0; column < tiles_.columns(); ++column) render_tile(column, row, pixels, picture);
+  if (!is_exact && quick_.draw(stage_, view.lens.intrinsics(), pixels, picture)) {
+    for (const QuickPicture::Pixel& pixel : quick_.left_out())
+      render_pixel(pixel.u, pixel.v, pixels, picture);
+    return;
+  }
+  for (int v = 0; v < view.height; ++v)
+    for (int u = 0; u < view.width; ++u) render_pixel(u, v, pixels, picture);
 }
 
 }  // namespace flexura

@@ -4,15 +4,16 @@
 #include <cstdint>
 
 #include "flexura/render/sensor_kernels.h"
-#include "flexura/render/sensor_vectors.h"
+#include "flexura/render/vectors.h"
 
 // The sensor's arithmetic, for sensor_*.cc alone. Every operation works on each value by itself and rounds
 // once, so that the width of the vectors changes no bit.
 namespace flexura {
 namespace {
 
-// Light and levels beyond these are cut off, so that nothing becomes infinite.
-constexpr float largest_light = 1048576, largest_level = 16777216;
+// Beyond these numbers are cut off, so that nothing becomes infinite; the noise cannot bring such a level
+// back.
+constexpr float largest_light = 1048576, largest_level = 16777216, largest_deviation = 1048576;
 
 // Vectors in step: what is computed waits for what was computed just before; the others' work fills the time.
 constexpr std::size_t in_step = vector_bytes == 64 ? 2 : 4, step = in_step * lanes;
@@ -111,7 +112,8 @@ struct Expectation {
     const Floats mean = light.v[j] * levels.scale + levels.offset;
     store(expected.means + i + j * lanes, at_most(largest_level, mean));
     const Floats variance = light.v[j] * levels.shot + levels.read;
-    store(expected.deviations + i + j * lanes, at_most(largest_level, square_root(at_least(0, variance))));
+    store(expected.deviations + i + j * lanes,
+          at_most(largest_deviation, square_root(at_least(0, variance))));
   });
 }
 

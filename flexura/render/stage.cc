@@ -42,6 +42,16 @@ void add_ring_edge(std::span<const TubeArc> tube, double s, const Pose& X_CW, St
   stage.ring_edges.push_back({s, circle_at(X_CS.rotation, X_CS.position, radius)});
 }
 
+// The piece of the arm's side that holds arc length s, or the nearest to it.
+int arm_piece_at(const Stage& stage, double s) {
+  int result = stage.first_arm_piece;
+  for (int i = stage.first_arm_piece; i <= stage.last_arm_piece; ++i) {
+    const TubePiece& piece = stage.pieces[static_cast<std::size_t>(i)];
+    if (!piece.is_ball && piece.s <= s) result = i;
+  }
+  return result;
+}
+
 void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
   if (arm.tube.empty()) return;
   const int skin = add_body(stage, SurfaceKind::section, 0, arm.albedo);
@@ -58,7 +68,6 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
       if (s > arm.tube.front().arc.s && s < stage.arm_length) add_ring_edge(arm.tube, s, X_CW, stage);
     }
   }
-  std::ranges::sort(stage.ring_edges, {}, &RingEdge::s);
   for (std::size_t i = 0; i < arm.disks.size(); ++i) {
     const GuideDisk& disk = arm.disks[i];
     const TubeArc& at = tube_arc_at(arm.tube, disk.s);
@@ -68,7 +77,14 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
     const TubeArc tube = straight_tube(X_WS, disk.thickness, disk.radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipShape::flat, body}, TubeEnd{TipShape::flat, body}},
              stage);
+    const int piece = arm_piece_at(stage, disk.s);
+    for (const std::size_t face : {stage.discs.size() - 2, stage.discs.size() - 1}) {
+      stage.discs[face].arm_piece = piece;
+      const double side = face + 1 == stage.discs.size() ? 0.5 : -0.5;
+      stage.ring_edges.push_back({disk.s + side * disk.thickness, stage.discs[face].circle, true});
+    }
   }
+  std::ranges::sort(stage.ring_edges, {}, &RingEdge::s);
 }
 
 void add_face(const Pose& X_CS, double half_x, double half_y, int body, int screen, Stage& stage) {

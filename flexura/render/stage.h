@@ -48,6 +48,7 @@ struct DiscPart {
   int body;
   std::size_t tube_arc = 0;  ///< Where it is on an arm: the arc
   double along = 0;          ///< and the distance from the arc's start, m.
+  int arm_piece = -1;        ///< Of a guide disk: the piece of the arm that comes out of it.
 };
 struct FacePart {
   Face face;
@@ -59,10 +60,11 @@ struct PlanePart {
   int body;
 };
 
-/// The edge of a marker ring.
+/// The edge of a marker ring on the arm, or the plane of a guide disk's face.
 struct RingEdge {
   double s;
   Circle circle;
+  bool is_disk = false;
 };
 
 /// A red line's edge: it leaves the camera in a plane.

@@ -93,8 +93,18 @@ void add_all(Part::Kind kind, const List& list, std::vector<Part>& parts) {
 
 }  // namespace
 
+namespace {
+
+// Tiles of a block's side.
+constexpr int block = 4;
+
+int blocks_of(int tiles) { return (tiles + block - 1) / block; }
+
+}  // namespace
+
 void Tiles::build(const Stage& stage, const RayField& rays) {
-  constexpr int block = 4;
+  stage_ = &stage;
+  rays_ = &rays;
   columns_ = (rays.width() + size - 1) / size;
   rows_ = (rays.height() + size - 1) / size;
   all_.clear();
@@ -102,29 +112,30 @@ void Tiles::build(const Stage& stage, const RayField& rays) {
   add_all(Part::Kind::disc, stage.discs, all_);
   add_all(Part::Kind::face, stage.faces, all_);
   add_all(Part::Kind::plane, stage.planes, all_);
-  parts_.clear();
-  starts_.clear();
-  block_parts_.resize(static_cast<std::size_t>((columns_ + block - 1) / block));
-  const auto cone = [&](int column, int row, int tiles) {
-    return cone_of(rays, column * size, row * size, std::min((column + tiles) * size, rays.width()) - 1,
-                   std::min((row + tiles) * size, rays.height()) - 1);
-  };
-  const auto keep = [&](const Cone& in, const std::vector<Part>& from, std::vector<Part>& to) {
-    for (const Part part : from)
-      if (may_touch(stage, in, part)) to.push_back(part);
-  };
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      std::vector<Part>& near = block_parts_[static_cast<std::size_t>(column / block)];
-      if (row % block == 0 && column % block == 0) {
-        near.clear();
-        keep(cone(column, row, block), all_, near);
-      }
-      starts_.push_back(parts_.size());
-      keep(cone(column, row, 1), near, parts_);
-    }
-  }
-  starts_.push_back(parts_.size());
+  tiles_.resize(static_cast<std::size_t>(columns_ * rows_));
+  blocks_.resize(static_cast<std::size_t>(blocks_of(columns_) * blocks_of(rows_)));
+  for (auto* lists : {&tiles_, &blocks_})
+    for (List& list : *lists) list.is_known = false;
+}
+
+const std::vector<Part>& Tiles::fill(List& list, const std::vector<Part>& from, int column, int row,
+                                     int tiles) const {
+  if (list.is_known) return list.parts;
+  list.is_known = true;
+  list.parts.clear();
+  const Cone cone =
+      cone_of(*rays_, column * size, row * size, std::min((column + tiles) * size, rays_->width()) - 1,
+              std::min((row + tiles) * size, rays_->height()) - 1);
+  for (const Part part : from)
+    if (may_touch(*stage_, cone, part)) list.parts.push_back(part);
+  return list.parts;
+}
+
+std::span<const Part> Tiles::parts(int column, int row) const {
+  const int block_column = column / block, block_row = row / block;
+  List& around = blocks_[static_cast<std::size_t>(block_row * blocks_of(columns_) + block_column)];
+  const auto& near = fill(around, all_, block_column * block, block_row * block, block);
+  return fill(tiles_[static_cast<std::size_t>(row * columns_ + column)], near, column, row, 1);
 }
 
 }  // namespace flexura

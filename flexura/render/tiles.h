@@ -10,30 +10,36 @@
 
 namespace flexura {
 
-/// Which primitives may be seen, or have a border, in which part of the image: squares of 16 x 16 px.
+/// Which primitives may be seen, or have a border, in which part of the image: squares of 16 x 16 px, each
+/// looked into when it is first asked for.
 class Tiles {
  public:
   static constexpr int size = 16;
 
-  /// Sorts the stage's primitives into the tiles. Its vectors are used again from call to call.
+  /// Forgets the frame before. Its vectors are used again from call to call; `stage` and `rays` must stay.
   void build(const Stage& stage, const RayField& rays);
 
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
   /// Those of tile (column, row), in the stage's order.
-  [[nodiscard]] std::span<const Part> parts(int column, int row) const {
-    const auto tile = static_cast<std::size_t>(row * columns_ + column);
-    return std::span(parts_).subspan(starts_[tile], starts_[tile + 1] - starts_[tile]);
-  }
+  [[nodiscard]] std::span<const Part> parts(int column, int row) const;
   /// All primitives.
   [[nodiscard]] std::span<const Part> all_parts() const { return all_; }
 
  private:
+  // The primitives near a square of so many tiles from (column, row) on.
+  struct List {
+    bool is_known = false;
+    std::vector<Part> parts;
+  };
+  const std::vector<Part>& fill(List& list, const std::vector<Part>& from, int column, int row,
+                                int tiles) const;
+
+  const Stage* stage_ = nullptr;
+  const RayField* rays_ = nullptr;
   int columns_ = 0, rows_ = 0;
-  std::vector<Part> all_, parts_;
-  std::vector<std::size_t> starts_;
-  // The primitives near each block of 4 x 4 tiles in the current row of blocks.
-  std::vector<std::vector<Part>> block_parts_;
+  std::vector<Part> all_;
+  mutable std::vector<List> tiles_, blocks_;
 };
 
 }  // namespace flexura

@@ -33,6 +33,9 @@ struct Sights {
     const auto farthest = std::max_element(borders.begin(), borders.end());
     if (border < *farthest) *farthest = border;
   }
+  void add_all(const std::array<Border, 2>& list) {
+    for (const Border& border : list) add(border);
+  }
   void add_hit(double depth, Part part) {
     // Where two pieces of a tube overlap by a hair both tell of it.
     if (std::abs(depth - first.depth) <= same_hit * depth) return;
@@ -96,7 +99,7 @@ void meet_disc(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
     const auto depth = meet_plane(circle.center, circle.normal, ray);
     if (depth) sights.add_hit(*depth, part);
   }
-  for (const Border& border : view.borders) sights.add(border);
+  sights.add_all(view.borders);
 }
 
 void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
@@ -107,7 +110,7 @@ void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
     const auto depth = meet_plane(face_part.face.corners[0], face_part.face.normal, ray);
     if (depth) sights.add_hit(*depth, part);
   }
-  for (const Border& border : view.borders) sights.add(border);
+  sights.add_all(view.borders);
 }
 
 void meet_half_space(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
@@ -154,6 +157,15 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     return corner;
   }
   return {};
+}
+
+// Whether one is the arm's skin and the other a guide disk: where they meet is known better.
+bool are_arm_and_disk(const Hit& a, const Hit& b) {
+  const auto is_skin = [](const Hit& hit) {
+    return hit.label.kind == SurfaceKind::section || hit.label.kind == SurfaceKind::marker;
+  };
+  return (is_skin(a) && b.label.kind == SurfaceKind::disk) ||
+         (is_skin(b) && a.label.kind == SurfaceKind::disk);
 }
 
 // Angle around the etalon's +Y from its +Z of a point in C.
@@ -243,6 +255,21 @@ Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slop
   return straight;
 }
 
+// How a point of the surface moves with (a, b), along `direction`.
+Eigen::Vector2d surface_slope(const Hit& hit, const Ray& ray, const Eigen::Vector3d& direction) {
+  return hit.depth * direction.head<2>() + direction.dot(ray.direction) * depth_slope(hit, ray);
+}
+
+// Where the arm comes out of the guide disk whose face was hit.
+void add_tube_border(const Stage& stage, const Ray& ray, Sights& sights) {
+  const Hit& hit = sights.first;
+  const int index = at(stage.discs, hit.part.index).arm_piece;
+  if (index < 0) return;
+  const TubePoint point =
+      tube_point(stage.pieces[static_cast<std::size_t>(index)], hit.depth * ray.direction);
+  sights.add(border_of(point.gap, surface_slope(hit, ray, point.normal), ray, hit.depth));
+}
+
 // Edges of colour on the tube near the hit.
 void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
   const Hit& hit = sights.first;
@@ -253,12 +280,18 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     const auto next = std::ranges::lower_bound(edges, hit.s, {}, &RingEdge::s) - edges.begin();
     const auto last = std::min(next + 3, static_cast<std::ptrdiff_t>(edges.size()));
     const TubePoint point = tube_point(piece, hit.depth * ray.direction);
-    const Eigen::Vector2d slope =
-        (hit.depth * point.tangent.head<2>() + point.tangent.dot(ray.direction) * depth_slope(hit, ray)) /
-        point.shrink;
+    const Eigen::Vector2d slope = surface_slope(hit, ray, point.tangent) / point.shrink;
     if (!slope.allFinite()) return;
-    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i)
-      sights.add(ring_border(edges[static_cast<std::size_t>(i)], hit.s, slope, hit.depth, ray));
+    for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i) {
+      const RingEdge& edge = edges[static_cast<std::size_t>(i)];
+      if (!edge.is_disk) {
+        sights.add(ring_border(edge, hit.s, slope, hit.depth, ray));
+        continue;
+      }
+      const Eigen::Vector3d off = hit.depth * ray.direction - edge.circle.center;
+      sights.add(border_of(edge.circle.normal.dot(off), surface_slope(hit, ray, edge.circle.normal), ray,
+                           hit.depth));
+    }
   }
   if (body.is_etalon) {
     const double angle = etalon_angle(stage, hit.depth * ray.direction);
@@ -305,7 +338,7 @@ Trace Tracer::trace(const Ray& ray) const {
   if (!sights.second.is_none()) {
     complete(stage_, ray, sights.second);
     const Eigen::Vector2d slope = depth_slope(sights.second, ray) - depth_slope(sights.first, ray);
-    if (slope.allFinite())
+    if (slope.allFinite() && !are_arm_and_disk(sights.first, sights.second))
       sights.add(border_of(sights.second.depth - sights.first.depth, slope, ray, sights.first.depth));
   }
   if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::piece) {
@@ -313,6 +346,9 @@ Trace Tracer::trace(const Ray& ray) const {
     contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
     sights.add(contour);
     add_color_edges(stage_, ray, sights);
+  }
+  if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::disc) {
+    add_tube_border(stage_, ray, sights);
   }
   Trace trace;
   trace.hit = sights.first;

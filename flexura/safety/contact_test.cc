@@ -88,37 +88,6 @@ TEST(Contact, NamesEverySectionThatTouches) {
   EXPECT_LT(report.violations[2].end, 0.1);
 }
 
-TEST(Contact, FindsThickSectionsThatMeetRoundAThinOneWithinHalfATurn) {
-  Arm arm = even_arm(3, 0.1);
-  arm.sections[1].length = 0.1;
-  arm.sections[1].radius = {0.02, 0.02};
-  const auto folded_by = [&](double bend) {
-    ArmState state = bent(3, 0);
-    state.bends[1].x() = bend;
-    return state;
-  };
-  const MotionPtr fold =
-      point_to_point_motion(folded_by(0), folded_by(0.9 * pi), std::vector(3, Profile::linear(9)));
-  const SafetyReport report = check_motions(arm, {}, folded_by(0), {{fold, 0}}, 0.02);
-  EXPECT_TRUE(report.caveats.empty());
-  ASSERT_FALSE(report.is_safe());
-  const Violation& contact = report.violations.front();
-  EXPECT_EQ(contact.hazard, Hazard::self_contact);
-  EXPECT_EQ(contact.section, 0U);
-  EXPECT_EQ(contact.other_section, 2U);
-  // Neighbours are less than half a circle of 0.1 m apart along the arm: the first that are not are as far
-  // from the middle of the thin section on either side, at the ends of straight parts and half of the arc.
-  double touching = pi / 2;
-  for (double low = 0.3 * pi, high = 0.9 * pi; high - low > 1e-12;) {
-    touching = (low + high) / 2;
-    const double straight = (pi * 0.1 - 0.1) / 2;
-    const double apart = 2 * (0.1 / touching * std::sin(touching / 2) + straight * std::cos(touching / 2));
-    (apart > 0.2 ? low : high) = touching;
-  }
-  EXPECT_NEAR(contact.start, 9 * touching / (0.9 * pi), 1e-3);
-  EXPECT_EQ(contact.end, 9);
-}
-
 TEST(Contact, OfThickAndThinSectionsIsThatOfSamples) {
   std::size_t contacts = 0;
   for_random_cases(300, [&](TestRandom& random) {
@@ -145,7 +114,7 @@ TEST(Contact, OfThickAndThinSectionsIsThatOfSamples) {
     ++contacts;
     EXPECT_LE(found, sampled + 1e-6);
   });
-  EXPECT_GT(contacts, 20U);
+  EXPECT_GT(contacts, one_case_of == 1 ? 40U : 10U);
 }
 
 TEST(Contact, AStraightArmOfSectionsThickAndThinTouchesNothingOfItself) {

@@ -30,16 +30,18 @@ SafetyReport check(const Arm& arm, MotionPtr motion, double step = 0.02) {
 }
 
 TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
+  // Sanitizers make each sample take thirty times as long.
+  constexpr std::size_t samples = one_case_of == 1 ? 10'000 : 1000;
   SampledComparison result;
   for_random_cases(6, [&](TestRandom& random) {
-    compare_with_samples(random, 10'000, result);
+    compare_with_samples(random, samples, result);
     EXPECT_EQ(result.missed, 0U);
     EXPECT_EQ(result.refuted, 0U);
     EXPECT_EQ(result.contacts_missed, 0U);
   });
   EXPECT_EQ(result.motions, one_case_of == 1 ? 30U : 10U);
-  EXPECT_GT(result.above, one_case_of == 1 ? 10'000U : 1000U);
-  EXPECT_GT(result.contacts, one_case_of == 1 ? 1000U : 100U);
+  EXPECT_GT(result.above, one_case_of == 1 ? 10'000U : 100U);
+  EXPECT_GT(result.contacts, one_case_of == 1 ? 1000U : 10U);
 }
 
 TEST(MotionCheck, TellsWhenWhereAndHowMuch) {

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
+#include <array>
 
 #include "flexura/camera/view.h"
+#include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
 #include "flexura/render/scene.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
 
-/// A camera at `from` that looks at `to`, the right way up but for `tilted`.
+/// A camera at `from` that looks at `to`, `up` pointing up in its image.
 inline Pose look_at(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                     const Eigen::Vector3d& up = {0, 1, 0}) {
   const Eigen::Vector3d z = (to - from).normalized(), x = z.cross(up).normalized();
@@ -60,6 +61,37 @@ inline BentArm random_bent_arm(TestRandom& random, double taper) {
   bent.state = ArmState::straight(3);
   for (Eigen::Vector2d& bend : bent.state.bends) bend = random.vector<2>(-2, 2);
   return bent;
+}
+
+/// Everything at once, in the way of each other, in shades of gray: the arm with markers and disks, a screen,
+/// the etalon, an obstacle of each kind.
+inline Scene crowded_scene(TestRandom& random, const BentArm& bent, const Backbone& backbone) {
+  Scene scene = plain_scene();
+  const auto gray = [](double value) { return Color(value, value, value); };
+  scene.arm.tube = tube_of(bent.arm, backbone);
+  scene.arm.tip = random.integer(0, 1) == 0 ? TipShape::flat : TipShape::round;
+  scene.arm.albedo = gray(0.2), scene.arm.disk_albedo = gray(0.5);
+  for (int i = 0; i < 9; ++i) scene.arm.markers.push_back({0.1 * i + 0.05, 0.1 * i + 0.08, gray(0.7)});
+  for (int i = 0; i < 5; ++i) scene.arm.disks.push_back({0.2 * i + 0.1, 0.04, 0.006});
+  const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
+  const auto place = [&] { return Eigen::Vector3d(middle + random.vector<3>(-0.4, 0.4)); };
+  const auto listed = [](const Eigen::Vector3d& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+  Screen& screen = scene.screens.emplace_back();
+  screen.X_WS = {so3_exp(random.vector<3>(-1, 1)), place()};
+  screen.size = {0.5, 0.6};
+  screen.brightness = gray(1);
+  Etalon& etalon = scene.etalon.emplace();
+  etalon.X_WE = {so3_exp(random.vector<3>(-2, 2)), place()};
+  etalon.line_width = 0.02;
+  etalon.albedo = gray(0.1), etalon.line_albedo = gray(0.9);
+  scene.obstacles.push_back({SphereConfig{.center = listed(place()), .radius = 0.1}, gray(0.3)});
+  const auto from = listed(place());
+  scene.obstacles.push_back({CapsuleConfig{.from = from, .to = listed(place()), .radius = 0.05}, gray(0.4)});
+  scene.obstacles.push_back(
+      {BoxConfig{.center = listed(place()), .half_sizes = {0.1, 0.1, 0.05}, .rotation = {1, 0.3, 0.2, 0.1}},
+       gray(0.6)});
+  scene.obstacles.push_back({PlaneConfig{.point = {0, middle.y() - 0.5, 0}}, gray(0.8)});
+  return scene;
 }
 
 /// A camera that sees some of an arm of 1 m from any side, near or far.

@@ -31,10 +31,10 @@ Vector load(const float* from) {
   __builtin_memcpy(&v, from, sizeof v);
   return v;
 }
-void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
+inline void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
 
 // max(low, v), and low where v is not a number.
-Floats at_least(float low, const Floats& v) {
+inline Floats at_least(float low, const Floats& v) {
 #if defined(__AVX512BW__)
   return _mm512_max_ps(v, _mm512_set1_ps(low));
 #elif defined(__AVX2__)
@@ -45,7 +45,7 @@ Floats at_least(float low, const Floats& v) {
   return v > low ? v : Floats{} + low;
 #endif
 }
-Floats at_most(float high, const Floats& v) {
+inline Floats at_most(float high, const Floats& v) {
 #if defined(__AVX512BW__)
   return _mm512_min_ps(v, _mm512_set1_ps(high));
 #elif defined(__AVX2__)
@@ -57,7 +57,7 @@ Floats at_most(float high, const Floats& v) {
 #endif
 }
 
-Floats square_root(const Floats& v) {
+inline Floats square_root(const Floats& v) {
 #if defined(__AVX512BW__)
   return _mm512_sqrt_ps(v);
 #elif defined(__AVX2__)
@@ -71,7 +71,7 @@ Floats square_root(const Floats& v) {
 #endif
 }
 
-bool is_zero(const Words& v) {
+inline bool is_zero(const Words& v) {
 #if defined(__AVX512BW__)
   const auto w = reinterpret_cast<__m512i>(v);
   return _mm512_test_epi32_mask(w, w) == 0;
@@ -89,7 +89,7 @@ bool is_zero(const Words& v) {
 }
 
 // The sum of a word's four bytes, weighted with 64 * 128, 63 * 128, 64 * 125 and 63 * 125 from the lowest on.
-Words weighted_bytes(const Words& x) {
+inline Words weighted_bytes(const Words& x) {
 #if defined(__AVX512BW__)
   const auto pairs = _mm512_maddubs_epi16(reinterpret_cast<__m512i>(x), _mm512_set1_epi16(64 | 63 << 8));
   return reinterpret_cast<Words>(_mm512_madd_epi16(pairs, _mm512_set1_epi32(128 | 125 << 16)));

@@ -1,0 +1,139 @@
+#include "flexura/render/quick_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "flexura/math/so3.h"
+#include "flexura/render/renderer.h"
+#include "tests/support/render_scenes.h"
+
+namespace flexura {
+namespace {
+
+// An arm with rings before a screen or two, and now and then an obstacle, a round tip, disks or a taper.
+Scene some_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, const View& view) {
+  Scene scene;
+  scene.arm.tube = tube_of(arm, backbone);
+  if (random.integer(0, 3) == 0) scene.arm.tip = TipShape::round;
+  for (int i = random.integer(0, 12); i > 0; --i) {
+    const double s = random.uniform(-0.02, 1);
+    scene.arm.markers.push_back({s, s + random.uniform(0.001, 0.03)});
+  }
+  if (random.integer(0, 3) == 0) scene.arm.disks.push_back({.s = 0.4});
+  const Eigen::Vector3d ahead = view.X_WC.rotation.col(2);
+  for (int i = random.integer(0, 2); i > 0; --i) {
+    Screen& screen = scene.screens.emplace_back();
+    const Eigen::Vector3d out = (-ahead + 0.6 * random.vector<3>(-1, 1)).normalized();
+    screen.X_WS.rotation = rotation_from_z(out);
+    screen.X_WS.position = view.X_WC.position + 3 * ahead + random.vector<3>(-1, 1);
+    if (random.integer(0, 1) == 1) screen.gradient = {random.uniform(-0.3, 0.3), 0.1}, screen.falloff = 0.2;
+  }
+  if (random.integer(0, 3) == 0) {
+    const Eigen::Vector3d at = backbone.pose(random.uniform(0, 0.9)).position + random.vector<3>(-0.1, 0.1);
+    scene.obstacles.push_back(
+        {SphereConfig{.center = {at.x(), at.y(), at.z()}, .radius = 0.05}, {0.4, 0.5, 0.4}});
+  }
+  return scene;
+}
+
+// The arm's radius is 2 to 30 px.
+View some_view(TestRandom& random, const Backbone& backbone) {
+  const View view = random_view_of(random, backbone);
+  return pinhole_view(view.X_WC, 160, 120, 200 * random.uniform(0.5, 5));
+}
+
+struct Difference {
+  double worst = 0;         // Of light.
+  int count = 0, many = 0;  // Of values of light that differ by more than 1/500, of all.
+  int bad_depths = 0;       // Of those that differ by more than 2e-6 of it.
+};
+
+Difference compare(const LightImage& exact, const LightImage& quick) {
+  Difference result;
+  for (std::size_t i = 0; i < exact.light.values().size(); ++i) {
+    const double off = std::abs(exact.light.values()[i] - quick.light.values()[i]);
+    result.worst = std::max(result.worst, off);
+    if (off > 0.002) ++result.count;
+    ++result.many;
+  }
+  for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {
+    const double a = static_cast<double>(exact.depth.values()[i]),
+                 b = static_cast<double>(quick.depth.values()[i]);
+    if (a != b && !(std::abs(a - b) <= 2e-6 * a)) ++result.bad_depths;
+  }
+  return result;
+}
+
+TEST(QuickPicture, AgreesWithTheExactWay) {
+  int count = 0, many = 0, bad_depths = 0;
+  for_random_cases(25, [&](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, random.integer(0, 3) == 0 ? 0.003 : 0);
+    const View view = some_view(random, bent.backbone());
+    const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
+    const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
+    Renderer renderer;
+    LightImage exact, quick;
+    renderer.render(scene, view, pixels, exact, true);
+    renderer.render(scene, view, pixels, quick);
+    const Difference off = compare(exact, quick);
+    EXPECT_LT(off.worst, 0.015);
+    count += off.count, many += off.many, bad_depths += off.bad_depths;
+  });
+  EXPECT_LT(count, 5e-5 * many);
+  EXPECT_EQ(bad_depths, 0);
+}
+
+TEST(QuickPicture, IsTheSameOnEveryPath) {
+  for_random_cases(8, [&](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0);
+    View view = some_view(random, bent.backbone());
+    view.width -= random.integer(0, 30);
+    const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
+    const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
+    LightImage expected;
+    Renderer(SimdPath::baseline).render(scene, view, pixels, expected);
+    for (const SimdPath path : available_simd_paths()) {
+      LightImage picture;
+      Renderer(path).render(scene, view, pixels, picture);
+      EXPECT_EQ(picture.light, expected.light) << name_of(path);
+      EXPECT_EQ(picture.depth, expected.depth) << name_of(path);
+    }
+  });
+}
+
+TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
+  const BentArm bent = [] {
+    TestRandom random(3);
+    return random_bent_arm(random, 0);
+  }();
+  TestRandom random(4);
+  const View view = random_view_of(random, bent.backbone());
+  Scene scene = plain_scene();
+  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  const auto is_drawn = [](const Scene& one, const View& seen) {
+    Renderer renderer;
+    renderer.prepare(one, seen);
+    LightImage picture{Image<float>(seen.width, seen.height), Image<float>(seen.width, seen.height)};
+    return QuickPicture().draw(renderer.stage(), seen.lens.intrinsics(), PixelKind::gray, picture);
+  };
+  EXPECT_TRUE(is_drawn(scene, view));
+  View distorted = view;
+  Intrinsics intrinsics = view.lens.intrinsics();
+  intrinsics.distortion[0] = 0.01;
+  distorted.lens = Lens(intrinsics);
+  EXPECT_FALSE(is_drawn(scene, distorted));
+  View near = view;
+  near.X_WC.position = bent.backbone().pose(0.3).position;
+  EXPECT_FALSE(is_drawn(scene, near));
+  Scene shadowed = scene;
+  shadowed.light.shadow = 0.5;
+  EXPECT_FALSE(is_drawn(shadowed, view));
+  Scene grounded = scene;
+  grounded.obstacles.push_back({PlaneConfig{}});
+  EXPECT_FALSE(is_drawn(grounded, view));
+}
+
+}  // namespace
+}  // namespace flexura

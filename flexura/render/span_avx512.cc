@@ -1,0 +1,14 @@
+// Compiled for AVX-512 where the compiler can (cmake/Simd.cmake); elsewhere it holds nothing.
+#ifdef __AVX512BW__
+
+#include "flexura/render/span_lanes.h"
+
+const flexura::SpanKernels* flexura::avx512_span_kernels() { return &span_kernels; }
+
+#else
+
+#include "flexura/render/span_kernels.h"
+
+const flexura::SpanKernels* flexura::avx512_span_kernels() { return nullptr; }
+
+#endif

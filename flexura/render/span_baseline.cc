@@ -1,0 +1,3 @@
+#include "flexura/render/span_lanes.h"
+
+const flexura::SpanKernels* flexura::baseline_span_kernels() { return &span_kernels; }

@@ -24,6 +24,7 @@ Point middle(const Point& a, const Point& b) {
 struct Spread {
   std::vector<Eigen::Vector2d> points;
   Eigen::Vector2d size;
+  Eigen::Vector2d mean;
 };
 
 Spread spread_of(std::span<const Eigen::Vector2d> points) {
@@ -33,7 +34,7 @@ Spread spread_of(std::span<const Eigen::Vector2d> points) {
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& p : points) scatter += (p - mean) * (p - mean).transpose() / count;
   const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvectors();
-  Spread spread{{}, Eigen::Vector2d::Zero()};
+  Spread spread{{}, Eigen::Vector2d::Zero(), mean};
   for (const Eigen::Vector2d& p : points) {
     spread.points.emplace_back(axes.transpose() * (p - mean));
     spread.size += spread.points.back().cwiseAbs2() / count;
@@ -48,7 +49,8 @@ Spread spread_of(std::span<const Eigen::Vector2d> points) {
 std::optional<double> axes_ratio(std::span<const Eigen::Vector2d> points) {
   if (points.size() < 5) return std::nullopt;
   const Spread spread = spread_of(points);
-  if (!(spread.size.y() > 0)) return std::nullopt;
+  // All in one place, but for rounding.
+  if (!(spread.size.y() > 1e-14 * spread.mean.norm())) return std::nullopt;
   if (spread.size.x() <= 1e-12 * spread.size.y()) return 0.0;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   for (const Eigen::Vector2d& p : spread.points) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/study_view.h"
@@ -32,9 +34,10 @@ CameraConfig front_camera() {
   return camera;
 }
 
-ImageStudy study(const VaryConfig& vary, std::int64_t points, const CameraConfig& camera = front_camera()) {
+ImageStudy study(VaryConfig::Values VaryConfig::* parameter, double first, double last, std::int64_t points,
+                 const CameraConfig& camera = front_camera()) {
   StudyTask task;
-  task.vary = vary;
+  task.vary.*parameter = {{first, last}};
   task.points = points;
   task.target.radius = circle_radius;
   return study_images(task, {camera});
@@ -55,7 +58,7 @@ void expect_agreement(const ImageStudy& study) {
 }
 
 TEST(ImageStudy, HasTheKnownFiguresOfAPlaneTiltedBy20Degrees) {
-  const ImageStudy orbit = study({.orbit = {{0, 20 * degree}}}, 3);
+  const ImageStudy orbit = study(&VaryConfig::orbit, 0, 20 * degree, 3);
   const auto [top, bottom, left, right, height, width, corner, circle_top_distance, ratio] = last_of(orbit);
   EXPECT_NEAR(top, 237.7751, 5e-5);
   EXPECT_NEAR(bottom, 215.8345, 5e-5);
@@ -67,7 +70,7 @@ TEST(ImageStudy, HasTheKnownFiguresOfAPlaneTiltedBy20Degrees) {
 }
 
 TEST(ImageStudy, HasTheKnownFiguresOfACameraTiltedBy20Degrees) {
-  const ImageStudy tilt = study({.tilt = {{0, 20 * degree}}}, 3);
+  const ImageStudy tilt = study(&VaryConfig::tilt, 0, 20 * degree, 3);
   EXPECT_NEAR(last_of(tilt)[0], 229.0082, 5e-5);
   EXPECT_NEAR(last_of(tilt)[1], 253.8631, 5e-5);
   EXPECT_NEAR(last_of(tilt)[4], 256.9304, 5e-5);
@@ -75,7 +78,7 @@ TEST(ImageStudy, HasTheKnownFiguresOfACameraTiltedBy20Degrees) {
 }
 
 TEST(ImageStudy, FollowsThePapersClosedFormsInOrbit) {
-  const ImageStudy orbit = study({.orbit = {{-80 * degree, 80 * degree}}}, 161);
+  const ImageStudy orbit = study(&VaryConfig::orbit, -80 * degree, 80 * degree, 161);
   const double f = focal_length, a = half_side, R = circle_radius, D = distance;
   for (std::size_t i = 0; i < orbit.values.size(); ++i) {
     const double s = std::sin(orbit.values[i]), c = std::cos(orbit.values[i]);
@@ -99,7 +102,7 @@ TEST(ImageStudy, FollowsThePapersClosedFormsInOrbit) {
 }
 
 TEST(ImageStudy, ZoomsLinearly) {
-  const ImageStudy zoom = study({.zoom = {{1, 10}}}, 19);
+  const ImageStudy zoom = study(&VaryConfig::zoom, 1, 10, 19);
   for (std::size_t i = 0; i < zoom.values.size(); ++i) {
     for (std::size_t k = 0; k < length_features; ++k)
       EXPECT_NEAR(*zoom.columns[1].features[i][k], *zoom.columns[1].features[0][k] * zoom.values[i], 1e-9);
@@ -119,13 +122,15 @@ TEST(ImageStudy, ItsTwoColumnsAgreeForEveryParameterOfACameraInGeneralPosition) 
   camera.lens.distortion = {-0.1, 0.02, 1e-3, -1e-3, 0};
   for (const FieldInfo& field : fields_of(static_cast<const VaryConfig*>(nullptr)).info().fields) {
     SCOPED_TRACE(field.name);
-    const bool is_px = field.name[0] == 'c' || field.name[0] == 'f';
-    const auto task = read_as<StudyTask>(parse_toml(
-        fmt::format("vary.{} = {}\npoints = 5", field.name, is_px ? "[400, 500]" : "[1, 1.2]"), "x.toml"));
+    const char* values = "[0.3, 0.5]";
+    if (field.name == "zoom") values = "[1, 1.2]";
+    if (field.name[0] == 'c' || field.name[0] == 'f') values = "[400, 500]";  // px
+    const auto task =
+        read_as<StudyTask>(parse_toml(fmt::format("vary.{} = {}\npoints = 5", field.name, values), "x.toml"));
     const ImageStudy found = study_images(task, {camera});
     EXPECT_EQ(found.variation.name, field.name);
     EXPECT_TRUE(found.is_seen(0));
-    EXPECT_GT((*found.images[0].circle[top_right] - *found.images[4].circle[top_right]).norm(), 1e-3);
+    EXPECT_GT((*found.images[0].circle[top_right] - *found.images[4].circle[top_right]).norm(), 1e-6);
     expect_agreement(found);
   }
 }
@@ -140,8 +145,9 @@ TEST(ImageStudy, SeesWithTheHeadAndStageAsTheCameraDoes) {
   const auto expect_seen = [&](VaryConfig::Values VaryConfig::* parameter, double value,
                                const StageState& stage, const HeadState& head) {
     const auto expected = camera.project(target.point(30), stage, head);
-    EXPECT_LE((*view_with(camera, parameter, value, target).project(target.point(30)) - expected->pixel).norm(),
-              1e-9);
+    EXPECT_LE(
+        (*view_with(camera, parameter, value, target).project(target.point(30)) - expected->pixel).norm(),
+        1e-9);
   };
   const HeadState head = camera.initial_head();
   const StageState stage = camera.initial_stage();
@@ -172,8 +178,11 @@ TEST(ImageStudy, AnOrbitKeepsTheDistanceAndLooksAtTheCentre) {
 }
 
 TEST(StudyTarget, ItsSquareIsLevelAndUprightAsTheCameraSeesIt) {
-  for (const auto& [normal, level] : std::vector<std::pair<std::array<double, 3>, Eigen::Vector3d>>{
-           {{0, 0, 2}, {1, 0, 0}}, {{-1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {1, 0, 0}}, {{0, -1, 0}, {1, 0, 0}}}) {
+  for (const auto& [normal, level] :
+       std::vector<std::pair<std::array<double, 3>, Eigen::Vector3d>>{{{0, 0, 2}, {1, 0, 0}},
+                                                                      {{-1, 0, 0}, {0, 0, 1}},
+                                                                      {{0, 1, 0}, {1, 0, 0}},
+                                                                      {{0, -1, 0}, {1, 0, 0}}}) {
     StudyTargetConfig config;
     config.normal = normal;
     const StudyTarget target(config);
@@ -188,27 +197,33 @@ TEST(StudyTarget, ItsSquareIsLevelAndUprightAsTheCameraSeesIt) {
 
 TEST(StudyTarget, ItsRingsAreDrawnWhereTheFormulasSay) {
   const StudyTarget target({});
-  const View view = view_with(Camera(front_camera()), &VaryConfig::orbit, 20 * degree, target);
-  Renderer renderer;
-  renderer.prepare(target.scene(), view);
-  const TargetImage image = target.projected(view);
-  const std::vector<MarkerView> rings = marker_views(renderer);
-  constexpr std::array places{bottom_right, top_right, circle_top, top_left, bottom_left};
-  ASSERT_EQ(rings.size(), places.size());
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    EXPECT_LE((*rings[i].center.pixel - *image.circle[places[i]]).norm(), 1e-9);
-    EXPECT_GT(rings[i].area, 2);
-    EXPECT_LE((rings[i].centroid - *image.circle[places[i]]).norm(), 0.05);
+  const Camera camera(front_camera());
+  // Where the tube leads towards the camera, its near side is seen a part of its radius, 0.8 px, further on.
+  for (const auto& [orbit, tolerance] :
+       std::vector<std::pair<double, double>>{{0, 0.02}, {20 * degree, 0.2}}) {
+    const View view = view_with(camera, &VaryConfig::orbit, orbit, target);
+    Renderer renderer;
+    renderer.prepare(target.scene(), view);
+    const TargetImage image = target.projected(view);
+    const std::vector<MarkerView> rings = marker_views(renderer);
+    constexpr std::array places{bottom_right, top_right, circle_top, top_left, bottom_left};
+    ASSERT_EQ(rings.size(), places.size());
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      EXPECT_LE((*rings[i].center.pixel - *image.circle[places[i]]).norm(), 1e-9);
+      EXPECT_GT(rings[i].area, 2);
+      EXPECT_LE((rings[i].centroid - *image.circle[places[i]]).norm(), tolerance);
+    }
   }
 }
 
 TEST(ImageStudy, LeavesEmptyWhatTheLensDoesNotShow) {
   CameraConfig camera = front_camera();
   camera.mount.stage.z.limits = {0, 4};
-  const ImageStudy ahead = study({.stage_z = {{0, 4}}}, 9, camera);  // through the plane at 2.5 m
+  const ImageStudy ahead = study(&VaryConfig::stage_z, 0, 4, 9, camera);  // through the plane at 2.5 m
   for (std::size_t i = 0; i < ahead.values.size(); ++i) {
     EXPECT_EQ(ahead.is_seen(i), ahead.values[i] < distance) << ahead.values[i];
-    if (ahead.values[i] >= distance) EXPECT_EQ(ahead.columns[0].features[i], ImageFeatures{});
+    if (ahead.values[i] < distance) continue;
+    EXPECT_EQ(ahead.columns[0].features[i], ImageFeatures{});
   }
   expect_agreement(ahead);
 }
@@ -216,7 +231,7 @@ TEST(ImageStudy, LeavesEmptyWhatTheLensDoesNotShow) {
 TEST(ImageStudy, MeasuresTheSquareWhileThePlaneCutsTheCircle) {
   CameraConfig camera = front_camera();
   camera.mount.position = {0, 0, 0.45};  // nearer than the radius: in orbit some of the circle gets behind
-  const ImageStudy orbit = study({.orbit = {{0, 85 * degree}}}, 18, camera);
+  const ImageStudy orbit = study(&VaryConfig::orbit, 0, 85 * degree, 18, camera);
   EXPECT_TRUE(orbit.is_seen(0));
   EXPECT_FALSE(orbit.is_seen(17));
   EXPECT_TRUE(orbit.columns[0].features.back()[1].has_value()) << "the bottom edge";
@@ -251,10 +266,17 @@ TEST(AxesRatio, IsZeroOnALineAndNoneWhereNothingIsAnEllipse) {
 }
 
 TEST(ImageStudy, RefusesWhatNoCheckHasPassed) {
-  EXPECT_THROW((void)study({}, 5), std::invalid_argument);
-  EXPECT_THROW((void)study({.pan = {{0, 1}}, .tilt = {{0, 1}}}, 5), std::invalid_argument);
-  EXPECT_THROW((void)study({.pan = {{0, 1}}}, 1), std::invalid_argument);
-  EXPECT_THROW((void)study_images({.vary = {.pan = {{0, 1}}}}, {}), std::invalid_argument);
+  const std::vector<CameraConfig> cameras = {front_camera()};
+  StudyTask task;
+  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "nothing to vary";
+  task.vary.pan = {{0, 1}};
+  EXPECT_THROW((void)study_images(task, {}), std::invalid_argument) << "no camera";
+  EXPECT_EQ(study_images(task, cameras).values.size(), 101U);
+  task.vary.tilt = {{0, 1}};
+  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "two parameters";
+  task.vary.tilt.reset();
+  task.points = 1;
+  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "one value";
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ std::string chapters_html(const ReportData& data) {
     const Chapter& chapter = data.chapters[i];
     html += fmt::format(
         "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n<div "
-        "class=\"charts\">\n{3}</div>\n</section>\n",
+        "class=\"charts chapter\">\n{3}</div>\n</section>\n",
         i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), figures_html(chapter.drawings));
   }
   return html;

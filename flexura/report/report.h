@@ -20,9 +20,10 @@ struct NamedDrawing {
 
 /// A part of a report for what its makers measured beside the motion.
 struct Chapter {
-  std::string heading;                 ///< Any text.
-  std::string text;                    ///< Likewise: a paragraph.
-  std::vector<NamedDrawing> drawings;  ///< Names that make file names, each once in the report.
+  std::string heading;  ///< Any text.
+  std::string text;     ///< Likewise: a paragraph.
+  std::vector<NamedDrawing>
+      drawings;  ///< The first as high as two. Names that make file names, each once in the report.
 };
 
 /// What a finished run hands to its report.

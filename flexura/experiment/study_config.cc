@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "flexura/camera/camera.h"
-#include "flexura/experiment/study_target.h"
 #include "flexura/experiment/study_view.h"
 
 namespace flexura {
@@ -13,7 +13,7 @@ namespace {
 
 constexpr NumberRange turn_range = {.min = -10, .max = 10};
 constexpr NumberRange slide_range = {.min = -1e3, .max = 1e3};
-constexpr NumberRange focal_length_range = {.min = 0, .max = 1e7, .open_min = true};
+constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};
 constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
 constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
 
@@ -102,7 +102,7 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
           .field("normal", &StudyTargetConfig::normal,
                  {.meaning = "The way its plane faces; of any length but 0.", .range = between(-1e6, 1e6)})
           .field("radius", &StudyTargetConfig::radius,
-                 {.meaning = "The circle's radius.", .unit = Unit::metre, .range = above_up_to(0, 1e6)})
+                 {.meaning = "The circle's radius.", .unit = Unit::metre, .range = between(1e-6, 1e6)})
           .check([](const StudyTargetConfig& target, Reader& reader) {
             if (!(Eigen::Vector3d(target.normal.data()).stableNorm() > 1e-100))
               reader.problem_at("normal", "has no direction: expected a length above 0");
@@ -160,7 +160,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   const Camera camera(*config);
   check_values(varied.front(), camera, fmt::format("{}.vary.{}", path, varied.front().name), reader);
   const Eigen::Vector3d eye = camera.pose(camera.initial_stage(), camera.initial_head()).position;
-  if (varied.front().parameter == &VaryConfig::orbit && eye == StudyTarget(task.target).center())
+  if (varied.front().parameter == &VaryConfig::orbit && eye == Eigen::Vector3d(task.target.center.data()))
     reader.problem_at(path + ".target.center", "is where the camera stands: it cannot orbit there");
 }
 

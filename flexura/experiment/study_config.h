@@ -35,7 +35,7 @@ struct Variation {
 struct StudyTargetConfig {
   std::array<double, 3> center = {0, 0, 0};  ///< m, in W.
   std::array<double, 3> normal = {0, 0, 1};  ///< The way it faces, in W; not 0.
-  double radius = 0.5;                       ///< m; > 0.
+  double radius = 0.5;                       ///< m; at least 1e-6.
 };
 
 /// `kind = "study"`: how the image of a target changes with one of a camera's parameters. The arm stays as it

@@ -28,7 +28,7 @@ struct Variation {
   std::string_view name;   ///< As in the file: "orbit".
   Unit unit = Unit::none;  ///< Of its values.
   VaryConfig::Values VaryConfig::* parameter = nullptr;
-  std::array<double, 2> values;  ///< First and last, in base units.
+  std::array<double, 2> values = {0, 0};  ///< First and last, in base units.
 };
 
 /// What a study looks at: a circle with the square inscribed in it.

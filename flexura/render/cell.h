@@ -31,7 +31,7 @@ struct SquarePart {
 /// A square of the image that one straight border divides, both sides uniform.
 struct Division {
   Eigen::Vector2d normal;  ///< From the near to the far side.
-  double offset;           ///< Of the border from the square's centre, px.
+  double offset = 0;       ///< Of the border from the square's centre, px.
   Hit far;
   SquarePart far_part;
 };

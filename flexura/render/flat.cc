@@ -26,7 +26,7 @@ Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& w
   direction.head<2>() += ray.by_pixel * (distance * way);
   const auto [x, y, z] = plane_point(circle, direction);
   const double length = std::sqrt(x * x + y * y);
-  if (!(z > 0 && length > 0)) return border;
+  if (!(z > 0) || !(length > 0)) return border;
   border.depth = circle.center.z() + circle.radius / length * (x * circle.x.z() + y * circle.y.z());
   const Eigen::Vector3d slope =
       x * circle.by_x + y * circle.by_y - circle.radius * circle.radius * z * circle.by_z;

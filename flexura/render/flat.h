@@ -13,12 +13,12 @@ namespace flexura {
 struct Circle {
   Eigen::Vector3d center, normal;  ///< m; unit.
   Eigen::Vector3d x, y;            ///< Unit, in its plane, perpendicular.
-  double radius;                   ///< m; > 0.
+  double radius = 0;               ///< m; > 0.
   /// Where a ray of direction d meets the circle's plane is, from the center along x and y, (d . by_x, d .
   /// by_y) / (d . by_z); by_z is positive in front of the camera.
   Eigen::Vector3d by_x, by_y, by_z;
   Eigen::Vector2d narrow_way;  ///< The direction in (a, b) across which its image is narrowest.
-  double steepness;            ///< Bound on the derivative of CircleView::value by (a, b).
+  double steepness = 0;        ///< Bound on the derivative of CircleView::value by (a, b).
 };
 
 /// In the plane of the frame's x and y around its origin; `is_turned`: its normal is -z.
@@ -28,7 +28,7 @@ struct Circle {
 /// Whether the ray meets the disc within the circle in front of the camera: negative then, and zero on the
 /// circle's image. Two borders of the image on opposite sides, the nearer one first.
 struct CircleView {
-  double value;
+  double value = 0;
   std::array<Border, 2> borders;
 };
 [[nodiscard]] CircleView view_of(const Circle& circle, const Ray& ray);
@@ -51,7 +51,7 @@ struct Face {
 /// ray: within the face its two nearest edges; outside, the edge that keeps the ray out by the most, and
 /// another no nearer than that.
 struct FaceView {
-  bool is_hit;
+  bool is_hit = false;
   std::array<Border, 2> borders;
 };
 [[nodiscard]] FaceView view_of(const Face& face, const Ray& ray);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "flexura/render/image_region.h"
+#include "flexura/render/ray_field.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
@@ -21,13 +22,6 @@ const SpanKernels* kernels_of(SimdPath path) {
   return path == SimdPath::avx2 ? avx2_span_kernels() : baseline_span_kernels();
 }
 
-Ray ray_of(const Intrinsics& lens, double u, double v) {
-  Ray ray;
-  ray.direction << (u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1;
-  ray.by_pixel << 1 / lens.fx, 0, 0, 1 / lens.fy;
-  return ray;
-}
-
 // Calls visit(u, v) for the pixels of a region.
 template <typename Visit>
 void for_pixels(const ImageRegion& region, int width, int height, Visit&& visit) {
@@ -36,10 +30,6 @@ void for_pixels(const ImageRegion& region, int width, int height, Visit&& visit)
     const auto columns = region.columns(v, width);
     for (int u = columns.begin; u < columns.end; ++u) visit(u, v);
   }
-}
-
-bool is_plain_screen(const Screen& screen) {
-  return screen.gradient[0] == 0 && screen.gradient[1] == 0 && screen.falloff == 0;
 }
 
 }  // namespace
@@ -66,8 +56,8 @@ bool QuickPicture::draw(const Stage& stage, const Intrinsics& intrinsics, PixelK
   row_depth_.resize(stride_);
   draw_screens(stage);
   if (!draw_pieces(stage)) return false;
-  for (const DiscPart& disc : stage.discs)
-    if (!draw_disc(stage, disc)) return false;
+  if (!std::ranges::all_of(stage.discs, [&](const DiscPart& disc) { return draw_disc(stage, disc); }))
+    return false;
   if (!leave_faces(stage)) return false;
   for (std::size_t i = 0; i < drawn_count_; ++i) divide(drawn_[i]);
   find_left_out();
@@ -88,108 +78,10 @@ void QuickPicture::find_left_out() {
   }
 }
 
-void QuickPicture::draw_screens(const Stage& stage) {
-  bool is_first = true;
-  for (const FacePart& part : stage.faces) {
-    if (part.screen < 0) continue;
-    draw_screen(stage, part, is_first);
-    is_first = false;
-    for (const FacePart& other : stage.faces)
-      if (&other != &part && other.screen >= 0) leave_crossing(part.face, other.face);
-  }
-  if (!is_first) return;
-  std::ranges::fill(picture_->depth.values(), nothing);
-  for (int v = 0; v < height_; ++v)
-    for (int u = 0; u < width_; ++u) store(u, v, stage.scene->background);
-}
-
-// Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are left out.
-void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is_first) {
-  const Screen& screen = stage.scene->screens[static_cast<std::size_t>(part.screen)];
-  const Face& face = part.face;
-  const double scale = face.normal.dot(face.corners[0]);
-  const double limit = width_;
-  const auto whole = [&](double x) { return static_cast<int>(std::clamp(std::ceil(x), 0.0, limit)); };
-  const auto set_behind = [&](int v, int from, int to) {
-    for (int u = from; u < to; ++u) {
-      picture_->depth.at(u, v) = nothing;
-      store(u, v, stage.scene->background);
-    }
-  };
-  for (int v = 0; v < height_; ++v) {
-    const Ray row = ray_of(intrinsics_, 0, v);
-    const double infinity = std::numeric_limits<double>::infinity();
-    double inner_from = -infinity, inner_to = infinity, outer_from = -infinity, outer_to = infinity;
-    for (const Eigen::Vector3d& edge : face.edges) {
-      const double value = edge.dot(row.direction), by_u = edge.x() / intrinsics_.fx;
-      const double margin = 1.2 * std::hypot(by_u, edge.y() / intrinsics_.fy);
-      const auto cut = [&](double least, double& from, double& to) {
-        if (by_u > 0) from = std::max(from, (least - value) / by_u);
-        if (by_u < 0) to = std::min(to, (least - value) / by_u);
-        if (by_u == 0 && value < least) to = -infinity;
-      };
-      cut(margin, inner_from, inner_to);
-      cut(-margin, outer_from, outer_to);
-    }
-    const int outer_begin = whole(outer_from), outer_end = std::max(outer_begin, whole(outer_to));
-    const int begin = std::clamp(whole(inner_from), outer_begin, outer_end);
-    const int end = std::clamp(whole(inner_to), begin, outer_end);
-    if (is_first) set_behind(v, 0, begin), set_behind(v, end, width_);
-    for (int u = outer_begin; u < begin; ++u) leave(u, v);
-    for (int u = end; u < outer_end; ++u) leave(u, v);
-    if (begin == end) continue;
-    const double value = face.normal.dot(row.direction), by_u = face.normal.x() / intrinsics_.fx;
-    float* const depth = picture_->depth.row(v).data();
-    const auto count = static_cast<std::size_t>(end - begin);
-    kernels_->plane(static_cast<float>(scale), static_cast<float>(value + by_u * begin),
-                    static_cast<float>(by_u), row_depth_.data(), count);
-    const bool is_plain = is_plain_screen(screen);
-    if (is_first) std::copy_n(row_depth_.data(), count, depth + begin);
-    if (is_first && is_plain && channels_ == 1) {
-      std::fill_n(picture_->light.row(v).data() + begin, count,
-                  static_cast<float>(gray_of(screen.brightness)));
-      continue;
-    }
-    Hit hit;
-    hit.label = {SurfaceKind::screen, static_cast<std::uint16_t>(part.screen)};
-    hit.part = {Part::Kind::face, static_cast<std::uint32_t>(&part - stage.faces.data())};
-    for (int u = begin; u < end; ++u) {
-      const float here = row_depth_[static_cast<std::size_t>(u - begin)];
-      if (!is_first && !(here < depth[u])) continue;
-      depth[u] = here;
-      hit.depth = here;
-      store(u, v, is_plain ? screen.brightness : light_of(stage, hit, ray_of(intrinsics_, u, v)));
-    }
-  }
-}
-
-// Where the planes of two screens meet: the difference of their points' inverse depths is linear in the
-// image.
-void QuickPicture::leave_crossing(const Face& one, const Face& other) {
-  const Eigen::Vector3d difference =
-      one.normal / one.normal.dot(one.corners[0]) - other.normal / other.normal.dot(other.corners[0]);
-  if (!difference.allFinite()) return;
-  const double by_u = difference.x() / intrinsics_.fx, by_v = difference.y() / intrinsics_.fy;
-  const double reach = 1.2 * std::hypot(by_u, by_v), limit = width_;
-  for (int v = 0; v < height_; ++v) {
-    const double value = difference.dot(ray_of(intrinsics_, 0, v).direction);
-    double from = 0, to = limit;
-    if (by_u != 0) {
-      from = std::clamp((-value - std::copysign(reach, by_u)) / by_u, 0.0, limit);
-      to = std::clamp((-value + std::copysign(reach, by_u)) / by_u + 1, 0.0, limit);
-    } else if (std::abs(value) > reach) {
-      continue;
-    }
-    for (int u = static_cast<int>(from); u < static_cast<int>(to); ++u) leave(u, v);
-  }
-}
-
 bool QuickPicture::draw_pieces(const Stage& stage) {
   drawn_count_ = 0;
   edges_.clear();
-  for (const TubePiece& piece : stage.pieces)
-    if (!draw_piece(stage, piece)) return false;
-  return true;
+  return std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return draw_piece(stage, piece); });
 }
 
 void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn) {
@@ -201,7 +93,7 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, D
   span.u0 = static_cast<float>(u0), span.v0 = static_cast<float>(v0);
   span.depth0 = static_cast<float>(center.z());
   const double depth0 = span.depth0;
-  const Eigen::Vector3d d = R_PC * ray_of(intrinsics_, u0, v0).direction;
+  const Eigen::Vector3d d = R_PC * straight_ray(intrinsics_, u0, v0).direction;
   const Eigen::Vector3d by_u = R_PC.col(0) / intrinsics_.fx, by_v = R_PC.col(1) / intrinsics_.fy;
   const Eigen::Vector3d start = piece.p_PC + depth0 * d, chord = piece.bound_center.normalized();
   const Light& light = stage.scene->light;
@@ -336,9 +228,9 @@ bool QuickPicture::draw_disc(const Stage& stage, const DiscPart& disc) {
   if (!region) return false;
   const bool is_front = circle.normal.dot(circle.center) < 0;
   for_pixels(*region, width_, height_, [&](int u, int v) {
-    const Ray ray = ray_of(intrinsics_, u, v);
+    const Ray ray = straight_ray(intrinsics_, u, v);
     const CircleView view = view_of(circle, ray);
-    const double before = static_cast<double>(picture_->depth.at(u, v));
+    const auto before = static_cast<double>(picture_->depth.at(u, v));
     for (const Border& border : view.borders) {
       if (border.distance > 0.9) continue;
       if (border.depth < before + 0.2 * circle.radius) leave(u, v);
@@ -374,7 +266,7 @@ void QuickPicture::divide(const Drawn& drawn) {
   SpanPiece piece = drawn.piece;
   piece.edges = edges_.data() + drawn.first_edge;
   float us[span_step], vs[span_step];
-  BorderPixels borders;
+  BorderPixels borders{};
   for (std::size_t begin = 0; begin < drawn.contour.size(); begin += span_step) {
     const std::size_t count = std::min(span_step, drawn.contour.size() - begin);
     for (std::size_t i = 0; i < span_step; ++i) {

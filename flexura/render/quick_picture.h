@@ -37,7 +37,7 @@ class QuickPicture {
  private:
   // A piece as it was drawn, and the pixels where its contour may be.
   struct Drawn {
-    SpanPiece piece;
+    SpanPiece piece{};
     std::size_t first_edge = 0;
     std::vector<Pixel> contour;
   };

@@ -13,14 +13,14 @@ bool is_same(const Intrinsics& a, const Intrinsics& b) {
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
 }
 
+}  // namespace
+
 Ray straight_ray(const Intrinsics& intrinsics, double u, double v) {
   Ray ray;
   ray.direction << (u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy, 1;
   ray.by_pixel << 1 / intrinsics.fx, 0, 0, 1 / intrinsics.fy;
   return ray;
 }
-
-}  // namespace
 
 std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel) {
   if (!lens.intrinsics().is_distorted()) return straight_ray(lens.intrinsics(), pixel.x(), pixel.y());

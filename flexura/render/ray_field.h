@@ -8,6 +8,9 @@
 
 namespace flexura {
 
+/// The ray of the point (u, v) of the image of a lens without distortion.
+[[nodiscard]] Ray straight_ray(const Intrinsics& intrinsics, double u, double v);
+
 /// The ray of a point of the image; none where the lens shows no direction.
 [[nodiscard]] std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel);
 

@@ -137,12 +137,25 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     add_stand(bytes, scene);
     const View view = view_from(bytes);
     Renderer renderer;
+<<<<<<< HEAD
     LightImage picture;
     renderer.render(scene, view, bytes.choice(2) == 0 ? PixelKind::gray : PixelKind::color, picture);
     for (const float value : picture.light.values())
       if (!std::isfinite(value) || value < -1e-4F) std::abort();
     for (const float value : picture.depth.values())
       if (!(value > 0)) std::abort();
+=======
+    LightImage quick, picture;
+    const PixelKind pixels = bytes.choice(2) == 0 ? PixelKind::gray : PixelKind::color;
+    renderer.render(scene, view, pixels, quick);
+    renderer.render(scene, view, pixels, picture, true);
+    for (const LightImage* one : {&quick, &picture}) {
+      for (const float value : one->light.values())
+        if (!std::isfinite(value) || value < -1e-4F) std::abort();
+      for (const float value : one->depth.values())
+        if (!(value > 0)) std::abort();
+    }
+>>>>>>> sensor
     TruthMaps maps;
     truth_maps(renderer, maps);
     for (std::size_t i = 0; i < maps.depth.values().size(); ++i)

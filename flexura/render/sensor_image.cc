@@ -22,7 +22,7 @@ const SensorKernels& kernels_of(SimdPath path, PixelKind pixels) {
   return pixels == PixelKind::color ? pair->color : pair->gray;
 }
 
-const SensorConfig& checked(const SensorConfig& config) {
+SensorConfig checked(SensorConfig config) {
   const auto require = [](bool holds, const char* message) {
     if (!holds) throw std::invalid_argument(message);
   };

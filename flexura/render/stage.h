@@ -45,24 +45,24 @@ struct Body {
 
 struct DiscPart {
   Circle circle;  ///< Its normal points out of the body.
-  int body;
+  int body = 0;
   std::size_t tube_arc = 0;  ///< Where it is on an arm: the arc
   double along = 0;          ///< and the distance from the arc's start, m.
   int arm_piece = -1;        ///< Of a guide disk: the piece of the arm that comes out of it.
 };
 struct FacePart {
   Face face;
-  int body;
+  int body = 0;
   int screen = -1;
 };
 struct PlanePart {
   Eigen::Vector3d point, normal;  ///< C; unit, out of the body.
-  int body;
+  int body = 0;
 };
 
 /// The edge of a marker ring on the arm, or the plane of a guide disk's face.
 struct RingEdge {
-  double s;
+  double s = 0;
   Circle circle;
   bool is_disk = false;
 };
@@ -70,7 +70,7 @@ struct RingEdge {
 /// A red line's edge: it leaves the camera in a plane.
 struct LineEdge {
   Eigen::Vector3d from, to;  ///< Its ends, C.
-  double angle;              ///< Around the etalon's +Y from its +Z, rad in (-pi, pi].
+  double angle = 0;          ///< Around the etalon's +Y from its +Z, rad in (-pi, pi].
 };
 
 /// A scene as one camera sees it, in C: primitives that rays can be held against. Its vectors are used again

@@ -59,10 +59,9 @@ bool may_touch(const Cone& cone, const TubePiece& piece) {
 }
 
 bool may_touch(const Cone& cone, const Face& face) {
-  for (const Eigen::Vector3d& edge : face.edges) {
-    if (edge.dot(cone.direction) < -cone.radius * edge.head<2>().norm()) return false;
-  }
-  return true;
+  return std::ranges::all_of(face.edges, [&](const Eigen::Vector3d& edge) {
+    return !(edge.dot(cone.direction) < -cone.radius * edge.head<2>().norm());
+  });
 }
 
 bool may_touch(const Cone& cone, const PlanePart& plane) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace flexura {
@@ -30,7 +31,7 @@ struct Sights {
       borders[count++] = border;
       return;
     }
-    const auto farthest = std::max_element(borders.begin(), borders.end());
+    const auto farthest = std::ranges::max_element(borders, std::less<>{});
     if (border < *farthest) *farthest = border;
   }
   void add_all(const std::array<Border, 2>& list) {
@@ -126,13 +127,17 @@ void meet_half_space(const Stage& stage, Part part, const Ray& ray, Sights& sigh
 void meet(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
   switch (part.kind) {
     case Part::Kind::piece:
-      return meet_piece(stage, part, ray, sights);
+      meet_piece(stage, part, ray, sights);
+      break;
     case Part::Kind::disc:
-      return meet_disc(stage, part, ray, sights);
+      meet_disc(stage, part, ray, sights);
+      break;
     case Part::Kind::face:
-      return meet_face(stage, part, ray, sights);
+      meet_face(stage, part, ray, sights);
+      break;
     case Part::Kind::plane:
-      return meet_half_space(stage, part, ray, sights);
+      meet_half_space(stage, part, ray, sights);
+      break;
   }
 }
 
@@ -244,7 +249,7 @@ Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
 // circle's image, which is more exact.
 Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slope, double depth,
                    const Ray& ray) {
-  const Border straight = border_of(s - edge.s, s_slope, ray, depth);
+  Border straight = border_of(s - edge.s, s_slope, ray, depth);
   if (!(straight.distance < border_reach)) return straight;
   const CircleView view = view_of(edge.circle, ray);
   for (const Border& border : view.borders) {

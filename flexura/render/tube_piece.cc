@@ -151,7 +151,7 @@ double minimum_between(const TubePiece& piece, const LocalRay& ray, double low, 
     const Inside at = inside_at(piece, ray, depth);
     (at.slope < 0 ? low : high) = depth;
     double next = at.curving > 0 ? depth - at.slope / at.curving : low;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (!(next > low) || !(next < high)) next = 0.5 * (low + high);
     const double move = std::abs(next - depth);
     depth = next;
     if (move < 1e-10 * (1 + depth)) break;
@@ -161,12 +161,12 @@ double minimum_between(const TubePiece& piece, const LocalRay& ray, double low, 
 
 // Where the value, positive at `low` and negative at `high`, is zero, starting at `depth`.
 double root_between(const TubePiece& piece, const LocalRay& ray, double low, double high, double depth) {
-  if (!(depth > low && depth < high)) depth = 0.5 * (low + high);
+  if (!(depth > low) || !(depth < high)) depth = 0.5 * (low + high);
   for (int step = 0; step < 80; ++step) {
     const Inside at = inside_at(piece, ray, depth);
     (at.value > 0 ? low : high) = depth;
     double next = at.slope < 0 ? depth - at.value / at.slope : low;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (!(next > low) || !(next < high)) next = 0.5 * (low + high);
     const double move = std::abs(next - depth);
     depth = next;
     if (move < 4e-16 * depth || low >= high) break;

@@ -40,8 +40,9 @@ struct TubePiece {
 /// A ray in a piece's frame; `depth` is what its direction is multiplied by.
 struct LocalRay {
   Eigen::Vector3d origin, direction;
-  double square;  ///< Of the direction.
-  double cross;   ///< How fast it turns around the centre of curvature (docs/renderer.md), constant along it.
+  double square = 0;  ///< Of the direction.
+  double cross =
+      0;  ///< How fast it turns around the centre of curvature (docs/renderer.md), constant along it.
 };
 /// From the camera; and from any point in C in any direction.
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Ray& ray);
@@ -50,12 +51,12 @@ struct LocalRay {
 
 /// The part of a ray between the two depths.
 struct DepthRange {
-  double from, to;
+  double from = 0, to = 0;
   bool leaves_before = false, leaves_after = false;  ///< At `to`, through the plane at the start, at the end.
   [[nodiscard]] bool is_empty() const { return !(from < to); }
 };
 /// Where the ray is in the piece's part of space and within `radius` of its bound's centre.
-[[nodiscard]] DepthRange range_of(const TubePiece& piece, const LocalRay& ray, double radius);
+[[nodiscard]] DepthRange range_of(const TubePiece& piece, const LocalRay& local, double radius);
 
 /// The square of the distance to the centreline less that of the radius, and its derivatives by depth:
 /// negative inside. The second derivative leaves out what the widening adds.
@@ -66,18 +67,18 @@ struct Inside {
 
 /// A place near the piece in C.
 struct TubePoint {
-  double s;                 ///< Of the nearest point of the centreline, m from the start of the whole tube.
-  double gap;               ///< Signed distance to the surface (in the cross-section), m; negative inside.
+  double s = 0;             ///< Of the nearest point of the centreline, m from the start of the whole tube.
+  double gap = 0;           ///< Signed distance to the surface (in the cross-section), m; negative inside.
   Eigen::Vector3d normal;   ///< Of the surfaces of equal gap, C, unit.
   Eigen::Vector3d outward;  ///< From the centreline, C, unit.
   Eigen::Vector3d tangent;  ///< Of the centreline, C, unit.
-  double shrink;            ///< 1 - curvature * distance towards the centre: length along it by arc length.
+  double shrink = 1;        ///< 1 - curvature * distance towards the centre: length along it by arc length.
 };
 [[nodiscard]] TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ);
 
 /// Depths at which a ray comes nearest to a piece without touching it; no more than two before it meets it.
 struct NearMisses {
-  std::array<double, 2> depths;
+  std::array<double, 2> depths = {0, 0};
   int count = 0;
 };
 /// The depth in the range at which the ray enters the piece for the first time; infinity when it does not.

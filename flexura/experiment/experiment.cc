@@ -10,6 +10,7 @@
 
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/study_config.h"
 #include "flexura/store/csv_reader.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
@@ -32,6 +33,8 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     check_task(experiment.task[i], experiment.arm.kind, experiment.arm.section.size(),
                fmt::format("task[{}]", i), reader);
+    if (const auto* study = std::get_if<StudyTask>(&experiment.task[i]))
+      check_study(*study, experiment.cameras(), fmt::format("task[{}]", i), reader);
   }
 }
 

@@ -21,5 +21,6 @@ inline constexpr const char* summary_file_name = "summary.json";
 inline constexpr const char* timing_file_name = "timing.json";
 inline constexpr const char* report_file_name = "report.html";
 inline constexpr const char* figures_folder_name = "figures";
+inline constexpr const char* tables_folder_name = "tables";
 
 }  // namespace flexura

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "flexura/base/version.h"
 #include "flexura/camera/camera.h"
@@ -17,6 +18,7 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/study_results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/report/report.h"
 #include "flexura/safety/motion_check.h"
@@ -150,7 +152,8 @@ class Witness {
                     .safety = {},
                     .obstacles = experiment.obstacle,
                     .curve = experiment.record.curve,
-                    .tension = experiment.record.tension};
+                    .tension = experiment.record.tension,
+                    .chapters = {}};
     add_safety(safety, schedule, data);
     return data;
   }
@@ -266,9 +269,15 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     result.summary.as<Node::Table>()->push_back(
         {"cameras", {}, camera_nodes(experiment.cameras(), witness.frames())});
   }
+  const std::vector<ImageStudy> studies = studies_of(experiment);
+  write_study_tables(studies, folder);
+  if (!studies.empty()) result.summary.as<Node::Table>()->push_back({"studies", {}, study_nodes(studies)});
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
-  if (experiment.record.report)
-    write_report(folder, std::move(witness).report_data(experiment, schedule, safety));
+  if (experiment.record.report) {
+    ReportData data = std::move(witness).report_data(experiment, schedule, safety);
+    for (const ImageStudy& study : studies) data.chapters.push_back(study_chapter(study));
+    write_report(folder, data);
+  }
   return result;
 }
 

@@ -29,6 +29,9 @@ void check_one_or_each(std::size_t given, std::size_t sections, const std::strin
 
 void check_one(const HoldTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
 
+// Studies depend on the cameras, not on the arm (check_study).
+void check_one(const StudyTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
+
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   check_shape(task.to, kind, sections, path + ".to", reader);
@@ -131,6 +134,8 @@ double distance(const ArmState& from, const ArmState& to) {
 MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
   return hold_motion(from, task.duration);
 }
+
+MotionPtr motion_of(const StudyTask&, const Arm&, const ArmState& from) { return hold_motion(from, 0); }
 
 // The shape that a move goes to. The search for one starts from where the arm is, unless a formula left it
 // nowhere.

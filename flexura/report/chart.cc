@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "flexura/report/axes.h"
+#include "flexura/report/legend.h"
 
 namespace flexura {
 namespace {
@@ -14,37 +16,7 @@ constexpr double chart_width = 520.0;
 constexpr double heading_space = 34.0;
 constexpr double right_space = 18.0;
 constexpr double chart_plot_height = 216.0;
-constexpr double legend_row = 22.0;
-constexpr double swatch_width = 20.0;
 constexpr double dash_length = 11.0;  // Of each of several lines on top of each other.
-
-double text_width(std::string_view text) { return 7.8 * static_cast<double>(text.size()); }
-
-// Draws the legend in rows below the plot and returns their height.
-double draw_legend(XmlWriter& svg, const LineChart& chart, double left, double top) {
-  if (chart.series.size() < 2 && chart.legend.empty()) return 0.0;
-  double x = left;
-  double y = top + 16.0;
-  if (!chart.legend.empty()) {
-    svg.label({x, y}, "tick", chart.legend);
-    x += text_width(chart.legend) + 10.0;
-  }
-  const double indent = x;
-  for (const ChartSeries& series : chart.series) {
-    const double width = swatch_width + 6.0 + text_width(series.name) + 10.0;
-    if (x + width > chart_width - 4.0) {
-      x = indent;
-      y += legend_row;
-    }
-    svg.leaf(
-        "path",
-        {{"class", "line " + series.css_class},
-         {"d", fmt::format("M{} {}h{}", page_number(x), page_number(y - 5.0), page_number(swatch_width))}});
-    svg.label({x + swatch_width + 6.0, y}, "", series.name);
-    x += width;
-  }
-  return y + 10.0 - top;
-}
 
 void draw_events(XmlWriter& svg, const PlotFrame& frame, const std::vector<double>& event_times) {
   std::string path;
@@ -63,8 +35,9 @@ struct Share {
 
 std::vector<Share> shares_of(const std::vector<ChartSeries>& series, double tolerance) {
   const auto coincide = [&](const ChartSeries& a, const ChartSeries& b) {
-    return std::ranges::equal(a.values, b.values,
-                              [&](double u, double v) { return std::abs(u - v) <= tolerance; });
+    return std::ranges::equal(a.values, b.values, [&](double u, double v) {
+      return (std::isnan(u) && std::isnan(v)) || std::abs(u - v) <= tolerance;
+    });
   };
   std::vector<Share> shares;
   for (const ChartSeries& one : series) {
@@ -76,19 +49,43 @@ std::vector<Share> shares_of(const std::vector<ChartSeries>& series, double tole
   return shares;
 }
 
+// The points of the values that are numbers, those between two others that are not apart.
+std::vector<std::vector<Eigen::Vector2d>> runs_of(const PlotFrame& frame, const std::vector<double>& times,
+                                                  const std::vector<double>& values) {
+  std::vector<std::vector<Eigen::Vector2d>> runs(1);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (std::isfinite(values[i])) {
+      runs.back().push_back(frame.page({times[i], values[i]}));
+    } else if (!runs.back().empty()) {
+      runs.emplace_back();
+    }
+  }
+  if (runs.back().empty()) runs.pop_back();
+  return runs;
+}
+
+void draw_dot(XmlWriter& svg, const std::string& css_class, const Eigen::Vector2d& at, const char* radius) {
+  svg.leaf("circle", {{"class", "dot " + css_class},
+                      {"cx", page_number(at.x())},
+                      {"cy", page_number(at.y())},
+                      {"r", radius}});
+}
+
 void draw_series(XmlWriter& svg, const PlotFrame& frame, const ChartSeries& series,
                  const std::vector<double>& times, const Share& share) {
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(times.size());
-  for (std::size_t i = 0; i < times.size(); ++i) points.push_back(frame.page({times[i], series.values[i]}));
-  if (points.size() == 1) {
-    svg.leaf("circle", {{"class", "dot " + series.css_class},
-                        {"cx", page_number(points[0].x())},
-                        {"cy", page_number(points[0].y())},
-                        {"r", "4"}});
-    return;
+  std::string path;
+  for (const std::vector<Eigen::Vector2d>& run : runs_of(frame, times, series.values)) {
+    if (run.size() == 1) {
+      draw_dot(svg, series.css_class, run[0], "4");
+    } else {
+      path += polyline_path(simplified(run, 0.05));
+    }
   }
-  const std::string path = polyline_path(simplified(points, 0.05));
+  for (std::size_t i = 0; i < series.dots.size(); ++i) {
+    if (std::isfinite(series.dots[i]))
+      draw_dot(svg, series.css_class, frame.page({times[i], series.dots[i]}), "3");
+  }
+  if (path.empty()) return;
   if (share.of == 1) {
     svg.leaf("path", {{"class", "line " + series.css_class}, {"d", path}});
     return;
@@ -102,22 +99,29 @@ void draw_series(XmlWriter& svg, const PlotFrame& frame, const ChartSeries& seri
             {"d", path}});
 }
 
-}  // namespace
-
-Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
-                      const std::vector<double>& event_times) {
-  Interval values = {chart.series.front().values.front(), chart.series.front().values.front()};
-  for (const ChartSeries& series : chart.series) {
-    for (const double value : series.values) values.include(value);
+// What the values reach over; nothing at 0 where none is a number.
+Interval range_of(const std::vector<ChartSeries>& series) {
+  std::optional<Interval> range;
+  const auto include = [&](const std::vector<double>& values) {
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      if (!range) range = {value, value};
+      range->include(value);
+    }
+  };
+  for (const ChartSeries& one : series) {
+    include(one.values);
+    include(one.dots);
   }
-  values = padded(values, chart.least, 0.05);
-  const double left = left_of_axes(values, chart_plot_height);
-  const Interval time_range = times.back() > times.front() ? padded({times.front(), times.back()}, 0.0, 0.0)
-                                                           : padded({times.front(), times.front()}, 1.0, 0.0);
-  const PlotFrame frame = {
-      time_range, values, {left, heading_space}, {chart_width - left - right_space, chart_plot_height}};
+  return range.value_or(Interval{});
+}
 
-  XmlWriter svg;
+// Opens the group that the chart is in, and tells the page's script where it is.
+void open_group(XmlWriter& svg, const LineChart& chart, const PlotFrame& frame) {
+  if (!chart.is_over_time()) {
+    svg.open("g");
+    return;
+  }
   std::string names;
   for (const ChartSeries& series : chart.series) names += (names.empty() ? "" : " ") + series.name;
   svg.open("g", {{"class", "chart"},
@@ -127,16 +131,38 @@ Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
                  {"data-right", page_number(frame.right())},
                  {"data-top", page_number(frame.corner.y())},
                  {"data-bottom", page_number(frame.bottom())},
-                 {"data-from", fmt::format("{:.9g}", time_range.low)},
-                 {"data-to", fmt::format("{:.9g}", time_range.high)}});
+                 {"data-from", fmt::format("{:.9g}", frame.x.low)},
+                 {"data-to", fmt::format("{:.9g}", frame.x.high)}});
+}
+
+}  // namespace
+
+Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
+                      const std::vector<double>& event_times) {
+  const Interval values = padded(range_of(chart.series), chart.least, 0.05);
+  const double left = left_of_axes(values, chart_plot_height);
+  const Interval time_range = times.back() > times.front() ? padded({times.front(), times.back()}, 0.0, 0.0)
+                                                           : padded({times.front(), times.front()}, 1.0, 0.0);
+  const PlotFrame frame = {
+      time_range, values, {left, heading_space}, {chart_width - left - right_space, chart_plot_height}};
+
+  XmlWriter svg;
+  open_group(svg, chart, frame);
   svg.label({left, 22.0}, "heading", chart.heading);
-  draw_axes(svg, frame, "t (s)", chart.value_label);
+  draw_axes(svg, frame, chart.is_over_time() ? "t (s)" : chart.x_label, chart.value_label);
   draw_events(svg, frame, event_times);
   const std::vector<Share> shares = shares_of(chart.series, 0.5 / frame.scale().y());
   for (std::size_t i = 0; i < shares.size(); ++i) draw_series(svg, frame, chart.series[i], times, shares[i]);
   const double below = frame.bottom() + space_below_axes;
-  const double height = below + draw_legend(svg, chart, left, below);
-  return {chart_width, height, fmt::format("Chart over time: {}, {}", chart.heading, chart.value_label),
+  double height = below;
+  if (chart.series.size() > 1 || !chart.legend.empty()) {
+    std::vector<LegendEntry> entries;
+    for (const ChartSeries& one : chart.series) entries.push_back({one.name, one.css_class});
+    height += draw_legend(svg, chart.legend, entries, {left, below}, chart_width - 4.0);
+  }
+  return {chart_width, height,
+          fmt::format("Chart over {}: {}, {}", chart.is_over_time() ? "time" : chart.x_label, chart.heading,
+                      chart.value_label),
           svg.text()};
 }
 

@@ -18,11 +18,6 @@ namespace {
 
 constexpr std::size_t max_listed_events = 1000;
 
-struct NamedDrawing {
-  std::string name;
-  Drawing drawing;
-};
-
 std::vector<NamedDrawing> arm_drawings(const ReportMotion& motion, const PlotScene& scene) {
   return {{"arm-start", arm_picture(motion, scene, 0, "start")},
           {"arm-middle", arm_picture(motion, scene, motion.middle, "middle")},
@@ -158,6 +153,18 @@ std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
   return html + "</div>\n</section>\n";
 }
 
+std::string chapters_html(const ReportData& data) {
+  std::string html;
+  for (std::size_t i = 0; i < data.chapters.size(); ++i) {
+    const Chapter& chapter = data.chapters[i];
+    html += fmt::format(
+        "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n<div "
+        "class=\"charts chapter\">\n{3}</div>\n</section>\n",
+        i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), figures_html(chapter.drawings));
+  }
+  return html;
+}
+
 std::string thinned_html(const ReportMotion& motion) {
   if (motion.count() == motion.recorded) return "";
   return fmt::format(
@@ -200,6 +207,8 @@ std::vector<Figure> report_figures(const ReportData& data) {
   for (NamedDrawing& unsafe : unsafe_drawings(motion, scene)) drawings.push_back(std::move(unsafe));
   drawings.push_back({"tip-path", tip_path_picture(motion)});
   for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
+  for (const Chapter& chapter : data.chapters)
+    drawings.insert(drawings.end(), chapter.drawings.begin(), chapter.drawings.end());
   std::vector<Figure> figures;
   figures.reserve(drawings.size());
   for (const NamedDrawing& named : drawings)
@@ -235,6 +244,7 @@ std::string report_html(const ReportData& data) {
                                         {"player", inline_svg(player_picture(motion, scene))},
                                         {"sections", sections_html(motion)},
                                         {"charts", figures_html(charts)},
+                                        {"chapters", chapters_html(data)},
                                         {"events", events_html(data)},
                                         {"experiment", xml_escape(data.experiment_text)},
                                         {"data", motion_json(motion)}});

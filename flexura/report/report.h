@@ -8,8 +8,23 @@
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/obstacle.h"
+#include "flexura/report/svg.h"
 
 namespace flexura {
+
+/// A picture and its name, "tip-path".
+struct NamedDrawing {
+  std::string name;
+  Drawing drawing;
+};
+
+/// A part of a report for what its makers measured beside the motion.
+struct Chapter {
+  std::string heading;  ///< Any text.
+  std::string text;     ///< Likewise: a paragraph.
+  std::vector<NamedDrawing>
+      drawings;  ///< The first as high as two. Names that make file names, each once in the report.
+};
 
 /// What a finished run hands to its report.
 struct ReportData {
@@ -46,6 +61,7 @@ struct ReportData {
   std::vector<ObstacleConfig> obstacles;
   CurveKind curve = CurveKind::arcs;  ///< Drawn as a line along the arm; the arm itself is drawn as its arcs.
   double tension = 0.5;               ///< Of CurveKind::catmull_rom.
+  std::vector<Chapter> chapters = {};
 };
 
 /// A picture as a file.
@@ -61,8 +77,8 @@ struct Figure {
 
 /// The report's pictures: arm-start, arm-middle, arm-end, arm-unsafe-1 and on (violations at their worst
 /// moments), tip-path, bends (a spatial arm: bends-x and
-/// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip. Throws as
-/// report_html does.
+/// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip; and those of the
+/// chapters. Throws as report_html does.
 [[nodiscard]] std::vector<Figure> report_figures(const ReportData& data);
 
 }  // namespace flexura

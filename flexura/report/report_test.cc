@@ -135,6 +135,17 @@ TEST(Report, DrawsViolationsAtTheirWorstMoments) {
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-unsafe-2.svg")), 1U) << "outside its span, too";
 }
 
+TEST(Report, HasAChapterForWhatWasMeasuredBesideTheMotion) {
+  ReportData data = paper_run(10);
+  EXPECT_EQ(report_html(data).find("chapter-1"), std::string::npos);
+  data.chapters = {{"Study: <a>", "1 < 2", {{"a-edges", {100, 50, "a label", "<g></g>\n"}}}}};
+  const std::string html = report_html(data);
+  for (const char* part :
+       {"<h2 id=\"chapter-1\">Study: &lt;a&gt;</h2>", "<p>1 &lt; 2</p>", "<figure id=\"picture-a-edges\">"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_EQ(xml_fault(svg_of(report_figures(data), "a-edges.svg")), "");
+}
+
 TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
   ReportData data = spatial_run();
   data.obstacles = {PlaneConfig{.name = "ground <"},

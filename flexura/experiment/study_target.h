@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "flexura/camera/view.h"
+#include "flexura/experiment/study_config.h"
+#include "flexura/model/arm.h"
+#include "flexura/render/renderer.h"
+
+namespace flexura {
+
+/// Points on a study's circle: every 5 degrees, counter-clockwise from its lowest one.
+inline constexpr std::size_t circle_points = 72;
+
+/// The places of the square's corners and of the circle's top among them.
+inline constexpr std::size_t bottom_right = 9, top_right = 27, circle_top = 36, top_left = 45,
+                             bottom_left = 63;
+
+/// Where the target's points are in an image, px; none where the lens shows them nowhere.
+struct TargetImage {
+  std::optional<Eigen::Vector2d> center;
+  std::array<std::optional<Eigen::Vector2d>, circle_points> circle;
+};
+
+/// A study's circle and square in the world. The target's frame F has its x level, its y as upright as the
+/// plane allows, and its z along the normal; a level plane takes W's X for x.
+class StudyTarget {
+ public:
+  explicit StudyTarget(const StudyTargetConfig& config);
+
+  [[nodiscard]] const Eigen::Vector3d& center() const { return X_WF_.position; }
+  /// The level axis in the plane, unit, W.
+  [[nodiscard]] Eigen::Vector3d level_axis() const { return X_WF_.rotation.col(0); }
+  /// The circle's point number i, W, m.
+  [[nodiscard]] Eigen::Vector3d point(std::size_t i) const;
+
+  /// By the projection formulas.
+  [[nodiscard]] TargetImage projected(const View& view) const;
+
+  /// By the renderer: the truth of a thin tube that leads from the centre by half a circle to the lowest
+  /// point and once around. `renderer` may be used again.
+  [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
+  /// What it draws: that tube, with a marker ring at each corner of the square and at the circle's top.
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
+ private:
+  Pose X_WF_;
+  double radius_;
+  Scene scene_;
+};
+
+}  // namespace flexura

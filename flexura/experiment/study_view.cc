@@ -1,0 +1,78 @@
+#include "flexura/experiment/study_view.h"
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+using Parameter = VaryConfig::Values VaryConfig::*;
+using V = VaryConfig;
+
+constexpr std::array<Parameter, 3> head_parameters{&V::pan, &V::tilt, &V::zoom};
+constexpr std::array<Parameter, 3> stage_parameters{&V::stage_x, &V::stage_y, &V::stage_z};
+constexpr std::array<Parameter, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
+constexpr std::array<Parameter, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
+
+// The place of a parameter in a list; its size when it is not there.
+template <std::size_t n>
+std::size_t place_in(const std::array<Parameter, n>& list, Parameter parameter) {
+  std::size_t i = 0;
+  while (i < n && list[i] != parameter) ++i;
+  return i;
+}
+
+Intrinsics with(Intrinsics lens, Parameter parameter, double value) {
+  const std::size_t k = place_in(distortion_parameters, parameter);
+  if (k < distortion_parameters.size()) lens.distortion[k] = value;
+  if (parameter == &V::focal_length) lens.fy *= value / lens.fx;
+  if (parameter == &V::focal_length || parameter == &V::fx) lens.fx = value;
+  if (parameter == &V::fy) lens.fy = value;
+  if (parameter == &V::cx) lens.cx = value;
+  if (parameter == &V::cy) lens.cy = value;
+  return lens;
+}
+
+// The camera turned by the shortest way to look at the target's centre, and both turned about its level axis.
+Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
+  const Eigen::Vector3d way = target.center() - X_WC.position;
+  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot orbit its own place");
+  const Eigen::Matrix3d R_aim = X_WC.rotation * rotation_from_z(X_WC.rotation.transpose() * way);
+  const Eigen::Matrix3d R_rise = so3_exp(-angle * target.level_axis());
+  return {R_rise * R_aim, target.center() - R_rise * way};
+}
+
+}  // namespace
+
+View view_with(const Camera& camera, Parameter parameter, double value, const StudyTarget& target) {
+  HeadState head = camera.initial_head();
+  StageState stage = camera.initial_stage();
+  if (parameter == &V::pan) head.pan = value;
+  if (parameter == &V::tilt) head.tilt = value;
+  if (parameter == &V::zoom) head.zoom = value;
+  const std::size_t slide = place_in(stage_parameters, parameter);
+  if (slide < stage_parameters.size()) stage.offset[static_cast<Eigen::Index>(slide)] = value;
+
+  View view = camera.view(stage, head);
+  if (const std::size_t i = place_in(pupil_parameters, parameter); i < pupil_parameters.size()) {
+    CameraConfig config = camera.config();
+    config.head.pupil[i] = value;
+    view = Camera(config).view(stage, head);
+  }
+  if (parameter == &V::roll) view.X_WC.rotation *= so3_exp({0, 0, value});
+  if (parameter == &V::orbit) view.X_WC = orbited(view.X_WC, target, value);
+  view.lens = Lens(with(view.lens.intrinsics(), parameter, value));
+  return view;
+}
+
+const AxisConfig* moved_axis(const Camera& camera, Parameter parameter) {
+  if (const std::size_t i = place_in(head_parameters, parameter); i < 3) return &camera.head_axes()[i];
+  if (const std::size_t i = place_in(stage_parameters, parameter); i < 3) return &camera.stage_axes()[i];
+  return nullptr;
+}
+
+}  // namespace flexura

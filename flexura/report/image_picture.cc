@@ -1,0 +1,99 @@
+#include "flexura/report/image_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "flexura/report/axes.h"
+#include "flexura/report/legend.h"
+
+namespace flexura {
+namespace {
+
+constexpr double picture_width = 520.0;
+constexpr double heading_space = 34.0;
+constexpr double right_space = 18.0;
+constexpr double tallest_plot = 430.0;
+constexpr double flattest_plot = 0.4;  // Height over width.
+
+// A point of the image in the plot's data: rows go up.
+Eigen::Vector2d upward(const ImagePlot& plot, const Eigen::Vector2d& pixel) {
+  return {pixel.x(), plot.height - 1 - pixel.y()};
+}
+
+// What of the image the outlines take up along one axis; all of it where they are outside.
+Interval shown_along(const ImagePlot& plot, int axis) {
+  const Interval all = {-0.5, (axis == 0 ? plot.width : plot.height) - 0.5};
+  Interval range = {all.high, all.low};
+  for (const ImageOutline& outline : plot.outlines) {
+    for (const ImageOutline::Line& line : outline.lines) {
+      for (const Eigen::Vector2d& point : line.points) {
+        const double at = std::clamp(upward(plot, point)[axis], all.low, all.high);
+        range = {std::min(range.low, at), std::max(range.high, at)};
+      }
+    }
+  }
+  return range.low <= range.high ? range : all;
+}
+
+Interval grown_to(Interval range, double extent) {
+  const double more = std::max(0.0, extent - range.extent()) / 2;
+  return {range.low - more, range.high + more};
+}
+
+PlotFrame frame_of(const ImagePlot& plot) {
+  Interval x = padded(shown_along(plot, 0), 1, 0.05);
+  Interval y = padded(shown_along(plot, 1), 1, 0.05);
+  const double left = left_of_axes(y, tallest_plot);
+  const double width = picture_width - left - right_space;
+  x = grown_to(x, y.extent() * width / tallest_plot);
+  y = grown_to(y, flattest_plot * x.extent());
+  return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}};
+}
+
+void draw_border(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
+  const Eigen::Vector2d corner = frame.page({-0.5, plot.height - 0.5});
+  const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));
+  svg.leaf("rect", {{"class", "plot"},
+                    {"x", page_number(corner.x())},
+                    {"y", page_number(corner.y())},
+                    {"width", page_number(size.x())},
+                    {"height", page_number(size.y())}});
+}
+
+void draw_outline(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame,
+                  const ImageOutline& outline) {
+  for (const ImageOutline::Line& line : outline.lines) {
+    std::vector<Eigen::Vector2d> points;
+    for (const Eigen::Vector2d& point : line.points) points.push_back(frame.page(upward(plot, point)));
+    if (points.empty()) continue;
+    svg.leaf("path", {{"class", fmt::format("line {} {}", outline.css_class, line.css_class)},
+                      {"d", polyline_path(simplified(points, 0.05))}});
+  }
+}
+
+}  // namespace
+
+Drawing image_picture(const ImagePlot& plot) {
+  const PlotFrame frame = frame_of(plot);
+  XmlWriter svg;
+  svg.label({frame.corner.x(), 22.0}, "heading", plot.heading);
+  draw_axes(svg, frame, "column (px)", "row from the lowest (px)");
+  // A picture within the picture cuts off what leaves the plot.
+  svg.open("svg", {{"x", page_number(frame.corner.x())},
+                   {"y", page_number(frame.corner.y())},
+                   {"width", page_number(frame.size.x())},
+                   {"height", page_number(frame.size.y())},
+                   {"viewBox", page_point(frame.corner) + ' ' + page_point(frame.size)}});
+  draw_border(svg, plot, frame);
+  for (const ImageOutline& outline : plot.outlines) draw_outline(svg, plot, frame, outline);
+  svg.close();
+  std::vector<LegendEntry> entries;
+  for (const ImageOutline& outline : plot.outlines) entries.push_back({outline.name, outline.css_class});
+  const double below = frame.bottom() + space_below_axes;
+  const double legend =
+      draw_legend(svg, plot.legend, entries, {frame.corner.x(), below}, picture_width - 4.0);
+  return {picture_width, below + legend, "Image: " + plot.heading, svg.text()};
+}
+
+}  // namespace flexura

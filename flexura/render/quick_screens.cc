@@ -69,7 +69,8 @@ void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is
     if (begin == end) continue;
     const double value = face.normal.dot(row.direction), by_u = face.normal.x() / intrinsics_.fx;
     const auto depth_at = [&](int u) { return scale / (value + by_u * u); };
-    if (!(depth_at(begin) > 1e-6 && depth_at(end - 1) > 1e-6)) {
+    const bool is_before_camera = depth_at(begin) > 1e-6 && depth_at(end - 1) > 1e-6;
+    if (!is_before_camera) {
       for (int u = begin; u < end; ++u) leave(u, v);
       if (is_first) set_behind(v, begin, end);
       continue;

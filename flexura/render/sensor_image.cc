@@ -183,9 +183,10 @@ const float* Sensor::blur_down(int v, SensorRows& rows) const {
                            [](std::uint8_t one) { return static_cast<std::uint8_t>(one & same_as_left); });
     return rows.conditioned.data() + slot(v) * padded;
   }
-  for (int i = -radius_; i <= radius_; ++i) {
-    const std::size_t at = slot(std::clamp(v + i, 0, height_ - 1));
-    rows.window[static_cast<std::size_t>(i + radius_)] = rows.conditioned.data() + at * padded;
+  const int count = 2 * radius_ + 1;
+  for (int place = 0; place < count; ++place) {
+    const std::size_t at = slot(std::clamp(v + place - radius_, 0, height_ - 1));
+    rows.window[static_cast<std::size_t>(place)] = rows.conditioned.data() + at * padded;
   }
   plan(v, rows);
   kernels_->blur_down(row(blocks_), rows.window.data(), rows.work.data(), rows.light.data());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace flexura {
 namespace {
@@ -78,7 +79,7 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
               reader.problem_at(
                   "rotation",
                   fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
-            if (4 * etalon.line_width > 6.28 * etalon.radius)
+            if (4 * etalon.line_width > 2 * std::numbers::pi * etalon.radius)
               reader.problem_at("line_width", "leaves nothing between the four lines: expected less");
           });
   return table;
@@ -116,7 +117,7 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
           .field("screen", &StandConfig::screen,
                  {.meaning = "Screens, as tables [[stand.screen]].",
                   .count = {0, 100},
-                  .default_text = "two, behind the arm as cameras 1 and 2 see it"})
+                  .default_text = "two, behind the arm as the paper's two cameras see it"})
           .field("etalon", &StandConfig::etalon,
                  {.meaning = "The calibration cylinder.", .default_text = "none"})
           .field("light", &StandConfig::light, {.meaning = "The light."})

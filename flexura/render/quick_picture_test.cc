@@ -16,7 +16,7 @@ namespace {
 Scene some_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, const View& view) {
   Scene scene;
   scene.arm.tube = tube_of(arm, backbone);
-  if (random.integer(0, 3) == 0) scene.arm.tip = TipShape::round;
+  if (random.integer(0, 3) == 0) scene.arm.tip = TipKind::round;
   for (int i = random.integer(0, 12); i > 0; --i) {
     const double s = random.uniform(-0.02, 1);
     scene.arm.markers.push_back({s, s + random.uniform(0.001, 0.03)});

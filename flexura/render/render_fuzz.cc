@@ -73,7 +73,7 @@ void add_arm(Bytes& bytes, Scene& scene) {
   }
   if (bytes.choice(4) == 0)
     scene.arm.disks.push_back({bytes.number(0, 1), bytes.number(0.01, 0.2), bytes.number(0.001, 0.1)});
-  if (bytes.choice(3) == 0) scene.arm.tip = TipShape::round;
+  if (bytes.choice(3) == 0) scene.arm.tip = TipKind::round;
 }
 
 void add_stand(Bytes& bytes, Scene& scene) {

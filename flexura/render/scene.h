@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/math/pose.h"
+#include "flexura/model/look.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/render/tube.h"
 
@@ -34,12 +35,10 @@ struct GuideDisk {
   double thickness = 0.004;  ///< m; > 0.
 };
 
-enum class TipShape { flat, round };
-
 /// The arm as it is seen. Empty `tube`: none.
 struct ArmLook {
   std::vector<TubeArc> tube;  ///< From the base on, each arc at the end of the one before.
-  TipShape tip = TipShape::flat;
+  TipKind tip = TipKind::flat;
   Color albedo = {0.16, 0.16, 0.17};
   Color disk_albedo = {0.35, 0.35, 0.37};
   std::vector<MarkerRing> markers;  ///< Where two overlap the later one is seen.

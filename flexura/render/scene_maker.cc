@@ -64,7 +64,7 @@ double stretched(const Arm& arm, const Backbone& backbone, double at) {
 SceneMaker::SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
                        const std::vector<ObstacleConfig>& obstacles)
     : arm_(arm), shows_arm_(stand.arm), markers_(look.markers(arm)), disks_(look.disk) {
-  still_.arm.tip = look.tip == TipKind::flat ? TipShape::flat : TipShape::round;
+  still_.arm.tip = look.tip;
   still_.arm.albedo = vector(look.color);
   still_.arm.disk_albedo = vector(look.disk_color);
   const Eigen::Vector3d& base = arm.X_WB.position;

@@ -84,7 +84,7 @@ class OutlineMaker {
     add_rim(section_at(arm.tube.front(), 0, X_CW_));
     const TubeArc& last = arm.tube.back();
     const Section2d tip = section_at(last, last.arc.length, X_CW_);
-    if (arm.tip == TipShape::flat) {
+    if (arm.tip == TipKind::flat) {
       add_rim(tip);
     } else {
       add_ball(tip);

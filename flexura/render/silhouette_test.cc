@@ -65,7 +65,7 @@ TEST(Outlines, ThatAreSeenPartTheArmFromTheBackground) {
     const Backbone backbone = bent.backbone();
     Scene scene = plain_scene();
     scene.arm.tube = tube_of(bent.arm, backbone);
-    scene.arm.tip = TipShape::round;
+    scene.arm.tip = TipKind::round;
     const View view = random_view_of(random, backbone);
     Renderer renderer;
     renderer.prepare(scene, view);

@@ -60,7 +60,7 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
   const int tip = add_body(stage, SurfaceKind::cap, 1, arm.albedo);
   const int step = add_body(stage, SurfaceKind::cap, 2, arm.albedo);
   stage.first_arm_piece = static_cast<int>(stage.pieces.size());
-  add_tube(arm.tube, X_CW, skin, step, {TubeEnd{TipShape::flat, base}, TubeEnd{arm.tip, tip}}, stage);
+  add_tube(arm.tube, X_CW, skin, step, {TubeEnd{TipKind::flat, base}, TubeEnd{arm.tip, tip}}, stage);
   stage.last_arm_piece = static_cast<int>(stage.pieces.size()) - 1;
   stage.arm_length = arm.tube.back().arc.s + arm.tube.back().arc.length;
   for (const MarkerRing& marker : arm.markers) {
@@ -75,7 +75,7 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
     X_WS.position -= 0.5 * disk.thickness * X_WS.rotation.col(2);
     const int body = add_body(stage, SurfaceKind::disk, i, arm.disk_albedo);
     const TubeArc tube = straight_tube(X_WS, disk.thickness, disk.radius);
-    add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipShape::flat, body}, TubeEnd{TipShape::flat, body}},
+    add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::flat, body}, TubeEnd{TipKind::flat, body}},
              stage);
     const int piece = arm_piece_at(stage, disk.s);
     for (const std::size_t face : {stage.discs.size() - 2, stage.discs.size() - 1}) {
@@ -103,7 +103,7 @@ void add_etalon(const Etalon& etalon, const Pose& X_CW, Stage& stage) {
   X_WS.rotation << X_WE.rotation.col(2), X_WE.rotation.col(0), X_WE.rotation.col(1);
   X_WS.position = X_WE.position - 0.5 * etalon.height * X_WE.rotation.col(1);
   const TubeArc tube = straight_tube(X_WS, etalon.height, etalon.radius);
-  add_tube({&tube, 1}, X_CW, skin, skin, {TubeEnd{TipShape::flat, bottom}, TubeEnd{TipShape::flat, top}},
+  add_tube({&tube, 1}, X_CW, skin, skin, {TubeEnd{TipKind::flat, bottom}, TubeEnd{TipKind::flat, top}},
            stage);
   stage.X_CE = X_CW * X_WE;
   const double half_width = 0.5 * etalon.line_width / etalon.radius;
@@ -165,7 +165,7 @@ struct ObstacleAdder {
     if (length > 0) X_WS.rotation = rotation_from_z(way);
     // A sphere is a capsule of hardly any length.
     const TubeArc tube = straight_tube(X_WS, std::max(length, 1e-9 * radius), radius);
-    add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipShape::round, body}, TubeEnd{TipShape::round, body}},
+    add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::round, body}, TubeEnd{TipKind::round, body}},
              stage);
   }
 };

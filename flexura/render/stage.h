@@ -97,7 +97,7 @@ void build_stage(const Scene& scene, const Pose& X_WC, double pixel, Stage& stag
 
 /// How a tube ends.
 struct TubeEnd {
-  TipShape shape = TipShape::flat;
+  TipKind shape = TipKind::flat;
   int body = 0;  ///< Of a flat end's disc.
 };
 

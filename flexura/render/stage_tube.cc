@@ -103,7 +103,7 @@ void add_disc(const TubeArc& tube_arc, std::size_t index, bool at_end, bool poin
 
 void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int step_body,
               const std::array<TubeEnd, 2>& ends, Stage& stage) {
-  bool goes_on = ends[0].shape == TipShape::round;
+  bool goes_on = ends[0].shape == TipKind::round;
   if (goes_on) {
     TubePiece start = ball(arcs.front(), 0, false, X_CW, body);
     add_piece(start, false, stage);
@@ -120,7 +120,7 @@ void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int ste
     add_arc(arcs[i], i, X_CW, body, goes_on, stage);
   }
   const std::size_t last = arcs.size() - 1;
-  if (ends[1].shape == TipShape::round) {
+  if (ends[1].shape == TipKind::round) {
     TubePiece end = ball(arcs[last], last, true, X_CW, body);
     add_piece(end, true, stage);
   } else {

@@ -4,18 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "flexura/math/hash.h"
+
 namespace flexura {
-namespace {
-
-// Sebastiano Vigna's splitmix64: a number's place in a random sequence.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-}  // namespace
 
 FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
   FrameTimes times;
@@ -43,8 +34,7 @@ SimulatedCamera::SimulatedCamera(const Camera& camera, Shot shot, TakePicture ta
 }
 
 bool SimulatedCamera::is_lost(std::int64_t frame) const {
-  const std::uint64_t number =
-      mixed(mixed(mixed(shot_.seed) + shot_.camera) + static_cast<std::uint64_t>(frame));
+  const std::uint64_t number = hash(shot_.seed, shot_.camera, static_cast<std::uint64_t>(frame));
   return static_cast<double>(number >> 11) * 0x1p-53 < sensor_.drop;
 }
 

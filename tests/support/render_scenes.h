@@ -69,7 +69,7 @@ inline Scene crowded_scene(TestRandom& random, const BentArm& bent, const Backbo
   Scene scene = plain_scene();
   const auto gray = [](double value) { return Color(value, value, value); };
   scene.arm.tube = tube_of(bent.arm, backbone);
-  scene.arm.tip = random.integer(0, 1) == 0 ? TipShape::flat : TipShape::round;
+  scene.arm.tip = random.integer(0, 1) == 0 ? TipKind::flat : TipKind::round;
   scene.arm.albedo = gray(0.2), scene.arm.disk_albedo = gray(0.5);
   for (int i = 0; i < 9; ++i) scene.arm.markers.push_back({0.1 * i + 0.05, 0.1 * i + 0.08, gray(0.7)});
   for (int i = 0; i < 5; ++i) scene.arm.disks.push_back({0.2 * i + 0.1, 0.04, 0.006});

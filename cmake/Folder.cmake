@@ -76,7 +76,7 @@ function(flexura_test executable ctest_name label folder)
   endif()
   add_executable(${executable} ${ARGN})
   target_link_libraries(${executable} PRIVATE
-    flexura::${folder} flexura_settings GTest::gtest_main GTest::gmock)
+    flexura::${folder} flexura_settings Eigen3::Eigen GTest::gtest_main GTest::gmock)
   target_compile_definitions(${executable} PRIVATE
     FLEXURA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FLEXURA_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_compile_options(${executable} PRIVATE ${FLEXURA_TEST_OPTIONS})

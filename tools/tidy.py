@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 """Runs clang-tidy on the project's sources, in parallel, and only where the answer is not known yet.
 
-usage: tidy.py --build BUILD [--since-last-tag]
+usage: tidy.py --build BUILD [--all]
 
-BUILD holds a compile_commands.json. A source that passed is not checked again while its text, the project
-headers it reaches, its compile command and .clang-tidy stay the same: the passes are remembered, as empty
-files named by the hash of all that, under $FLEXURA_TIDY_CACHE (default ~/.cache/flexura/tidy).
---since-last-tag leaves out the sources that no change since the last tag can reach (where there is a tag).
+BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the files as they were
+when clang-tidy last passed on everything. Without --all, it takes the files that differ from the record: a source
+itself; a header through one source that includes it (its own, where there is one). With --all it takes every source,
+which also sees what a changed header means for those that include it, and a pass writes the record anew.
+
+A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
+compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
+that, under $FLEXURA_TIDY_CACHE (default ~/.cache/flexura/tidy).
 """
 
 import argparse
@@ -15,7 +19,6 @@ import hashlib
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -24,6 +27,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TIDY = "clang-tidy-19"
+SETTINGS = ROOT / ".clang-tidy"
+RECORD = ROOT / "tools/tidy_record.txt"
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
@@ -57,27 +62,41 @@ def key(command, files):
     digest = hashlib.sha256()
     digest.update(tidy_version())
     digest.update(command.replace(str(ROOT), "").encode())
-    for file in [ROOT / ".clang-tidy", *sorted(files)]:
+    for file in [SETTINGS, *sorted(files)]:
         digest.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()
 
 
-def git(*arguments):
-    """The lines that a git command prints, or None where there is no git or no repository."""
-    if not shutil.which("git"):
-        return None
-    done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=False)
-    return done.stdout.split("\n") if done.returncode == 0 else None
+def digests(files):
+    """The first 16 hex digits of each file's SHA-256, by the file's path in the project."""
+    names = sorted(str(file.relative_to(ROOT)) for file in files)
+    return {name: hashlib.sha256((ROOT / name).read_bytes()).hexdigest()[:16] for name in names}
 
 
-def changed_since_last_tag():
-    """The files that differ from the last tag, or None where everything counts as changed."""
-    tag = git("describe", "--tags", "--abbrev=0")
-    if not tag:
-        return None
-    names = [*git("diff", "--name-only", tag[0]), *git("ls-files", "--others", "--exclude-standard")]
-    files = {ROOT / name for name in names if name}
-    return None if ROOT / ".clang-tidy" in files else files
+def changed_since(record, reach):
+    """The files of `reach` (sources with what they reach) that differ from the record."""
+    now = digests({SETTINGS}.union(*reach.values()))
+    before = {}
+    if record.exists():
+        before = dict(reversed(line.split()) for line in record.read_text().splitlines())
+    changed = {ROOT / name for name, digest in now.items() if before.get(name) != digest}
+    return {ROOT / name for name in now} if SETTINGS in changed else changed
+
+
+def own_sources_first(header):
+    """Sorts sources: those that bear the header's name, then those of its folder, then the others."""
+    own = (header.stem, f"{header.stem}_test")
+    return lambda source: (source.parent != header.parent, source.stem not in own, str(source))
+
+
+def sources_for(changed, reach):
+    """The changed sources, and for each changed header that none of them reaches one source that does."""
+    sources = [source for source in reach if source in changed]
+    for header in sorted(changed - set(reach)):
+        reaching = [source for source in reach if header in reach[source]]
+        if reaching and not set(reaching) & set(sources):
+            sources.append(min(reaching, key=own_sources_first(header)))
+    return sources
 
 
 def check(build, source, passed):
@@ -88,35 +107,42 @@ def check(build, source, passed):
     return done.returncode, done.stdout + ("" if done.returncode == 0 else done.stderr)
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--build", type=Path, required=True)
-    parser.add_argument("--since-last-tag", action="store_true")
-    arguments = parser.parse_args()
-    cache = Path(os.environ.get("FLEXURA_TIDY_CACHE") or Path.home() / ".cache/flexura/tidy")
-    cache.mkdir(parents=True, exist_ok=True)
-    changed = changed_since_last_tag() if arguments.since_last_tag else None
-
-    waiting, sources = {}, 0
-    for entry in json.loads((arguments.build / "compile_commands.json").read_text()):
-        source = Path(entry["file"])
-        files = reached(source, include_folders(entry["command"]))
-        if changed is not None and not changed & files:
-            continue
-        sources += 1
-        passed = cache / key(entry["command"], files)
-        if not passed.exists():
-            waiting[source] = passed
-
-    start, failed = time.monotonic(), 0
+def check_all(build, waiting):
+    """Checks sources side by side, prints what is found, and returns how many have findings."""
+    failed = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        answers = pool.map(lambda item: check(arguments.build, *item), waiting.items())
+        answers = pool.map(lambda item: check(build, *item), waiting.items())
         for source, (status, output) in zip(waiting, answers):
             if status != 0:
                 failed += 1
                 print(f"--- {source.relative_to(ROOT)}\n{output}", flush=True)
-    print(f"clang-tidy: {sources} sources, {len(waiting)} of them checked now in "
+    return failed
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=Path, required=True)
+    parser.add_argument("--all", action="store_true")
+    arguments = parser.parse_args()
+    cache = Path(os.environ.get("FLEXURA_TIDY_CACHE") or Path.home() / ".cache/flexura/tidy")
+    cache.mkdir(parents=True, exist_ok=True)
+
+    entries = json.loads((arguments.build / "compile_commands.json").read_text())
+    commands = {Path(entry["file"]): entry["command"] for entry in entries}
+    reach = {source: reached(source, include_folders(command)) for source, command in commands.items()}
+    reach = {source: {file for file in files if not file.is_relative_to(ROOT / "build")}
+             for source, files in reach.items()}
+    sources = list(reach) if arguments.all else sources_for(changed_since(RECORD, reach), reach)
+    passes = {source: cache / key(commands[source], reach[source]) for source in sources}
+    waiting = {source: passed for source, passed in passes.items() if not passed.exists()}
+
+    start = time.monotonic()
+    whole = digests({SETTINGS}.union(*reach.values()))
+    failed = check_all(arguments.build, waiting)
+    print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
+    if arguments.all and failed == 0:
+        RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in whole.items()))
     return 1 if failed else 0
 
 

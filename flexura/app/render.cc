@@ -58,7 +58,7 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   shot.frame = std::llround(arguments.time * shot.sensor->frame_rate);
   shot.seed = static_cast<std::uint64_t>(experiment.seed);
   shot.start = arguments.time;
-  shot.view = [&view](double) { return view; };
+  shot.view = [still = view](double) { return still; };
   // An exposure may last longer than the experiment.
   shot.backbone = [&](double time) {
     return Backbone(arm, schedule.state_at(std::min(time, schedule.duration())));

@@ -89,10 +89,9 @@ TEST(Lens, ItsRimIsWhereTheRadialPartFirstStopsGrowing) {
     Intrinsics intrinsics;
     intrinsics.distortion = {random.uniform(-1, 1), random.uniform(-1, 1), 0, 0, random.uniform(-1, 1)};
     if (random.integer(0, 3) == 0) intrinsics.distortion[4] = 0;
-    const auto [k1, k2, p1, p2, k3] = intrinsics.distortion;
     const double rim = Lens(intrinsics).largest_radius();
-    const auto slope = [k1 = k1, k2 = k2, k3 = k3](double r) {
-      return 1 + 3 * k1 * std::pow(r, 2) + 5 * k2 * std::pow(r, 4) + 7 * k3 * std::pow(r, 6);
+    const auto slope = [&k = intrinsics.distortion](double r) {
+      return 1 + 3 * k[0] * std::pow(r, 2) + 5 * k[1] * std::pow(r, 4) + 7 * k[4] * std::pow(r, 6);
     };
     for (double r = 0; r < std::min(rim, 20.0); r += 0.01) EXPECT_GE(slope(r), 0) << r;
     if (rim == infinity) return;

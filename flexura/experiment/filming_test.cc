@@ -122,7 +122,7 @@ TEST(Filming, IsKeptInTheLogAndNothingElseOfTheLogChanges) {
     std::map<std::string, std::vector<std::string>> messages;
     const McapReader log(result.folder / log_file_name);
     for (const McapMessage& message : log.messages())
-      messages[message.channel->topic].push_back(std::string(message.text()));
+      messages[message.channel->topic].emplace_back(message.text());
     return messages;
   };
   auto filmed = log_of(two_cameras + "[record]\ncameras = true\nreport = false\n", "filmed");

@@ -43,6 +43,7 @@ NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const 
   const std::size_t count = study.values.size();
   const std::size_t pitch = (count + most_dots - 1) / most_dots;
   std::vector<double> x;
+  x.reserve(count);
   for (const double value : study.values) x.push_back(value / unit.factor);
   for (const std::size_t feature : features) {
     ChartSeries& series = chart.series.emplace_back(

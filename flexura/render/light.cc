@@ -43,7 +43,7 @@ double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
     const DepthRange range = range_of(piece, way, piece.bound_radius + width * farthest);
     if (range.is_empty()) continue;
     const double lowest = first_minimum(piece, way, range.from, range);
-    if (!(lowest > range.from && lowest < std::numeric_limits<double>::infinity())) continue;
+    if (lowest <= range.from || std::isinf(lowest)) continue;
     const TubePoint near = tube_point(piece, p_CQ + lowest * stage.light);
     share = std::min(share, 1 - share_over_edge(near.gap / (width * lowest)));
   }

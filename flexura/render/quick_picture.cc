@@ -58,7 +58,7 @@ bool QuickPicture::draw(const Stage& stage, const Intrinsics& intrinsics, PixelK
   if (!draw_pieces(stage)) return false;
   if (!std::ranges::all_of(stage.discs, [&](const DiscPart& disc) { return draw_disc(stage, disc); }))
     return false;
-  if (!leave_faces(stage)) return false;
+  if (!std::ranges::all_of(stage.faces, [&](const FacePart& face) { return leave_face(face); })) return false;
   for (std::size_t i = 0; i < drawn_count_; ++i) divide(drawn_[i]);
   find_left_out();
   return true;
@@ -251,14 +251,12 @@ bool QuickPicture::draw_disc(const Stage& stage, const DiscPart& disc) {
 }
 
 // Boxes.
-bool QuickPicture::leave_faces(const Stage& stage) {
-  for (const FacePart& part : stage.faces) {
-    if (part.screen >= 0 || !part.face.is_front) continue;
-    const Eigen::Vector3d middle = 0.5 * (part.face.corners[0] + part.face.corners[2]);
-    const auto region = ImageRegion::of(intrinsics_, middle, middle, (part.face.corners[0] - middle).norm());
-    if (!region) return false;
-    for_pixels(*region, width_, height_, [this](int u, int v) { leave(u, v); });
-  }
+bool QuickPicture::leave_face(const FacePart& part) {
+  if (part.screen >= 0 || !part.face.is_front) return true;
+  const Eigen::Vector3d middle = 0.5 * (part.face.corners[0] + part.face.corners[2]);
+  const auto region = ImageRegion::of(intrinsics_, middle, middle, (part.face.corners[0] - middle).norm());
+  if (!region) return false;
+  for_pixels(*region, width_, height_, [this](int u, int v) { leave(u, v); });
   return true;
 }
 

@@ -49,7 +49,7 @@ class QuickPicture {
   bool draw_pieces(const Stage& stage);
   bool draw_piece(const Stage& stage, const TubePiece& piece);
   bool draw_disc(const Stage& stage, const DiscPart& disc);
-  bool leave_faces(const Stage& stage);
+  bool leave_face(const FacePart& part);
   void divide(const Drawn& drawn);
   void merge(const SpanPiece& piece, Pixel pixel, const BorderPixels& borders, std::size_t i);
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn);

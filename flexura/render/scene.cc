@@ -64,8 +64,8 @@ void check_arm(const ArmLook& arm) {
     const Pose X_WS = before.pose(before.length);
     const double off = (X_WS.position - at.arc.X_WS.position).norm();
     const double turned = (X_WS.rotation.col(2) - at.arc.X_WS.rotation.col(2)).norm();
-    if (!(off <= 1e-6 * (1 + before.length) && turned <= 1e-6))
-      refuse(what + " does not continue the one before");
+    const bool continues = off <= 1e-6 * (1 + before.length) && turned <= 1e-6;
+    if (!continues) refuse(what + " does not continue the one before");
   }
   for (const MarkerRing& marker : arm.markers) {
     require_color(marker.albedo, "marker");
@@ -95,7 +95,8 @@ void check_etalon(const Etalon& etalon) {
   require_positive(etalon.height, "etalon, height");
   require_color(etalon.albedo, "etalon");
   require_color(etalon.line_albedo, "etalon's lines");
-  if (!(etalon.line_width >= 0 && etalon.line_width < 1.5 * etalon.radius))
+  const bool has_room_for_lines = etalon.line_width >= 0 && etalon.line_width < 1.5 * etalon.radius;
+  if (!has_room_for_lines)
     refuse(fmt::format("etalon: lines {} wide around a radius of {}", etalon.line_width, etalon.radius));
 }
 
@@ -129,9 +130,11 @@ struct ObstacleChecker {
 void check_light(const Light& light) {
   if (!light.direction.allFinite()) refuse("the light's direction is not finite");
   require_positive(light.direction.norm(), "light, direction's length");
-  if (!(light.ambient >= 0 && light.directional >= 0 && std::isfinite(light.ambient + light.directional)))
+  require_finite(light.ambient + light.directional, "light, ambient and directional");
+  if (light.ambient < 0 || light.directional < 0)
     refuse(fmt::format("light: ambient {}, directional {}", light.ambient, light.directional));
-  if (!(light.shadow >= 0 && light.shadow <= 1)) refuse(fmt::format("light: shadow {}", light.shadow));
+  require_finite(light.shadow, "light, shadow");
+  if (light.shadow < 0 || light.shadow > 1) refuse(fmt::format("light: shadow {}", light.shadow));
   require_positive(light.angular_radius, "light, angular_radius");
 }
 

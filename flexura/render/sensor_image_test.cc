@@ -155,9 +155,9 @@ TEST(SensorImage, IsTheSameBytesForAnyNumberOfThreads) {
     const Sensor sensor(config);
     const int threads = random.integer(1, 5), height = static_cast<int>(config.height);
     Image<std::uint8_t> image(light.width(), height, light.channels());
-    std::vector<std::thread> running;
+    std::vector<std::thread> running(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) {
-      running.emplace_back([&, i] {
+      running[static_cast<std::size_t>(i)] = std::thread([&, i] {
         SensorRows rows;
         sensor.read_rows(light, {1, 2, 3}, height * i / threads, height * (i + 1) / threads, rows, image);
       });

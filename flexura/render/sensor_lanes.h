@@ -24,7 +24,7 @@ template <std::size_t channels>
 constexpr std::size_t values_of = sensor_block * channels;
 
 struct Step {
-  Floats v[in_step];
+  Floats v[in_step] = {};
 };
 template <typename Body>
 [[gnu::always_inline]] inline void each(Body&& body) {
@@ -103,7 +103,7 @@ void blur_down(const SensorRow& row, const float* const* rows, const BlockWork* 
 
 // Levels without noise, and the noise's standard deviations.
 struct Expectation {
-  float means[3 * sensor_block], deviations[3 * sensor_block];
+  float means[3 * sensor_block] = {}, deviations[3 * sensor_block] = {};
 };
 
 [[gnu::always_inline]] inline void expect(const Step& light, const SensorLevels& levels, std::size_t i,

@@ -44,9 +44,9 @@ inline float dot(const float (&a)[3], const float (&b)[3]) { return a[0] * b[0] 
 
 // A ray, and H along it from `point` on: h = h0 + h1 t + h2 t^2.
 struct RayLanes {
-  Vector point, direction;
-  Floats depth;  // Of the point.
-  Floats h0, h1, h2;
+  Vector point = {}, direction = {};
+  Floats depth = {};  // Of the point.
+  Floats h0 = {}, h1 = {}, h2 = {};
 };
 struct Height {
   Floats value, slope, curving;
@@ -228,9 +228,9 @@ template <bool is_pixel>
 constexpr std::size_t vectors = span_step / lanes;
 
 struct SpanLanes {
-  RayLanes ray[vectors];
-  Lowest lowest[vectors];
-  Floats t[vectors];
+  RayLanes ray[vectors] = {};
+  Lowest lowest[vectors] = {};
+  Floats t[vectors] = {};
 };
 
 [[gnu::always_inline]] inline void draw_lanes(const SpanPiece& piece, const SpanLanes& span, std::size_t i,

@@ -99,6 +99,11 @@ constexpr int block = 4;
 
 int blocks_of(int tiles) { return (tiles + block - 1) / block; }
 
+// Of a list in its row-wise table.
+std::size_t place(int column, int row, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
+
 }  // namespace
 
 void Tiles::build(const Stage& stage, const RayField& rays) {
@@ -111,8 +116,8 @@ void Tiles::build(const Stage& stage, const RayField& rays) {
   add_all(Part::Kind::disc, stage.discs, all_);
   add_all(Part::Kind::face, stage.faces, all_);
   add_all(Part::Kind::plane, stage.planes, all_);
-  tiles_.resize(static_cast<std::size_t>(columns_ * rows_));
-  blocks_.resize(static_cast<std::size_t>(blocks_of(columns_) * blocks_of(rows_)));
+  tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  blocks_.resize(static_cast<std::size_t>(blocks_of(columns_)) * static_cast<std::size_t>(blocks_of(rows_)));
   for (auto* lists : {&tiles_, &blocks_})
     for (List& list : *lists) list.is_known = false;
 }
@@ -132,9 +137,9 @@ const std::vector<Part>& Tiles::fill(List& list, const std::vector<Part>& from, 
 
 std::span<const Part> Tiles::parts(int column, int row) const {
   const int block_column = column / block, block_row = row / block;
-  List& around = blocks_[static_cast<std::size_t>(block_row * blocks_of(columns_) + block_column)];
+  List& around = blocks_[place(block_column, block_row, blocks_of(columns_))];
   const auto& near = fill(around, all_, block_column * block, block_row * block, block);
-  return fill(tiles_[static_cast<std::size_t>(row * columns_ + column)], near, column, row, 1);
+  return fill(tiles_[place(column, row, columns_)], near, column, row, 1);
 }
 
 }  // namespace flexura

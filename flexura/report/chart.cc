@@ -157,6 +157,7 @@ Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
   double height = below;
   if (chart.series.size() > 1 || !chart.legend.empty()) {
     std::vector<LegendEntry> entries;
+    entries.reserve(chart.series.size());
     for (const ChartSeries& one : chart.series) entries.push_back({one.name, one.css_class});
     height += draw_legend(svg, chart.legend, entries, {left, below}, chart_width - 4.0);
   }

@@ -65,6 +65,7 @@ void draw_outline(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame,
                   const ImageOutline& outline) {
   for (const ImageOutline::Line& line : outline.lines) {
     std::vector<Eigen::Vector2d> points;
+    points.reserve(line.points.size());
     for (const Eigen::Vector2d& point : line.points) points.push_back(frame.page(upward(plot, point)));
     if (points.empty()) continue;
     svg.leaf("path", {{"class", fmt::format("line {} {}", outline.css_class, line.css_class)},
@@ -89,6 +90,7 @@ Drawing image_picture(const ImagePlot& plot) {
   for (const ImageOutline& outline : plot.outlines) draw_outline(svg, plot, frame, outline);
   svg.close();
   std::vector<LegendEntry> entries;
+  entries.reserve(plot.outlines.size());
   for (const ImageOutline& outline : plot.outlines) entries.push_back({outline.name, outline.css_class});
   const double below = frame.bottom() + space_below_axes;
   const double legend =

@@ -26,6 +26,7 @@ std::vector<NamedDrawing> arm_drawings(const ReportMotion& motion, const PlotSce
 
 std::vector<NamedDrawing> unsafe_drawings(const ReportMotion& motion, const PlotScene& scene) {
   std::vector<NamedDrawing> drawings;
+  drawings.reserve(motion.unsafe_moments.size());
   for (const UnsafeMoment& moment : motion.unsafe_moments) {
     drawings.push_back(
         {fmt::format("arm-unsafe-{}", drawings.size() + 1), unsafe_picture(motion, scene, moment)});

@@ -9,11 +9,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
-
-extern char** environ;
 
 namespace flexura {
 
@@ -27,6 +26,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) : name_(ar
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const int error = ::posix_spawnp(&process_, argv[0], &actions, nullptr, argv.data(), environ);
@@ -42,6 +42,7 @@ ChildProcess::~ChildProcess() {
   if (process_ >= 0) finish();
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): it changes what the child knows.
 bool ChildProcess::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -67,8 +68,8 @@ bool has_program(const std::string& name) {
   std::string_view rest = path;
   for (;;) {
     const std::size_t end = rest.find(':');
-    const std::string folder(rest.substr(0, end));
-    if (!folder.empty() && ::access((folder + "/" + name).c_str(), X_OK) == 0) return true;
+    const std::filesystem::path folder(rest.substr(0, end));
+    if (!folder.empty() && ::access((folder / name).c_str(), X_OK) == 0) return true;
     if (end == std::string_view::npos) return false;
     rest.remove_prefix(end + 1);
   }

@@ -53,6 +53,7 @@ std::string png_of(const Image<T>& image, PngConfig config) {
                                 " channels");
   // libpng takes rows it may change, and does not when it writes.
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(image.height()));
   for (int v = 0; v < image.height(); ++v)
     rows.push_back(const_cast<png_bytep>(reinterpret_cast<png_const_bytep>(image.row(v).data())));
   const Header header{static_cast<png_uint_32>(image.width()), static_cast<png_uint_32>(image.height()),

@@ -219,26 +219,32 @@ void jacobian_batch(benchmark::State& state, SimdPath path, bool stretches) {
 // --- The same curve in Orocos KDL
 // ------------------------------------------------------------------------------
 
-// Each section as 12 universal joints, 24 revolute ones, in the middles of 12 equal rigid links: 72 joints.
-// Their two axes change places from one to the next, else the arm would twist.
+// 72 revolute joints: each section as equal rigid links with a joint in the middle of each, of 8 planar
+// sections 9, of 3 spatial ones 12 universal joints. Their two axes change places from one to the next, else
+// the arm would twist.
 struct KdlCase {
   KDL::Chain chain;
   std::vector<KDL::JntArray> states;
 };
 
-KdlCase kdl_case() {
-  constexpr std::size_t links = 12;
-  const Case c = spatial_case(false);
+KdlCase kdl_case(const Case& c) {
   const std::vector<Section>& sections = c.arm.sections;
+  const bool is_planar = c.arm.kind == ArmKind::planar;
+  const unsigned axes = is_planar ? 1 : 2;
+  const auto links = static_cast<unsigned>(72 / (axes * sections.size()));
   KdlCase result;
   const auto link = [](double length) { return KDL::Frame(KDL::Vector(0.0, 0.0, length)); };
   result.chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), link(sections[0].length / (2 * links))));
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const double own = sections[i].length / links;
     const double next = i + 1 < sections.size() ? sections[i + 1].length / links : 0.0;
-    for (std::size_t k = 0; k < links; ++k) {
+    for (unsigned k = 0; k < links; ++k) {
       const double length = k + 1 < links ? own : 0.5 * (own + next);
       const KDL::Joint about_x(KDL::Joint::RotX), about_y(KDL::Joint::RotY);
+      if (is_planar) {
+        result.chain.addSegment(KDL::Segment(about_y, link(length)));
+        continue;
+      }
       const bool is_x_first = k % 2 == 1;
       result.chain.addSegment(KDL::Segment(is_x_first ? about_x : about_y));
       result.chain.addSegment(KDL::Segment(is_x_first ? about_y : about_x, link(length)));
@@ -246,8 +252,12 @@ KdlCase kdl_case() {
   }
   for (const ArmState& s : c.states) {
     KDL::JntArray& q = result.states.emplace_back(result.chain.getNrOfJoints());
-    for (unsigned joint = 0; joint < q.rows(); joint += 2) {
-      const Eigen::Vector2d& bend = s.bends[joint / (2 * links)];
+    for (unsigned joint = 0; joint < q.rows(); joint += axes) {
+      const Eigen::Vector2d& bend = s.bends[joint / (axes * links)];
+      if (is_planar) {
+        q(joint) = bend.x() / links;
+        continue;
+      }
       const unsigned x_first = joint / 2 % 2;
       q(joint + x_first) = bend.x() / links;
       q(joint + 1 - x_first) = -bend.y() / links;
@@ -257,8 +267,7 @@ KdlCase kdl_case() {
 }
 
 // How far KDL's tips are from the arcs' ends, in parts of the arm's length: that it is the same curve.
-double largest_deviation(const KdlCase& kdl) {
-  const Case c = spatial_case(false);
+double largest_deviation(const Case& c, const KdlCase& kdl) {
   KDL::ChainFkSolverPos_recursive solver(kdl.chain);
   Arm arm = c.arm;
   arm.X_WB = Pose{};
@@ -272,8 +281,8 @@ double largest_deviation(const KdlCase& kdl) {
   return largest;
 }
 
-void spatial_kdl(benchmark::State& state) {
-  const KdlCase kdl = kdl_case();
+void forward_kdl(benchmark::State& state, const Case& c) {
+  const KdlCase kdl = kdl_case(c);
   KDL::ChainFkSolverPos_recursive solver(kdl.chain);
   KDL::Frame tip;
   std::size_t next = 0;
@@ -284,13 +293,16 @@ void spatial_kdl(benchmark::State& state) {
   }
   count_items(state, 1);
   state.counters["joints"] = kdl.chain.getNrOfJoints();
-  state.counters["deviation"] = largest_deviation(kdl);
+  state.counters["deviation"] = largest_deviation(c, kdl);
 }
+void planar_kdl(benchmark::State& state) { forward_kdl(state, planar_case()); }
+BENCHMARK(planar_kdl);
+void spatial_kdl(benchmark::State& state) { forward_kdl(state, spatial_case(false)); }
 BENCHMARK(spatial_kdl);
 
 // The tip's pose and its Jacobian, 6 x 72.
 void jacobian_kdl(benchmark::State& state) {
-  const KdlCase kdl = kdl_case();
+  const KdlCase kdl = kdl_case(spatial_case(false));
   KDL::ChainFkSolverPos_recursive forward(kdl.chain);
   KDL::ChainJntToJacSolver solver(kdl.chain);
   KDL::Jacobian J(kdl.chain.getNrOfJoints());

@@ -9,7 +9,6 @@ page=docs/studies/fuzz.md
 ./dev build asan
 export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
 # An answer of inverse kinematics takes a thousand times as long as reading its line: a fiftieth of the cases.
-cases_of() { if [ "$1" = inverse_fuzz ]; then echo $((cases / 50)); else echo "$cases"; fi; }
 mapfile -t targets < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sort)
 
 # As many at a time as there are cores; each in a folder of its own, for the input that it leaves when it fails.
@@ -17,12 +16,12 @@ run_target() {
   local target=$1 folder=$PWD/build/studies/fuzz/$1 root=$PWD
   mkdir -p "$folder"
   cd "$folder"
-  "$root/build/asan/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$(cases_of "$target")" --seed "$seed" >log 2>&1 || {
+  "$root/build/asan/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$cases" --seed "$seed" >log 2>&1 || {
     echo "FAILED: $folder/log" >&2
     return 1
   }
 }
-export -f run_target cases_of
+export -f run_target
 export cases seed
 printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -euo pipefail -c 'run_target {}'
 

@@ -14,8 +14,9 @@ mkdir -p docs/studies
 {
   echo "# Checks of motions against dense samples"
   echo
-  echo "Random spatial arms of one to six sections with random limits and radii, each among a random plane, ball, rod"
-  echo "and box. Five motions each: hold, point to point, sine, linear and smooth keyframes. Each is checked as"
+  echo "Random arms of one to six sections, every fourth of them planar, with random limits and radii, each among a random"
+  echo "plane, ball, rod and box. Six motions each: hold, linear with minimum jerk, trapezoid, sine, linear and smooth"
+  echo "keyframes. Each is checked as"
   echo "[safety](../safety.md) tells, and then sampled at $samples even steps by other code"
   echo "([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)); the motions, the sections' frames and"
   echo "the distance from a point to an obstacle are the simulator's own."
@@ -23,7 +24,8 @@ mkdir -p docs/studies
   echo "Bends, mean bend rates, stretches and folding are compared at every step. Clearances, of the arm to itself and"
   echo "to each obstacle, are found by points along the sections and a descent from the nearest ones, at every hundredth"
   echo "step; and at every step between two of these wherever one of them lies outside the reported contacts and nearer"
-  echo "than four times what any of the points moves in between. Reported times count with the resolution that the check"
+  echo "than four times what any of the points moves in between, so that none of the others can be in contact either."
+  echo "Reported times count with the resolution that the check"
   echo "promises, 1e-4 s for contacts. A contact counts from 2e-6 m of depth."
   echo
   echo '```console'

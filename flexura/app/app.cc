@@ -4,15 +4,20 @@
 
 // Only this file sees CLI11 (docs/architecture.md, "Heavy headers").
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "flexura/app/commands.h"
 #include "flexura/app/render.h"
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/base/version.h"
 
@@ -104,6 +109,19 @@ void add_schema(CLI::App& app, Command& chosen) {
   command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
 }
 
+// CLI11 would only say that it misses a command. Tells it on stderr.
+bool is_unknown_command(const CLI::App& app, std::string_view word) {
+  if (word.starts_with('-')) return false;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::ranges::count(names, word) > 0) return false;
+  const std::string_view near = nearest_name(word, names);
+  std::cerr << fmt::format("flexura: there is no command {}{} (see flexura --help)\n",
+                           Node{std::string(word), {}}.brief(),
+                           near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+  return true;
+}
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app("Flexura: a simulator for hyperredundant robots under visual control", "flexura");
   app.set_version_flag("--version", std::string(version()));
@@ -119,6 +137,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_render(app, chosen);
   add_export(app, chosen);
   add_schema(app, chosen);
+  if (argc > 1 && is_unknown_command(app, argv[1])) return exit_bad_input;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -87,7 +87,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   const std::time_t started = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
   if (experiment.task.empty())
-    throw input_error(arguments.experiment, "nothing to do: expected at least one [[task]]");
+    throw input_error(arguments.experiment, "nothing to do: expected at least one [[task]]", 1, 1);
   const auto folder = make_new_folder(arguments.out.empty() ? default_results_folder(arguments.experiment)
                                                             : std::filesystem::path(arguments.out));
   TerminalProgress progress(err);
@@ -115,7 +115,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
 int check_command(const CheckArguments& arguments, std::ostream& out) {
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   if (experiment.task.empty())
-    throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]");
+    throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
   const SafetyReport report = Schedule(experiment).check();
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';

@@ -201,6 +201,15 @@ Node answer(const Arm& arm, const InverseRequest& request) {
 
 }  // namespace
 
+std::string inverse_problem(const Arm& arm, std::string_view line) {
+  try {
+    (void)read_request(arm, line);
+    return {};
+  } catch (const InputError& error) {
+    return joined(error.problems());
+  }
+}
+
 std::string answer_inverse(const Arm& arm, std::string_view line) {
   try {
     return write_json(answer(arm, read_request(arm, line)));

@@ -16,4 +16,8 @@ namespace flexura {
 /// account of the line.
 [[nodiscard]] std::string answer_inverse(const Arm& arm, std::string_view line);
 
+/// What is wrong with a line of `flexura ik`, "" for one that can be answered. Never throws on account of the
+/// line.
+[[nodiscard]] std::string inverse_problem(const Arm& arm, std::string_view line);
+
 }  // namespace flexura

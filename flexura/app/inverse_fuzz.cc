@@ -1,7 +1,9 @@
-// Any bytes as a line of `flexura ik`, on a planar and a spatial arm: always one line of JSON without NaN,
-// and a solution within the limits.
+// Any bytes as a line of `flexura ik`, on a planar and a spatial arm: a problem in words or none; and for one
+// input in fifty, as its bytes decide (solving takes a thousand times as long as reading), one line of JSON
+// without NaN, and a solution within the limits.
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -35,6 +37,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const flexura::Arm planar = arm_of(flexura::ArmKind::planar);
   static const flexura::Arm spatial = arm_of(flexura::ArmKind::spatial);
   const std::string_view line(reinterpret_cast<const char*>(data), size);
+  const bool can_answer =
+      flexura::inverse_problem(planar, line).empty() && flexura::inverse_problem(spatial, line).empty();
+  if (std::hash<std::string_view>{}(line) % 50 != 0 && can_answer) return 0;
   check_answer(flexura::answer_inverse(planar, line));
   check_answer(flexura::answer_inverse(spatial, line));
   return 0;

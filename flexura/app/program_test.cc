@@ -128,6 +128,7 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
     EXPECT_THAT(ended.out, IsEmpty()) << arguments;
     EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << arguments << ": " << ended.err;
   }
+  EXPECT_THAT(run("chek x.toml").err, HasSubstr("there is no command \"chek\"; did you mean \"check\"?"));
   EXPECT_EQ(run("run " + paper_arm + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
 }

@@ -108,8 +108,14 @@ void merge(Node& under, Node over) {
 }
 
 std::string set_at_path(Node& root, std::string_view path, Node value) {
+  // As messages write it, too: section[0] is section.0.
+  std::string dotted;
+  for (const char c : path) {
+    if (c == '[') dotted += '.';
+    if (c != '[' && c != ']') dotted += c;
+  }
   Node* node = &root;
-  for (std::string_view rest = path;;) {
+  for (std::string_view rest = dotted;;) {
     const std::size_t dot = rest.find('.');
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())

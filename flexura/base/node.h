@@ -56,9 +56,9 @@ struct Node::Member {
 /// Lays `over` upon `under`: tables are merged key by key, anything else is replaced.
 void merge(Node& under, Node over);
 
-/// Sets the value at a dotted path ("arm.section.0.length"; numbers index arrays), making tables on the way.
-/// A value of the same name in another unit ("length_mm" beside "length") is taken out.
-/// Returns an error text ("" when done): a part that is no table, an index outside an array.
+/// Sets the value at a dotted path ("arm.section.0.length" or "arm.section[0].length"; numbers index arrays),
+/// making tables on the way. A value of the same name in another unit ("length_mm" beside "length") is taken
+/// out. Returns an error text ("" when done): a part that is no table, an index outside an array.
 [[nodiscard]] std::string set_at_path(Node& root, std::string_view path, Node value);
 
 }  // namespace flexura

@@ -108,6 +108,21 @@ bool Reader::integer(const Node& node, const Spec& spec, std::int64_t& value) {
   return true;
 }
 
+bool Reader::text(const Node& node, std::string& value) {
+  const auto* written = node.as<std::string>();
+  if (written == nullptr) {
+    unexpected(node, "a text in quotes");
+    return false;
+  }
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  if (const auto found = std::ranges::find_if(*written, is_control); found != written->end()) {
+    unexpected(node, fmt::format("a text on one line, without U+{:04X}", static_cast<unsigned char>(*found)));
+    return false;
+  }
+  value = *written;
+  return true;
+}
+
 const Node::Array* Reader::array(const Node& node, const Count& count) {
   const auto* entries = node.as<Node::Array>();
   if (entries != nullptr && entries->size() >= count.min && entries->size() <= count.max) return entries;

@@ -56,6 +56,8 @@ class Reader {
   /// A finite number within the range, in base units; a problem and false otherwise.
   bool number(const Node& node, const Spec& spec, double& value);
   bool integer(const Node& node, const Spec& spec, std::int64_t& value);
+  /// A text without control characters: one that is printed cannot pass for more than it is.
+  bool text(const Node& node, std::string& value);
   /// The array, when the node is one and has the right number of entries; a problem and null otherwise.
   const Node::Array* array(const Node& node, const Count& count);
 

@@ -156,10 +156,7 @@ template <>
 struct Codec<std::string> {
   static Type type() { return {.kind = Type::Kind::text}; }
   static bool read(const Node& node, const Spec&, Reader& reader, std::string& value) {
-    const auto* written = node.as<std::string>();
-    if (written == nullptr) return reader.unexpected(node, "a text in quotes"), false;
-    value = *written;
-    return true;
+    return reader.text(node, value);
   }
   static Node write(const std::string& value) { return {value, {}}; }
 };

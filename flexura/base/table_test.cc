@@ -225,12 +225,14 @@ TEST(SetAtPath, ChangesEntriesAndMakesTables) {
   Node root = table({member("wheel", Node::Array{{one_wheel(1), at(1, 1)}})});
   EXPECT_EQ(set_at_path(root, "wheel.0.radius", {2.5, {}}), "");
   EXPECT_EQ(*root.find("wheel")->as<Node::Array>()->at(0).find("radius")->as<double>(), 2.5);
+  EXPECT_EQ(set_at_path(root, "wheel[0].radius", {3.5, {}}), "") << "as messages write it";
+  EXPECT_EQ(*root.find("wheel")->as<Node::Array>()->at(0).find("radius")->as<double>(), 3.5);
   EXPECT_EQ(set_at_path(root, "new.deep", {true, {}}), "");
   EXPECT_TRUE(*root.find("new")->find("deep")->as<bool>());
   EXPECT_EQ(set_at_path(root, "wheel.1.radius", {2.5, {}}), "index 1 is outside an array of 1");
   EXPECT_EQ(set_at_path(root, "wheel.x", {2.5, {}}),
             "\"x\" stands for one of an array: expected a number counted from 0");
-  EXPECT_EQ(set_at_path(root, "wheel.0.radius.x", {2.5, {}}), "nothing named \"x\" inside 2.5");
+  EXPECT_EQ(set_at_path(root, "wheel.0.radius.x", {2.5, {}}), "nothing named \"x\" inside 3.5");
   EXPECT_THAT(set_at_path(root, "wheel..radius", {2.5, {}}), HasSubstr("is no path"));
 }
 

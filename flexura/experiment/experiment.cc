@@ -38,14 +38,27 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
   }
 }
 
+// The files of keyframes that tasks of the document name and that are not there.
+std::vector<Problem> missing_keyframes(const Node& document, const std::filesystem::path& folder) {
+  std::vector<Problem> problems;
+  const Node* list = document.find("task");
+  const auto* tasks = list == nullptr ? nullptr : list->as<Node::Array>();
+  for (std::size_t i = 0; tasks != nullptr && i < tasks->size(); ++i) {
+    const Node* file = (*tasks)[i].find("file");
+    const auto* name = file == nullptr ? nullptr : file->as<std::string>();
+    if (name == nullptr) continue;
+    try {
+      (void)file_inside(folder, *name);
+    } catch (const InputError& error) {
+      problems.push_back({file->where, fmt::format("task[{}].file: {}", i, error.problems().front().what)});
+    }
+  }
+  return problems;
+}
+
 // Reads the CSV file of a task of keyframes into the task.
 void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesystem::path& folder) {
-  std::filesystem::path file;
-  try {
-    file = file_inside(folder, task.file);
-  } catch (const InputError& error) {
-    throw input_error(task.file, "keyframes: " + error.problems().front().what);
-  }
+  const std::filesystem::path file = file_inside(folder, task.file);
   const std::string name = file.string();
   NumberTable table = parse_csv(read_text_file(file, max_toml_bytes), name);
   task.columns = std::move(table.columns);
@@ -77,6 +90,32 @@ Node with_whole_truth(Node document) {
   return document;
 }
 
+// The document's experiment with the keyframes of its files. Whatever is wrong with either is told at once.
+Experiment read_with_keyframes(const Node& document, const std::filesystem::path& folder) {
+  std::vector<Problem> problems = missing_keyframes(document, folder);
+  const auto tell = [&](const InputError& error) {
+    problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+  };
+  Experiment experiment;
+  try {
+    experiment = read_as<Experiment>(with_whole_truth(document));
+  } catch (const InputError& error) {
+    tell(error);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (TaskConfig& task : experiment.task) {
+    auto* keyframes = std::get_if<KeyframesTask>(&task);
+    if (keyframes == nullptr || keyframes->file.empty()) continue;
+    try {
+      read_keyframes(*keyframes, experiment.arm, folder);
+    } catch (const InputError& error) {
+      tell(error);
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return experiment;
+}
+
 // The checks that need every file read; reported at the places in `document`.
 void check_whole(const Experiment& experiment, const Node& document) {
   const Schedule schedule(experiment);
@@ -96,14 +135,15 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
     const std::string source = "--set " + set;
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw input_error(source, "expected path=value");
-    if (const std::string_view path = std::string_view(set).substr(0, equals);
-        path.substr(0, path.find('.')) == "include")
+    std::string_view path = std::string_view(set).substr(0, equals);
+    path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
+    path = path.substr(0, path.find_last_not_of(' ') + 1);
+    if (path.substr(0, path.find('.')) == "include")
       throw input_error(source, "include: files are read before values are set; write it into the file", 1,
                         1);
     Node value =
         parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
-    const std::string error =
-        set_at_path(document, std::string_view(set).substr(0, equals), std::move(value));
+    const std::string error = set_at_path(document, path, std::move(value));
     if (!error.empty()) throw input_error(source, error, 1, 1);
   }
   if (overrides.seed) {
@@ -230,13 +270,8 @@ std::vector<CameraConfig> Experiment::cameras() const {
 
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
   const Node document = resolved_overrides(read_toml_file(file), overrides);
-  auto experiment = read_as<Experiment>(with_whole_truth(document));
+  auto experiment = read_with_keyframes(document, file.parent_path());
   if (experiment.title.empty()) experiment.title = file.stem().string();
-  for (TaskConfig& task : experiment.task) {
-    auto* keyframes = std::get_if<KeyframesTask>(&task);
-    if (keyframes != nullptr && !keyframes->file.empty())
-      read_keyframes(*keyframes, experiment.arm, file.parent_path());
-  }
   check_whole(experiment, document);
   return experiment;
 }

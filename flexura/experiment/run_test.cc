@@ -177,12 +177,12 @@ TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
 
 TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
   const RunResult result = run(parse_experiment(
-      "[clock]\nstep = 0.1\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'expression'\nduration = 2\n"
-      "archings = ['1 - sqrt(1 - t)']\n",
+      "[clock]\nstep = 0.03\n[[arm.section]]\nlength = 1\n[[task]]\nkind = 'expression'\nduration = 2\n"
+      "archings = ['t * sqrt(abs(t - 1.11) - 0.005)']\n",
       "x.toml"));
   EXPECT_EQ(result.outcome, RunOutcome::unsafe);
-  EXPECT_EQ(result.reasons.at(0), "at 1.1 s: expression: section 1: no possible value");
-  EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.0);
+  EXPECT_EQ(result.reasons.at(0), "at 1.11 s: expression: section 1: no possible value");
+  EXPECT_DOUBLE_EQ(*result.summary.find("duration")->as<double>(), 1.08);
   EXPECT_EQ(result.summary.find("tasks"), nullptr);
 }
 

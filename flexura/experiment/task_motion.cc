@@ -21,106 +21,6 @@ const T& of_section(const std::vector<T>& values, std::size_t section) {
   return values.size() == 1 ? values.front() : values[section];
 }
 
-void check_one_or_each(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
-  if (given == 1 || given == sections) return;
-  reader.problem_at(path,
-                    fmt::format("{} given: expected 1 for all sections, or {}, one each", given, sections));
-}
-
-void check_one(const HoldTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
-
-// Studies depend on the cameras, not on the arm (check_study).
-void check_one(const StudyTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
-
-void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
-               Reader& reader) {
-  check_shape(task.to, kind, sections, path + ".to", reader);
-  const MoveTarget& to = task.to;
-  if (to.position && (to.cord_angles || to.archings || to.bends || to.stretches))
-    reader.problem_at(path + ".to.position",
-                      "stands beside a shape: expected a place for the tip or a shape");
-  check_one_or_each(task.law.size(), sections, path + ".law", reader);
-  const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
-  if (trapezoids == 0) {
-    if (task.max_rate) reader.problem_at(path + ".max_rate", "is for law = \"trapezoid\"");
-    if (task.max_acceleration) reader.problem_at(path + ".max_acceleration", "is for law = \"trapezoid\"");
-    return;
-  }
-  if (static_cast<std::size_t>(trapezoids) != task.law.size()) {
-    reader.problem_at(path + ".law",
-                      "mixes trapezoid with other laws: expected trapezoid for all sections or for none");
-  }
-  if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: a trapezoid needs it");
-  if (!task.max_acceleration) reader.problem_at(path + ".max_acceleration", "missing: a trapezoid needs it");
-  if (task.duration) reader.problem_at(path + ".duration", "is found by the trapezoid: expected no duration");
-}
-
-void check_one(const SineTask& task, ArmKind kind, std::size_t sections, const std::string& path,
-               Reader& reader) {
-  check_shape(task.amplitude, kind, sections, path + ".amplitude", reader);
-  check_one_or_each(task.phase.size(), sections, path + ".phase", reader);
-  if (task.amplitude.stretches)
-    reader.problem_at(path + ".amplitude.stretches", "does not swing: expected angles only");
-}
-
-void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, const std::string& path,
-               Reader& reader) {
-  if (!task.file.empty()) {
-    if (!task.columns.empty() || !task.rows.empty()) {
-      reader.problem_at(path + ".file", "stands beside columns or rows: expected a file or those");
-    }
-    return;  // looked at once the file is read
-  }
-  for (const KeyframeProblem& problem : keyframe_problems(task, kind, sections)) {
-    const std::string place = problem.row < 0
-                                  ? fmt::format("{}.columns[{}]", path, problem.column)
-                                  : fmt::format("{}.rows[{}][{}]", path, problem.row, problem.column);
-    reader.problem_at(place, problem.what);
-  }
-}
-
-void check_formula(const std::string& text, const std::string& path, Reader& reader) {
-  try {
-    const Expression expression(text);
-  } catch (const ExpressionError& error) {
-    reader.problem_in_text(path, text, error.position(), error.what());
-  }
-}
-
-void check_formulas(const std::optional<std::vector<std::string>>& formulas, std::size_t sections,
-                    const std::string& path, Reader& reader) {
-  if (!formulas) return;
-  check_one_or_each(formulas->size(), sections, path, reader);
-  for (std::size_t i = 0; i < formulas->size(); ++i)
-    check_formula((*formulas)[i], fmt::format("{}[{}]", path, i), reader);
-}
-
-void check_one(const ExpressionTask& task, ArmKind kind, std::size_t sections, const std::string& path,
-               Reader& reader) {
-  const int ways = (task.cord_angles ? 1 : 0) + (task.archings ? 1 : 0) + (task.bends ? 1 : 0);
-  if (ways > 1)
-    reader.problem_at(path,
-                      "says the bends in more than one way: expected one of cord_angles, archings, bends");
-  if (ways == 0 && !task.stretches)
-    reader.problem_at(path, "says nothing: expected cord_angles, archings, bends or stretches");
-  if (kind == ArmKind::spatial && (task.cord_angles || task.archings)) {
-    reader.problem_at(path, "cord_angles and archings are for planar arms: expected bends for a spatial one");
-  }
-  check_formulas(task.cord_angles, sections, path + ".cord_angles", reader);
-  check_formulas(task.archings, sections, path + ".archings", reader);
-  check_formulas(task.stretches, sections, path + ".stretches", reader);
-  if (!task.bends) return;
-  check_one_or_each(task.bends->size(), sections, path + ".bends", reader);
-  for (std::size_t i = 0; i < task.bends->size(); ++i) {
-    for (std::size_t k = 0; k < 2; ++k)
-      check_formula((*task.bends)[i][k], fmt::format("{}.bends[{}][{}]", path, i, k), reader);
-    if (kind == ArmKind::planar && (*task.bends)[i][1] != "0") {
-      reader.problem_at(fmt::format("{}.bends[{}]", path, i),
-                        "leaves the plane: expected \"0\" as bend_y of a planar arm");
-    }
-  }
-}
-
 // How far the section goes that goes farthest: rad of bend, and stretch as if 1 were 1 rad.
 double distance(const ArmState& from, const ArmState& to) {
   double farthest = 0;
@@ -245,11 +145,6 @@ MotionPtr motion_of(const ExpressionTask& task, const Arm& arm, const ArmState& 
 }
 
 }  // namespace
-
-void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, const std::string& path,
-                Reader& reader) {
-  std::visit([&](const auto& one) { check_one(one, kind, sections, path, reader); }, task);
-}
 
 MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from) {
   return std::visit([&](const auto& one) { return motion_of(one, arm, from); }, task);

@@ -154,6 +154,14 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='expression'\narchings='sin(t'\n", "x.toml:7:16: task[0].archings[0]: missing parenthesis"},
       {"kind='expression'\narchings = ['t', \"2*phi + 1\"]\n",
        "x.toml:7:21: task[0].archings[1]: unexpected token \"phi\""},
+      {"kind='expression'\narchings='1/0'\n",
+       "x.toml:7:10: task[0].archings[0]: \"1/0\" is inf at t = 0 s in section 1: expected a finite number"},
+      {"kind='expression'\nduration=2\narchings=['t','sqrt(1-t)']\n",
+       "x.toml:8:15: task[0].archings[1]: \"sqrt(1-t)\" is nan at t = 1.02 s in section 2: expected"},
+      {"kind='move'\nto={}\n", "x.toml:7:1: task[0].to: says nothing: expected a shape"},
+      {"kind='move'\nname=\"a\\nunsafe\"\nto.archings=[0,0]\n",
+       "x.toml:7:6: task[0].name = \"a unsafe\": expected a text on one line, without U+000A"},
+      {"kind='keyframes'\n", "task[0]: says nothing: expected file, or columns and rows"},
       {"kind='expression'\narchings='t = 3'\n", "x.toml:7:13: task[0].archings[0]: assigns a value"},
       {"kind='expression'\narchings=\"2*\\u0070hi\"\n",
        "x.toml:7:1: task[0].archings[0]: unexpected token \"phi\" at character 3 of \"2*phi\""},
@@ -165,10 +173,13 @@ TEST(Tasks, BadOnesGetAClearLine) {
   for (const auto& [task, error] : tasks) EXPECT_THAT(error_of(task), HasSubstr(error)) << task;
 }
 
-TEST(Tasks, AFormulaWithoutAValueIsUnsafeNotACrash) {
-  for (const char* formula : {"1/t", "sqrt(0.5-t)", "ln(t-2)", "(t-0.5)/(t-0.5)"}) {
+TEST(Tasks, AFormulaWithoutAValueBetweenTheTimesTriedIsUnsafeNotACrash) {
+  for (const char* hole : {"1/abs(t-0.505)", "sqrt(abs(t-0.505)-0.001)", "ln(abs(t-0.505)-0.002)"}) {
     const Experiment experiment =
-        experiment_of("kind='expression'\narchings='" + std::string(formula) + "'\n");
+        parse_experiment(std::string("[clock]\nstep = 0.005\n") + arm +
+                             "[[task]]\nkind = 'expression'\narchings = 't*" + hole + "'\n",
+                         "x.toml");
+    const std::string formula = hole;
     const SafetyReport report = Schedule(experiment).check();
     EXPECT_FALSE(report.is_safe()) << formula;
     std::string all;
@@ -217,8 +228,29 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
               HasSubstr("wave.csv:5:1: column time: time 1: expected more"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1,0,x\n"),
               HasSubstr("wave.csv:3:5: \"x\": expected a finite number"));
-  EXPECT_THAT(error_with("none.csv", ""), HasSubstr("no file \"none.csv\""));
+  EXPECT_THAT(error_with("none.csv", ""), HasSubstr("x.toml:7:8: task[0].file: no file \"none.csv\""));
   EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("lies outside the experiment's folder"));
+}
+
+TEST(Keyframes, AMissingFileHidesNoOtherError) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "x.toml";
+  std::ofstream(folder.path() / "bad.csv") << "time\n";
+  const std::string keyframes = "[[task]]\nkind = 'keyframes'\nfile = ";
+  const auto problems = [&](const std::string& tasks) {
+    std::ofstream(file) << arm << tasks;
+    try {
+      (void)load_experiment(file);
+    } catch (const InputError& error) {
+      return error.problems().size();
+    }
+    return std::size_t{0};
+  };
+  EXPECT_EQ(problems(keyframes + "'no.csv'\n[[task]]\nkind = 'expression'\narchings = 'sin('\n" + keyframes +
+                     "'none.csv'\n"),
+            3U);
+  EXPECT_GE(problems(keyframes + "'bad.csv'\n" + keyframes + "'bad.csv'\n"), 2U)
+      << "files that are there, and bad";
 }
 
 }  // namespace

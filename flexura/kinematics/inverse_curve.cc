@@ -10,9 +10,9 @@
 namespace flexura {
 namespace {
 
-constexpr DescentLimits curve_limits{.iterations = 100, .slope = 1e-7};
 // A curve says much about the arm: a few starts are enough, and each costs a whole backbone an iteration.
 constexpr int most_starts = 8;
+constexpr int most_iterations = 100;  // From one start.
 constexpr double least_pressure = 1e-6;
 
 std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
@@ -21,6 +21,15 @@ std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Ve
   result.reserve(points.size());
   for (const Eigen::Vector3d& p_WP : points) result.push_back(X_BW * p_WP);
   return result;
+}
+
+// Of all starts together: an iteration of hundreds of sections takes a good part of a second, and an answer
+// that never comes is worse than one that says no_convergence.
+int affordable_iterations(const CurveProblem& problem, const ArmVariables& variables) {
+  constexpr double most_products = 5e9;
+  const auto size = static_cast<double>(variables.size());
+  const double products = static_cast<double>(problem.row_count()) * size * size;
+  return static_cast<int>(std::clamp(most_products / products, 40.0, 1.0 * most_starts * most_iterations));
 }
 
 // What no state can do for the curve's two ends is not to be had for the whole.
@@ -47,13 +56,16 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   Found found;
   Eigen::VectorXd x(variables.size());
   double error = 0.0;
-  while (found.starts < std::min(options.max_starts, most_starts)) {
+  const int affordable = affordable_iterations(problem, variables);
+  while (found.starts < std::min(options.max_starts, most_starts) && memory.iterations < affordable) {
     if (options.start && found.starts == 1) {
       x = problem.start_along_tangents();
     } else {
       starts.next(x);
     }
-    const Descent ended = descend(problem, variables.bounds(), curve_limits, x, memory);
+    const DescentLimits limits{.iterations = std::min(most_iterations, affordable - memory.iterations),
+                               .slope = 1e-7};
+    const Descent ended = descend(problem, variables.bounds(), limits, x, memory);
     found.keep_better(x, memory.r.squaredNorm(), ended);
     ++found.starts;
     problem.linearise(found.x, memory.r, memory.J);

@@ -13,7 +13,7 @@ TEST(MotionCheckFull, MissesNothingThatDenseSamplingFinds) {
     EXPECT_EQ(result.refuted, 0U);
     EXPECT_EQ(result.contacts_missed, 0U);
   });
-  EXPECT_EQ(result.motions, 50U);
+  EXPECT_EQ(result.motions, 60U);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
     EXPECT_EQ(result.refuted, 0U);
     EXPECT_EQ(result.contacts_missed, 0U);
   });
-  EXPECT_EQ(result.motions, one_case_of == 1 ? 30U : 10U);
+  EXPECT_EQ(result.motions, one_case_of == 1 ? 36U : 12U);
   EXPECT_GT(result.above, one_case_of == 1 ? 10'000U : 100U);
   EXPECT_GT(result.contacts, one_case_of == 1 ? 1000U : 10U);
 }

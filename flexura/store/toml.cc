@@ -132,12 +132,18 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
           fmt::format("include: more than {} files deep; does a file include itself?", max_include_depth)}});
   }
   Node below{Node::Table{}, document.where};
+  std::vector<Problem> problems;
   for (const Node& name : *names) {
     if (++including.files > max_included_files) {
       throw InputError({{name.where, fmt::format("include: more than {} files in all", max_included_files)}});
     }
-    merge(below, read_with_includes(included_file(name, file.parent_path()), including));
+    try {
+      merge(below, read_with_includes(included_file(name, file.parent_path()), including));
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
   }
+  if (!problems.empty()) throw InputError(std::move(problems));
   auto& members = *document.as<Node::Table>();
   std::erase_if(members, [](const Node::Member& member) { return member.key == "include"; });
   merge(below, std::move(document));
@@ -161,6 +167,13 @@ void shift(Node& node, int columns) {
   }
 }
 
+// What is meant by a text without its closing quote, which toml++ tells as a line end that must not be in it.
+std::string plain_words(std::string_view description) {
+  if (description.find("control characters other than TAB") == std::string_view::npos)
+    return std::string(description);
+  return "the text does not end on its line: expected a closing quote, and no control characters before it";
+}
+
 }  // namespace
 
 Node parse_toml(std::string_view text, const std::string& source) {
@@ -172,7 +185,7 @@ Node parse_toml(std::string_view text, const std::string& source) {
     return document;
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    throw input_error(source, std::string(error.description()), static_cast<int>(at.line),
+    throw input_error(source, plain_words(error.description()), static_cast<int>(at.line),
                       static_cast<int>(at.column));
   }
 }

@@ -36,6 +36,7 @@ TEST(ParseToml, ReportsWhatIsNotToml) {
   EXPECT_THAT(error_of("a = "), HasSubstr("x.toml:1:"));
   EXPECT_THAT(error_of("a = 1\nb = \xff\xfe\n"), HasSubstr("x.toml:2:"));
   EXPECT_THAT(error_of(std::string_view("\0\1\2binary", 9)), HasSubstr("x.toml:1:"));
+  EXPECT_THAT(error_of("a = \"open\nb = 1\n"), HasSubstr("x.toml:1:10: the text does not end on its line"));
 }
 
 TEST(ParseToml, NamesDatesSoThatNoFieldTakesThem) {

@@ -19,13 +19,16 @@ inline ArmState random_keyframe(TestRandom& random, const Arm& arm) {
   return state;
 }
 
-/// One motion of every kind that knows its rates: hold, point to point, sine, keyframes linear and smooth.
+/// One motion of every kind that knows its rates: hold, point to point (linear with minimum jerk, trapezoid),
+/// sine, keyframes linear and smooth.
 inline std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm) {
   const std::size_t n = arm.sections.size();
   const auto state = [&] { return random_keyframe(random, arm); };
   const double duration = random.uniform(0.2, 5);
   std::vector<Profile> profiles(n, Profile::linear(duration));
   profiles.back() = Profile::minimum_jerk(duration);
+  const std::vector<Profile> trapezoids(
+      n, Profile::trapezoid(random.uniform(0.1, 6), random.uniform(0.5, 10), random.uniform(0.5, 30)));
   std::vector<Eigen::Vector2d> amplitudes;
   std::vector<double> phases;
   for (std::size_t i = 0; i < n; ++i) {
@@ -39,7 +42,9 @@ inline std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm)
     times.push_back(times.back() + random.uniform(0.05, 2));
     states.push_back(state());
   }
-  return {hold_motion(state(), duration), point_to_point_motion(state(), state(), profiles),
+  return {hold_motion(state(), duration),
+          point_to_point_motion(state(), state(), profiles),
+          point_to_point_motion(state(), state(), trapezoids),
           sine_motion(state(), amplitudes, phases, random.uniform(0.2, 3), duration),
           keyframe_motion(times, states, Interpolation::linear),
           keyframe_motion(times, states, Interpolation::smooth)};

@@ -206,6 +206,7 @@ class SampledCheck {
 /// Checks one random motion of every kind, on an arm with random limits among random obstacles.
 inline void compare_with_samples(TestRandom& random, std::size_t samples, SampledComparison& result) {
   Arm arm = random_arm(random);
+  if (random.integer(0, 3) == 0) arm.kind = ArmKind::planar;
   limit_randomly(random, arm);
   const std::vector<Obstacle> around = obstacles(random_obstacles(random, arm));
   for (const MotionPtr& motion : random_motions(random, arm)) {

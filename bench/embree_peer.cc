@@ -16,7 +16,7 @@ namespace flexura {
 namespace {
 
 constexpr int packet = 8;
-constexpr std::array<int, packet> all_rays = {-1, -1, -1, -1, -1, -1, -1, -1};
+alignas(32) constexpr std::array<int, packet> all_rays = {-1, -1, -1, -1, -1, -1, -1, -1};
 
 float gray_share(const Eigen::Vector3f& albedo) { return static_cast<float>(gray_of(albedo.cast<double>())); }
 
@@ -140,18 +140,16 @@ class EmbreePeer final : public Peer {
   // Of eight pixels in a row; `u` and `v` are the first ray's.
   void add_rays(float u, float v, std::array<float, packet>& light, std::array<float, packet>& depth) const {
     const float x = (u - middle_.x()) * slope_.x(), y = (v - middle_.y()) * slope_.y();
-    RTCRayHit8 rays;
+    RTCRayHit8 rays = {};
     for (int i = 0; i < packet; ++i) {
-      rays.ray.org_x[i] = rays.ray.org_y[i] = rays.ray.org_z[i] = rays.ray.tnear[i] = rays.ray.time[i] = 0;
       rays.ray.dir_x[i] = x + static_cast<float>(i) * slope_.x();
       rays.ray.dir_y[i] = y;
       rays.ray.dir_z[i] = 1;  // So that tfar is the depth.
       rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
       rays.ray.mask[i] = ~0U;
-      rays.ray.flags[i] = 0;
       rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    RTCIntersectContext context;
+    RTCIntersectContext context = {};
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcIntersect8(all_rays.data(), scene_, &context, &rays);

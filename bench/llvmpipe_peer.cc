@@ -165,11 +165,12 @@ class LlvmpipePeer final : public Peer {
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
                  mesh.triangles.data(), GL_STATIC_DRAW);
-    constexpr std::array<std::size_t, 3> offsets = {offsetof(Corner, position), offsetof(Corner, normal),
-                                                    offsetof(Corner, albedo)};
+    glBindVertexBuffer(0, buffers[0], 0, sizeof(Corner));
+    constexpr std::array<GLuint, 3> offsets = {offsetof(Corner, position), offsetof(Corner, normal),
+                                               offsetof(Corner, albedo)};
     for (GLuint i = 0; i < offsets.size(); ++i) {
-      glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Corner),
-                            reinterpret_cast<const void*>(offsets[i]));
+      glVertexAttribFormat(i, 3, GL_FLOAT, GL_FALSE, offsets[i]);
+      glVertexAttribBinding(i, 0);
       glEnableVertexAttribArray(i);
     }
     count_ = static_cast<GLsizei>(mesh.triangles.size());

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "bench/egl_context.h"
+#include "bench/peer.h"
+#include "bench/render_scene.h"
+#include "flexura/camera/sensor.h"
+
+namespace flexura {
+
+struct LlvmpipeConfig {
+  int samples = 0;  ///< A pixel, where there are several.
+  PixelKind pixels = PixelKind::color;
+  bool reads_depth = false;
+  LlvmpipeThreads threads = LlvmpipeThreads::none;
+};
+
+/// The scene's triangles drawn by Mesa's llvmpipe through OpenGL, shaded by pixel.
+[[nodiscard]] std::unique_ptr<Peer> llvmpipe_peer(const Setting& setting, LlvmpipeConfig config);
+
+}  // namespace flexura

@@ -110,14 +110,6 @@ TEST(TipTargets, OutsideTheWorkspaceAreViolationsWithTheNearestDistance) {
             "1 s to 2 s: up: target outside the workspace, 500 mm from the nearest pose");
 }
 
-TEST(TipTargets, AfterAFormulaWithoutAValueAreNotACrash) {
-  const SafetyReport report = check(
-      "[[task]]\nkind = 'expression'\nbends = [['sqrt(0.5-t)', '0']]\n"
-      "[[task]]\nkind = 'move'\nto.position = [0.6, 0.9, -0.3]\n");
-  ASSERT_FALSE(report.is_safe());
-  EXPECT_EQ(report.violations.back().text(), "at 1 s: move: section 1: no possible value");
-}
-
 TEST(TipTargets, BesideAShapeAreRefused) {
   EXPECT_THAT(
       error_of("[[task]]\nkind = 'move'\nto.position = [0, 1, 0]\nto.bends = [[0, 0], [0, 0]]\n"),

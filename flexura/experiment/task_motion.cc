@@ -37,15 +37,12 @@ MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
 
 MotionPtr motion_of(const StudyTask&, const Arm&, const ArmState& from) { return hold_motion(from, 0); }
 
-// The shape that a move goes to. The search for one starts from where the arm is, unless a formula left it
-// nowhere.
+// The shape that a move goes to. The search for one starts from where the arm is.
 ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const auto tip = tip_target(task);
   if (!tip) return arm_state(arm, task.to);
   InverseOptions options;
-  const bool is_finite = std::ranges::all_of(from.bends, [](const auto& bend) { return bend.allFinite(); }) &&
-                         std::ranges::all_of(from.stretches, [](double s) { return std::isfinite(s); });
-  if (is_finite) options.start = from;
+  options.start = from;
   return solve_inverse(arm, TipTarget{.position = *tip}, options).state;
 }
 

@@ -1,10 +1,6 @@
 #include "flexura/app/inverse.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,6 +10,7 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/math/arrays.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/store/json.h"
 
@@ -62,10 +59,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
   return table;
 }
 
-Eigen::Vector3d vector(const Triple& triple) { return {triple[0], triple[1], triple[2]}; }
-
 void check_target(const InverseRequest& request, Reader& reader) {
-  constexpr double norm_tolerance = 1e-3;
   if (request.position.has_value() == request.curve.has_value()) {
     reader.problem("expected either position or curve");
   }
@@ -85,11 +79,8 @@ void check_target(const InverseRequest& request, Reader& reader) {
     reader.problem_at("direction", "is zero: expected a direction");
   }
   if (request.rotation) {
-    const double norm = Eigen::Map<const Eigen::Vector4d>(request.rotation->data()).norm();
-    if (std::abs(norm - 1.0) > norm_tolerance) {
-      reader.problem_at("rotation",
-                        fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
-    }
+    const std::string problem = quaternion_problem(*request.rotation);
+    if (!problem.empty()) reader.problem_at("rotation", problem);
   }
 }
 
@@ -109,10 +100,7 @@ TipTarget tip_target(const InverseRequest& request) {
   TipTarget target;
   target.position = vector(*request.position);
   if (request.direction) target.direction = vector(*request.direction);
-  if (request.rotation) {
-    const auto& [w, x, y, z] = *request.rotation;
-    target.rotation = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
-  }
+  if (request.rotation) target.rotation = rotation_of(*request.rotation);
   return target;
 }
 

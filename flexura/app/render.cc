@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "flexura/app/commands.h"
-#include "flexura/camera/camera.h"
+#include "flexura/camera/camera_config.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/photographer.h"
+#include "flexura/experiment/filming.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/truth_files.h"
+#include "flexura/sim/simulated_camera.h"
 #include "flexura/store/image_file.h"
 #include "flexura/store/text_file.h"
 
@@ -43,36 +45,32 @@ void check_arguments(const RenderArguments& arguments, const Schedule& schedule)
 }  // namespace
 
 int render_command(const RenderArguments& arguments, std::ostream& out) {
-  const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
+  Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
+  if (arguments.model) experiment.truth.reset();
   const Schedule schedule(experiment);
   check_arguments(arguments, schedule);
-  const RigConfig rig = arguments.model ? experiment.model_rig() : experiment.true_rig();
-  const std::size_t place = place_of(rig.cameras, arguments.camera);
-  const Camera camera(rig.cameras[place]);
-  const View view = camera.view(camera.initial_stage(), camera.initial_head());
-  const Arm arm = rig.arm.arm();
+  const std::vector<CameraConfig> cameras = experiment.true_rig().cameras;
+  const std::size_t place = place_of(cameras, arguments.camera);
+  const SensorConfig& sensor = cameras[place].sensor;
+  const FrameTimes frame = times_of_frame_at(sensor, arguments.time);
+  const FrameTimes next = times_of_frame_at(sensor, arguments.time + 1 / sensor.frame_rate);
 
-  Shot shot;
-  shot.camera = place;
-  shot.sensor = &camera.config().sensor;
-  shot.frame = std::llround(arguments.time * shot.sensor->frame_rate);
-  shot.seed = static_cast<std::uint64_t>(experiment.seed);
-  shot.start = arguments.time;
-  shot.view = [still = view](double) { return still; };
-  // An exposure may last longer than the experiment.
-  shot.backbone = [&](double time) {
-    return Backbone(arm, schedule.state_at(std::min(time, schedule.duration())));
-  };
-  Photographer photographer(arm, experiment);
-  const Picture picture = photographer.take(shot);
+  Filming filming(experiment);
+  const double played = filming.play_to(next.end, schedule);
+  if (arguments.time > played) {
+    throw input_error("--time", fmt::format("{} s is not in the run: at {:.6g} s it ends in a shape that no "
+                                            "arm can take",
+                                            arguments.time, played));
+  }
+  const bool has_next = next.start <= played;
+  const Shot shot = filming.shot(place, arguments.time);
+  const Picture picture = filming.take(shot);
   replace_file(arguments.out, std::visit([](const auto& image) { return png(image); }, picture));
   out << "image: " << arguments.out << '\n';
   if (!arguments.truth) return exit_done;
-  const auto shown = [&](double time) { return ShownScene{photographer.scene(shot.backbone(time)), view}; };
-  const double next = arguments.time + 1 / shot.sensor->frame_rate;
   const auto files =
-      write_truth(shown(arguments.time),
-                  next <= schedule.duration() ? std::optional(shown(next)) : std::nullopt, arguments.out);
+      write_truth(filming.shown(shot, frame.middle),
+                  has_next ? std::optional(filming.shown(shot, next.middle)) : std::nullopt, arguments.out);
   for (const auto& file : files) out << "truth: " << file.string() << '\n';
   return exit_done;
 }

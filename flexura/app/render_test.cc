@@ -3,13 +3,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "flexura/base/source.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/filming.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/store/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/experiment_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -100,6 +109,58 @@ TEST_F(Render, WritesWhatIsTrueBesideIt) {
   EXPECT_NEAR(*pixel[0].as<double>(), 39.5 + 100 * 0.2 / 3, 1e-9);
   EXPECT_NEAR(*pixel[1].as<double>(), 29.5 + 100 * 0.5 / 3, 1e-9);
   EXPECT_NEAR(*base.find("depth")->as<double>(), 3, 1e-12);
+}
+
+// The frames of an experiment's run, as image files.
+std::vector<std::string> filmed(const std::filesystem::path& file) {
+  const Experiment experiment = load_experiment(file);
+  const Schedule schedule(experiment);
+  Filming filming(experiment);
+  std::vector<std::string> images;
+  const auto take = [&](const std::string&, const Frame& frame) {
+    images.push_back(std::visit([](const auto& image) { return png(image); }, *frame.picture));
+  };
+  for (std::size_t step = 0; step <= schedule.steps(); ++step) {
+    const double time = schedule.time_of_step(step);
+    filming.play_to(time, schedule.state_at(time), take);
+  }
+  return images;
+}
+
+TEST_F(Render, IsTheFrameThatARunFilms) {
+  const std::string plain = file("x.toml");
+  for (const std::string truth :
+       {"", "[truth.arm.initial]\nbends = [[-0.6, 0]]\n", "[[truth.arm.section]]\nmax_bend_rate = 0.4\n"}) {
+    SCOPED_TRACE(truth);
+    std::ofstream(folder_.path() / "x.toml")
+        << replaced(plain, "height = 60 }", "height = 60, frame_rate = 10, exposure = 0.05, read_noise = 2 }")
+        << truth;
+    std::ostringstream out;
+    const std::vector<std::string> frames = filmed(folder_.path() / "x.toml");
+    ASSERT_EQ(frames.size(), 10U);
+    for (const std::size_t number : {0U, 4U, 8U}) {
+      RenderArguments asked = arguments("f.png");
+      asked.time = static_cast<double>(number) / 10;
+      render_command(asked, out);
+      EXPECT_TRUE(file("f.png") == frames[number]) << number;
+    }
+  }
+}
+
+TEST_F(Render, ItsTruthIsThatOfTheMiddleOfTheExposure) {
+  const auto bend = [&](const char* exposure, double time) {
+    std::ostringstream out;
+    RenderArguments asked = arguments("t.png");
+    asked.truth = true;
+    asked.time = time;
+    asked.sets = {"camera.0.sensor.frame_rate=4", std::string("camera.0.sensor.exposure=") + exposure};
+    render_command(asked, out);
+    const Node truth = parse_json(file("t_truth.json"), "truth");
+    const auto& pixel = *truth.find("axis")->as<Node::Array>()->back().find("pixel")->as<Node::Array>();
+    return Eigen::Vector2d(*pixel[0].as<double>(), *pixel[1].as<double>());
+  };
+  EXPECT_LE((bend("0.2", 0.4) - bend("0.0", 0.5)).norm(), 1e-6);
+  EXPECT_GT((bend("0.2", 0.4) - bend("0.0", 0.4)).norm(), 0.5);
 }
 
 TEST_F(Render, TellsWhatItIsNotGiven) {

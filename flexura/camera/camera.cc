@@ -1,13 +1,9 @@
 #include "flexura/camera/camera.h"
 
+#include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
-namespace {
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-}  // namespace
 
 Camera::Camera(const CameraConfig& config)
     : config_(config),
@@ -63,6 +59,7 @@ std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP, con
   result.by_pupil = -by_C;
   result.by_pupil_shift = -by_C.col(2) * (lens_.ratio(head.zoom) - 1);
   result.by_intrinsics = in_camera->by_intrinsics;
+  result.by_lens = in_camera->by_intrinsics * lens_.by_lens(head.zoom).asDiagonal();
   result.by_zoom = in_camera->by_intrinsics * lens_.slope(head.zoom) -
                    by_C.col(2) * (config_.head.pupil_shift * lens_.ratio_slope(head.zoom));
   return result;

@@ -26,6 +26,9 @@ struct CameraProjection {
   Eigen::Matrix<double, 2, 3> by_pupil;                      ///< HeadConfig::pupil.
   Eigen::Vector2d by_pupil_shift;                            ///< HeadConfig::pupil_shift.
   Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< At this zoom; fx, fy, cx, cy, k1, ...
+  /// The same of the lens at ratio 1, on which those at this zoom depend. (By a zoom table's row:
+  /// by_intrinsics * ZoomTable::by_row().asDiagonal().)
+  Eigen::Matrix<double, 2, intrinsics_count> by_lens;
 };
 
 /// A camera on its head and mount, ready to use.

@@ -19,6 +19,22 @@ void check_start(const AxisConfig& axis, double start, const std::string& path, 
                                       axis.limits[0], axis.limits[1]));
 }
 
+// Files are named after cameras, and topics of the log.
+void check_name(const std::string& name, Reader& reader) {
+  constexpr std::size_t longest = 100;
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.' || c == ' ';
+  };
+  if (name.empty()) {
+    reader.problem_at("name", "is empty: expected a name");
+  } else if (!std::ranges::all_of(name, is_plain) || name.front() == '.' || name.size() > longest) {
+    reader.problem_at("name", fmt::format("{} cannot name a file: expected at most {} letters, digits, -, _, "
+                                          "spaces and points, and no point first",
+                                          Node{name, {}}.brief(), longest));
+  }
+}
+
 void check_camera(const CameraConfig& camera, Reader& reader) {
   const ZoomTable lens(camera.lens, camera.sensor.width, camera.sensor.height);
   const AxisConfig zoom = camera.head.zoom.axis(lens);
@@ -63,7 +79,11 @@ const Table<CameraStartConfig>& fields_of(const CameraStartConfig*) {
 const Table<CameraConfig>& fields_of(const CameraConfig*) {
   static const auto table =
       Table<CameraConfig>("camera", "A camera on a pan/tilt/zoom head.")
-          .field("name", &CameraConfig::name, {.meaning = "What tasks and files call it.", .required = true})
+          .field(
+              "name", &CameraConfig::name,
+              {.meaning =
+                   "What tasks and files call it: letters, digits, -, _, spaces and points, no point first.",
+               .required = true})
           .field("mount", &CameraConfig::mount,
                  {.meaning = "Where its head stands, and which way it faces.", .required = true})
           .field("head", &CameraConfig::head, {.meaning = "The pan/tilt/zoom head."})
@@ -71,7 +91,7 @@ const Table<CameraConfig>& fields_of(const CameraConfig*) {
           .field("sensor", &CameraConfig::sensor, {.meaning = "The sensor."})
           .field("initial", &CameraConfig::initial, {.meaning = "Where it stands when the run starts."})
           .check([](const CameraConfig& camera, Reader& reader) {
-            if (camera.name.empty()) reader.problem_at("name", "is empty: expected a name");
+            check_name(camera.name, reader);
             check_camera(camera, reader);
           });
   return table;

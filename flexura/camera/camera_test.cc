@@ -191,6 +191,28 @@ TEST(Camera, ItsDerivativeByTheLensIsThatAtThisZoom) {
   });
 }
 
+TEST(Camera, ItsDerivativeByTheLensAtRatioOneIsThatOfItsPixels) {
+  for_random_cases(50, [](TestRandom& random) {
+    CameraConfig config = random_camera(random);
+    for (ZoomRow& row : config.lens.zoom) row.fx.reset(), row.distortion.reset();
+    const Camera camera(config);
+    const HeadState head = random_head(random, camera);
+    const StageState stage = random_stage(random, camera);
+    const Eigen::Vector3d p_WP = camera.pose(stage, head) * Eigen::Vector3d(0.2, -0.1, 1.5);
+    const auto projection = camera.project(p_WP, stage, head);
+    ASSERT_TRUE(projection);
+    const auto pixel = [&](double fx, double k1) {
+      CameraConfig changed = config;
+      changed.lens.fx += fx, changed.lens.distortion[0] += k1;
+      return *Camera(changed).view(stage, head).project(p_WP);
+    };
+    const Eigen::Vector2d by_fx = (pixel(1e-3, 0) - pixel(-1e-3, 0)) / 2e-3;
+    const Eigen::Vector2d by_k1 = (pixel(0, 1e-5) - pixel(0, -1e-5)) / 2e-5;
+    EXPECT_LE((projection->by_lens.col(0) - by_fx).norm(), 1e-6);
+    EXPECT_LE((projection->by_lens.col(4) - by_k1).norm(), 1e-6 * camera.lens().at(head.zoom).fx);
+  });
+}
+
 TEST(Camera, OutsideItsZoomHasNoView) {
   CameraConfig config = cameras_at({5, 5})[0];
   config.lens.zoom = sony_zoom();

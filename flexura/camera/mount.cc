@@ -1,13 +1,13 @@
 #include "flexura/camera/mount.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -15,9 +15,6 @@ namespace {
 
 constexpr NumberRange place_range = {.min = -1e6, .max = 1e6};
 constexpr AxisUnits slide_units = {Unit::metre, Unit::metre_per_second, Unit::metre_per_second_squared};
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-Eigen::Quaterniond quaternion(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
 
 struct Fault {
   std::string path, what;
@@ -28,9 +25,8 @@ Fault orientation_fault(const MountConfig& mount) {
   if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
   if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
   if (mount.rotation) {
-    const double norm = quaternion(*mount.rotation).norm();
-    if (!(std::abs(norm - 1) <= 1e-3))
-      return {"rotation", fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm)};
+    if (std::string problem = quaternion_problem(*mount.rotation); !problem.empty())
+      return {"rotation", std::move(problem)};
     if (mount.roll != 0) return {"roll", "belongs to look_at: expected it to be part of rotation"};
     return {};
   }
@@ -104,7 +100,7 @@ Pose MountConfig::pose() const {
   Pose X_WM;
   X_WM.position = vector(position);
   if (rotation) {
-    X_WM.rotation = quaternion(*rotation).normalized().toRotationMatrix();
+    X_WM.rotation = rotation_of(*rotation);
   } else {
     X_WM.rotation = *upright(vector(*look_at) - X_WM.position) * so3_exp(Eigen::Vector3d(0, 0, roll));
   }

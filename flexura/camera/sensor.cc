@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace flexura {
 namespace {
 
@@ -91,6 +93,16 @@ void add_effects(Table<SensorConfig>& table) {
 }
 
 }  // namespace
+
+double row_delay(const SensorConfig& sensor, int v) {
+  if (sensor.readout == Readout::rolling) return v * sensor.row_time;
+  return sensor.readout == Readout::interlaced && v % 2 == 1 ? 0.5 / sensor.frame_rate : 0;
+}
+
+double last_row_delay(const SensorConfig& sensor) {
+  const auto last = static_cast<int>(sensor.height) - 1;
+  return std::max(row_delay(sensor, last), row_delay(sensor, std::max(last - 1, 0)));
+}
 
 const std::vector<std::string>& names_of(const PixelKind*) {
   static const std::vector<std::string> names{"gray", "color"};

@@ -39,6 +39,12 @@ struct SensorConfig {
   [[nodiscard]] int channels() const { return pixels == PixelKind::color ? 3 : 1; }
 };
 
+/// How long after the frame's own beginning row v begins to gather light, s: v row times with a rolling
+/// shutter, half a frame for the odd rows of an interlaced image, else 0.
+[[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
+/// The same of the row that begins last.
+[[nodiscard]] double last_row_delay(const SensorConfig& sensor);
+
 const std::vector<std::string>& names_of(const PixelKind*);
 const std::vector<std::string>& names_of(const Readout*);
 const Table<SensorConfig>& fields_of(const SensorConfig*);

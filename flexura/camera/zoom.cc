@@ -33,6 +33,16 @@ Eigen::Vector<double, intrinsics_count> numbers(const Intrinsics& lens) {
   return result;
 }
 
+// How a row's numbers change with those of the lens at ratio 1: only those that it leaves out do.
+Eigen::Vector<double, intrinsics_count> left_out(const ZoomRow& row) {
+  const auto factor = [](bool is_written, double otherwise) { return is_written ? 0.0 : otherwise; };
+  Eigen::Vector<double, intrinsics_count> result;
+  result.setConstant(factor(row.distortion.has_value(), 1));
+  result.head<4>() << factor(row.fx.has_value(), row.ratio), factor(row.fy.has_value(), row.ratio),
+      factor(row.cx.has_value(), 1), factor(row.cy.has_value(), 1);
+  return result;
+}
+
 Spec row_spec(const char* meaning, NumberRange range, const char* default_text) {
   return {.meaning = meaning, .range = range, .default_text = default_text};
 }
@@ -83,40 +93,41 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
                   .count = {0, max_rows},
                   .default_text = "none: focal length in proportion to the ratio, the rest constant"})
           .check([](const LensConfig& config, Reader& reader) {
-            if (const std::string problem = ZoomTable::problem(config); !problem.empty())
-              reader.problem_at("zoom", problem);
+            if (const auto fault = ZoomTable::fault(config)) reader.problem_at(fault->path, fault->what);
           });
   return table;
 }
 
-std::string ZoomTable::problem(const LensConfig& config) {
+std::optional<ZoomTable::Fault> ZoomTable::fault(const LensConfig& config) {
   const auto& rows = config.zoom;
-  if (rows.empty()) return "";
-  if (rows.size() == 1) return "has one row: expected at least two, or none for a linear zoom";
+  if (rows.empty()) return std::nullopt;
+  if (rows.size() == 1) return Fault{"zoom", "has one row: expected at least two, or none for a linear zoom"};
   const Intrinsics one = lens_at_one(config, 1, 1);
   const bool counts = rows[0].count.has_value();
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto at = [i](const char* key) { return fmt::format("zoom[{}].{}", i, key); };
     if (rows[i].count.has_value() != counts)
-      return fmt::format("[{}]: expected a count in all rows or none", i);
+      return Fault{at("count"), "expected a count in all rows or none"};
     if (i == 0) continue;
     const Intrinsics before = lens_at(rows[i - 1], one), here = lens_at(rows[i], one);
-    if (!(rows[i].ratio > rows[i - 1].ratio)) return fmt::format("[{}]: expected a rising ratio", i);
-    if (!(here.fx > before.fx) || !(here.fy > before.fy))
-      return fmt::format("[{}]: expected rising focal lengths", i);
+    if (!(rows[i].ratio > rows[i - 1].ratio)) return Fault{at("ratio"), "expected a rising ratio"};
+    if (!(here.fx > before.fx)) return Fault{at("fx"), "expected rising focal lengths"};
+    if (!(here.fy > before.fy)) return Fault{at("fy"), "expected rising focal lengths"};
     if (counts && !((*rows[i].count - *rows[i - 1].count) * (*rows[1].count - *rows[0].count) > 0))
-      return fmt::format("[{}]: expected counts that all rise or all fall", i);
+      return Fault{at("count"), "expected counts that all rise or all fall"};
   }
-  return "";
+  return std::nullopt;
 }
 
 ZoomTable::ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t height)
     : one_(lens_at_one(config, width, height)) {
-  if (const std::string what = problem(config); !what.empty())
-    throw std::invalid_argument("the zoom's table " + what);
+  if (const auto wrong = fault(config))
+    throw std::invalid_argument("the lens's " + wrong->path + ": " + wrong->what);
   if (config.zoom.empty()) return;
   std::vector<ZoomRow> rows = config.zoom;
   by_count_ = rows.front().count.has_value();
-  if (by_count_ && *rows.back().count < *rows.front().count) std::ranges::reverse(rows);
+  is_reversed_ = by_count_ && *rows.back().count < *rows.front().count;
+  if (is_reversed_) std::ranges::reverse(rows);
   first_ = by_count_ ? *rows.front().count : rows.front().ratio;
   last_ = by_count_ ? *rows.back().count : rows.back().ratio;
   std::vector<double> x;
@@ -126,6 +137,8 @@ ZoomTable::ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t 
     const auto lens = numbers(lens_at(row, one_));
     for (int i = 0; i < intrinsics_count; ++i)
       y[static_cast<std::size_t>(i)].push_back(i < 2 ? std::log(lens[i]) : lens[i]);
+    rows_.push_back(lens);
+    rows_by_lens_.push_back(left_out(row));
     y[intrinsics_count].push_back(std::log(row.ratio));
   }
   for (const auto& values : y) curves_.emplace_back(x, values);
@@ -160,6 +173,32 @@ double ZoomTable::ratio(double zoom) const {
 
 double ZoomTable::ratio_slope(double zoom) const {
   return by_count_ ? ratio(zoom) * curves_[intrinsics_count].slope(within(zoom)) : 1;
+}
+
+Eigen::Vector<double, intrinsics_count> ZoomTable::by_row(double zoom, std::size_t row) const {
+  const double x = abscissa(within(zoom));
+  const std::size_t point = is_reversed_ ? rows_.size() - 1 - row : row;
+  const auto lens = numbers(at(zoom));
+  Eigen::Vector<double, intrinsics_count> result;
+  for (int i = 0; i < intrinsics_count; ++i) {
+    result[i] = curves_.at(static_cast<std::size_t>(i)).by_point(x, point);
+    if (i < 2) result[i] *= lens[i] / rows_.at(point)[i];  // the curve is the logarithm's
+  }
+  return result;
+}
+
+Eigen::Vector<double, intrinsics_count> ZoomTable::by_lens(double zoom) const {
+  Eigen::Vector<double, intrinsics_count> result = Eigen::Vector<double, intrinsics_count>::Ones();
+  if (is_linear()) {
+    result.head<2>().setConstant(within(zoom));
+    return result;
+  }
+  result.setZero();
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    const auto& through_row = rows_by_lens_[is_reversed_ ? rows_.size() - 1 - row : row];
+    if (!through_row.isZero(0)) result += by_row(zoom, row).cwiseProduct(through_row);
+  }
+  return result;
 }
 
 Eigen::Vector<double, intrinsics_count> ZoomTable::slope(double zoom) const {

@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "flexura/base/table.h"
@@ -42,12 +44,16 @@ const Table<LensConfig>& fields_of(const LensConfig*);
 /// and distortion: continuous with their slopes, and never outside two neighbouring rows.
 class ZoomTable {
  public:
-  /// For images of this size, px. std::invalid_argument: what `problem` finds.
+  /// For images of this size, px. std::invalid_argument: what `fault` finds.
   ZoomTable(const LensConfig& config, std::int64_t width, std::int64_t height);
 
-  /// What keeps the rows from being a zoom, "" when nothing does: ratios and focal lengths that do not rise,
+  /// What is wrong with a lens, and where in its table.
+  struct Fault {
+    std::string path, what;
+  };
+  /// What keeps the rows from being a zoom, if anything does: ratios and focal lengths that do not rise,
   /// counts that neither all rise nor all fall, or that some rows lack, a single row.
-  [[nodiscard]] static std::string problem(const LensConfig& config);
+  [[nodiscard]] static std::optional<Fault> fault(const LensConfig& config);
 
   /// The positions for which there is a lens: those of the rows, or all above 0.
   [[nodiscard]] double first() const { return first_; }
@@ -59,6 +65,11 @@ class ZoomTable {
   [[nodiscard]] Intrinsics at(double zoom) const;
   /// d intrinsics / d zoom, in the order of `intrinsics_count`. The same errors.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> slope(double zoom) const;
+  /// How each number of the lens at `zoom` changes with the same number of row `row` of the file, as it
+  /// stands there or follows from the lens at ratio 1; ratios and counts stay. The same errors.
+  [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_row(double zoom, std::size_t row) const;
+  /// And with the same number of the lens at ratio 1, directly or through rows that leave it out.
+  [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_lens(double zoom) const;
   /// The ratio at `zoom`, interpolated as the focal lengths are, and its derivative. The same errors.
   [[nodiscard]] double ratio(double zoom) const;
   [[nodiscard]] double ratio_slope(double zoom) const;
@@ -70,6 +81,9 @@ class ZoomTable {
   Intrinsics one_;  // at ratio 1
   double first_ = std::numeric_limits<double>::min(), last_ = std::numeric_limits<double>::max();
   bool by_count_ = false;
+  bool is_reversed_ = false;  // the curves' points: the file's rows, the last one first
+  // By row of the curves: each number, and how it changes with that of the lens at ratio 1.
+  std::vector<Eigen::Vector<double, intrinsics_count>> rows_, rows_by_lens_;
   std::vector<MonotoneCubic> curves_;  // log fx, log fy, cx, ..., log ratio; none: linear
 };
 

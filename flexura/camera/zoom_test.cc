@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 
 #include "flexura/math/derivative_check.h"
@@ -99,6 +102,82 @@ TEST(Zoom, ItsSlopeIsItsDerivative) {
   });
 }
 
+// The change of the lens at a zoom when `change` adds a step to one of the file's numbers.
+template <class Change>
+Eigen::VectorXd difference(const LensConfig& config, double zoom, double step, Change&& change) {
+  const auto at = [&](double offset) {
+    LensConfig changed = config;
+    change(changed, offset);
+    return numbers(ZoomTable(changed, 640, 480).at(zoom));
+  };
+  return (at(step) - at(-step)) / (2 * step);
+}
+
+// What number i of a lens or row with everything written changes by.
+template <class Lens>
+void add(Lens& lens, int i, double offset) {
+  if (i == 0) lens.fx = *std::optional<double>(lens.fx) + offset;
+  if (i == 1) lens.fy = *lens.fy + offset;
+  if (i == 2) lens.cx = *lens.cx + offset;
+  if (i == 3) lens.cy = *lens.cy + offset;
+  if (i < 4) return;
+  std::optional<std::array<double, 5>> distortion = lens.distortion;
+  (*distortion)[static_cast<std::size_t>(i - 4)] += offset;
+  lens.distortion = *distortion;
+}
+
+// One without numbers that stay the same from row to row: there the slopes between them have a corner.
+LensConfig changing_lens(TestRandom& random) {
+  LensConfig config = random_lens(random);
+  config.distortion[4] = random.uniform(0.001, 0.01);
+  for (ZoomRow& row : config.zoom) (*row.distortion)[4] = random.uniform(0.001, 0.01);
+  return config;
+}
+
+TEST(Zoom, KnowsHowItsLensChangesWithItsRows) {
+  for_random_cases(100, [](TestRandom& random) {
+    const LensConfig config = changing_lens(random);
+    if (config.zoom.empty()) return;
+    const ZoomTable zoom(config, 640, 480);
+    const double at = random.uniform(zoom.first(), zoom.last());
+    for (std::size_t row = 0; row < config.zoom.size(); ++row) {
+      const auto by_row = zoom.by_row(at, row);
+      for (int i = 0; i < intrinsics_count; ++i) {
+        const double step = i < 4 ? 1e-3 : 1e-7;
+        Eigen::VectorXd expected = Eigen::VectorXd::Zero(intrinsics_count);
+        expected[i] = by_row[i];
+        const Eigen::VectorXd found = difference(
+            config, at, step, [&](LensConfig& lens, double offset) { add(lens.zoom[row], i, offset); });
+        EXPECT_LE((found - expected).norm(), 1e-5) << "row " << row << ", number " << i;
+      }
+    }
+  });
+}
+
+TEST(Zoom, KnowsHowItsLensChangesWithThatAtRatioOne) {
+  for_random_cases(100, [](TestRandom& random) {
+    LensConfig config = changing_lens(random);
+    config.cx = 320, config.cy = 240;
+    for (ZoomRow& row : config.zoom) {
+      // What is left out follows from the lens; focal lengths in proportion still rise.
+      if (random.integer(0, 1) == 0) row.fx.reset();
+      if (random.integer(0, 1) == 0) row.fy.reset();
+      if (random.integer(0, 4) == 0) row.cx.reset();
+      if (random.integer(0, 4) == 0) row.distortion.reset();
+    }
+    const ZoomTable zoom(config, 640, 480);
+    const double at = zoom.is_linear() ? random.uniform(1, 10) : random.uniform(zoom.first(), zoom.last());
+    const auto by_lens = zoom.by_lens(at);
+    for (int i = 0; i < intrinsics_count; ++i) {
+      Eigen::VectorXd expected = Eigen::VectorXd::Zero(intrinsics_count);
+      expected[i] = by_lens[i];
+      const Eigen::VectorXd found = difference(
+          config, at, i < 4 ? 1e-3 : 1e-7, [&](LensConfig& lens, double offset) { add(lens, i, offset); });
+      EXPECT_LE((found - expected).norm(), 1e-5) << "number " << i;
+    }
+  });
+}
+
 // With this camera's counts a zoom that is linear in them is wrong by 242 % at 2x.
 TEST(Zoom, AMotorsCountsAreFarFromLinear) {
   LensConfig config;
@@ -128,18 +207,21 @@ TEST(Zoom, RefusesATableThatIsNone) {
     LensConfig config;
     config.zoom = sony_zoom();
     spoil(config.zoom);
-    std::string what = ZoomTable::problem(config);
+    const auto fault = ZoomTable::fault(config).value();
     EXPECT_THROW(ZoomTable(config, 640, 480), std::invalid_argument);
-    return what;
+    return fault.path + ": " + fault.what;
   };
   using Rows = std::vector<ZoomRow>;
-  EXPECT_THAT(problem([](Rows& rows) { rows.resize(1); }), HasSubstr("at least two"));
+  EXPECT_THAT(problem([](Rows& rows) { rows.resize(1); }),
+              HasSubstr("zoom: has one row: expected at least two"));
   EXPECT_THAT(problem([](Rows& rows) { rows[3].count.reset(); }),
-              HasSubstr("[3]: expected a count in all rows"));
-  EXPECT_THAT(problem([](Rows& rows) { rows[3].ratio = 3; }), HasSubstr("[3]: expected a rising ratio"));
+              HasSubstr("zoom[3].count: expected a count in all rows"));
+  EXPECT_THAT(problem([](Rows& rows) { rows[3].ratio = 3; }),
+              HasSubstr("zoom[3].ratio: expected a rising ratio"));
   EXPECT_THAT(problem([](Rows& rows) { rows[3].count = 0; }),
-              HasSubstr("[3]: expected counts that all rise"));
-  EXPECT_THAT(problem([](Rows& rows) { rows[3].fx = 100; }), HasSubstr("[3]: expected rising focal lengths"));
+              HasSubstr("zoom[3].count: expected counts that all rise"));
+  EXPECT_THAT(problem([](Rows& rows) { rows[3].fx = 100; }), HasSubstr("zoom[3].fx: expected rising focal"));
+  EXPECT_THAT(problem([](Rows& rows) { rows[3].fy = 100; }), HasSubstr("zoom[3].fy: expected rising focal"));
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ namespace flexura {
 namespace {
 
 constexpr double max_steps = 1e6;
+// An hour of two cameras at 30 Hz and more; no log should hold so many.
+constexpr double max_frames = 250000;
 constexpr std::size_t max_tasks = 10000;
 constexpr std::size_t max_obstacles = 1000;
 constexpr std::size_t max_cameras = 100;
@@ -26,6 +28,14 @@ constexpr std::size_t max_cameras = 100;
 void check_experiment(const Experiment& experiment, Reader& reader) {
   if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
   check_cameras(experiment.camera, "camera", reader);
+  if (experiment.stand.camera_distances && !experiment.camera.empty())
+    reader.problem_at("stand.camera_distances",
+                      "is for the default cameras: expected no [[camera]] beside it");
+  if (experiment.truth && experiment.truth->stand &&
+      experiment.truth->stand->camera_distances != experiment.stand.camera_distances) {
+    reader.problem_at("truth.stand.camera_distances",
+                      "moves no camera: expected a mount.position in [[truth.camera]]");
+  }
   if (experiment.truth) {
     const std::string problem = truth_problem(experiment.model_rig(), experiment.true_rig());
     if (!problem.empty()) reader.problem_at("truth", problem);
@@ -76,11 +86,48 @@ void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesy
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
+// A table's member, made where it is missing.
+Node& made(Node& table, std::string_view key, Node::Value empty) {
+  if (Node* found = table.find(key)) return *found;
+  auto& members = *table.as<Node::Table>();
+  members.push_back({std::string(key), table.where, {std::move(empty), table.where}});
+  return members.back().node;
+}
+
+template <class T>
+Node entries_of(const std::vector<T>& values) {
+  Node::Array entries;
+  for (const T& value : values) entries.push_back(Codec<T>::write(value));
+  return {std::move(entries), {}};
+}
+
+// The document with the default cameras and screens written out where a truth is to be laid upon them.
+Node with_defaults_below(const Node& truth, Node document) {
+  const auto is_left_out = [](const Node* table, std::string_view key) {
+    return table == nullptr || table->find(key) == nullptr;
+  };
+  const Node* true_stand = truth.find("stand");
+  const bool needs_cameras = truth.find("camera") != nullptr && is_left_out(&document, "camera");
+  const bool needs_screens = true_stand != nullptr && true_stand->find("screen") != nullptr &&
+                             is_left_out(document.find("stand"), "screen");
+  if (!needs_cameras && !needs_screens) return document;
+  Node believed = document;
+  std::erase_if(*believed.as<Node::Table>(),
+                [](const Node::Member& member) { return member.key == "truth"; });
+  const auto experiment = read_as<Experiment>(believed);
+  if (needs_cameras) made(document, "camera", Node::Array{}) = entries_of(experiment.cameras());
+  if (needs_screens) {
+    made(made(document, "stand", Node::Table{}), "screen", Node::Array{}) =
+        entries_of(*experiment.true_stand().screen);
+  }
+  return document;
+}
+
 // The document with each table of [truth] completed by what the rest of the file says.
 Node with_whole_truth(Node document) {
   Node* truth = document.find("truth");
   if (truth == nullptr || truth->as<Node::Table>() == nullptr) return document;
-  const Node world = truth_of(document);
+  const Node world = truth_of(with_defaults_below(*truth, document));
   for (Node::Member& member : *truth->as<Node::Table>()) {
     const Node* whole = world.find(member.key);
     if (whole != nullptr &&
@@ -116,18 +163,34 @@ Experiment read_with_keyframes(const Node& document, const std::filesystem::path
   return experiment;
 }
 
+// Where the value at `table`.`key` was written, or the nearest of what it stands in.
+SourcePosition place_of(const Node& document, std::string_view table, std::string_view key) {
+  const Node* outer = document.find(table);
+  const Node* inner = outer == nullptr ? nullptr : outer->find(key);
+  if (inner != nullptr) return inner->where;
+  return outer == nullptr ? document.where : outer->where;
+}
+
 // The checks that need every file read; reported at the places in `document`.
 void check_whole(const Experiment& experiment, const Node& document) {
-  const Schedule schedule(experiment);
-  if (schedule.duration() / experiment.clock.step <= max_steps) return;
-  const Node* clock = document.find("clock");
-  const Node* step = clock == nullptr ? nullptr : clock->find("step");
-  SourcePosition where = document.where;
-  if (clock != nullptr) where = clock->where;
-  if (step != nullptr) where = step->where;
-  throw InputError(std::vector<Problem>{
-      {where, fmt::format("clock.step: makes {:.3g} steps of {:.6g} s: expected at most {:.0e}",
-                          schedule.duration() / experiment.clock.step, schedule.duration(), max_steps)}});
+  const double duration = Schedule(experiment).duration();
+  const auto refuse = [&](std::string_view table, std::string_view key, const std::string& what) {
+    throw InputError(std::vector<Problem>{
+        {place_of(document, table, key), fmt::format("{}.{}: makes {}", table, key, what)}});
+  };
+  if (duration / experiment.clock.step > max_steps) {
+    refuse("clock", "step",
+           fmt::format("{:.3g} steps of {:.6g} s: expected at most {:.0e}", duration / experiment.clock.step,
+                       duration, max_steps));
+  }
+  double frames = 0;
+  for (const CameraConfig& camera : experiment.true_rig().cameras)
+    frames += duration * camera.sensor.frame_rate;
+  if (experiment.record.cameras && frames > max_frames) {
+    refuse("record", "cameras",
+           fmt::format("{:.3g} images in {:.6g} s by the cameras' frame rates: expected at most {:.6g}",
+                       frames, duration, max_frames));
+  }
 }
 
 Node resolved_overrides(Node document, const Overrides& overrides) {
@@ -204,7 +267,9 @@ const Table<TruthConfig>& fields_of(const TruthConfig*) {
                  {.meaning = "The cameras as they are.",
                   .count = {0, max_cameras},
                   .partial = true,
-                  .default_text = "as believed"});
+                  .default_text = "as believed"})
+          .field("stand", &TruthConfig::stand,
+                 {.meaning = "What stands around the arm.", .partial = true, .default_text = "as believed"});
   return table;
 }
 
@@ -260,8 +325,15 @@ RigConfig Experiment::true_rig() const {
   return rig;
 }
 
+StandConfig Experiment::true_stand() const {
+  StandConfig shown = truth && truth->stand ? *truth->stand : stand;
+  if (!shown.screen) shown.screen = default_screens(arm.arm().length(), arm.base.position);
+  return shown;
+}
+
 std::vector<CameraConfig> Experiment::cameras() const {
   if (!camera.empty()) return camera;
+  if (stand.camera_distances) return cameras_at(*stand.camera_distances, arm.base.position);
   double reach = 0;
   for (const Section& section : arm.section)
     reach += section.length * std::max(1.0, section.stretch_limits[1]);

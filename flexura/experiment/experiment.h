@@ -38,6 +38,7 @@ struct TruthConfig {
   std::optional<ArmConfig> arm;
   std::optional<DriveConfig> drive;
   std::vector<CameraConfig> camera;
+  std::optional<StandConfig> stand;
 };
 
 /// An experiment file: a rig and the tasks it does, one after another.
@@ -59,8 +60,11 @@ struct Experiment {
   /// The rig as tasks believe it to be, and as it is.
   [[nodiscard]] RigConfig model_rig() const;
   [[nodiscard]] RigConfig true_rig() const;
+  /// What stands around it as it is; its screens are where the believed arm has them, if nothing else is
+  /// said.
+  [[nodiscard]] StandConfig true_stand() const;
 
-  /// The file's cameras, or the paper's two, which have all of the arm's reach in view.
+  /// The file's cameras, or the paper's two, at the stand's distances or with all of the arm's reach in view.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
 };
 

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "flexura/base/source.h"
+#include "flexura/camera/sensor.h"
+#include "flexura/experiment/experiment.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/results_log.h"
+#include "flexura/sim/simulated_camera.h"
 #include "flexura/store/child_process.h"
 #include "flexura/store/json.h"
 
@@ -35,69 +37,84 @@ void for_each_image(const McapReader& log, See&& see) {
   }
 }
 
-// The shortest time between two images of each camera, s: that of one frame, unless every second one was
-// lost.
-std::map<std::string, double> frame_times_of(const McapReader& log) {
-  std::map<std::string, double> shortest, last;
-  for_each_image(log, [&](const std::string& camera, const ImageMessage& image) {
-    const double time = seconds(image.timestamp);
-    const auto [found, is_first] = shortest.try_emplace(camera, std::numeric_limits<double>::infinity());
-    if (!is_first && time > last[camera]) found->second = std::min(found->second, time - last[camera]);
-    last[camera] = time;
+// When the run ended, s: its last state is always in the log.
+double end_of(const McapReader& log) {
+  std::uint64_t last = 0;
+  for (const McapMessage& message : log.messages()) last = std::max(last, message.log_time);
+  return 1e-9 * static_cast<double>(last);
+}
+
+// The cameras that filmed the run; InputError when there is nothing to show.
+std::map<std::string, SensorConfig> sensors_of(const McapReader& log, const std::filesystem::path& results) {
+  const Experiment experiment = load_experiment(results / experiment_file_name);
+  std::map<std::string, SensorConfig> sensors;
+  for_each_image(log, [&](const std::string& camera, const ImageMessage&) {
+    for (const CameraConfig& config : experiment.true_rig().cameras)
+      if (config.name == camera) sensors.try_emplace(camera, config.sensor);
   });
-  constexpr double of_a_single_image = 1;
-  for (auto& [camera, time] : shortest)
-    if (!std::isfinite(time)) time = of_a_single_image;
-  return shortest;
+  if (!sensors.empty()) return sensors;
+  throw input_error(results.string(),
+                    experiment.record.cameras
+                        ? "holds no images: no frame arrived, all were lost or came after the end"
+                        : "holds no images: expected a run of an experiment with [record] cameras = true");
 }
 
 class Film {
  public:
   // The same images give the same bytes: one thread, no date, no version.
-  Film(const std::filesystem::path& file, double frame_time)
-      : frame_time_(frame_time), program_({film_program, "-loglevel",
-                                           "error",      "-nostdin",
-                                           "-f",         "image2pipe",
-                                           "-framerate", fmt::format("{:.9g}", 1 / frame_time),
-                                           "-c:v",       "png",
-                                           "-i",         "-",
-                                           "-c:v",       "libx264",
-                                           "-pix_fmt",   "yuv420p",
-                                           "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                           "-threads",   "1",
-                                           "-fflags",    "+bitexact",
-                                           "-flags:v",   "+bitexact",
-                                           file.string()}) {}
+  Film(const std::filesystem::path& file, const SensorConfig& sensor)
+      : frame_rate_(sensor.frame_rate),
+        first_(frame_times(sensor, 0).middle),
+        program_({film_program, "-loglevel",
+                  "error",      "-nostdin",
+                  "-f",         "image2pipe",
+                  "-framerate", fmt::format("{:.9g}", frame_rate_),
+                  "-c:v",       "png",
+                  "-i",         "-",
+                  "-c:v",       "libx264",
+                  "-pix_fmt",   "yuv420p",
+                  "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                  "-threads",   "1",
+                  "-fflags",    "+bitexact",
+                  "-flags:v",   "+bitexact",
+                  file.string()}) {}
 
   void show(const ImageMessage& image) {
-    const double time = seconds(image.timestamp);
-    // Those lost in between, as far as there is one before.
-    if (frames_ > 0) {
-      const auto missing = std::llround((time - last_) / frame_time_) - 1;
-      for (std::int64_t i = 0; i < missing && i < most_missing; ++i) put(shown_);
-    }
+    const std::int64_t number = std::llround((seconds(image.timestamp) - first_) * frame_rate_);
+    if (frames_ == 0) shown_ = image.data.data;
+    fill(number);
     put(image.data.data);
     shown_ = image.data.data;
-    last_ = time;
+  }
+  // With the frames that began up to the run's end.
+  void finish(double end) {
+    constexpr double rounding = 1e-6;
+    fill(static_cast<std::int64_t>(std::floor(end * frame_rate_ + rounding)) + 1);
+    finish();
+  }
+
+ private:
+  // More than a run makes: keeps a damaged log from filling the disk.
+  static constexpr std::int64_t most_frames = 1000000;
+
+  // Shows what was shown before until there are so many frames.
+  void fill(std::int64_t frames) {
+    while (frames_ < std::min(frames, most_frames)) put(shown_);
   }
   void finish() {
     if (const int status = program_.finish(); status != 0)
       throw std::runtime_error(
           fmt::format("{} made no film: it ended with the status {}", film_program, status));
   }
-
- private:
-  static constexpr std::int64_t most_missing = 100000;
-
   void put(const std::string& png) {
     if (!program_.write(png)) finish();
     ++frames_;
   }
 
-  double frame_time_;
+  double frame_rate_;
+  double first_;  // time stamp of frame 0, s
   ChildProcess program_;
   std::int64_t frames_ = 0;
-  double last_ = 0;
   std::string shown_;
 };
 
@@ -105,20 +122,18 @@ class Film {
 
 ExportResult export_mp4(const std::filesystem::path& results) {
   const McapReader log = open_log(results);
-  const auto frame_times = from_log([&] { return frame_times_of(log); });
-  if (frame_times.empty())
-    throw input_error(results.string(),
-                      "holds no images: expected a run of an experiment with [record] cameras = true");
+  const auto sensors = from_log([&] { return sensors_of(log, results); });
   if (!has_program(film_program))
     throw std::runtime_error(
         fmt::format("there is no program {} on the PATH: films are made by it", film_program));
   ExportResult result{make_new_folder(results / "mp4"), log.truncated()};
   std::map<std::string, Film> films;
-  for (const auto& [camera, time] : frame_times)
-    films.try_emplace(camera, result.folder / (camera + ".mp4"), time);
-  for_each_image(log,
-                 [&](const std::string& camera, const ImageMessage& image) { films.at(camera).show(image); });
-  for (auto& [camera, film] : films) film.finish();
+  for (const auto& [camera, sensor] : sensors)
+    films.try_emplace(camera, result.folder / (camera + ".mp4"), sensor);
+  for_each_image(log, [&](const std::string& camera, const ImageMessage& image) {
+    if (const auto film = films.find(camera); film != films.end()) film->second.show(image);
+  });
+  for (auto& [camera, film] : films) film.finish(end_of(log));
   return result;
 }
 

@@ -12,9 +12,10 @@ namespace flexura {
 inline constexpr const char* film_program = "ffmpeg";
 
 /// Makes a film of each camera's images in a run's log: NAME.mp4 (H.264) in the new folder RESULTS/mp4
-/// (mp4-2, ... when it exists), by the program ffmpeg on the PATH. Lost frames are shown as the one before.
-/// InputError when `results` holds no log, or one without images; std::runtime_error when ffmpeg is missing
-/// or fails.
+/// (mp4-2, ... when it exists), by the program ffmpeg on the PATH. A film has the camera's frame rate, and
+/// every frame from time 0 to the run's end: lost ones are shown as the one before, or the first that came.
+/// InputError when `results` holds no experiment, no log, or one without images; std::runtime_error when
+/// ffmpeg is missing or fails.
 ExportResult export_mp4(const std::filesystem::path& results);
 
 }  // namespace flexura

@@ -1,19 +1,22 @@
 #include "flexura/experiment/filming.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include "flexura/safety/motion_check.h"
 #include "flexura/sim/simulated_camera.h"
 
 namespace flexura {
 
 Filming::Filming(const Experiment& experiment)
-    : photographer_(experiment.true_rig().arm.arm(), experiment),
+    : photographer_(experiment),
       rig_(
           experiment.model_rig(), experiment.true_rig(),
           [this](const Shot& shot) { return photographer_.take(shot); },
           static_cast<std::uint64_t>(experiment.seed)),
+      seed_(static_cast<std::uint64_t>(experiment.seed)),
       cameras_(experiment.true_rig().cameras),
       frames_(cameras_.size(), 0) {}
 
@@ -37,6 +40,33 @@ void Filming::play_to(double time, const ArmState& state, const TakeFrame& take)
     ++frames_[frame.camera];
   }
   ports.clock->wait_until(time);
+}
+
+double Filming::play_to(double until, const Schedule& schedule) {
+  const RigPorts ports = rig_.ports();
+  double played = 0;
+  for (std::size_t step = 0; step <= schedule.steps(); ++step) {
+    const double time = schedule.time_of_step(step);
+    const ArmState state = schedule.state_at(time);
+    if (!is_possible(state)) break;
+    (void)ports.arm->command(state, time - ports.clock->now()).value();
+    ports.clock->wait_until(time);
+    played = time;
+    if (time >= until) break;
+  }
+  return played;
+}
+
+Shot Filming::shot(std::size_t camera, double start) {
+  Shot shot;
+  shot.camera = camera;
+  shot.sensor = &cameras_.at(camera).sensor;
+  shot.frame = std::llround(start * shot.sensor->frame_rate);
+  shot.seed = seed_;
+  shot.start = start;
+  shot.view = [&seen = rig_.camera(camera)](double time) { return seen.view(time); };
+  shot.backbone = [this](double time) { return rig_.arm().backbone(time); };
+  return shot;
 }
 
 }  // namespace flexura

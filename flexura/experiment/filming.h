@@ -8,7 +8,10 @@
 
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/photographer.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/experiment/truth_files.h"
 #include "flexura/port/camera_port.h"
+#include "flexura/port/rig_ports.h"
 #include "flexura/sim/simulated_rig.h"
 
 namespace flexura {
@@ -25,6 +28,22 @@ class Filming {
   /// received until then, in the order of time and then of the cameras.
   void play_to(double time, const ArmState& state, const TakeFrame& take);
 
+  /// The rig that plays; its clock is at the last call's time.
+  [[nodiscard]] RigPorts ports() { return rig_.ports(); }
+
+  /// Plays `schedule` from its start to its first step at `until` s or later, to its end, or to the last step
+  /// before a state that no arm can take, and renders nothing. Returns the time of that step, s.
+  [[nodiscard]] double play_to(double until, const Schedule& schedule);
+
+  /// What the camera in this place would expose from `start` s on, up to which the motion must have been
+  /// played; at the start of a frame, that frame.
+  [[nodiscard]] Shot shot(std::size_t camera, double start);
+  [[nodiscard]] Picture take(const Shot& shot) { return photographer_.take(shot); }
+  /// What stands before the camera of `shot` at a time since its start.
+  [[nodiscard]] ShownScene shown(const Shot& shot, double time) const {
+    return {photographer_.scene(shot.backbone(time)), shot.view(time)};
+  }
+
  private:
   struct Next {
     std::size_t camera;
@@ -35,6 +54,7 @@ class Filming {
 
   Photographer photographer_;
   SimulatedRig rig_;
+  std::uint64_t seed_;
   std::vector<CameraConfig> cameras_;
   std::vector<std::int64_t> frames_;  // that each camera has delivered or lost
 };

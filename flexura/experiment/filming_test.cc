@@ -1,11 +1,16 @@
 #include "flexura/experiment/filming.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "flexura/base/progress.h"
@@ -104,13 +109,138 @@ TEST(Filming, ShowsTheTruthAndNotWhatIsBelieved) {
   const Film believed = film_of(quiet);
   const Film same = film_of(quiet + "[truth.arm.base]\nposition = [0, 0, 0]\n");
   const Film shifted = film_of(quiet + "[truth.arm.base]\nposition = [0.1, 0, 0]\n");
+  const Film light = film_of(quiet + "[truth.arm.look]\ncolor = [0.9, 0.9, 0.9]\n");
+  const Film dim = film_of(quiet +
+                           "[[truth.stand.screen]]\nbrightness = 0.7\n[[truth.stand.screen]]\n"
+                           "brightness = 0.7\n");
   const Film turned = film_of(quiet + "[[truth.camera]]\nname = \"side\"\ninitial = { pan_deg = 2 }\n");
   ASSERT_EQ(believed.size(), turned.size());
   for (std::size_t i = 0; i < believed.size(); ++i) {
     EXPECT_EQ(*believed[i].second.picture, *same[i].second.picture) << i;
     EXPECT_NE(*believed[i].second.picture, *shifted[i].second.picture) << i;
+    EXPECT_NE(*believed[i].second.picture, *light[i].second.picture) << i;
+    EXPECT_NE(*believed[i].second.picture, *dim[i].second.picture) << i;
     EXPECT_EQ(*believed[i].second.picture == *turned[i].second.picture, believed[i].first == "front") << i;
   }
+}
+
+// The light of an image's rows, before the noise of its bits.
+const Image<std::uint8_t>& gray(const Frame& frame) { return std::get<Image<std::uint8_t>>(*frame.picture); }
+
+// One camera that makes ten frames of an arm which moves as `task` says.
+std::string one_camera(const std::string& sensor, const std::string& rest) {
+  return fmt::format(R"(
+[arm]
+kind = "spatial"
+[[arm.section]]
+length = 1
+radius = 0.05
+[[camera]]
+name = "front"
+mount = {{ position = [0, 0.5, 2], look_at = [0, 0.5, 0] }}
+lens = {{ fx = 80, fy = 80, cx = 31.5, cy = 23.5 }}
+sensor = {{ width = 64, height = 48, frame_rate = 10, {} }}
+{}
+)",
+                     sensor, rest);
+}
+const std::string swing = "[[task]]\nkind = \"move\"\nlaw = \"linear\"\nto = { bends = [[1.5, 0]] }\n";
+
+TEST(Filming, ARollingShutterShowsEachRowAtItsOwnTime) {
+  const Film rolling = film_of(one_camera("readout = \"rolling\", row_time = 0.002", swing));
+  // A camera of 500 Hz has each row's instant in a frame of its own.
+  const Film fast =
+      film_of(replaced(one_camera("read_noise = 0", swing), "frame_rate = 10", "frame_rate = 500"));
+  ASSERT_EQ(rolling.size(), 10U);
+  ASSERT_EQ(fast.size(), 501U);
+  for (const std::size_t frame : {0U, 5U, 9U}) {
+    for (int v = 0; v < 48; ++v) {
+      const auto& instant = gray(fast[50 * frame + static_cast<std::size_t>(v)].second);
+      for (int u = 0; u < 64; ++u)
+        ASSERT_NEAR(gray(rolling[frame].second).at(u, v), instant.at(u, v), 1)
+            << frame << ": " << u << " " << v;
+    }
+  }
+  const Film global = film_of(one_camera("read_noise = 0", swing));
+  EXPECT_NE(*rolling[5].second.picture, *global[5].second.picture);
+}
+
+TEST(Filming, ARollingShutterShowsWhatStandsStillAsAnyOther) {
+  const std::string hold = "[[task]]\nkind = \"hold\"\nduration = 0.2\n";
+  const Film rolling = film_of(one_camera("exposure = 0.02, readout = \"rolling\", row_time = 0.001", hold));
+  const Film global = film_of(one_camera("exposure = 0.02", hold));
+  ASSERT_EQ(rolling.size(), 2U);
+  EXPECT_EQ(*rolling[1].second.picture, *global[1].second.picture);
+}
+
+// The number of values between the arm's and the screen's.
+int blurred_values(const Film& film, std::size_t frame) {
+  return static_cast<int>(std::ranges::count_if(
+      gray(film[frame].second).values(), [](std::uint8_t value) { return value > 80 && value < 190; }));
+}
+
+TEST(Filming, BlursAMotionThereAndBackAsWellAsOneThatGoesOn) {
+  // One swing in an exposure of 0.1 s, seen 300 ms after the start.
+  const auto sine = [](double period) {
+    return fmt::format(
+        "[[task]]\nkind = \"sine\"\nduration = 0.5\namplitude = {{ bends = [[1, 0]] }}\nperiod = {}\n",
+        period);
+  };
+  const std::string exposed = "exposure = 0.1";
+  const Film sharp = film_of(one_camera("exposure = 0", sine(0.1)), 0.005);
+  const Film whole = film_of(one_camera(exposed, sine(0.1)), 0.005);
+  const Film half = film_of(one_camera(exposed, sine(0.2)), 0.005);
+  EXPECT_GT(blurred_values(whole, 3), 3 * blurred_values(sharp, 3));
+  EXPECT_NEAR(blurred_values(whole, 3), blurred_values(half, 3), 0.5 * blurred_values(half, 3));
+}
+
+TEST(TrueRig, IsLaidUponTheDefaultStandToo) {
+  const std::string text = R"(
+[arm]
+[[arm.section]]
+length = 2
+[[truth.camera]]
+name = "side"
+lens.fx = 808
+[[truth.stand.screen]]
+center_mm = [0, 0, -3000]
+[[truth.stand.screen]]
+)";
+  const Experiment experiment = parse_experiment(text, "x.toml");
+  EXPECT_TRUE(experiment.camera.empty());
+  const RigConfig model = experiment.model_rig(), truth = experiment.true_rig();
+  ASSERT_EQ(truth.cameras.size(), 2U);
+  EXPECT_EQ(truth.cameras[1].lens.fx, 808);
+  EXPECT_EQ(truth.cameras[0].lens.fx, model.cameras[0].lens.fx);
+  EXPECT_EQ(truth.cameras[1].mount.position, model.cameras[1].mount.position);
+  const auto screens = default_screens(2, {0, 0, 0});
+  const StandConfig stand = experiment.true_stand();
+  EXPECT_EQ(stand.screen->at(0).center, (std::array<double, 3>{0, 0, -3}));
+  EXPECT_EQ(stand.screen->at(0).width, screens[0].width);
+  EXPECT_EQ(stand.screen->at(1).center, screens[1].center);
+  const std::string written = experiment_toml(experiment);
+  EXPECT_EQ(experiment_toml(parse_experiment(written, "again.toml")), written);
+}
+
+TEST(DefaultStand, HasItsCamerasAtTheDistancesOfTheFile) {
+  const std::string arm = "[arm]\nbase.position = [0.1, 0.2, 0.3]\n[[arm.section]]\nlength = 2\n";
+  const std::string text = arm + "[stand]\ncamera_distances_mm = [2500, 4000]\n";
+  const auto cameras = parse_experiment(text, "x.toml").cameras();
+  EXPECT_EQ(cameras[0].mount.position, (std::array<double, 3>{0.1, 0.2, 0.3 + 2.5}));
+  EXPECT_EQ(cameras[1].mount.position, (std::array<double, 3>{0.1 - 4, 0.2, 0.3}));
+  EXPECT_THAT(error_of_file(
+                  text + "[[camera]]\nname = \"a\"\nmount = { position = [0, 0, 1], look_at = [0, 0, 0] }\n"),
+              HasSubstr("x.toml:6:1: stand.camera_distances: is for the default cameras"));
+  EXPECT_THAT(error_of_file(text + "[truth.stand]\ncamera_distances = [2, 2]\n"),
+              HasSubstr("truth.stand.camera_distances: moves no camera"));
+  EXPECT_THAT(error_of_file(arm + "[stand]\ncamera_distances = [2, 0]\n"),
+              HasSubstr("stand.camera_distances[1] = 0: expected a number above 0"));
+}
+
+TEST(TrueRig, MovesNoScreensWithTheArm) {
+  const Experiment experiment =
+      parse_experiment(two_cameras + "[truth.arm.base]\nposition = [0.1, 0, 0]\n", "x.toml");
+  EXPECT_EQ(experiment.true_stand().screen->at(0).center, default_screens(1, {0, 0, 0})[0].center);
 }
 
 TEST(Filming, IsKeptInTheLogAndNothingElseOfTheLogChanges) {
@@ -135,9 +265,37 @@ TEST(Filming, IsKeptInTheLogAndNothingElseOfTheLogChanges) {
     EXPECT_EQ(message.frame_id, "camera/front");
     EXPECT_THAT(message.data.data, ::testing::StartsWith("\x89PNG"));
   }
-  filmed.erase("/camera/front");
-  filmed.erase("/camera/side");
+  for (const char* topic : {"/camera/front", "/camera/side", "/arm/reading", "/head/front", "/head/side"}) {
+    EXPECT_FALSE(filmed[topic].empty()) << topic;
+    filmed.erase(topic);
+  }
   EXPECT_EQ(filmed, plain);
+}
+
+TEST(Filming, LogsWhatTheRigsDevicesSayOfThemselves) {
+  const TemporaryFolder folder;
+  Quiet progress;
+  const Experiment experiment = parse_experiment(
+      two_cameras +
+          "[record]\ncameras = true\nreport = false\n[[truth.arm.section]]\nmax_bend_rate = 0.3\n"
+          "[[truth.arm.section]]\n[[truth.camera]]\nname = \"side\"\ninitial.pan_deg = 2\n",
+      "x.toml");
+  const RunResult result = run_experiment(experiment, make_new_folder(folder.path() / "run"), progress);
+  const McapReader log(result.folder / log_file_name);
+  ArmReadingMessage arm;
+  HeadReadingMessage side;
+  std::size_t readings = 0, states = 0;
+  for (const McapMessage& message : log.messages()) {
+    const Node node = parse_json(message.text(), "log");
+    states += message.channel->topic == arm_state_topic ? 1 : 0;
+    if (message.channel->topic == arm_reading_topic) arm = read_as<ArmReadingMessage>(node), ++readings;
+    if (message.channel->topic == head_topic("side")) side = read_as<HeadReadingMessage>(node);
+  }
+  EXPECT_EQ(readings, states);
+  EXPECT_EQ(arm.time, 1);
+  EXPECT_TRUE(arm.moving) << "slower than believed";
+  EXPECT_LE(std::hypot(arm.bends[0][0], arm.bends[0][1]), 0.3 + 1e-9);
+  EXPECT_NEAR(side.pan, 2 * std::numbers::pi / 180, 1e-12);
 }
 
 TEST(Filming, TellsWhatIsWrongWithCamerasAndTheTruth) {
@@ -146,6 +304,19 @@ TEST(Filming, TellsWhatIsWrongWithCamerasAndTheTruth) {
       {"no such camera", two_cameras + "[[truth.camera]]\nname = \"top\"\n", "nothing is named \"top\""},
       {"another arm", two_cameras + "[[truth.arm.section]]\nlength = 1\n", "the true arm has 1 sections"},
       {"unknown key", two_cameras + "[truth]\nweather = 1\n", "truth.weather: unknown key"},
+      {"a name that leads elsewhere", replaced(two_cameras, "\"side\"", "\"../side\""),
+       "x.toml:14:1: camera[1].name: \"../side\" cannot name a file"},
+      {"two true ones of a name",
+       two_cameras + "[[truth.camera]]\nname = \"side\"\n[[truth.camera]]\nname = \"side\"\n",
+       "truth.camera[1].name: \"side\" is the name of another entry"},
+      {"too many frames",
+       replaced(two_cameras, "frame_rate = 10", "frame_rate = 1e6") + "[record]\ncameras = true\n",
+       "x.toml:23:11: record.cameras: makes 1e+06 images in 1 s by the cameras' frame rates: expected at "
+       "most"},
+      {"a zoom that falls",
+       replaced(two_cameras, "lens = { fx = 80,",
+                "lens = { zoom = [{ ratio = 1 },\n{ ratio = 3 },\n{ ratio = 2 }], fx = 80,"),
+       "x.toml:13:3: camera[0].lens.zoom[2].ratio: expected a rising ratio"},
       {"no focal length", replaced(two_cameras, "fx = 80", "fx = 0"), "fx = 0"},
       {"a negative length", two_cameras + "[truth.arm.base]\nposition = [0, 0]\n", "truth.arm.base.position"},
   };

@@ -82,6 +82,31 @@ const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*) {
   return table;
 }
 
+const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*) {
+  static const auto table =
+      Table<ArmReadingMessage>("flexura.ArmReading", "What the simulated drives say of themselves.")
+          .field("time", &ArmReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("bends", &ArmReadingMessage::bends,
+                 {.meaning = "Each section's bend as the model makes it of the motors, rad."})
+          .field("stretches", &ArmReadingMessage::stretches,
+                 {.meaning = "The factor on each section's length, likewise."})
+          .field("positions", &ArmReadingMessage::positions,
+                 {.meaning = "Each axis's position, microsteps; arms with drives."})
+          .field("moving", &ArmReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+  return table;
+}
+
+const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
+  static const auto table =
+      Table<HeadReadingMessage>("flexura.HeadReading", "Where a camera's head says that it stands.")
+          .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("pan", &HeadReadingMessage::pan, {.meaning = "rad, to the camera's left."})
+          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "rad, upwards."})
+          .field("zoom", &HeadReadingMessage::zoom, {.meaning = "A ratio or a motor count."})
+          .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+  return table;
+}
+
 const Table<ImageMessage>& fields_of(const ImageMessage*) {
   static const auto table =
       Table<ImageMessage>("foxglove.CompressedImage", "A frame of a camera.")
@@ -93,6 +118,8 @@ const Table<ImageMessage>& fields_of(const ImageMessage*) {
 }
 
 std::string image_topic(std::string_view camera) { return "/camera/" + std::string(camera); }
+
+std::string head_topic(std::string_view camera) { return "/head/" + std::string(camera); }
 
 std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(time * 1e9)); }
 

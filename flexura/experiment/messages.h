@@ -68,6 +68,23 @@ struct DriveCommandsMessage {
   std::vector<double> rates;            ///< Microsteps/s, the mean since the command before.
 };
 
+/// flexura.ArmReading, on /arm/reading in filmed runs: what the simulated drives say of themselves.
+struct ArmReadingMessage {
+  double time = 0;                                     ///< s
+  std::vector<std::array<double, 2>> bends;            ///< rad, as the model makes of the motors.
+  std::vector<double> stretches;                       ///< Likewise.
+  std::optional<std::vector<std::int64_t>> positions;  ///< Microsteps, one an axis; arms with drives.
+  bool moving = false;
+};
+
+/// flexura.HeadReading, on /head/NAME in filmed runs: where a camera's head says that it stands.
+struct HeadReadingMessage {
+  double time = 0;           ///< s
+  double pan = 0, tilt = 0;  ///< rad
+  double zoom = 1;           ///< A position of the lens's table.
+  bool moving = false;
+};
+
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
 struct ImageMessage {
   TimeMessage timestamp;  ///< Middle of the exposure.
@@ -78,6 +95,7 @@ struct ImageMessage {
 
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
+inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
 
@@ -89,10 +107,13 @@ const Table<PoseMessage>& fields_of(const PoseMessage*);
 const Table<PosesMessage>& fields_of(const PosesMessage*);
 const Table<EventMessage>& fields_of(const EventMessage*);
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
+const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
+const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);
 
-/// The topic of a camera's images.
+/// The topics of a camera's images, and of its head's readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);
+[[nodiscard]] std::string head_topic(std::string_view camera);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);

@@ -3,52 +3,72 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <variant>
 
-#include "flexura/render/sensor_light.h"
+#include "flexura/camera/sensor.h"
+#include "flexura/experiment/image_motion.h"
 
 namespace flexura {
 namespace {
 
-// How many instants an exposure is made of: enough that between two of them nothing that the arm shows moves
-// by more than half a pixel, as far as that is no more than `most`.
-int instants_of(const Shot& shot) {
+// How many instants an exposure is made of: enough that between two of them nothing moves by more than half a
+// pixel, as far as that is no more than `most`.
+int instants_of(double pixels) {
   constexpr double largest_step = 0.5;  // px
   constexpr int most = 64;
-  if (shot.sensor->exposure <= 0) return 1;
-  const double end = shot.start + shot.sensor->exposure;
-  const View at_start = shot.view(shot.start), at_end = shot.view(end);
-  const Backbone arm_at_start = shot.backbone(shot.start), arm_at_end = shot.backbone(end);
-  double farthest = 0;
-  const auto compare = [&](const Pose& X_WA, const Pose& X_WB) {
-    const auto from = at_start.project(X_WA.position), to = at_end.project(X_WB.position);
-    if (from && to) farthest = std::max(farthest, (*to - *from).norm());
-  };
-  for (std::size_t i = 0; i < arm_at_start.arcs().size(); ++i)
-    compare(arm_at_start.arcs()[i].X_WS, arm_at_end.arcs()[i].X_WS);
-  compare(arm_at_start.tip(), arm_at_end.tip());
-  return static_cast<int>(std::clamp(std::ceil(farthest / largest_step), 1.0, static_cast<double>(most)));
+  constexpr double rounding = 1e-9;
+  return static_cast<int>(
+      std::clamp(std::ceil(pixels / largest_step - rounding), 1.0, static_cast<double>(most)));
+}
+
+// What row v alone of a view sees.
+View row_view(const View& view, int v) {
+  Intrinsics lens = view.lens.intrinsics();
+  lens.cy -= v;
+  return {Lens(lens), view.X_WC, view.width, 1};
 }
 
 }  // namespace
 
-Photographer::Photographer(const Arm& arm, const Experiment& experiment)
-    : maker_(arm, experiment.arm.look, experiment.stand, experiment.obstacle) {}
+Photographer::Photographer(const Experiment& experiment)
+    : maker_(experiment.true_rig().arm.arm(), experiment.true_rig().arm.look, experiment.true_stand(),
+             experiment.obstacle) {}
 
 const Sensor& Photographer::sensor(const Shot& shot) {
   const auto found = sensors_.find(shot.camera);
   return found != sensors_.end() ? found->second : sensors_.emplace(shot.camera, *shot.sensor).first->second;
 }
 
-Picture Photographer::take(const Shot& shot) {
-  const SensorConfig& config = *shot.sensor;
-  const DrawLight draw = [&](double time, const Rows& rows, Image<float>& light) {
-    renderer_.render(maker_.scene(shot.backbone(time)), shot.view(time), config.pixels, instant_);
-    for (int v = rows.first; v < rows.last; v += rows.step)
-      std::ranges::copy(instant_.light.row(v), light.row(v).begin());
+void Photographer::draw(const Shot& shot, double time, const Rows& rows, Image<float>& light) {
+  const View view = shot.view(time);
+  const bool is_one_row = rows.last == rows.first + 1;
+  renderer_.render(maker_.scene(shot.backbone(time)), is_one_row ? row_view(view, rows.first) : view,
+                   shot.sensor->pixels, instant_);
+  for (int v = rows.first; v < rows.last; v += rows.step)
+    std::ranges::copy(instant_.light.row(is_one_row ? 0 : v), light.row(v).begin());
+}
+
+// The light of a shot, in light_.
+void Photographer::gather(const Shot& shot) {
+  // Nobody sees so little, and all rows and instants have one picture.
+  constexpr double is_still = 1e-3;  // px
+  SensorConfig sensor = *shot.sensor;
+  double start = shot.start;
+  const double speed = fastest_image_motion(shot, maker_.stand());
+  if (speed * (sensor.exposure + last_row_delay(sensor)) <= is_still) {
+    start = times_of_frame_at(sensor, start).middle;
+    sensor.readout = Readout::global;
+    sensor.exposure = 0;
+  }
+  const DrawLight draw_rows = [&](double time, const Rows& rows, Image<float>& light) {
+    draw(shot, time, rows, light);
   };
-  gather_light(config, shot.start, instants_of(shot), draw, light_, scratch_);
+  gather_light(sensor, start, instants_of(speed * sensor.exposure), draw_rows, light_, scratch_);
+}
+
+Picture Photographer::take(const Shot& shot) {
+  gather(shot);
+  const SensorConfig& config = *shot.sensor;
   const NoiseStream stream{shot.seed, shot.camera, static_cast<std::uint64_t>(shot.frame)};
   const auto read = [&]<typename Value>(Image<Value> image) -> Picture {
     sensor(shot).read(light_, stream, rows_, image);

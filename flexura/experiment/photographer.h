@@ -9,16 +9,16 @@
 #include "flexura/render/renderer.h"
 #include "flexura/render/scene_maker.h"
 #include "flexura/render/sensor_image.h"
+#include "flexura/render/sensor_light.h"
 #include "flexura/sim/simulated_camera.h"
 
 namespace flexura {
 
-/// Makes the pictures that an experiment's cameras take: the scene as it stands, its light, the sensor's
-/// numbers. The same shot gives the same picture, whatever was taken before.
+/// Makes the pictures that an experiment's cameras take: the scene as it truly stands, its light, the
+/// sensor's numbers. The same shot gives the same picture, whatever was taken before.
 class Photographer {
  public:
-  /// `arm` with the look, stand and obstacles of `experiment`.
-  Photographer(const Arm& arm, const Experiment& experiment);
+  explicit Photographer(const Experiment& experiment);
 
   [[nodiscard]] Picture take(const Shot& shot);
 
@@ -27,6 +27,8 @@ class Photographer {
 
  private:
   [[nodiscard]] const Sensor& sensor(const Shot& shot);
+  void gather(const Shot& shot);
+  void draw(const Shot& shot, double time, const Rows& rows, Image<float>& light);
 
   SceneMaker maker_;
   Renderer renderer_;

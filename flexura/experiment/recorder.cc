@@ -38,6 +38,8 @@ struct Recorder::Channels {
   std::uint16_t poses;
   std::uint16_t events;
   std::optional<std::uint16_t> commands;
+  std::optional<std::uint16_t> arm_reading;
+  std::map<std::string, std::uint16_t> heads;   // by camera
   std::map<std::string, std::uint16_t> images;  // by camera
 };
 
@@ -73,6 +75,26 @@ void Recorder::event(double time, Level level, std::string_view source, std::str
 void Recorder::commands(const DriveCommandsMessage& message) {
   if (!channels_->commands) channels_->commands = channels_->add<DriveCommandsMessage>(drive_commands_topic);
   channels_->write(*channels_->commands, nanoseconds(message.time), message);
+}
+
+void Recorder::reading(const ArmReading& reading) {
+  if (!channels_->arm_reading) channels_->arm_reading = channels_->add<ArmReadingMessage>(arm_reading_topic);
+  ArmReadingMessage message{.time = reading.time,
+                            .bends = {},
+                            .stretches = reading.state.stretches,
+                            .positions = {},
+                            .moving = reading.moving};
+  for (const Eigen::Vector2d& bend : reading.state.bends) message.bends.push_back({bend.x(), bend.y()});
+  if (!reading.positions.empty()) message.positions = reading.positions;
+  channels_->write(*channels_->arm_reading, nanoseconds(reading.time), message);
+}
+
+void Recorder::reading(const std::string& camera, const HeadReading& reading) {
+  const auto [channel, is_new] = channels_->heads.try_emplace(camera);
+  if (is_new) channel->second = channels_->add<HeadReadingMessage>(head_topic(camera));
+  const HeadState& state = reading.state;
+  channels_->write(channel->second, nanoseconds(reading.time),
+                   HeadReadingMessage{reading.time, state.pan, state.tilt, state.zoom, reading.moving});
 }
 
 void Recorder::image(const std::string& camera, const Frame& frame) {

@@ -10,6 +10,7 @@
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
+#include "flexura/port/motion_ports.h"
 
 namespace flexura {
 
@@ -29,6 +30,10 @@ class Recorder {
 
   /// The first command opens the channel: logs of arms without a drive have none.
   void commands(const DriveCommandsMessage& message);
+
+  /// What a rig's devices say of themselves. The first reading opens the channel.
+  void reading(const ArmReading& reading);
+  void reading(const std::string& camera, const HeadReading& reading);
 
   /// A frame, as PNG. The first one of a camera opens its channel.
   void image(const std::string& camera, const Frame& frame);

@@ -20,6 +20,7 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/study_results.h"
 #include "flexura/model/backbone.h"
+#include "flexura/port/rig_ports.h"
 #include "flexura/report/report.h"
 #include "flexura/safety/motion_check.h"
 #include "flexura/store/json.h"
@@ -125,6 +126,11 @@ class Witness {
     recorder_.image(camera, frame);
     ++frames_[camera];
   }
+  // What the devices of the rig say of themselves.
+  void readings(const RigPorts& rig) {
+    recorder_.reading(rig.arm->read().value());
+    for (const CameraPorts& camera : rig.cameras) recorder_.reading(camera.name, camera.head->read().value());
+  }
   // Of each camera that gave any.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
   void write_commands(const Drive& drive, const std::filesystem::path& file) {
@@ -223,7 +229,10 @@ Played play(const Experiment& experiment, const Schedule& schedule, const Safety
       filming->play_to(time, state,
                        [&](const std::string& camera, const Frame& frame) { witness.image(camera, frame); });
     }
-    if (step % every == 0 || step == schedule.steps()) witness.state(step, time, state);
+    if (step % every == 0 || step == schedule.steps()) {
+      witness.state(step, time, state);
+      if (filming) witness.readings(filming->ports());
+    }
     witness.command(time, state);
     played = {step + 1, time, state};
     progress.update(schedule.duration() > 0 ? time / schedule.duration() : 1.0,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/study_view.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr NumberRange turn_range = {.min = -10, .max = 10};
 constexpr NumberRange slide_range = {.min = -1e3, .max = 1e3};
+constexpr NumberRange place_range = {.min = -1e6, .max = 1e6};
 constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};
 constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
 constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
@@ -35,6 +37,16 @@ const std::vector<Parameter>& parameters() {
       {"orbit", &V::orbit, Unit::radian, turn_range,
        "The camera rises around the target's horizontal axis and looks at its centre: the paper's tilt, seen "
        "as the plane tilting its top towards the camera. At 0 it is where it stands."},
+      {"distance",
+       &V::distance,
+       Unit::metre,
+       {.min = 1e-6, .max = 1e6},
+       "The camera's distance from the target's centre, along the line on which it stands; it keeps its "
+       "orientation."},
+      {"mount_x", &V::mount_x, Unit::metre, place_range,
+       "The mount's position along X; the camera keeps its orientation."},
+      {"mount_y", &V::mount_y, Unit::metre, place_range, "The same along Y."},
+      {"mount_z", &V::mount_z, Unit::metre, place_range, "The same along Z."},
       {"zoom", &V::zoom, Unit::none, {.min = -1e9, .max = 1e9}, "The zoom: a ratio or a motor count."},
       {"stage_x", &V::stage_x, Unit::metre, slide_range, "The stage's offset to the right."},
       {"stage_y", &V::stage_y, Unit::metre, slide_range, "The stage's offset downwards."},
@@ -50,9 +62,14 @@ const std::vector<Parameter>& parameters() {
       {"p1", &V::p1, Unit::none, distortion_range, "Tangential distortion, vertical."},
       {"p2", &V::p2, Unit::none, distortion_range, "Tangential distortion, horizontal."},
       {"k3", &V::k3, Unit::none, distortion_range, "Radial distortion, by the sixth power."},
+      {"tilt_axis_x", &V::tilt_axis_x, Unit::metre, slide_range, "The tilt axis, right of the pan axis."},
+      {"tilt_axis_y", &V::tilt_axis_y, Unit::metre, slide_range, "The tilt axis, below the mount's origin."},
+      {"tilt_axis_z", &V::tilt_axis_z, Unit::metre, slide_range, "The tilt axis, before the pan axis."},
       {"pupil_x", &V::pupil_x, Unit::metre, slide_range, "The entrance pupil, right of the tilt axis."},
       {"pupil_y", &V::pupil_y, Unit::metre, slide_range, "The entrance pupil, below the tilt axis."},
-      {"pupil_z", &V::pupil_z, Unit::metre, slide_range, "The entrance pupil, before the tilt axis."}};
+      {"pupil_z", &V::pupil_z, Unit::metre, slide_range, "The entrance pupil, before the tilt axis."},
+      {"pupil_shift", &V::pupil_shift, Unit::metre, slide_range,
+       "How far the entrance pupil moves forward for each 1 of zoom ratio."}};
   return all;
 }
 
@@ -145,12 +162,15 @@ const CameraConfig* camera_of(const StudyTask& task, const std::vector<CameraCon
 void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                  Reader& reader) {
   const std::vector<Variation> varied = variations(task.vary);
-  if (varied.size() != 1) {
-    reader.problem_at(path + ".vary",
-                      fmt::format("names {} parameters: expected one, such as orbit_deg = [-60, 60]",
-                                  varied.empty() ? "no" : "several"));
+  if (varied.empty()) {
+    reader.problem_at(path + ".vary", "names no parameter: expected one, such as orbit_deg = [-60, 60]");
     return;
   }
+  for (std::size_t i = 1; i < varied.size(); ++i) {
+    reader.problem_at(fmt::format("{}.vary.{}", path, varied[i].name),
+                      fmt::format("stands beside vary.{}: expected one parameter", varied[0].name));
+  }
+  if (varied.size() > 1) return;
   const CameraConfig* config = camera_of(task, cameras);
   if (config == nullptr) {
     reader.problem_at(path + ".camera", fmt::format("there is no camera \"{}\": expected one of {}",
@@ -160,8 +180,12 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   const Camera camera(*config);
   check_values(varied.front(), camera, fmt::format("{}.vary.{}", path, varied.front().name), reader);
   const Eigen::Vector3d eye = camera.pose(camera.initial_stage(), camera.initial_head()).position;
-  if (varied.front().parameter == &VaryConfig::orbit && eye == Eigen::Vector3d(task.target.center.data()))
-    reader.problem_at(path + ".target.center", "is where the camera stands: it cannot orbit there");
+  const bool needs_distance =
+      varied.front().parameter == &VaryConfig::orbit || varied.front().parameter == &VaryConfig::distance;
+  if (needs_distance && eye == Eigen::Vector3d(task.target.center.data())) {
+    reader.problem_at(path + ".target.center",
+                      "is where the camera stands: it cannot orbit there, nor move away from it");
+  }
 }
 
 }  // namespace flexura

@@ -16,11 +16,15 @@ namespace flexura {
 struct VaryConfig {
   using Values = std::optional<std::array<double, 2>>;
   Values pan, tilt, roll, orbit;        ///< rad
+  Values distance;                      ///< From the target's centre, m.
+  Values mount_x, mount_y, mount_z;     ///< MountConfig::position, m; the camera keeps its orientation.
   Values zoom;                          ///< A position of the lens's table.
   Values stage_x, stage_y, stage_z;     ///< m
   Values focal_length, fx, fy, cx, cy;  ///< px, at the zoom as it stands.
   Values k1, k2, p1, p2, k3;            ///< The lens's distortion at the zoom as it stands.
-  Values pupil_x, pupil_y, pupil_z;     ///< HeadConfig::pupil, m.
+  Values tilt_axis_x, tilt_axis_y, tilt_axis_z;  ///< HeadConfig::tilt_axis, m.
+  Values pupil_x, pupil_y, pupil_z;              ///< HeadConfig::pupil, m.
+  Values pupil_shift;                            ///< HeadConfig::pupil_shift, m.
 };
 
 /// The one parameter that a study varies.

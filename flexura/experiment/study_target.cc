@@ -1,20 +1,17 @@
 #include "flexura/experiment/study_target.h"
 
+#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "flexura/camera/mount.h"
-#include "flexura/model/backbone.h"
-#include "flexura/render/truth.h"
+#include "flexura/render/ray_field.h"
+#include "flexura/render/tracer.h"
 
 namespace flexura {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double tube_radius = 0.005;  // of the circle's
-constexpr double ring_width = 0.02;    // likewise
 
 Pose pose_of(const StudyTargetConfig& config) {
   const Eigen::Vector3d z = Eigen::Vector3d(config.normal.data()).stableNormalized();
@@ -27,33 +24,54 @@ Pose pose_of(const StudyTargetConfig& config) {
   return X_WF;
 }
 
-// How far along the tube the circle begins, as a share of the circle's radius.
-constexpr double lead_in = pi / 2;
-
-double along_tube(std::size_t i, double radius) {
-  return radius * (lead_in + 2 * pi * static_cast<double>(i) / circle_points);
-}
-
-// A tube that starts in the centre towards -x, takes a half circle to the lowest point and goes on around.
+// A screen in the target's plane, which has all of the circle well inside.
 Scene scene_of(const Pose& X_WF, double radius) {
-  Arm arm;
-  arm.kind = ArmKind::spatial;
-  arm.X_WB.position = X_WF.position;
-  arm.X_WB.rotation.col(0) = -X_WF.rotation.col(1);
-  arm.X_WB.rotation.col(1) = X_WF.rotation.col(2);
-  arm.X_WB.rotation.col(2) = -X_WF.rotation.col(0);
-  const std::array<double, 2> thin = {tube_radius * radius, tube_radius * radius};
-  arm.sections = {{.length = lead_in * radius, .radius = thin}, {.length = 2 * pi * radius, .radius = thin}};
-  ArmState state = ArmState::straight(2);
-  state.bends = {{pi, 0}, {2 * pi, 0}};
   Scene scene;
-  scene.arm.tube = tube_of(arm, Backbone(arm, state));
-  for (const std::size_t i : {bottom_right, top_right, circle_top, top_left, bottom_left}) {
-    const double s = along_tube(i, radius), half = 0.5 * ring_width * radius;
-    scene.arm.markers.push_back({.s_from = s - half, .s_to = s + half});
-  }
+  Screen& screen = scene.screens.emplace_back();
+  screen.X_WS = X_WF;
+  screen.size = {4 * radius, 4 * radius};
   return scene;
 }
+
+// Where rays of the prepared renderer's view meet its scene.
+class RayMeeting {
+ public:
+  explicit RayMeeting(const Renderer& renderer)
+      : view_(renderer.view()), tracer_(renderer.stage(), renderer.tiles().all_parts()) {}
+
+  // In W; none where the pixel has no ray, or its ray meets nothing.
+  [[nodiscard]] std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& pixel) const {
+    const auto ray = ray_at(view_.lens, pixel);
+    if (!ray) return std::nullopt;
+    const Hit hit = tracer_.hit(*ray);
+    if (hit.is_none()) return std::nullopt;
+    return view_.X_WC * Eigen::Vector3d(hit.depth * ray->direction);
+  }
+
+  // The pixel whose ray meets the point p_WP, looked for from another one.
+  [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& p_WP,
+                                                        Eigen::Vector2d pixel) const {
+    constexpr int most_steps = 30;
+    constexpr double difference = 1e-3, small = 1e-9;  // px
+    for (int i = 0; i < most_steps; ++i) {
+      const auto here = at(pixel), right = at(pixel + Eigen::Vector2d(difference, 0)),
+                 below = at(pixel + Eigen::Vector2d(0, difference));
+      if (!here || !right || !below) return std::nullopt;
+      Eigen::Matrix<double, 3, 2> by_pixel;
+      by_pixel << *right - *here, *below - *here;
+      const Eigen::Vector2d step =
+          (by_pixel / difference).colPivHouseholderQr().solve(Eigen::Vector3d(p_WP - *here));
+      if (!step.allFinite()) return std::nullopt;
+      pixel += step;
+      if (step.norm() < small) return pixel;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const View& view_;
+  Tracer tracer_;
+};
 
 }  // namespace
 
@@ -73,16 +91,19 @@ TargetImage StudyTarget::projected(const View& view) const {
 }
 
 TargetImage StudyTarget::rendered(const View& view, Renderer& renderer) const {
-  // The backbone's pixels do not depend on the image's size, but the time to prepare does.
+  // Where a pixel's ray leads does not depend on the image's size, but the time to prepare does.
   View small = view;
   small.width = small.height = 2;
   renderer.prepare(scene_, small);
-  std::vector<double> s = {0};
-  for (std::size_t i = 0; i < circle_points; ++i) s.push_back(along_tube(i, radius_));
-  const std::vector<AxisPoint> points = projected_axis(renderer, s);
+  const RayMeeting rays(renderer);
+  const auto found = [&](const Eigen::Vector3d& p_WP) -> std::optional<Eigen::Vector2d> {
+    const auto near = view.project(p_WP);
+    if (!near) return std::nullopt;
+    return rays.pixel_of(p_WP, near->array().round());
+  };
   TargetImage image;
-  image.center = points[0].pixel;
-  for (std::size_t i = 0; i < circle_points; ++i) image.circle[i] = points[i + 1].pixel;
+  image.center = found(center());
+  for (std::size_t i = 0; i < circle_points; ++i) image.circle[i] = found(point(i));
   return image;
 }
 

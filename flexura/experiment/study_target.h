@@ -40,11 +40,10 @@ class StudyTarget {
   /// By the projection formulas.
   [[nodiscard]] TargetImage projected(const View& view) const;
 
-  /// By the renderer: the truth of a thin tube that leads from the centre by half a circle to the lowest
-  /// point and once around. `renderer` may be used again.
+  /// By the renderer: the places in the image whose rays, traced to a screen in the target's plane, meet it
+  /// in the target's points, looked for from the nearest pixel's middle. None where the rays pass along the
+  /// screen. `renderer` may be used again.
   [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
-  /// What it draws: that tube, with a marker ring at each corner of the square and at the circle's top.
-  [[nodiscard]] const Scene& scene() const { return scene_; }
 
  private:
   Pose X_WF_;

@@ -15,6 +15,8 @@ using V = VaryConfig;
 
 constexpr std::array<Parameter, 3> head_parameters{&V::pan, &V::tilt, &V::zoom};
 constexpr std::array<Parameter, 3> stage_parameters{&V::stage_x, &V::stage_y, &V::stage_z};
+constexpr std::array<Parameter, 3> mount_parameters{&V::mount_x, &V::mount_y, &V::mount_z};
+constexpr std::array<Parameter, 3> tilt_axis_parameters{&V::tilt_axis_x, &V::tilt_axis_y, &V::tilt_axis_z};
 constexpr std::array<Parameter, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
 constexpr std::array<Parameter, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
 
@@ -37,6 +39,23 @@ Intrinsics with(Intrinsics lens, Parameter parameter, double value) {
   return lens;
 }
 
+// The camera with one of its fixed offsets changed; its orientation stays.
+CameraConfig with_offset(CameraConfig config, Parameter parameter, double value) {
+  if (const std::size_t i = place_in(tilt_axis_parameters, parameter); i < 3)
+    config.head.tilt_axis[i] = value;
+  if (const std::size_t i = place_in(pupil_parameters, parameter); i < 3) config.head.pupil[i] = value;
+  if (parameter == &V::pupil_shift) config.head.pupil_shift = value;
+  return config;
+}
+
+// The camera as far from the target's centre, on the line on which it stands.
+Pose at_distance(Pose X_WC, const StudyTarget& target, double distance) {
+  const Eigen::Vector3d way = X_WC.position - target.center();
+  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot move away from its own place");
+  X_WC.position = target.center() + distance * way.stableNormalized();
+  return X_WC;
+}
+
 // The camera turned by the shortest way to look at the target's centre, and both turned about its level axis.
 Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
   const Eigen::Vector3d way = target.center() - X_WC.position;
@@ -57,12 +76,12 @@ View view_with(const Camera& camera, Parameter parameter, double value, const St
   const std::size_t slide = place_in(stage_parameters, parameter);
   if (slide < stage_parameters.size()) stage.offset[static_cast<Eigen::Index>(slide)] = value;
 
-  View view = camera.view(stage, head);
-  if (const std::size_t i = place_in(pupil_parameters, parameter); i < pupil_parameters.size()) {
-    CameraConfig config = camera.config();
-    config.head.pupil[i] = value;
-    view = Camera(config).view(stage, head);
+  View view = Camera(with_offset(camera.config(), parameter, value)).view(stage, head);
+  if (const std::size_t i = place_in(mount_parameters, parameter); i < 3) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    view.X_WC.position[axis] += value - camera.mount().position[axis];
   }
+  if (parameter == &V::distance) view.X_WC = at_distance(view.X_WC, target, value);
   if (parameter == &V::roll) view.X_WC.rotation *= so3_exp({0, 0, value});
   if (parameter == &V::orbit) view.X_WC = orbited(view.X_WC, target, value);
   view.lens = Lens(with(view.lens.intrinsics(), parameter, value));

@@ -26,6 +26,27 @@ double inner_slope(double width, double slope, double next_width, double next_sl
   return (weight + next_weight) / (weight / slope + next_weight / next_slope);
 }
 
+// How these slopes change with those of the two pieces.
+struct SlopeChange {
+  double by_first = 0, by_second = 0;
+};
+
+SlopeChange end_slope_change(double near_width, double near_slope, double far_width, double far_slope) {
+  const double slope = end_slope(near_width, near_slope, far_width, far_slope);
+  if (slope == 0) return {};
+  if (slope == 3 * near_slope) return {3, 0};
+  const double whole = near_width + far_width;
+  return {(near_width + whole) / whole, -near_width / whole};
+}
+
+SlopeChange inner_slope_change(double width, double slope, double next_width, double next_slope) {
+  const double mean = inner_slope(width, slope, next_width, next_slope);
+  if (mean == 0) return {};
+  const double weight = 2 * next_width + width, next_weight = next_width + 2 * width;
+  const double share = mean * mean / (weight + next_weight);
+  return {share * weight / (slope * slope), share * next_weight / (next_slope * next_slope)};
+}
+
 bool are_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
@@ -54,9 +75,13 @@ MonotoneCubic::MonotoneCubic(std::vector<double> x, std::vector<double> y)
   slopes_[last] = end_slope(widths[last - 1], slopes[last - 1], widths[last - 2], slopes[last - 2]);
 }
 
-MonotoneCubic::Piece MonotoneCubic::piece_at(double x) const {
+std::size_t MonotoneCubic::start_of_piece(double x) const {
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(x_, x) - x_.begin());
-  const std::size_t i = std::min(std::max<std::size_t>(after, 1), x_.size() - 1) - 1;
+  return std::min(std::max<std::size_t>(after, 1), x_.size() - 1) - 1;
+}
+
+MonotoneCubic::Piece MonotoneCubic::piece_at(double x) const {
+  const std::size_t i = start_of_piece(x);
   return {x_[i], x_[i + 1] - x_[i], y_[i], y_[i + 1] - y_[i], slopes_[i], slopes_[i + 1]};
 }
 
@@ -68,6 +93,46 @@ double MonotoneCubic::value(double x) const {
   // The Hermite cubic, written as the chord and what bends it.
   return piece.y + u * u * (3 - 2 * u) * piece.rise +
          piece.width * u * v * (piece.slope * v - piece.end_slope * u);
+}
+
+double MonotoneCubic::chord_slope(std::size_t piece) const {
+  return (y_[piece + 1] - y_[piece]) / (x_[piece + 1] - x_[piece]);
+}
+
+// d slopes_[at] / d y_[i].
+double MonotoneCubic::slope_by_point(std::size_t at, std::size_t i) const {
+  const auto width = [this](std::size_t piece) { return x_[piece + 1] - x_[piece]; };
+  const auto chord_by_point = [&](std::size_t piece) {
+    if (i == piece) return -1 / width(piece);
+    return i == piece + 1 ? 1 / width(piece) : 0.0;
+  };
+  const std::size_t last = x_.size() - 2;  // piece
+  if (last == 0) return chord_by_point(0);
+  std::size_t first = at, second = at;  // pieces
+  SlopeChange change;
+  if (at == 0) {
+    second = 1;
+    change = end_slope_change(width(0), chord_slope(0), width(1), chord_slope(1));
+  } else if (at == last + 1) {
+    first = last, second = last - 1;
+    change = end_slope_change(width(first), chord_slope(first), width(second), chord_slope(second));
+  } else {
+    first = at - 1;
+    change = inner_slope_change(width(first), chord_slope(first), width(second), chord_slope(second));
+  }
+  return change.by_first * chord_by_point(first) + change.by_second * chord_by_point(second);
+}
+
+double MonotoneCubic::by_point(double x, std::size_t i) const {
+  if (!(x > x_.front())) return i == 0 ? 1 : 0;
+  if (x >= x_.back()) return i + 1 == x_.size() ? 1 : 0;
+  const std::size_t start = start_of_piece(x);
+  const double width = x_[start + 1] - x_[start], u = (x - x_[start]) / width, v = 1 - u;
+  const double share = u * u * (3 - 2 * u);
+  double change = width * u * v * (slope_by_point(start, i) * v - slope_by_point(start + 1, i) * u);
+  if (i == start) change += 1 - share;
+  if (i == start + 1) change += share;
+  return change;
 }
 
 double MonotoneCubic::slope(double x) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace flexura {
@@ -21,12 +22,18 @@ class MonotoneCubic {
   [[nodiscard]] double value(double x) const;
   /// dy/dx; 0 outside.
   [[nodiscard]] double slope(double x) const;
+  /// d value(x) / d y[i]. Where a slope's rule has a corner (points that turn or are level), that slope is
+  /// taken to stay.
+  [[nodiscard]] double by_point(double x, std::size_t i) const;
 
  private:
   struct Piece {
     double start, width, y, rise, slope, end_slope;
   };
+  [[nodiscard]] std::size_t start_of_piece(double x) const;
   [[nodiscard]] Piece piece_at(double x) const;
+  [[nodiscard]] double chord_slope(std::size_t piece) const;
+  [[nodiscard]] double slope_by_point(std::size_t at, std::size_t i) const;
 
   std::vector<double> x_, y_, slopes_;
 };

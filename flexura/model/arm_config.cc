@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <string_view>
+
+#include "flexura/math/arrays.h"
 
 namespace flexura {
 namespace {
 
 // More than any robot has; keeps a mistaken file from filling the memory.
 constexpr std::size_t max_sections = 1000;
-constexpr double quaternion_norm_tolerance = 1e-3;
-
-double norm(const std::array<double, 4>& q) {
-  return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-}
 
 void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
   if (given == sections) return;
@@ -120,11 +118,8 @@ const Table<BaseConfig>& fields_of(const BaseConfig*) {
                .range = between(-2, 2),
                .default_text = "z along +Y, x along +X"})
           .check([](const BaseConfig& base, Reader& reader) {
-            if (base.rotation && std::abs(norm(*base.rotation) - 1.0) > quaternion_norm_tolerance) {
-              reader.problem_at("rotation",
-                                fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)",
-                                            norm(*base.rotation)));
-            }
+            const std::string problem = base.rotation ? quaternion_problem(*base.rotation) : "";
+            if (!problem.empty()) reader.problem_at("rotation", problem);
           });
   return table;
 }
@@ -178,15 +173,14 @@ Arm ArmConfig::arm() const {
   Arm arm;
   arm.kind = kind;
   arm.sections = section;
-  arm.X_WB.position = Eigen::Vector3d(base.position[0], base.position[1], base.position[2]);
+  arm.X_WB.position = vector(base.position);
   if (kind == ArmKind::planar && base.tangent) {
     const double c = std::cos(*base.tangent);
     const double s = std::sin(*base.tangent);
     // The columns are B's axes: z along the tangent, x to its right in the plane, y along -Z.
     arm.X_WB.rotation << s, 0, c, -c, 0, s, 0, -1, 0;
   } else if (base.rotation) {
-    const auto& q = *base.rotation;
-    arm.X_WB.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    arm.X_WB.rotation = rotation_of(*base.rotation);
   }
   return arm;
 }

@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "flexura/math/arrays.h"
 
 namespace flexura {
 namespace {
 
 constexpr NumberRange coordinate_range = {.min = -1e6, .max = 1e6};
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-Eigen::Vector4d vector(const std::array<double, 4>& a) { return {a[0], a[1], a[2], a[3]}; }
 
 // Adds what every obstacle has.
 template <class S>
@@ -68,8 +66,7 @@ std::function<double(const Eigen::Vector3d&)> distance_of(const CapsuleConfig& c
 }
 
 std::function<double(const Eigen::Vector3d&)> distance_of(const BoxConfig& box) {
-  const auto& q = box.rotation;
-  const Eigen::Matrix3d R_WX = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  const Eigen::Matrix3d R_WX = rotation_of(box.rotation);
   return [c = vector(box.center), half = vector(box.half_sizes), R_WX](const Eigen::Vector3d& p) -> double {
     const Eigen::Vector3d beyond = (R_WX.transpose() * (p - c)).cwiseAbs() - half;
     return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
@@ -77,8 +74,7 @@ std::function<double(const Eigen::Vector3d&)> distance_of(const BoxConfig& box) 
 }
 
 std::vector<Obstacle::Side> sides_of(const BoxConfig& box) {
-  const auto& q = box.rotation;
-  const Eigen::Matrix3d R_WX = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  const Eigen::Matrix3d R_WX = rotation_of(box.rotation);
   std::vector<Obstacle::Side> sides;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
@@ -134,12 +130,8 @@ const Table<BoxConfig>& fields_of(const BoxConfig*) {
                  {.meaning = "Unit quaternion (w, x, y, z) that turns the box's axes into the world's.",
                   .range = between(-2, 2)})
           .check([](const BoxConfig& box, Reader& reader) {
-            const double norm = vector(box.rotation).norm();
-            if (std::abs(norm - 1) > 1e-3) {
-              reader.problem_at(
-                  "rotation",
-                  fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
-            }
+            if (const std::string problem = quaternion_problem(box.rotation); !problem.empty())
+              reader.problem_at("rotation", problem);
           });
   return table;
 }

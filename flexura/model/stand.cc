@@ -1,9 +1,9 @@
 #include "flexura/model/stand.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <numbers>
+#include <string>
+
+#include "flexura/math/arrays.h"
 
 namespace flexura {
 namespace {
@@ -73,12 +73,8 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
           .field("line_color", &EtalonConfig::line_color,
                  {.meaning = "Shares of red, green and blue light that the lines give back.", .range = share})
           .check([](const EtalonConfig& etalon, Reader& reader) {
-            const auto& q = etalon.rotation;
-            const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-            if (std::abs(norm - 1) > 1e-3)
-              reader.problem_at(
-                  "rotation",
-                  fmt::format("has the norm {:.6g}: expected a unit quaternion (w, x, y, z)", norm));
+            if (const std::string problem = quaternion_problem(etalon.rotation); !problem.empty())
+              reader.problem_at("rotation", problem);
             if (4 * etalon.line_width > 2 * std::numbers::pi * etalon.radius)
               reader.problem_at("line_width", "leaves nothing between the four lines: expected less");
           });
@@ -121,6 +117,13 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
           .field("etalon", &StandConfig::etalon,
                  {.meaning = "The calibration cylinder.", .default_text = "none"})
           .field("light", &StandConfig::light, {.meaning = "The light."})
+          .field(
+              "camera_distances", &StandConfig::camera_distances,
+              {.meaning = "How far the default cameras \"front\" and \"side\" stand from the planes XOY and "
+                          "ZOY through the arm's base: the paper's D1 and D2.",
+               .unit = Unit::metre,
+               .range = above_up_to(0, 1e6),
+               .default_text = "so far that all of the arm's reach is in view"})
           .field("background", &StandConfig::background,
                  {.meaning = "Light from where nothing is.", .range = brightness_range})
           .field("arm", &StandConfig::arm, {.meaning = "Whether the arm stands there too."});

@@ -48,6 +48,9 @@ struct StandConfig {
   std::optional<std::vector<ScreenConfig>> screen;  ///< Left out: two behind the arm (default_screens).
   std::optional<EtalonConfig> etalon;
   LightConfig light;
+  /// Of the default cameras from the planes XOY and ZOY through the arm's base, the paper's D1 and D2, m.
+  /// Left out: so far that all of the arm's reach is in view.
+  std::optional<std::array<double, 2>> camera_distances;
   double background = 0.02;  ///< Light from where nothing is.
   bool arm = true;           ///< The arm is there. (Etalon calibrations take it away.)
 };

@@ -31,7 +31,8 @@ class CameraPort {
 
   /// The newest frame that can be had now, unless it was given before. Older ones are passed over.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> newest() = 0;
-  /// The next one: waits for it until `timeout` s have passed; then none.
+  /// The next one: waits for it until `timeout` s have passed; then none. Refused: a timeout that is not
+  /// finite.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> wait(double timeout) = 0;
 };
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/math/arrays.h"
+
 namespace flexura {
 namespace {
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 Screen screen_of(const ScreenConfig& config) {
   Screen screen;
@@ -28,8 +28,7 @@ Screen screen_of(const ScreenConfig& config) {
 
 Etalon etalon_of(const EtalonConfig& config) {
   Etalon etalon;
-  const auto& q = config.rotation;
-  etalon.X_WE.rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  etalon.X_WE.rotation = rotation_of(config.rotation);
   etalon.X_WE.position = vector(config.position) + etalon.X_WE.rotation.col(1) * (config.height / 2);
   etalon.radius = config.radius;
   etalon.height = config.height;

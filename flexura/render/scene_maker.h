@@ -21,6 +21,9 @@ class SceneMaker {
   /// material: where a section is stretched, so are its bands. std::invalid_argument: another number of arcs.
   [[nodiscard]] Scene scene(const Backbone& backbone) const;
 
+  /// The same without the arm.
+  [[nodiscard]] const Scene& stand() const { return still_; }
+
  private:
   Arm arm_;
   bool shows_arm_;

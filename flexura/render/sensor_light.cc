@@ -35,11 +35,6 @@ void expose(const SensorConfig& sensor, double start, int instants, const DrawLi
 
 }  // namespace
 
-double row_delay(const SensorConfig& sensor, int v) {
-  if (sensor.readout == Readout::rolling) return v * sensor.row_time;
-  return sensor.readout == Readout::interlaced && v % 2 == 1 ? 0.5 / sensor.frame_rate : 0;
-}
-
 void gather_light(const SensorConfig& sensor, double start, int instants, const DrawLight& draw,
                   Image<float>& light, Image<float>& scratch) {
   if (instants < 1) throw std::invalid_argument("a frame needs at least one instant");

@@ -16,10 +16,6 @@ struct Rows {
 /// leaves the others alone.
 using DrawLight = std::function<void(double time, const Rows& rows, Image<float>& light)>;
 
-/// How long after the frame's own beginning row v begins to gather light, s: v row times with a rolling
-/// shutter, half a frame for the odd rows of an interlaced image, else 0.
-[[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
-
 /// The light that a frame gathers which begins at `start`, s: in each row the mean over `instants` instants
 /// of its exposure, in the middle of as many equal parts (at its beginning when the exposure is 0). `light`
 /// takes the sensor's size; `scratch` is used where several instants are averaged. Draws once an instant with

@@ -72,7 +72,8 @@ Ticks nice_ticks(Interval range, int most) {
 }
 
 Eigen::Vector2d PlotFrame::page(const Eigen::Vector2d& data) const {
-  return {corner.x() + (data.x() - x.low) * scale().x(), bottom() - (data.y() - y.low) * scale().y()};
+  const double along = (data.y() - y.low) * scale().y();
+  return {corner.x() + (data.x() - x.low) * scale().x(), y_down ? corner.y() + along : bottom() - along};
 }
 
 double left_of_axes(Interval y, double height) {

@@ -32,12 +32,14 @@ struct Ticks {
 /// At most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
 [[nodiscard]] Ticks nice_ticks(Interval range, int most);
 
-/// A plot's place on the page and what it shows. Data's y goes up, the page's goes down.
+/// A plot's place on the page and what it shows. Data's y goes up unless it is told otherwise, the page's
+/// goes down.
 struct PlotFrame {
   Interval x;
   Interval y;
   Eigen::Vector2d corner;  ///< Top left, page units.
   Eigen::Vector2d size;    ///< Page units.
+  bool y_down = false;     ///< Data's y goes down.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
   /// The page point of a data point.

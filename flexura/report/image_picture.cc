@@ -16,11 +16,6 @@ constexpr double right_space = 18.0;
 constexpr double tallest_plot = 430.0;
 constexpr double flattest_plot = 0.4;  // Height over width.
 
-// A point of the image in the plot's data: rows go up.
-Eigen::Vector2d upward(const ImagePlot& plot, const Eigen::Vector2d& pixel) {
-  return {pixel.x(), plot.height - 1 - pixel.y()};
-}
-
 // What of the image the outlines take up along one axis; all of it where they are outside.
 Interval shown_along(const ImagePlot& plot, int axis) {
   const Interval all = {-0.5, (axis == 0 ? plot.width : plot.height) - 0.5};
@@ -28,7 +23,7 @@ Interval shown_along(const ImagePlot& plot, int axis) {
   for (const ImageOutline& outline : plot.outlines) {
     for (const ImageOutline::Line& line : outline.lines) {
       for (const Eigen::Vector2d& point : line.points) {
-        const double at = std::clamp(upward(plot, point)[axis], all.low, all.high);
+        const double at = std::clamp(point[axis], all.low, all.high);
         range = {std::min(range.low, at), std::max(range.high, at)};
       }
     }
@@ -48,11 +43,11 @@ PlotFrame frame_of(const ImagePlot& plot) {
   const double width = picture_width - left - right_space;
   x = grown_to(x, y.extent() * width / tallest_plot);
   y = grown_to(y, flattest_plot * x.extent());
-  return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}};
+  return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}, true};
 }
 
 void draw_border(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
-  const Eigen::Vector2d corner = frame.page({-0.5, plot.height - 0.5});
+  const Eigen::Vector2d corner = frame.page({-0.5, -0.5});
   const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));
   svg.leaf("rect", {{"class", "plot"},
                     {"x", page_number(corner.x())},
@@ -61,12 +56,11 @@ void draw_border(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) 
                     {"height", page_number(size.y())}});
 }
 
-void draw_outline(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame,
-                  const ImageOutline& outline) {
+void draw_outline(XmlWriter& svg, const PlotFrame& frame, const ImageOutline& outline) {
   for (const ImageOutline::Line& line : outline.lines) {
     std::vector<Eigen::Vector2d> points;
     points.reserve(line.points.size());
-    for (const Eigen::Vector2d& point : line.points) points.push_back(frame.page(upward(plot, point)));
+    for (const Eigen::Vector2d& point : line.points) points.push_back(frame.page(point));
     if (points.empty()) continue;
     svg.leaf("path", {{"class", fmt::format("line {} {}", outline.css_class, line.css_class)},
                       {"d", polyline_path(simplified(points, 0.05))}});
@@ -79,7 +73,7 @@ Drawing image_picture(const ImagePlot& plot) {
   const PlotFrame frame = frame_of(plot);
   XmlWriter svg;
   svg.label({frame.corner.x(), 22.0}, "heading", plot.heading);
-  draw_axes(svg, frame, "column (px)", "row from the lowest (px)");
+  draw_axes(svg, frame, "column (px)", "row (px)");
   // A picture within the picture cuts off what leaves the plot.
   svg.open("svg", {{"x", page_number(frame.corner.x())},
                    {"y", page_number(frame.corner.y())},
@@ -87,7 +81,7 @@ Drawing image_picture(const ImagePlot& plot) {
                    {"height", page_number(frame.size.y())},
                    {"viewBox", page_point(frame.corner) + ' ' + page_point(frame.size)}});
   draw_border(svg, plot, frame);
-  for (const ImageOutline& outline : plot.outlines) draw_outline(svg, plot, frame, outline);
+  for (const ImageOutline& outline : plot.outlines) draw_outline(svg, frame, outline);
   svg.close();
   std::vector<LegendEntry> entries;
   entries.reserve(plot.outlines.size());

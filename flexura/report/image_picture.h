@@ -30,7 +30,7 @@ struct ImagePlot {
 };
 
 /// Draws the part of the image in which the outlines are, at one scale along both axes: columns to the right,
-/// rows counted from the lowest one upwards.
+/// rows downwards.
 [[nodiscard]] Drawing image_picture(const ImagePlot& plot);
 
 }  // namespace flexura

@@ -23,13 +23,19 @@ ImagePlot plot_with(const std::vector<Eigen::Vector2d>& points) {
   return {"heading", "orbit", 640, 480, {{"20 deg", "s1", {{points, "dash2"}}}}};
 }
 
-TEST(ImagePicture, DrawsItsLinesWithRowsUpwards) {
+TEST(ImagePicture, DrawsItsLinesWithRowsDownwards) {
   const Drawing drawing = image_picture(plot_with({{100, 100}, {300, 100}, {300, 200}, {100, 100}}));
   EXPECT_THAT(drawing.body, HasSubstr("20 deg"));
   EXPECT_THAT(drawing.body, HasSubstr("class=\"line s1 dash2\""));
-  // Columns 100 to 300, rows 279 to 379 from the lowest: an axis says so.
+  // Columns 100 to 300, rows 100 to 200: an axis says so, the smaller rows first.
   EXPECT_THAT(drawing.body, HasSubstr(">300</text>"));
-  EXPECT_THAT(drawing.body, HasSubstr(">280</text>"));
+  const auto height_of = [&](const std::string& row) {
+    const std::size_t text = drawing.body.find("class=\"tick end\">" + row + "</text>");
+    EXPECT_NE(text, std::string::npos) << row;
+    const std::size_t y = drawing.body.rfind(" y=\"", text);
+    return std::stod(drawing.body.substr(y + 4));
+  };
+  EXPECT_LT(height_of("120"), height_of("180"));
   EXPECT_GT(drawing.height, 300);
 }
 

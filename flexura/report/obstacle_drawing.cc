@@ -8,12 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "flexura/math/arrays.h"
 #include "flexura/report/arm_curve.h"
 
 namespace flexura {
 namespace {
-
-Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 std::array<Eigen::Vector3d, 8> corners(const BoxConfig& box) {
   const auto& q = box.rotation;

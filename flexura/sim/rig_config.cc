@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 #include "flexura/base/source.h"
@@ -45,8 +46,16 @@ bool lay_entries(Node& under, Node& over, const std::string& path) {
   if (below == nullptr || above == nullptr || !holds_tables(*below) || !holds_tables(*above)) return false;
   const bool named = std::ranges::all_of(*above, [](const Node& entry) { return name_of(entry) != nullptr; });
   if (!named && below->size() != above->size()) return false;
+  std::set<std::string> names;
   for (std::size_t i = 0; i < above->size(); ++i) {
     if (named) {
+      const std::string& name = *name_of((*above)[i]);
+      if (!names.insert(name).second) {
+        throw InputError(
+            std::vector<Problem>{{(*above)[i].where, fmt::format("truth.{}[{}].name: \"{}\" is the name of "
+                                                                 "another entry",
+                                                                 path, i, name)}});
+      }
       lay_by_name(*below, std::move((*above)[i]), path);
     } else {
       lay((*below)[i], std::move((*above)[i]), path);

@@ -66,6 +66,17 @@ TEST(Truth, ReplacesNumbersAndArraysOfAnotherLength) {
   EXPECT_EQ(node.find("zoom")->as<Node::Array>()->size(), 1);
 }
 
+TEST(Truth, RefusesTwoEntriesOfAName) {
+  const Node front = table({member("name", "front")});
+  try {
+    (void)truth_of(
+        table({entries("camera", {front}), member("truth", Node::Table{entries("camera", {front, front})})}));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("truth.camera[1].name: \"front\" is the name of another entry"));
+  }
+}
+
 TEST(Truth, SaysWhereItNamesNothing) {
   const auto source = std::make_shared<const std::string>("x.toml");
   Node wrong = table({member("name", "sied")});

@@ -1,5 +1,7 @@
 #include "flexura/sim/simulated_camera.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,16 +10,18 @@
 
 namespace flexura {
 
-FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
+FrameTimes times_of_frame_at(const SensorConfig& sensor, double start) {
+  const double last_row = last_row_delay(sensor);  // after the first one
   FrameTimes times;
-  times.start = static_cast<double>(frame) / sensor.frame_rate;
-  double last_row = 0;  // after the first one
-  if (sensor.readout == Readout::rolling) last_row = sensor.row_time * static_cast<double>(sensor.height - 1);
-  if (sensor.readout == Readout::interlaced) last_row = 0.5 / sensor.frame_rate;
-  times.middle = times.start + 0.5 * (last_row + sensor.exposure);
-  times.end = times.start + last_row + sensor.exposure;
+  times.start = start;
+  times.middle = start + 0.5 * (last_row + sensor.exposure);
+  times.end = start + last_row + sensor.exposure;
   times.received = times.end + sensor.delay;
   return times;
+}
+
+FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
+  return times_of_frame_at(sensor, static_cast<double>(frame) / sensor.frame_rate);
 }
 
 double frame_horizon(const SensorConfig& sensor) {
@@ -65,6 +69,7 @@ Outcome<std::optional<Frame>> SimulatedCamera::newest() {
 }
 
 Outcome<std::optional<Frame>> SimulatedCamera::wait(double timeout) {
+  if (!std::isfinite(timeout)) return link_.refusal(fmt::format("a wait cannot take {} s", timeout));
   const double until = link_.now() + std::max(timeout, 0.0);
   for (;;) {
     auto found = newest();

@@ -27,13 +27,15 @@ struct Shot {
 /// Makes the image of a shot, of the sensor's size, channels and bits. The same image for the same shot.
 using TakePicture = std::function<Picture(const Shot&)>;
 
-/// When a sensor's frames are exposed and can be had; frame n starts at n / frame_rate.
+/// When a frame of a sensor is exposed and can be had.
 struct FrameTimes {
   double start = 0;     ///< Of the first row's exposure, s.
   double middle = 0;    ///< Of the exposure of the middle of the image.
   double end = 0;       ///< Of the last row's exposure.
   double received = 0;  ///< end + delay
 };
+/// Of a frame that starts at `start`, s; of frame n, which starts at n / frame_rate.
+[[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);
 [[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
 
 /// The newest frames that `SimulatedCamera::newest` looks at: where more than these were lost in a row, it

@@ -7,27 +7,35 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/port/motion_ports.h"
+#include "flexura/port/outcome.h"
 #include "flexura/sim/axis_motion.h"
 #include "flexura/sim/simulated_link.h"
 
 namespace flexura {
 
-/// Three axes that are commanded together.
+/// Three axes that are commanded together, and what connects them.
 class ThreeAxes {
  public:
-  /// Half of each axis's backlash lies to either side of its motor at the start.
-  ThreeAxes(const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& start, double delay,
-            double horizon);
+  struct Reading {
+    double time;                ///< s
+    Eigen::Vector3d positions;  ///< Of the motors, in steps of their resolution, within their limits.
+    bool moving;
+  };
 
-  void command(double time, const Eigen::Vector3d& target);
-  void halt(double time);
-  /// Where the motors are, in steps of their resolution.
-  [[nodiscard]] Eigen::Vector3d reading(double time) const;
+  /// Half of each axis's backlash lies to either side of its motor at the start. Commands take effect `delay`
+  /// s after they were given, and positions are known back to `horizon` s before now.
+  ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& start,
+            double delay, double horizon);
+
+  CommandOutcome command(const Eigen::Vector3d& target);
+  CommandOutcome halt();
+  [[nodiscard]] Outcome<Reading> read() const;
   /// Where what they carry is.
   [[nodiscard]] Eigen::Vector3d positions(double time) const;
-  [[nodiscard]] bool is_moving(double time) const;
+  [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
+  SimulatedLink link_;
   std::array<AxisConfig, 3> configs_;
   std::vector<AxisMotion> axes_;
 };
@@ -39,15 +47,14 @@ class SimulatedHead : public HeadPort {
   SimulatedHead(const Camera& camera, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const HeadState& state) override;
-  CommandOutcome halt() override;
+  CommandOutcome halt() override { return axes_.halt(); }
   Outcome<HeadReading> read() override;
 
   /// Where the camera is turned and zoomed to: not for algorithms.
   [[nodiscard]] HeadState truth(double time) const;
-  [[nodiscard]] SimulatedLink& link() { return link_; }
+  [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:
-  SimulatedLink link_;
   std::array<double, 2> zoom_limits_;
   ThreeAxes axes_;
 };
@@ -57,15 +64,14 @@ class SimulatedStage : public StagePort {
  public:
   SimulatedStage(const Camera& camera, const ClockPort& clock, double horizon);
 
-  CommandOutcome command(const StageState& state) override;
-  CommandOutcome halt() override;
+  CommandOutcome command(const StageState& state) override { return axes_.command(state.offset); }
+  CommandOutcome halt() override { return axes_.halt(); }
   Outcome<StageReading> read() override;
 
   [[nodiscard]] StageState truth(double time) const { return {axes_.positions(time)}; }
-  [[nodiscard]] SimulatedLink& link() { return link_; }
+  [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:
-  SimulatedLink link_;
   ThreeAxes axes_;
 };
 

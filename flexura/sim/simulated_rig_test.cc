@@ -168,6 +168,16 @@ TEST_F(SimulatedCameraTest, WaitsForTheNextFrameAndNoLonger) {
   EXPECT_EQ(camera().wait(0.1).value()->number, 2);
 }
 
+TEST_F(SimulatedCameraTest, RefusesToWaitForATimeThatIsNotFinite) {
+  start(10, 0, 0, 1);
+  for (const double timeout : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const auto frame = camera().wait(timeout);
+    ASSERT_FALSE(frame) << timeout;
+    EXPECT_EQ(frame.fault()->kind, FaultKind::refused);
+  }
+  EXPECT_EQ(clock().now(), 0);
+}
+
 TEST_F(SimulatedCameraTest, LosesItsShareOfFrames) {
   start(100, 0, 0, 0.3);
   int count = 0;
@@ -224,6 +234,8 @@ TEST(FrameTimes, FollowTheReadout) {
   EXPECT_NEAR(frame_times(sensor, 3).end, 0.33, 1e-15);
   sensor.readout = Readout::interlaced, sensor.row_time = 0;
   EXPECT_NEAR(frame_times(sensor, 3).end, 0.37, 1e-15);
+  sensor.height = 1;
+  EXPECT_NEAR(frame_times(sensor, 3).end, 0.32, 1e-15) << "no odd row";
 }
 
 }  // namespace

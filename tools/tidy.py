@@ -4,9 +4,9 @@
 usage: tidy.py --build BUILD [--all]
 
 BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the files as they were
-when clang-tidy last passed on everything. Without --all, it takes the files that differ from the record: a source
-itself; a header through one source that includes it (its own, where there is one). With --all it takes every source,
-which also sees what a changed header means for those that include it, and a pass writes the record anew.
+when clang-tidy last passed on them. Without --all, it takes the files that differ from the record: a source itself; a
+header through one source that includes it (its own, where there is one). With --all it takes every source, which also
+sees what a changed header means for those that include it. A pass brings the record up to date.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
 compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
@@ -141,9 +141,10 @@ def main():
     failed = check_all(arguments.build, waiting)
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
-    if arguments.all and failed == 0:
-        RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in whole.items()))
-    return 1 if failed else 0
+    if failed:
+        return 1
+    RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in whole.items()))
+    return 0
 
 
 if __name__ == "__main__":

@@ -233,6 +233,16 @@ TEST(StudyTarget, IsFoundInAPictureOfItsSquare) {
   EXPECT_LE((seen_moment / seen - moment / area).norm(), 0.01);
 }
 
+TEST(ImageStudy, MeasuresTargetsSmallerThanAPixel) {
+  StudyTask task;
+  task.vary.orbit = {{-0.5, 0.5}};
+  task.points = 3;
+  task.target.radius = 1e-4;  // 0.03 px
+  const ImageStudy tiny = study_images(task, {front_camera()});
+  EXPECT_NEAR(*tiny.columns[1].features[1][0], focal_length * std::numbers::sqrt2 * 1e-4 / distance, 1e-9);
+  EXPECT_LE(tiny.largest_difference()[0], 1e-9);
+}
+
 TEST(ImageStudy, StandsOffFromTheTarget) {
   const ImageStudy away = study(&VaryConfig::distance, 2, 5, 7);
   for (std::size_t i = 0; i < away.values.size(); ++i)

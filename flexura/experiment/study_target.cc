@@ -6,6 +6,7 @@
 
 #include "flexura/camera/mount.h"
 #include "flexura/render/ray_field.h"
+#include "flexura/render/scene.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
@@ -24,12 +25,14 @@ Pose pose_of(const StudyTargetConfig& config) {
   return X_WF;
 }
 
-// A screen in the target's plane, which has all of the circle well inside.
-Scene scene_of(const Pose& X_WF, double radius) {
+// A screen in the target's plane, which has all of the circle well inside, and the pixels around it.
+Scene scene_of(const Pose& X_WF, double radius, const Eigen::Vector3d& eye) {
+  constexpr double pixels = 0.1;  // of the distance: even with a lens of 10 px
+  const double side = 4 * radius + pixels * (eye - X_WF.position).norm();
   Scene scene;
   Screen& screen = scene.screens.emplace_back();
   screen.X_WS = X_WF;
-  screen.size = {4 * radius, 4 * radius};
+  screen.size = {side, side};
   return scene;
 }
 
@@ -75,8 +78,7 @@ class RayMeeting {
 
 }  // namespace
 
-StudyTarget::StudyTarget(const StudyTargetConfig& config)
-    : X_WF_(pose_of(config)), radius_(config.radius), scene_(scene_of(X_WF_, radius_)) {}
+StudyTarget::StudyTarget(const StudyTargetConfig& config) : X_WF_(pose_of(config)), radius_(config.radius) {}
 
 Eigen::Vector3d StudyTarget::point(std::size_t i) const {
   const double angle = 2 * pi * static_cast<double>(i) / circle_points;
@@ -94,7 +96,8 @@ TargetImage StudyTarget::rendered(const View& view, Renderer& renderer) const {
   // Where a pixel's ray leads does not depend on the image's size, but the time to prepare does.
   View small = view;
   small.width = small.height = 2;
-  renderer.prepare(scene_, small);
+  const Scene scene = scene_of(X_WF_, radius_, view.X_WC.position);
+  renderer.prepare(scene, small);
   const RayMeeting rays(renderer);
   const auto found = [&](const Eigen::Vector3d& p_WP) -> std::optional<Eigen::Vector2d> {
     const auto near = view.project(p_WP);

@@ -7,7 +7,7 @@
 
 #include "flexura/camera/view.h"
 #include "flexura/experiment/study_config.h"
-#include "flexura/model/arm.h"
+#include "flexura/math/pose.h"
 #include "flexura/render/renderer.h"
 
 namespace flexura {
@@ -42,13 +42,12 @@ class StudyTarget {
 
   /// By the renderer: the places in the image whose rays, traced to a screen in the target's plane, meet it
   /// in the target's points, looked for from the nearest pixel's middle. None where the rays pass along the
-  /// screen. `renderer` may be used again.
+  /// screen. `renderer` may be used again, when it is prepared anew.
   [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
 
  private:
   Pose X_WF_;
   double radius_;
-  Scene scene_;
 };
 
 }  // namespace flexura

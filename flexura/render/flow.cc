@@ -46,9 +46,7 @@ class Carrier {
     std::size_t arc = 0;
     double along = 0;
     if (hit.label.kind == SurfaceKind::disk) {
-      const auto after = [s = hit.s](const TubeArc& at) { return at.arc.s <= s; };
-      const auto next = std::ranges::partition_point(from_.arm.tube, after);
-      arc = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - from_.arm.tube.begin() - 1, 0));
+      arc = static_cast<std::size_t>(&tube_arc_at(from_.arm.tube, hit.s) - from_.arm.tube.data());
       along = hit.s - from_.arm.tube[arc].arc.s;
     } else if (hit.part.kind == Part::Kind::piece) {
       const TubePiece& piece = stage.pieces[hit.part.index];

@@ -1,60 +1,10 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "flexura/render/shadow.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
 namespace {
-
-// The share of a round light that is seen past a straight edge, `height` of the light's radii over its
-// middle.
-double share_over_edge(double height) {
-  if (height >= 1) return 0;
-  if (height <= -1) return 1;
-  return 0.5 - (height * std::sqrt(1 - height * height) + std::asin(height)) / std::numbers::pi;
-}
-
-// The share of the light past a ball around `center`.
-double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen::Vector3d& p_CQ,
-                       const Eigen::Vector3d& light, double width) {
-  const Eigen::Vector3d way = center - p_CQ;
-  const double along = way.dot(light);
-  if (!(along > 0)) return 1;
-  return 1 - share_over_edge(((way - along * light).norm() - radius) / (width * along));
-}
-
-// How much of the light reaches the point past the arm: where the way to the light's middle comes nearest to
-// the tube, the tube's edge is taken for straight. The shadow's ends are round.
-double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
-  const double width = stage.scene->light.angular_radius;
-  double share = 1;
-  for (int i = stage.first_arm_piece; i <= stage.last_arm_piece; ++i) {
-    const TubePiece& piece = stage.pieces[static_cast<std::size_t>(i)];
-    const LocalRay way = local_ray(piece, p_CQ, stage.light);
-    const double farthest = (piece.bound_center - way.origin).norm() + piece.bound_radius;
-    const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
-    if (piece.before < 0)
-      share = std::min(share, share_past_ball(piece.p_CP, piece.radius, p_CQ, stage.light, width));
-    if (piece.after < 0)
-      share = std::min(share, share_past_ball(end, piece.radius + piece.widening * piece.length, p_CQ,
-                                              stage.light, width));
-    const DepthRange range = range_of(piece, way, piece.bound_radius + width * farthest);
-    if (range.is_empty()) continue;
-    const double lowest = first_minimum(piece, way, range.from, range);
-    if (lowest <= range.from || std::isinf(lowest)) continue;
-    const TubePoint near = tube_point(piece, p_CQ + lowest * stage.light);
-    share = std::min(share, 1 - share_over_edge(near.gap / (width * lowest)));
-  }
-  return share;
-}
-
-double shadow_at(const Stage& stage, const Eigen::Vector3d& p_CQ) {
-  const double depth_of_shadow = stage.scene->light.shadow;
-  if (depth_of_shadow == 0) return 1;
-  return 1 - depth_of_shadow * (1 - light_past_arm(stage, p_CQ));
-}
 
 Color screen_light(const Screen& screen, const Face& face, const Eigen::Vector3d& p_CQ) {
   const Eigen::Vector3d along_x = 0.5 * (face.corners[1] - face.corners[0]);
@@ -89,17 +39,26 @@ int body_of(const Stage& stage, Part part) {
 
 }  // namespace
 
+SurfaceLabel arm_label(const Stage& stage, const TubePiece& piece, double s) {
+  const auto next = std::ranges::upper_bound(stage.rings, s, {}, &RingStretch::s);
+  const int marker = next == stage.rings.begin() ? -1 : (next - 1)->marker;
+  if (marker >= 0) return {SurfaceKind::marker, static_cast<std::uint16_t>(marker)};
+  return {SurfaceKind::section, static_cast<std::uint16_t>(stage.scene->arm.tube[piece.tube_arc].section)};
+}
+
 Color light_of(const Stage& stage, const Hit& hit, const Ray& ray) {
   if (hit.is_none()) return stage.scene->background;
   const Eigen::Vector3d p_CQ = hit.depth * ray.direction;
   if (hit.label.kind == SurfaceKind::screen) {
     const FacePart& face = stage.faces[hit.part.index];
-    return screen_light(stage.scene->screens[hit.label.index], face.face, p_CQ) * shadow_at(stage, p_CQ);
+    return screen_light(stage.scene->screens[hit.label.index], face.face, p_CQ) *
+           shadow_at(stage, p_CQ, true);
   }
   const Light& light = stage.scene->light;
   const int body = body_of(stage, hit.part);
   double directional = light.directional * std::max(0.0, hit.normal.dot(stage.light));
-  if (stage.bodies[static_cast<std::size_t>(body)].takes_shadow) directional *= shadow_at(stage, p_CQ);
+  const bool takes_all = stage.bodies[static_cast<std::size_t>(body)].takes_all_shadows;
+  if (directional > 0) directional *= shadow_at(stage, p_CQ, takes_all);
   return albedo_of(stage, hit, body) * (light.ambient + directional);
 }
 

@@ -4,138 +4,156 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace flexura {
 namespace {
 
-[[noreturn]] void refuse(const std::string& message) { throw std::invalid_argument(message); }
-
-void require_positive(double value, const std::string& what) {
-  if (!(value > 0) || !std::isfinite(value))
-    refuse(fmt::format("{}: {} is not a positive number", what, value));
+template <typename... Args>
+[[noreturn]] void refuse(fmt::format_string<Args...> message, Args&&... args) {
+  throw std::invalid_argument(fmt::format(message, std::forward<Args>(args)...));
 }
 
-void require_finite(double value, const std::string& what) {
-  if (!std::isfinite(value)) refuse(fmt::format("{}: {} is not a finite number", what, value));
+// What a message is about: a part of the scene, by its number if there are several, and which value of it.
+// Only words that stand in the program: nothing is put together before there is something to refuse.
+struct Place {
+  const char* part;
+  const char* value = nullptr;
+  std::optional<std::size_t> index{};
+
+  [[nodiscard]] std::string text() const {
+    std::string result = index ? fmt::format("{} {}", part, *index) : part;
+    if (value != nullptr) result += fmt::format(", {}", value);
+    return result;
+  }
+};
+
+void require_positive(double value, const Place& place) {
+  if (!(value > 0) || !std::isfinite(value)) refuse("{}: {} is not a positive number", place.text(), value);
 }
 
-void require_color(const Color& color, const std::string& what) {
+void require_finite(double value, const Place& place) {
+  if (!std::isfinite(value)) refuse("{}: {} is not a finite number", place.text(), value);
+}
+
+void require_color(const Color& color, const Place& place) {
   if (!color.allFinite() || color.minCoeff() < 0)
-    refuse(fmt::format("{}: ({}, {}, {}) is no colour", what, color.x(), color.y(), color.z()));
+    refuse("{}: ({}, {}, {}) is no colour", place.text(), color.x(), color.y(), color.z());
 }
 
-void require_pose(const Pose& pose, const std::string& what) {
+void require_pose(const Pose& pose, const Place& place) {
   const Eigen::Matrix3d& R = pose.rotation;
   const bool is_rotation =
       R.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6 && R.determinant() > 0;
   if (!pose.position.allFinite() || !is_rotation)
-    refuse(what + ": the pose is not a finite position and a rotation");
+    refuse("{}: the pose is not a finite position and a rotation", place.text());
 }
 
 // Names count up to what a label holds.
 constexpr std::size_t most_parts = 4096;
 
-void require_few(std::size_t count, const std::string& what) {
-  if (count > most_parts) refuse(fmt::format("{} {}: there can be {}", count, what, most_parts));
+void require_few(std::size_t count, const char* what) {
+  if (count > most_parts) refuse("{} {}: there can be {}", count, what, most_parts);
 }
 
 void check_arm(const ArmLook& arm) {
-  require_color(arm.albedo, "arm");
-  require_color(arm.disk_albedo, "arm's disks");
+  require_color(arm.albedo, {"arm"});
+  require_color(arm.disk_albedo, {"arm's disks"});
   require_few(arm.markers.size(), "markers");
   require_few(arm.disks.size(), "disks");
   for (std::size_t i = 0; i < arm.tube.size(); ++i) {
     const TubeArc& at = arm.tube[i];
-    const std::string what = fmt::format("arc {} of the arm", i);
-    require_pose(at.arc.X_WS, what);
-    require_positive(at.arc.length, what + ", length");
-    require_positive(at.radius[0], what + ", radius");
-    require_positive(at.radius[1], what + ", radius");
-    require_finite(at.arc.s, what + ", s");
-    if (!at.arc.bend.allFinite()) refuse(what + ": the bend is not finite");
+    const auto place = [i](const char* value = nullptr) { return Place{"the arm's arc", value, i}; };
+    require_pose(at.arc.X_WS, place());
+    require_positive(at.arc.length, place("length"));
+    for (const double radius : at.radius) require_positive(radius, place("radius"));
+    require_finite(at.arc.s, place("s"));
+    for (const double bend : at.arc.bend) require_finite(bend, place("bend"));
     // Thousands of turns are a mistake, and would be as many pieces.
-    if (!(at.arc.bend.norm() < 1000)) refuse(fmt::format("{}: a bend of {} rad", what, at.arc.bend.norm()));
-    if (at.section >= most_parts) refuse(fmt::format("{}: section {}", what, at.section));
+    if (!(at.arc.bend.norm() < 1000)) refuse("{}: a bend of {} rad", place().text(), at.arc.bend.norm());
+    if (at.section >= most_parts) refuse("{}: section {}", place().text(), at.section);
     if (i == 0) continue;
     const Arc& before = arm.tube[i - 1].arc;
     const Pose X_WS = before.pose(before.length);
     const double off = (X_WS.position - at.arc.X_WS.position).norm();
     const double turned = (X_WS.rotation.col(2) - at.arc.X_WS.rotation.col(2)).norm();
     const bool continues = off <= 1e-6 * (1 + before.length) && turned <= 1e-6;
-    if (!continues) refuse(what + " does not continue the one before");
+    if (!continues) refuse("{} does not continue the one before", place().text());
   }
   for (const MarkerRing& marker : arm.markers) {
-    require_color(marker.albedo, "marker");
-    require_finite(marker.s_from, "marker, s");
-    require_finite(marker.s_to, "marker, s");
+    require_color(marker.albedo, {"marker"});
+    require_finite(marker.s_from, {"marker", "s"});
+    require_finite(marker.s_to, {"marker", "s"});
     if (!(marker.s_from < marker.s_to))
-      refuse(fmt::format("a marker from {} to {} has no width", marker.s_from, marker.s_to));
+      refuse("a marker from {} to {} has no width", marker.s_from, marker.s_to);
   }
   for (const GuideDisk& disk : arm.disks) {
-    require_finite(disk.s, "disk, s");
-    require_positive(disk.radius, "disk, radius");
-    require_positive(disk.thickness, "disk, thickness");
+    require_finite(disk.s, {"disk", "s"});
+    require_positive(disk.radius, {"disk", "radius"});
+    require_positive(disk.thickness, {"disk", "thickness"});
   }
 }
 
 void check_screen(const Screen& screen) {
-  require_pose(screen.X_WS, "screen");
-  require_color(screen.brightness, "screen");
-  for (const double size : screen.size) require_positive(size, "screen, size");
-  for (const double gradient : screen.gradient) require_finite(gradient, "screen, gradient");
-  require_finite(screen.falloff, "screen, falloff");
+  require_pose(screen.X_WS, {"screen"});
+  require_color(screen.brightness, {"screen"});
+  for (const double size : screen.size) require_positive(size, {"screen", "size"});
+  for (const double gradient : screen.gradient) require_finite(gradient, {"screen", "gradient"});
+  require_finite(screen.falloff, {"screen", "falloff"});
 }
 
 void check_etalon(const Etalon& etalon) {
-  require_pose(etalon.X_WE, "etalon");
-  require_positive(etalon.radius, "etalon, radius");
-  require_positive(etalon.height, "etalon, height");
-  require_color(etalon.albedo, "etalon");
-  require_color(etalon.line_albedo, "etalon's lines");
+  require_pose(etalon.X_WE, {"etalon"});
+  require_positive(etalon.radius, {"etalon", "radius"});
+  require_positive(etalon.height, {"etalon", "height"});
+  require_color(etalon.albedo, {"etalon"});
+  require_color(etalon.line_albedo, {"etalon's lines"});
   const bool has_room_for_lines = etalon.line_width >= 0 && etalon.line_width < 1.5 * etalon.radius;
   if (!has_room_for_lines)
-    refuse(fmt::format("etalon: lines {} wide around a radius of {}", etalon.line_width, etalon.radius));
+    refuse("etalon: lines {} wide around a radius of {}", etalon.line_width, etalon.radius);
 }
 
 struct ObstacleChecker {
-  static void require_vector(const std::array<double, 3>& vector, const std::string& what) {
-    for (const double component : vector) require_finite(component, what);
+  static void require_vector(const std::array<double, 3>& vector, const Place& place) {
+    for (const double component : vector) require_finite(component, place);
   }
   void operator()(const PlaneConfig& plane) const {
-    require_vector(plane.point, "plane, point");
-    require_vector(plane.normal, "plane, normal");
-    require_positive(std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]), "plane, normal's length");
+    require_vector(plane.point, {"plane", "point"});
+    require_vector(plane.normal, {"plane", "normal"});
+    require_positive(std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]),
+                     {"plane", "normal's length"});
   }
   void operator()(const SphereConfig& sphere) const {
-    require_vector(sphere.center, "sphere, center");
-    require_positive(sphere.radius, "sphere, radius");
+    require_vector(sphere.center, {"sphere", "center"});
+    require_positive(sphere.radius, {"sphere", "radius"});
   }
   void operator()(const CapsuleConfig& capsule) const {
-    require_vector(capsule.from, "capsule, from");
-    require_vector(capsule.to, "capsule, to");
-    require_positive(capsule.radius, "capsule, radius");
+    require_vector(capsule.from, {"capsule", "from"});
+    require_vector(capsule.to, {"capsule", "to"});
+    require_positive(capsule.radius, {"capsule", "radius"});
   }
   void operator()(const BoxConfig& box) const {
-    require_vector(box.center, "box, center");
-    for (const double half_size : box.half_sizes) require_positive(half_size, "box, half_sizes");
+    require_vector(box.center, {"box", "center"});
+    for (const double half_size : box.half_sizes) require_positive(half_size, {"box", "half_sizes"});
     double square = 0;
     for (const double component : box.rotation) square += component * component;
-    require_positive(square, "box, rotation");
+    require_positive(square, {"box", "rotation"});
   }
 };
 
 void check_light(const Light& light) {
   if (!light.direction.allFinite()) refuse("the light's direction is not finite");
-  require_positive(light.direction.norm(), "light, direction's length");
-  require_finite(light.ambient + light.directional, "light, ambient and directional");
+  require_positive(light.direction.norm(), {"light", "direction's length"});
+  require_finite(light.ambient + light.directional, {"light", "ambient and directional"});
   if (light.ambient < 0 || light.directional < 0)
-    refuse(fmt::format("light: ambient {}, directional {}", light.ambient, light.directional));
-  require_finite(light.shadow, "light, shadow");
-  if (light.shadow < 0 || light.shadow > 1) refuse(fmt::format("light: shadow {}", light.shadow));
-  require_positive(light.angular_radius, "light, angular_radius");
+    refuse("light: ambient {}, directional {}", light.ambient, light.directional);
+  require_finite(light.shadow, {"light", "shadow"});
+  if (light.shadow < 0 || light.shadow > 1) refuse("light: shadow {}", light.shadow);
+  require_positive(light.angular_radius, {"light", "angular_radius"});
 }
 
 }  // namespace
@@ -147,11 +165,11 @@ void check(const Scene& scene) {
   if (scene.etalon) check_etalon(*scene.etalon);
   require_few(scene.obstacles.size(), "obstacles");
   for (const VisibleObstacle& obstacle : scene.obstacles) {
-    require_color(obstacle.albedo, "obstacle");
+    require_color(obstacle.albedo, {"obstacle"});
     std::visit(ObstacleChecker{}, obstacle.shape);
   }
   check_light(scene.light);
-  require_color(scene.background, "background");
+  require_color(scene.background, {"background"});
 }
 
 }  // namespace flexura

@@ -75,7 +75,8 @@ struct VisibleObstacle {
 struct Light {
   Eigen::Vector3d direction = {0.4, 0.8, 0.45};  ///< Towards the light, W; not 0.
   double ambient = 0.45, directional = 0.55;
-  /// Share of a screen's or floor's light that the arm's shadow takes away; 0: no shadows.
+  /// Share of the directional light, or of a screen's, that a shadow takes away; 0: no shadows. The arm
+  /// casts them on everything; disks, the etalon and obstacles other than planes on screens and planes.
   double shadow = 0;
   double angular_radius = 0.05;  ///< Of the light, rad; the wider, the softer the shadows. > 0.
 };

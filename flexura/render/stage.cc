@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "flexura/math/so3.h"
+#include "flexura/render/shadow.h"
 
 namespace flexura {
 namespace {
@@ -28,12 +29,6 @@ TubeArc straight_tube(const Pose& X_WS, double length, double radius) {
   return tube;
 }
 
-// The tube arc that holds arc length s.
-const TubeArc& tube_arc_at(std::span<const TubeArc> tube, double s) {
-  const auto next = std::ranges::upper_bound(tube, s, {}, [](const TubeArc& arc) { return arc.arc.s; });
-  return next == tube.begin() ? tube.front() : *(next - 1);
-}
-
 void add_ring_edge(std::span<const TubeArc> tube, double s, const Pose& X_CW, Stage& stage) {
   const TubeArc& at = tube_arc_at(tube, s);
   const double along = std::clamp(s - at.arc.s, 0.0, at.arc.length);
@@ -42,12 +37,35 @@ void add_ring_edge(std::span<const TubeArc> tube, double s, const Pose& X_CW, St
   stage.ring_edges.push_back({s, circle_at(X_CS.rotation, X_CS.position, radius)});
 }
 
-// The piece of the arm's side that holds arc length s, or the nearest to it.
-int arm_piece_at(const Stage& stage, double s) {
+// Which marker is seen where: of those that overlap the last.
+void add_rings(std::span<const MarkerRing> markers, Stage& stage) {
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    stage.rings.push_back({markers[i].s_from, static_cast<int>(i)});
+    stage.rings.push_back({markers[i].s_to, -1});
+  }
+  std::ranges::sort(stage.rings, {}, &RingStretch::s);
+  std::vector<int>& open = stage.open_rings;  // A heap: the last marker is in front.
+  open.clear();
+  for (RingStretch& ring : stage.rings) {
+    if (ring.marker >= 0) {
+      open.push_back(ring.marker);
+      std::ranges::push_heap(open);
+    }
+    while (!open.empty() && markers[static_cast<std::size_t>(open.front())].s_to <= ring.s) {
+      std::ranges::pop_heap(open);
+      open.pop_back();
+    }
+    ring.marker = open.empty() ? -1 : open.front();
+  }
+}
+
+// The piece of the arm's side that comes out of a face at arc length s towards the tip (`side` > 0) or the
+// base, or the nearest to it.
+int arm_piece_at(const Stage& stage, double s, double side) {
   int result = stage.first_arm_piece;
   for (int i = stage.first_arm_piece; i <= stage.last_arm_piece; ++i) {
     const TubePiece& piece = stage.pieces[static_cast<std::size_t>(i)];
-    if (!piece.is_ball && piece.s <= s) result = i;
+    if (!piece.is_ball && (side > 0 ? piece.s <= s : piece.s < s)) result = i;
   }
   return result;
 }
@@ -63,6 +81,7 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
   add_tube(arm.tube, X_CW, skin, step, {TubeEnd{TipKind::flat, base}, TubeEnd{arm.tip, tip}}, stage);
   stage.last_arm_piece = static_cast<int>(stage.pieces.size()) - 1;
   stage.arm_length = arm.tube.back().arc.s + arm.tube.back().arc.length;
+  add_rings(arm.markers, stage);
   for (const MarkerRing& marker : arm.markers) {
     for (const double s : {marker.s_from, marker.s_to}) {
       if (s > arm.tube.front().arc.s && s < stage.arm_length) add_ring_edge(arm.tube, s, X_CW, stage);
@@ -77,11 +96,12 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
     const TubeArc tube = straight_tube(X_WS, disk.thickness, disk.radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::flat, body}, TubeEnd{TipKind::flat, body}},
              stage);
-    const int piece = arm_piece_at(stage, disk.s);
-    for (const std::size_t face : {stage.discs.size() - 2, stage.discs.size() - 1}) {
-      stage.discs[face].arm_piece = piece;
-      const double side = face + 1 == stage.discs.size() ? 0.5 : -0.5;
-      stage.ring_edges.push_back({disk.s + side * disk.thickness, stage.discs[face].circle, true});
+    add_caster(tube, TipKind::flat, X_CW, stage);
+    for (const double side : {-0.5, 0.5}) {
+      DiscPart& face = stage.discs[stage.discs.size() - (side < 0 ? 2 : 1)];
+      const double s = disk.s + side * disk.thickness;
+      face.arm_piece = arm_piece_at(stage, s, side);
+      stage.ring_edges.push_back({s, face.circle, true});
     }
   }
   std::ranges::sort(stage.ring_edges, {}, &RingEdge::s);
@@ -105,6 +125,7 @@ void add_etalon(const Etalon& etalon, const Pose& X_CW, Stage& stage) {
   const TubeArc tube = straight_tube(X_WS, etalon.height, etalon.radius);
   add_tube({&tube, 1}, X_CW, skin, skin, {TubeEnd{TipKind::flat, bottom}, TubeEnd{TipKind::flat, top}},
            stage);
+  add_caster(tube, TipKind::flat, X_CW, stage);
   stage.X_CE = X_CW * X_WE;
   const double half_width = 0.5 * etalon.line_width / etalon.radius;
   if (!(half_width > 0)) return;
@@ -127,7 +148,7 @@ struct ObstacleAdder {
   void operator()(const PlaneConfig& plane) const {
     const Eigen::Vector3d point = Eigen::Map<const Eigen::Vector3d>(plane.point.data());
     const Eigen::Vector3d normal = Eigen::Map<const Eigen::Vector3d>(plane.normal.data());
-    stage.bodies[static_cast<std::size_t>(body)].takes_shadow = true;
+    stage.bodies[static_cast<std::size_t>(body)].takes_all_shadows = true;
     stage.planes.push_back({X_CW * point, X_CW.rotation * normal.normalized(), body});
   }
   void operator()(const SphereConfig& sphere) const {
@@ -143,6 +164,7 @@ struct ObstacleAdder {
     Pose X_CB = X_CW;
     X_CB.position = X_CW * Eigen::Map<const Eigen::Vector3d>(box.center.data());
     X_CB.rotation *= Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    add_caster(X_CB, box.half_sizes, stage);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const double side : {-1.0, 1.0}) {
         const auto column = [&](std::size_t i) {
@@ -167,6 +189,7 @@ struct ObstacleAdder {
     const TubeArc tube = straight_tube(X_WS, std::max(length, 1e-9 * radius), radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::round, body}, TubeEnd{TipKind::round, body}},
              stage);
+    add_caster(tube, TipKind::round, X_CW, stage);
   }
 };
 
@@ -185,12 +208,15 @@ void build_stage(const Scene& scene, const Pose& X_WC, double pixel, Stage& stag
   stage.faces.clear();
   stage.planes.clear();
   stage.ring_edges.clear();
+  stage.rings.clear();
   stage.line_edges.clear();
+  stage.casters.clear();
+  stage.caster_sides.clear();
   add_arm(scene.arm, X_CW, stage);
   for (std::size_t i = 0; i < scene.screens.size(); ++i) {
     const Screen& screen = scene.screens[i];
     const int body = add_body(stage, SurfaceKind::screen, i, screen.brightness);
-    stage.bodies.back().takes_shadow = true;
+    stage.bodies.back().takes_all_shadows = true;
     add_face(X_CW * screen.X_WS, 0.5 * screen.size[0], 0.5 * screen.size[1], body, static_cast<int>(i),
              stage);
   }

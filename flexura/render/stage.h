@@ -38,9 +38,9 @@ struct SurfaceLabel {
 struct Body {
   SurfaceLabel label;
   Color albedo;
-  bool is_arm = false;     ///< Its skin shows sections and markers.
-  bool is_etalon = false;  ///< Its skin shows the lines.
-  bool takes_shadow = false;
+  bool is_arm = false;             ///< Its skin shows sections and markers.
+  bool is_etalon = false;          ///< Its skin shows the lines.
+  bool takes_all_shadows = false;  ///< Not the arm's alone.
 };
 
 struct DiscPart {
@@ -48,7 +48,7 @@ struct DiscPart {
   int body = 0;
   std::size_t tube_arc = 0;  ///< Where it is on an arm: the arc
   double along = 0;          ///< and the distance from the arc's start, m.
-  int arm_piece = -1;        ///< Of a guide disk: the piece of the arm that comes out of it.
+  int arm_piece = -1;        ///< The piece of the arm that comes out of it; -1: none.
 };
 struct FacePart {
   Face face;
@@ -67,6 +67,22 @@ struct RingEdge {
   bool is_disk = false;
 };
 
+/// What the arm's skin shows from an arc length on: a marker of the scene; -1: none.
+struct RingStretch {
+  double s = 0;
+  int marker = -1;
+};
+
+/// A convex body other than the arm as the light sees it: what lies within all these lines.
+struct CasterSide {
+  Eigen::Vector3d normal;  ///< C; unit, across the light and the line, outwards.
+  double reach = 0;        ///< Of the body's middle from the line, m.
+};
+struct Caster {
+  Eigen::Vector3d center;            ///< C.
+  std::size_t first = 0, count = 0;  ///< Of the stage's sides.
+};
+
 /// A red line's edge: it leaves the camera in a plane.
 struct LineEdge {
   Eigen::Vector3d from, to;  ///< Its ends, C.
@@ -82,7 +98,11 @@ struct Stage {
   std::vector<FacePart> faces;
   std::vector<PlanePart> planes;
   std::vector<RingEdge> ring_edges;  ///< By s.
+  std::vector<RingStretch> rings;    ///< By s.
+  std::vector<int> open_rings;       ///< Room for making them.
   std::vector<LineEdge> line_edges;
+  std::vector<Caster> casters;
+  std::vector<CasterSide> caster_sides;
   Eigen::Vector3d light = {0, 0, 0};  ///< C, unit, towards it.
   int first_arm_piece = 0, last_arm_piece = -1;
   double arm_length = 0;

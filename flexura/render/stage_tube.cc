@@ -57,10 +57,9 @@ void add_arc(const TubeArc& tube_arc, std::size_t index, const Pose& X_CW, int b
   piece.curvature = theta / arc.length;
   piece.length = arc.length / count;
   piece.widening = (tube_arc.radius[1] - tube_arc.radius[0]) / arc.length;
-  piece.bend_direction = theta > 0 ? std::atan2(arc.bend.y(), arc.bend.x()) : 0.0;
-  const double cosine = std::cos(piece.bend_direction), sine = std::sin(piece.bend_direction);
+  const Eigen::Vector2d towards = theta > 0 ? Eigen::Vector2d(arc.bend / theta) : Eigen::Vector2d(1, 0);
   Eigen::Matrix3d spin;
-  spin << cosine, -sine, 0, sine, cosine, 0, 0, 0, 1;
+  spin << towards.x(), -towards.y(), 0, towards.y(), towards.x(), 0, 0, 0, 1;
   for (int i = 0; i < count; ++i) {
     const double from = i * piece.length;
     const Pose X_CS = X_CW * arc.pose(from);
@@ -116,6 +115,9 @@ void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int ste
       goes_on = std::abs(before - after) <= 1e-12 * before;
       if (!goes_on && before > after) add_disc(arcs[i - 1], i - 1, true, false, X_CW, step_body, stage);
       if (!goes_on && before < after) add_disc(arcs[i], i, false, true, X_CW, step_body, stage);
+      // The narrower side comes out of the disc.
+      const auto next = static_cast<int>(stage.pieces.size());
+      if (!goes_on) stage.discs.back().arm_piece = before > after ? next : next - 1;
     }
     add_arc(arcs[i], i, X_CW, body, goes_on, stage);
   }

@@ -118,27 +118,44 @@ void Tiles::build(const Stage& stage, const RayField& rays) {
   add_all(Part::Kind::plane, stage.planes, all_);
   tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   blocks_.resize(static_cast<std::size_t>(blocks_of(columns_)) * static_cast<std::size_t>(blocks_of(rows_)));
+  room_.clear();
   for (auto* lists : {&tiles_, &blocks_})
     for (List& list : *lists) list.is_known = false;
 }
 
-const std::vector<Part>& Tiles::fill(List& list, const std::vector<Part>& from, int column, int row,
-                                     int tiles) const {
+std::vector<Part>& Tiles::Room::with(std::size_t parts) {
+  constexpr std::size_t usual = 4096;
+  const auto is_full = [&](const std::vector<Part>& chunk) {
+    return chunk.capacity() - chunk.size() < parts;
+  };
+  while (current_ < chunks_.size() && is_full(chunks_[current_])) ++current_;
+  if (current_ == chunks_.size()) chunks_.emplace_back().reserve(std::max(parts, usual));
+  return chunks_[current_];
+}
+
+void Tiles::Room::clear() {
+  for (std::vector<Part>& chunk : chunks_) chunk.clear();
+  current_ = 0;
+}
+
+std::span<const Part> Tiles::fill(List& list, std::span<const Part> from, int column, int row,
+                                  int tiles) const {
   if (list.is_known) return list.parts;
-  list.is_known = true;
-  list.parts.clear();
   const Cone cone =
       cone_of(*rays_, column * size, row * size, std::min((column + tiles) * size, rays_->width()) - 1,
               std::min((row + tiles) * size, rays_->height()) - 1);
+  std::vector<Part>& parts = room_.with(from.size());
+  const std::size_t begin = parts.size();
   for (const Part part : from)
-    if (may_touch(*stage_, cone, part)) list.parts.push_back(part);
+    if (may_touch(*stage_, cone, part)) parts.push_back(part);
+  list = {true, std::span<const Part>(parts).subspan(begin)};
   return list.parts;
 }
 
 std::span<const Part> Tiles::parts(int column, int row) const {
   const int block_column = column / block, block_row = row / block;
   List& around = blocks_[place(block_column, block_row, blocks_of(columns_))];
-  const auto& near = fill(around, all_, block_column * block, block_row * block, block);
+  const auto near = fill(around, all_, block_column * block, block_row * block, block);
   return fill(tiles_[place(column, row, columns_)], near, column, row, 1);
 }
 

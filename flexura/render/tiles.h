@@ -30,16 +30,27 @@ class Tiles {
   // The primitives near a square of so many tiles from (column, row) on.
   struct List {
     bool is_known = false;
-    std::vector<Part> parts;
+    std::span<const Part> parts;
   };
-  const std::vector<Part>& fill(List& list, const std::vector<Part>& from, int column, int row,
-                                int tiles) const;
+  // Room for lists, which stay where they are until it is cleared.
+  class Room {
+   public:
+    // Where to add up to so many parts.
+    std::vector<Part>& with(std::size_t parts);
+    void clear();
+
+   private:
+    std::vector<std::vector<Part>> chunks_;
+    std::size_t current_ = 0;
+  };
+  std::span<const Part> fill(List& list, std::span<const Part> from, int column, int row, int tiles) const;
 
   const Stage* stage_ = nullptr;
   const RayField* rays_ = nullptr;
   int columns_ = 0, rows_ = 0;
   std::vector<Part> all_;
   mutable std::vector<List> tiles_, blocks_;
+  mutable Room room_;
 };
 
 }  // namespace flexura

@@ -37,7 +37,8 @@ struct Hit {
 /// of colours, and lines where bodies meet.
 struct Trace {
   Hit hit;
-  Border nearest, second;  ///< Infinitely far: none within border_reach.
+  Border nearest, second;                                  ///< Infinitely far: none within border_reach.
+  double clear = std::numeric_limits<double>::infinity();  ///< Of the nearest that is no ring's edge, px.
 };
 
 /// Holds rays against some of a stage's primitives, in the order given. Surfaces are seen from outside only:
@@ -59,6 +60,9 @@ class Tracer {
   const Stage& stage_;
   std::span<const Part> parts_;
 };
+
+/// What the arm's skin shows at arc length s on `piece`: a marker or the section.
+[[nodiscard]] SurfaceLabel arm_label(const Stage& stage, const TubePiece& piece, double s);
 
 /// The light that comes from where the ray meets `hit`, or from the background.
 [[nodiscard]] Color light_of(const Stage& stage, const Hit& hit, const Ray& ray);

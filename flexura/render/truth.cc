@@ -32,12 +32,6 @@ void fill(Image<T>& image, const RayField& rays, T value) {
   image = Image<T>(rays.width(), rays.height(), 1, value);
 }
 
-// The tube arc that holds arc length s.
-const TubeArc& tube_arc_at(std::span<const TubeArc> tube, double s) {
-  const auto next = std::ranges::upper_bound(tube, s, {}, [](const TubeArc& arc) { return arc.arc.s; });
-  return next == tube.begin() ? tube.front() : *(next - 1);
-}
-
 AxisPoint axis_point(const Renderer& renderer, const Tracer& tracer, double s) {
   const TubeArc& at = tube_arc_at(renderer.stage().scene->arm.tube, s);
   AxisPoint point;

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "flexura/math/so3.h"
 #include "tests/support/random_cases.h"
@@ -155,45 +153,6 @@ TEST(Truth, TheAxisIsHiddenWhereTheArmHidesItself) {
   const auto axis = projected_axis(renderer, s);
   EXPECT_TRUE(axis[0].is_visible);
   EXPECT_FALSE(axis[1].is_visible);
-}
-
-TEST(Truth, FlowIsTheMotionOfTheMaterial) {
-  for_random_cases(4, [](TestRandom& random) {
-    BentArm bent = random_bent_arm(random, 0);
-    const Backbone before = bent.backbone();
-    Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, before);
-    const View view = random_view_of(random, before);
-    Renderer renderer;
-    renderer.prepare(scene, view);
-    for (Eigen::Vector2d& bend : bent.state.bends) bend += random.vector<2>(-0.05, 0.05);
-    const Backbone after = bent.backbone();
-    Scene moved = plain_scene();
-    moved.arm.tube = tube_of(bent.arm, after);
-    const Image<float> flow = optical_flow(renderer, moved, view);
-    TruthMaps maps;
-    truth_maps(renderer, maps);
-    int checked = 0;
-    for (int v = 0; v < view.height; ++v) {
-      for (int u = 0; u < view.width; ++u) {
-        const SurfaceKind kind = label_from_value(maps.label.at(u, v)).kind;
-        EXPECT_EQ(kind == SurfaceKind::background, std::isnan(flow.at(u, v, 0)));
-        if (kind != SurfaceKind::section) continue;
-        const double s = std::clamp<double>(maps.s.at(u, v), 0, before.length());
-        const Eigen::Vector3d p_W =
-            view.X_WC * Eigen::Vector3d(maps.depth.at(u, v) * ray_at(view.lens, {u, v})->direction);
-        const Eigen::Vector3d p_S = before.pose(s).inverse() * p_W;
-        const auto pixel = view.project(after.pose(s) * p_S);
-        ASSERT_TRUE(pixel);
-        EXPECT_NEAR(flow.at(u, v, 0), pixel->x() - u, 2e-3);
-        EXPECT_NEAR(flow.at(u, v, 1), pixel->y() - v, 2e-3);
-        ++checked;
-      }
-    }
-    EXPECT_GT(checked, 100);
-    moved.arm.tube.pop_back();
-    EXPECT_THROW((void)optical_flow(renderer, moved, view), std::invalid_argument);
-  });
 }
 
 }  // namespace

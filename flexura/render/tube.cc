@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -63,6 +64,11 @@ std::vector<TubeArc> tube_of(const Arm& arm, const Backbone& backbone) {
   tube.reserve(arcs.size());
   for (std::size_t i = 0; i < arcs.size(); ++i) tube.push_back({arcs[i], arm.sections[i].radius, i});
   return tube;
+}
+
+const TubeArc& tube_arc_at(std::span<const TubeArc> tube, double s) {
+  const auto next = std::ranges::upper_bound(tube, s, {}, [](const TubeArc& at) { return at.arc.s; });
+  return next == tube.begin() ? tube.front() : *(next - 1);
 }
 
 std::vector<TubeArc> tube_through(std::span<const TubeSample> samples) {

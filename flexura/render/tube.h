@@ -32,6 +32,9 @@ struct TubeSample {
   std::size_t section = 0;  ///< Of the arm, from this sample to the next.
 };
 
+/// The tube arc that holds arc length s; the first or the last where none does. `tube`: not empty.
+[[nodiscard]] const TubeArc& tube_arc_at(std::span<const TubeArc> tube, double s);
+
 /// The surface of an arm of which poses are known along its backbone: two consecutive samples are joined by
 /// two arcs that meet with one tangent (a biarc), so that the tube is smooth, passes through every sample and
 /// converges to the backbone with the third power of the samples' distance. Samples of a circular arc give

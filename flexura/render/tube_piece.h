@@ -31,10 +31,9 @@ struct TubePiece {
   int body = 0;
   Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();  ///< P: of a ball that holds it,
   double bound_radius = 0;                                 ///< m,
-  double near_radius = 0;     ///< m, and of one that holds all that passes near it in the image too.
-  std::size_t tube_arc = 0;   ///< Where it was cut from,
-  double start_in_arc = 0;    ///< m from that arc's start,
-  double bend_direction = 0;  ///< the angle of P's x from the arc's x there, rad.
+  double near_radius = 0;    ///< m, and of one that holds all that passes near it in the image too.
+  std::size_t tube_arc = 0;  ///< Where it was cut from,
+  double start_in_arc = 0;   ///< m from that arc's start.
 };
 
 /// A ray in a piece's frame; `depth` is what its direction is multiplied by.

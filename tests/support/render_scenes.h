@@ -41,14 +41,15 @@ inline Scene plain_scene() {
   return scene;
 }
 
-/// A spatial arm of three sections, 1 m long, bent anyhow; each section thins by `taper`.
+/// A spatial arm of three sections, 1 m long, bent anyhow; each section thins by `taper`, and the next one
+/// starts up to `step` narrower or wider.
 struct BentArm {
   Arm arm;
   ArmState state;
 
   [[nodiscard]] Backbone backbone() const { return {arm, state}; }
 };
-inline BentArm random_bent_arm(TestRandom& random, double taper) {
+inline BentArm random_bent_arm(TestRandom& random, double taper, double step = 0) {
   BentArm bent;
   bent.arm.kind = ArmKind::spatial;
   double radius = 0.025;
@@ -57,6 +58,7 @@ inline BentArm random_bent_arm(TestRandom& random, double taper) {
     section.length = 0.33;
     section.radius = {radius, radius - taper};
     radius -= taper;
+    if (step > 0) radius += random.uniform(-step, step);
   }
   bent.state = ArmState::straight(3);
   for (Eigen::Vector2d& bend : bent.state.bends) bend = random.vector<2>(-2, 2);

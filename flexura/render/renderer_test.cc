@@ -1,0 +1,112 @@
+// What the renderer takes from the heap, and what it shares. This replaces the test program's operator new.
+#include "flexura/render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <thread>
+#include <vector>
+
+#include "tests/support/random_cases.h"
+#include "tests/support/render_scenes.h"
+
+namespace {
+
+std::atomic<int> allocations{0};
+
+}  // namespace
+
+// Not inlined: the compiler would see new and free at odds.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  void* place = std::malloc(size);
+  if (place == nullptr) throw std::bad_alloc();
+  return place;
+}
+[[gnu::noinline]] void operator delete(void* place) noexcept { std::free(place); }
+[[gnu::noinline]] void operator delete(void* place, std::size_t /*size*/) noexcept { std::free(place); }
+
+namespace flexura {
+namespace {
+
+// Everything at once but a floor, before which nothing would be drawn the quick way.
+Scene some_scene(TestRandom& random, const BentArm& bent) {
+  Scene scene = crowded_scene(random, bent, bent.backbone());
+  scene.obstacles.pop_back();
+  return scene;
+}
+
+TEST(Renderer, AllocatesNothingForASecondPicture) {
+  for_random_cases(4, [](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0.003, 0.003);
+    Scene scene = some_scene(random, bent);
+    const View view = random_view_of(random, bent.backbone());
+    for (const bool is_exact : {true, false}) {
+      scene.light.shadow = is_exact ? 0.5 : 0;
+      Renderer renderer;
+      LightImage picture;
+      renderer.render(scene, view, PixelKind::gray, picture, is_exact);
+      const int before = allocations;
+      renderer.render(scene, view, PixelKind::gray, picture, is_exact);
+      EXPECT_EQ(allocations - before, 0) << is_exact;
+    }
+  });
+}
+
+// Of an arm that moves on, once its pictures have been as full as they get.
+TEST(Renderer, AllocatesHardlyAnythingForAnArmThatMoves) {
+  TestRandom random(1);
+  BentArm bent = random_bent_arm(random, 0.003, 0.003);
+  const View view = random_view_of(random, bent.backbone());
+  std::vector<Scene> scenes;
+  for (int i = 0; i < 40; ++i) {
+    for (Eigen::Vector2d& bend : bent.state.bends) bend += random.vector<2>(-0.05, 0.05);
+    TestRandom same(2);
+    scenes.push_back(some_scene(same, bent));
+  }
+  Renderer renderer;
+  LightImage picture;
+  int before = 0;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (i == 20) before = allocations;
+    renderer.render(scenes[i], view, PixelKind::gray, picture, true);
+  }
+  EXPECT_LE(allocations - before, 4);
+}
+
+TEST(Renderer, DrawsTheSameInSeveralThreadsAtOnce) {
+  for (const bool is_exact : {true, false}) {
+    TestRandom random(5);
+    const BentArm bent = random_bent_arm(random, 0.003, 0.003);
+    std::vector<Scene> scenes;
+    std::vector<View> views;
+    for (int i = 0; i < 4; ++i) {
+      scenes.push_back(some_scene(random, bent));
+      views.push_back(random_view_of(random, bent.backbone()));
+    }
+    const auto draw_all = [&](std::vector<LightImage>& pictures) {
+      Renderer renderer;
+      pictures.resize(scenes.size());
+      for (std::size_t i = 0; i < scenes.size(); ++i)
+        renderer.render(scenes[i], views[i], PixelKind::color, pictures[i], is_exact);
+    };
+    std::vector<LightImage> alone;
+    draw_all(alone);
+    std::vector<std::vector<LightImage>> together(3);
+    std::vector<std::thread> threads;
+    for (auto& pictures : together) threads.emplace_back([&] { draw_all(pictures); });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& pictures : together) {
+      for (std::size_t i = 0; i < scenes.size(); ++i) {
+        EXPECT_EQ(pictures[i].light, alone[i].light);
+        EXPECT_EQ(pictures[i].depth, alone[i].depth);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flexura

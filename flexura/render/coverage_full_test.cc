@@ -187,7 +187,7 @@ TEST(Coverage, OfRingsFinerThanPixelsIsThatOfManySamples) {
 // From a tube of 2 px to one that fills the picture, with lenses of all kinds.
 TEST(Coverage, AtAnyZoomIsThatOfManySamples) {
   BothErrors errors;
-  for_random_cases(12, [&](TestRandom& random) {
+  for_random_cases(8, [&](TestRandom& random) {
     BentArm bent = random_bent_arm(random, 0.003, 0.003);
     const double thickness = std::exp(random.uniform(-1.5, 0.7));
     for (Section& section : bent.arm.sections) {

@@ -16,6 +16,7 @@ struct Border {
   double distance = std::numeric_limits<double>::infinity();  ///< From the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
   double depth = 0;                                           ///< Where in space it is drawn, m.
+  bool is_ring = false;                                       ///< The edge of a ring of colour on the arm.
 
   bool operator<(const Border& other) const { return distance < other.distance; }
 };

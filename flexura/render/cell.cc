@@ -81,6 +81,21 @@ SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset
   return part;
 }
 
+std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, double half, const Trace& here) {
+  const double diagonal = safety * half * std::numbers::sqrt2;
+  if (here.second.distance > diagonal || here.clear <= diagonal) return std::nullopt;
+  const auto s_at = [&](double u, double v) { return tracer.hit(moved(middle, {u * half, v * half})).s; };
+  const std::array<double, 4> s = {s_at(-1, -1), s_at(1, -1), s_at(-1, 1), s_at(1, 1)};
+  const Eigen::Vector2d slope((s[1] + s[3] - s[0] - s[2]) / (4 * half),
+                              (s[2] + s[3] - s[0] - s[1]) / (4 * half));
+  const double size = slope.norm();
+  // By how much s departs from what is linear.
+  const double bulge = 0.25 * (s[0] + s[1] + s[2] + s[3]) - here.hit.s;
+  const double twist = 0.25 * (s[0] + s[3] - s[1] - s[2]);
+  if (!(std::abs(bulge) + std::abs(twist) < 0.1 * half * size)) return std::nullopt;
+  return Stripes{slope / size, size, here.hit.s + bulge / 3};
+}
+
 Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half,
               const Trace& here, bool is_last, Division& division) {
   const double diagonal = half * std::numbers::sqrt2;

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 
 #include "flexura/render/ray.h"
 #include "flexura/render/tracer.h"
@@ -36,6 +39,40 @@ struct Division {
   SquarePart far_part;
 };
 
+/// How arc length runs across a square of the arm's skin: (s - its value in the middle) / slope px along the
+/// normal.
+struct Stripes {
+  Eigen::Vector2d normal;
+  double slope = 0;  ///< m/px; > 0.
+  double s = 0;      ///< m; in the middle.
+};
+/// If several edges of rings pass the square around `middle` and nothing else is seen to end there: they are
+/// parallel lines. None also where they bend too much for that.
+[[nodiscard]] std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, double half,
+                                                const Trace& here);
+
+/// Calls sink(hit, ray, area) for the stripes of the square around `middle`.
+template <typename Sink>
+void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const Stripes& stripes, Hit hit,
+                   Sink&& sink) {
+  const auto& rings = tracer.stage().rings;
+  const double reach = stripes.slope * half * std::numbers::sqrt2;
+  auto next = std::ranges::upper_bound(rings, stripes.s - reach, {}, &RingStretch::s);
+  double from = stripes.s - reach;
+  for (SquarePart rest = part_beyond(half, stripes.normal, -2 * half); rest.area > 0; ++next) {
+    const double to = next == rings.end() ? stripes.s + reach : std::min(next->s, stripes.s + reach);
+    const SquarePart beyond = part_beyond(half, stripes.normal, (to - stripes.s) / stripes.slope);
+    const double area = rest.area - beyond.area;
+    hit.s = 0.5 * (from + to);
+    hit.label = arm_label(tracer.stage(), tracer.stage().pieces[hit.part.index], hit.s);
+    if (area > 0)
+      sink(hit, moved(middle, (rest.area * rest.centroid - beyond.area * beyond.centroid) / area), area);
+    from = to;
+    rest = beyond;
+    if (to == stripes.s + reach) return;
+  }
+}
+
 enum class Verdict { uniform, divided, unclear };
 
 /// Judges the square of side 2 half around `center` (px from the pixel ray) from what is seen there, `here`,
@@ -56,8 +93,12 @@ void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center
   constexpr double step = 1e-5;
   const bool is_on_border = seen.nearest.distance < 0.01 * step;
   const Trace here = is_on_border ? tracer.trace(moved(pixel, center - step * seen.nearest.towards)) : seen;
-  Division division;
   const Ray ray = moved(pixel, center);
+  if (const auto stripes = stripes_of(tracer, ray, half, here)) {
+    cover_stripes(tracer, ray, half, *stripes, here.hit, sink);
+    return;
+  }
+  Division division;
   switch (judge(tracer, pixel, center, half, here, halvings == most_halvings, division)) {
     case Verdict::uniform:
       sink(here.hit, ray, area);

@@ -236,6 +236,7 @@ bool QuickPicture::draw_disc(const Stage& stage, const DiscPart& disc) {
       if (border.depth < before + 0.2 * circle.radius) leave(u, v);
     }
     if (!(view.value < 0) || !is_front) return;
+    if (disc.arm_piece >= 0) leave(u, v);  // The narrower side comes out of it.
     const auto depth = meet_plane(circle.center, circle.normal, ray);
     if (!depth || !(*depth < before)) return;
     Hit hit;

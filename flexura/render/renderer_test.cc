@@ -97,6 +97,7 @@ TEST(Renderer, DrawsTheSameInSeveralThreadsAtOnce) {
     draw_all(alone);
     std::vector<std::vector<LightImage>> together(3);
     std::vector<std::thread> threads;
+    threads.reserve(together.size());
     for (auto& pictures : together) threads.emplace_back([&] { draw_all(pictures); });
     for (std::thread& thread : threads) thread.join();
     for (const auto& pictures : together) {

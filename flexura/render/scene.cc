@@ -21,7 +21,7 @@ template <typename... Args>
 // What a message is about: a part of the scene, by its number if there are several, and which value of it.
 // Only words that stand in the program: nothing is put together before there is something to refuse.
 struct Place {
-  const char* part;
+  const char* part = "";
   const char* value = nullptr;
   std::optional<std::size_t> index{};
 

@@ -156,21 +156,29 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     depth = range.to;
     index = piece_behind(piece, range);
     if (index >= 0) continue;
-    // Out through the tube's end: its contour and the end's rim meet near by, at an angle that no line tells.
+    // Out through the tube's end. Where the contour meets the end's rim near by, at an angle that no line
+    // tells, the ray would not have gone much deeper.
+    const Inside at = inside_at(piece, local, depth);
     Border corner = contour_at(piece, ray, depth);
     corner.distance *= 0.7;
-    return corner;
+    const double still_to_go = at.slope * at.slope / (2 * std::max(at.curving, 0.0));
+    if (corner.distance * still_to_go < 2 * std::abs(at.value)) return corner;
   }
   return {};
 }
 
-// Whether one is the arm's skin and the other a guide disk: where they meet is known better.
-bool are_arm_and_disk(const Hit& a, const Hit& b) {
-  const auto is_skin = [](const Hit& hit) {
-    return hit.label.kind == SurfaceKind::section || hit.label.kind == SurfaceKind::marker;
-  };
-  return (is_skin(a) && b.label.kind == SurfaceKind::disk) ||
-         (is_skin(b) && a.label.kind == SurfaceKind::disk);
+// Whether the piece of a tube comes out of the flat surface that was hit there: the piece holds the place,
+// well within its planes, or begins at just this disc.
+bool comes_out_of(const Stage& stage, std::uint32_t index, const Hit& flat, const Eigen::Vector3d& p_CQ) {
+  if (flat.part.kind == Part::Kind::disc &&
+      at(stage.discs, flat.part.index).arm_piece == static_cast<int>(index))
+    return true;
+  const TubePiece& piece = at(stage.pieces, index);
+  const Eigen::Vector3d p = piece.R_CP.transpose() * (p_CQ - piece.p_CP);
+  const double margin = 1e-6 * piece.radius;
+  return (p - piece.bound_center).squaredNorm() < piece.near_radius * piece.near_radius &&
+         (!piece.is_cut_before || p.z() > margin) &&
+         (!piece.is_cut_after || piece.end_tangent.dot(p) < piece.end_offset - margin);
 }
 
 // Angle around the etalon's +Y from its +Z of a point in C.
@@ -181,14 +189,7 @@ double etalon_angle(const Stage& stage, const Eigen::Vector3d& p_CQ) {
 
 SurfaceLabel skin_label(const Stage& stage, const TubePiece& piece, double s, const Eigen::Vector3d& p_CQ) {
   const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
-  if (body.is_arm) {
-    const auto& markers = stage.scene->arm.markers;
-    for (std::size_t i = markers.size(); i-- > 0;) {
-      if (s >= markers[i].s_from && s < markers[i].s_to)
-        return {SurfaceKind::marker, static_cast<std::uint16_t>(i)};
-    }
-    return {SurfaceKind::section, static_cast<std::uint16_t>(stage.scene->arm.tube[piece.tube_arc].section)};
-  }
+  if (body.is_arm) return arm_label(stage, piece, s);
   if (body.is_etalon) {
     const Etalon& etalon = *stage.scene->etalon;
     const double quarters = etalon_angle(stage, p_CQ) / (std::numbers::pi / 2);
@@ -265,14 +266,18 @@ Eigen::Vector2d surface_slope(const Hit& hit, const Ray& ray, const Eigen::Vecto
   return hit.depth * direction.head<2>() + direction.dot(ray.direction) * depth_slope(hit, ray);
 }
 
-// Where the arm comes out of the guide disk whose face was hit.
-void add_tube_border(const Stage& stage, const Ray& ray, Sights& sights) {
-  const Hit& hit = sights.first;
-  const int index = at(stage.discs, hit.part.index).arm_piece;
-  if (index < 0) return;
-  const TubePoint point =
-      tube_point(stage.pieces[static_cast<std::size_t>(index)], hit.depth * ray.direction);
-  sights.add(border_of(point.gap, surface_slope(hit, ray, point.normal), ray, hit.depth));
+// Where tubes come out of a flat surface that was hit; whether `other` is one of their pieces.
+bool add_tube_borders(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& flat,
+                      const Hit& other, Sights& sights) {
+  const Eigen::Vector3d p = flat.depth * ray.direction;
+  bool is_among = false;
+  for (const Part part : parts) {
+    if (part.kind != Part::Kind::piece || !comes_out_of(stage, part.index, flat, p)) continue;
+    const TubePoint point = tube_point(at(stage.pieces, part.index), p);
+    sights.add(border_of(point.gap, surface_slope(flat, ray, point.normal), ray, flat.depth));
+    is_among = is_among || other.part == part;
+  }
+  return is_among;
 }
 
 // Edges of colour on the tube near the hit.
@@ -290,7 +295,9 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     for (auto i = std::max<std::ptrdiff_t>(next - 3, 0); i < last; ++i) {
       const RingEdge& edge = edges[static_cast<std::size_t>(i)];
       if (!edge.is_disk) {
-        sights.add(ring_border(edge, hit.s, slope, hit.depth, ray));
+        Border border = ring_border(edge, hit.s, slope, hit.depth, ray);
+        border.is_ring = true;
+        sights.add(border);
         continue;
       }
       const Eigen::Vector3d off = hit.depth * ray.direction - edge.circle.center;
@@ -318,6 +325,7 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
     const Border& border = sights.borders[i];
     const double margin = 1e-6 * trace.hit.depth + 2 * slope * (1 + border.distance);
     if (!(border.depth <= trace.hit.depth + margin)) continue;
+    if (!border.is_ring) trace.clear = std::min(trace.clear, border.distance);
     if (border < trace.nearest) {
       if (!is_same(border, trace.nearest)) trace.second = trace.nearest;
       trace.nearest = border;
@@ -340,23 +348,26 @@ Trace Tracer::trace(const Ray& ray) const {
   Sights sights;
   for (const Part part : parts_) meet(stage_, part, ray, sights);
   complete(stage_, ray, sights.first);
-  if (!sights.second.is_none()) {
-    complete(stage_, ray, sights.second);
-    const Eigen::Vector2d slope = depth_slope(sights.second, ray) - depth_slope(sights.first, ray);
-    if (slope.allFinite() && !are_arm_and_disk(sights.first, sights.second))
-      sights.add(border_of(sights.second.depth - sights.first.depth, slope, ray, sights.first.depth));
+  complete(stage_, ray, sights.second);
+  const Hit &first = sights.first, &second = sights.second;
+  // A tube and a flat surface meet where the tube's gap is zero on the flat one: that runs more evenly over
+  // the image than the difference of their depths.
+  const auto is_piece = [](const Hit& hit) { return hit.part.kind == Part::Kind::piece; };
+  const Hit& flat = is_piece(first) ? second : first;
+  const bool is_known = !flat.is_none() && !is_piece(flat) &&
+                        add_tube_borders(stage_, parts_, ray, flat, is_piece(first) ? first : second, sights);
+  if (!second.is_none() && !is_known) {
+    const Eigen::Vector2d slope = depth_slope(second, ray) - depth_slope(first, ray);
+    if (slope.allFinite()) sights.add(border_of(second.depth - first.depth, slope, ray, first.depth));
   }
-  if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::piece) {
-    Border contour = own_contour(stage_, ray, sights.first);
+  if (!first.is_none() && is_piece(first)) {
+    Border contour = own_contour(stage_, ray, first);
     contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
     sights.add(contour);
     add_color_edges(stage_, ray, sights);
   }
-  if (!sights.first.is_none() && sights.first.part.kind == Part::Kind::disc) {
-    add_tube_border(stage_, ray, sights);
-  }
   Trace trace;
-  trace.hit = sights.first;
+  trace.hit = first;
   choose(sights, ray, trace);
   return trace;
 }

@@ -169,7 +169,7 @@ double root_between(const TubePiece& piece, const LocalRay& ray, double low, dou
     if (!(next > low) || !(next < high)) next = 0.5 * (low + high);
     const double move = std::abs(next - depth);
     depth = next;
-    if (move < 4e-16 * depth || low >= high) break;
+    if (move < 1e-13 * depth || low >= high) break;
   }
   return depth;
 }

@@ -20,10 +20,11 @@ class FrustumTube {
     Eigen::Vector3d from, to;  ///< W.
     double radius_from, radius_to;
     double s_from, s_to;
-    bool is_first, is_last;  ///< The tube is closed by discs there.
+    bool is_first, is_last;  ///< Of the tube, or at a step of its radius: discs close it there.
     /// How far it goes on beyond its ends, of its length: on the outside of a bend wedges would gape between
     /// it and its neighbours.
     double overlap;
+    Eigen::Vector3d tangent_from, tangent_to;  ///< Of the backbone, W.
   };
   struct Meeting {
     double depth = std::numeric_limits<double>::infinity();
@@ -35,14 +36,17 @@ class FrustumTube {
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       const Arc& arc = backbone.arcs()[i];
       const auto& radius = arm.sections[i].radius;
+      const bool starts = i == 0 || arm.sections[i - 1].radius[1] != radius[0];
+      const bool ends = i + 1 == arm.sections.size() || arm.sections[i + 1].radius[0] != radius[1];
       for (int part = 0; part < count; ++part) {
         const double a = static_cast<double>(part) / count, b = static_cast<double>(part + 1) / count;
         const double length = arc.length / count, turn = arc.bend.norm() / count;
         const auto mixed = [&](double share) { return radius[0] + (radius[1] - radius[0]) * share; };
         frustums_.push_back({arc.pose(a * arc.length).position, arc.pose(b * arc.length).position, mixed(a),
-                             mixed(b), arc.s + a * arc.length, arc.s + b * arc.length, i == 0 && part == 0,
-                             i + 1 == arm.sections.size() && part + 1 == count,
-                             0.5 * turn * mixed(a) / length});
+                             mixed(b), arc.s + a * arc.length, arc.s + b * arc.length, starts && part == 0,
+                             ends && part + 1 == count, 0.5 * turn * mixed(a) / length,
+                             arc.pose(a * arc.length).rotation.col(2),
+                             arc.pose(b * arc.length).rotation.col(2)});
       }
     }
   }
@@ -70,11 +74,11 @@ class FrustumTube {
     Meeting nearest;
     for (const Frustum& frustum : frustums) meet_side(frustum, eye, direction, nearest);
     for (const Frustum& frustum : frustums) {
-      const Eigen::Vector3d axis = frustum.to - frustum.from;
       if (frustum.is_first)
-        meet_disc(frustum.from, axis, frustum.radius_from, frustum.s_from, eye, direction, nearest);
+        meet_disc(frustum.from, frustum.tangent_from, frustum.radius_from, frustum.s_from, eye, direction,
+                  nearest);
       if (frustum.is_last)
-        meet_disc(frustum.to, axis, frustum.radius_to, frustum.s_to, eye, direction, nearest);
+        meet_disc(frustum.to, frustum.tangent_to, frustum.radius_to, frustum.s_to, eye, direction, nearest);
     }
     return nearest;
   }
@@ -96,11 +100,18 @@ class FrustumTube {
     for (const double sign : {-1.0, 1.0}) {
       const double t = (-B + sign * std::sqrt(discriminant)) / A;
       const double share = a + b * t;
-      const double low = frustum.is_first ? 0 : -frustum.overlap,
-                   high = 1 + (frustum.is_last ? 0 : frustum.overlap);
-      if (t > 0 && t < nearest.depth && share >= low && share <= high)
-        nearest = {t, frustum.s_from + share * (frustum.s_to - frustum.s_from)};
+      const Eigen::Vector3d p = eye + t * direction;
+      const bool is_cut = (frustum.is_first && (p - frustum.from).dot(frustum.tangent_from) < 0) ||
+                          (frustum.is_last && (frustum.to - p).dot(frustum.tangent_to) < 0);
+      if (t > 0 && t < nearest.depth && share >= -frustum.overlap && share <= 1 + frustum.overlap && !is_cut)
+        nearest = {t, s_at(frustum, p)};
     }
+  }
+  // By the distances from the planes across the backbone at the frustum's two ends.
+  static double s_at(const Frustum& frustum, const Eigen::Vector3d& p) {
+    const double before = (p - frustum.from).dot(frustum.tangent_from);
+    const double after = (frustum.to - p).dot(frustum.tangent_to);
+    return frustum.s_from + before / (before + after) * (frustum.s_to - frustum.s_from);
   }
   static void meet_disc(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius, double s,
                         const Eigen::Vector3d& eye, const Eigen::Vector3d& direction, Meeting& nearest) {

@@ -85,6 +85,7 @@ class QuickPicture {
   void plan_screens(const Stage& stage);
   void fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const;
   void draw_screens(SpanRow& row);
+  void clear(int begin, int end, SpanRow& row) const;
   void draw_panel(const Panel& panel, bool is_first, SpanRow& row);
 
   void divide(const Skin& skin);

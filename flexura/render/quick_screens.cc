@@ -67,10 +67,15 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
 }
 
 void QuickPicture::draw_screens(SpanRow& row) {
-  // What nothing covers; a single screen over the whole row does.
-  std::fill_n(row.depth, width_, nothing);
-  std::ranges::copy(background_, row.light);
+  // Without distortion the first screen leaves to the background what it does not cover.
+  if (panel_count_ == 0 || row.lens.u != nullptr) clear(0, width_, row);
   for (std::size_t i = 0; i < panel_count_; ++i) draw_panel(panels_[i], i == 0, row);
+}
+
+void QuickPicture::clear(int begin, int end, SpanRow& row) const {
+  const auto count = static_cast<std::size_t>(end - begin);
+  std::fill_n(row.depth + begin, count, nothing);
+  std::copy_n(background_.data(), count * channels_, row.light + static_cast<std::size_t>(begin) * channels_);
 }
 
 // Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are left out.
@@ -97,6 +102,10 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
   inner.end = std::clamp(inner.end, inner.begin, outer.end);
   for (int u = outer.begin; u < inner.begin; ++u) leave(u, row.v);
   for (int u = inner.end; u < outer.end; ++u) leave(u, row.v);
+  if (is_first) {
+    clear(0, inner.begin, row);
+    clear(inner.end, width_, row);
+  }
   if (inner.begin == inner.end) return;
   const Linear& nearness = panel.screen.nearness;
   const float here = nearness.value + nearness.by_v * (static_cast<float>(row.v) - panel.screen.v0);
@@ -105,6 +114,7 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
   };
   if (!(nearness_at(inner.begin) > 0) || !(nearness_at(inner.end - 1) > 0)) {
     for (int u = inner.begin; u < inner.end; ++u) leave(u, row.v);
+    if (is_first) clear(inner.begin, inner.end, row);
     return;
   }
   const auto count = static_cast<std::size_t>(inner.end - inner.begin);

@@ -112,7 +112,7 @@ void draw_screen(const SpanScreen screen, int begin, int end, bool is_first, Spa
       set_flag(is_edge, state_exact, row.state + u);
       row.has_exact = true;
     }
-    const WideMask is_drawn = is_inside & (depth < before);
+    const WideMask is_drawn = is_inside & ((depth < before) | WideMask(is_straight && is_first));
     store(row.depth + u, choose(is_drawn, depth, before));
     if (is_straight && is_first && screen.is_plain) return;
     const Wide x = depth * at(screen.place[0], place) - screen.middle[0],

@@ -130,7 +130,7 @@ struct SpanKernels {
   /// Draws the piece's skin in the columns [begin, end) where it is nearest and no contour is near.
   void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
   /// Draws the screen in the columns where it is nearest and no edge of it is near; `is_first`: nothing is
-  /// there yet; without distortion a plain screen's light then is already there.
+  /// there yet; without distortion what is in the row then is of no meaning, but for a plain screen's light.
   void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
   /// Adds the columns in which the rim may be seen to row.borders.
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);

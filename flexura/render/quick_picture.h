@@ -8,6 +8,8 @@
 #include "flexura/camera/intrinsics.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/math/simd_path.h"
+#include "flexura/render/image_region.h"
+#include "flexura/render/lens_map.h"
 #include "flexura/render/picture.h"
 #include "flexura/render/span_kernels.h"
 #include "flexura/render/stage.h"
@@ -28,47 +30,106 @@ class QuickPicture {
   explicit QuickPicture(SimdPath path = best_simd_path());
 
   /// Draws into `picture`, whose images have the right size. False, with nothing of use drawn, for what it
-  /// does not know: a lens with distortion, shadows, infinite planes, a camera close to something.
-  bool draw(const Stage& stage, const Intrinsics& intrinsics, PixelKind pixels, LightImage& picture);
+  /// does not know: shadows, infinite planes, a camera close to something, pictures less than span_step wide.
+  bool draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics, PixelKind pixels,
+            LightImage& picture);
 
   /// The pixels that draw() left out, row by row.
   [[nodiscard]] const std::vector<Pixel>& left_out() const { return left_out_; }
 
  private:
-  // A piece as it was drawn, and the pixels where its contour may be.
-  struct Drawn {
+  // A piece of skin, and the pixels where its contour may be.
+  struct Skin {
     SpanPiece piece{};
+    ImageRegion region;
+    PixelRange rows;
     std::size_t first_edge = 0;
+    int index = 0;  // In the stage.
     std::vector<Pixel> contour;
   };
+  // A flat end of the arm, the skin that ends there, and the pixels where its rim may be.
+  struct Rim {
+    SpanRim rim{};
+    ImageRegion region;
+    PixelRange rows;
+    std::size_t skin = 0;
+    double depth = 0;
+    std::vector<Pixel> pixels;
+  };
+  // A screen; `edges` are those of the kernel, and `margin` by how much each has to be within.
+  struct Panel {
+    SpanScreen screen{};
+    struct Edge {
+      double value, by_u, by_v, margin;
+    } edges[4];
+    std::vector<float> light;  // A row of its light, if that is plain.
+  };
 
+  void start(const Stage& stage);
+  [[nodiscard]] SpanRow row_of(int v);
   void find_left_out();
-  void draw_screens(const Stage& stage);
-  void draw_screen(const Stage& stage, const FacePart& part, bool is_first);
-  void leave_crossing(const Face& one, const Face& other);
-  bool draw_pieces(const Stage& stage);
-  bool draw_piece(const Stage& stage, const TubePiece& piece);
-  bool draw_disc(const Stage& stage, const DiscPart& disc);
+
+  bool plan_pieces(const Stage& stage);
+  bool plan_piece(const Stage& stage, const TubePiece& piece);
+  void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;
+  bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
+  void draw_pieces(SpanRow& row);
   bool leave_face(const FacePart& part);
-  void divide(const Drawn& drawn);
-  void merge(const SpanPiece& piece, Pixel pixel, const BorderPixels& borders, std::size_t i);
-  void fill_span_piece(const Stage& stage, const TubePiece& piece, Drawn& drawn);
-  bool add_edges(const Stage& stage, const TubePiece& piece, Drawn& drawn);
+
+  bool plan_rims(const Stage& stage);
+  void fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const;
+  void find_rim(Rim& rim);
+  void draw_discs(SpanRow& row);
+  void divide_rim(const Rim& rim);
+
+  void plan_screens(const Stage& stage);
+  void fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const;
+  void draw_screens(SpanRow& row);
+  void clear(int begin, int end, SpanRow& row) const;
+  void draw_panel(const Panel& panel, bool is_first, SpanRow& row);
+
+  void divide(const Skin& skin);
+  void merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& places, const BorderPixels& borders,
+             std::size_t i);
+
   [[nodiscard]] std::uint8_t& state(int u, int v) {
-    return states_[static_cast<std::size_t>(v) * stride_ + static_cast<std::size_t>(u)];
+    return states_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(u)];
   }
-  void leave(int u, int v) { state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact); }
-  void store(int u, int v, const Color& light);
+  void leave(int u, int v) {
+    state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact);
+    has_exact_[static_cast<std::size_t>(v)] = 1;
+  }
+  void leave(const ImageRegion& region);
+  // Calls visit(u, v) for the pixels that may see something of the region.
+  template <typename Visit>
+  void for_pixels(const ImageRegion& region, Visit&& visit) const {
+    const PixelRange rows = map_.rows(region);
+    for (int v = rows.begin; v < rows.end; ++v) {
+      const PixelRange columns = map_.columns(region, v);
+      for (int u = columns.begin; u < columns.end; ++u) visit(u, v);
+    }
+  }
 
   const SpanKernels* kernels_;
   Intrinsics intrinsics_;
+  const RayField* rays_ = nullptr;
+  LensMap map_;
   int width_ = 0, height_ = 0;
-  std::size_t channels_ = 1, stride_ = 0;
+  std::size_t channels_ = 1;
+  double pixel_ = 0;  // The size of the largest at depth 1.
   LightImage* picture_ = nullptr;
-  std::vector<std::uint8_t> states_;
-  std::vector<float> row_depth_;
-  std::vector<Drawn> drawn_;
-  std::size_t drawn_count_ = 0;
+  std::vector<std::uint8_t> states_, has_exact_;  // Of pixels; of rows.
+  std::vector<float> background_;                 // A row of it.
+  std::vector<int> borders_;
+  std::vector<Panel> panels_;
+  std::size_t panel_count_ = 0;
+  std::vector<Skin> skins_;
+  std::size_t skin_count_ = 0;
+  std::vector<Rim> rims_;
+  std::size_t rim_count_ = 0;
+  std::vector<std::size_t> by_row_, active_;  // Skins by their first row; those of the current row.
+  std::size_t next_ = 0;                      // In by_row_.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;
 };

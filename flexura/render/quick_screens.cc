@@ -3,121 +3,128 @@
 #include <limits>
 
 #include "flexura/render/quick_picture.h"
-#include "flexura/render/ray_field.h"
-#include "flexura/render/tracer.h"
 
 namespace flexura {
 namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
-bool is_plain_screen(const Screen& screen) {
-  return screen.gradient[0] == 0 && screen.gradient[1] == 0 && screen.falloff == 0;
-}
-
 }  // namespace
 
-void QuickPicture::draw_screens(const Stage& stage) {
-  bool is_first = true;
+void QuickPicture::plan_screens(const Stage& stage) {
+  panel_count_ = 0;
+  float steepest = 0;
   for (const FacePart& part : stage.faces) {
     if (part.screen < 0) continue;
-    draw_screen(stage, part, is_first);
-    is_first = false;
-    for (const FacePart& other : stage.faces)
-      if (&other != &part && other.screen >= 0) leave_crossing(part.face, other.face);
+    if (panel_count_ == panels_.size()) panels_.emplace_back();
+    Panel& panel = panels_[panel_count_++];
+    fill_panel(stage, part, panel);
+    const Linear& nearness = panel.screen.nearness;
+    // Within a pixel of a line where two screens meet their nearness differs by less than both change.
+    const auto change = static_cast<float>(1.2 * pixel_ * std::max(intrinsics_.fx, intrinsics_.fy)) *
+                        std::hypot(nearness.by_u, nearness.by_v);
+    panel.screen.least_distance = change + steepest;
+    steepest = std::max(steepest, change);
   }
-  if (!is_first) return;
-  std::ranges::fill(picture_->depth.values(), nothing);
-  for (int v = 0; v < height_; ++v)
-    for (int u = 0; u < width_; ++u) store(u, v, stage.scene->background);
+}
+
+// Places are counted from the image's middle.
+void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const {
+  const Screen& look = stage.scene->screens[static_cast<std::size_t>(part.screen)];
+  const Face& face = part.face;
+  SpanScreen& screen = panel.screen;
+  const double u0 = width_ / 2, v0 = height_ / 2;
+  screen.u0 = static_cast<float>(u0), screen.v0 = static_cast<float>(v0);
+  // A function of the ray's direction.
+  const auto linear = [&](const Eigen::Vector3d& by) -> Linear {
+    return {static_cast<float>(by.dot(straight_ray(intrinsics_, u0, v0).direction)),
+            static_cast<float>(by.x() / intrinsics_.fx), static_cast<float>(by.y() / intrinsics_.fy)};
+  };
+  screen.nearness = linear(face.normal / face.normal.dot(face.corners[0]));
+  const Eigen::Vector3d middle = 0.5 * (face.corners[0] + face.corners[2]);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector3d way = 0.5 * (face.corners[axis == 0 ? 1 : 3] - face.corners[0]);
+    const Eigen::Vector3d by = way / way.squaredNorm();
+    screen.place[axis] = linear(by);
+    screen.middle[axis] = static_cast<float>(by.dot(middle));
+    screen.gradient[axis] = static_cast<float>(look.gradient[axis]);
+  }
+  screen.falloff = static_cast<float>(look.falloff);
+  for (Eigen::Index c = 0; c < 3; ++c)
+    screen.brightness[c] = static_cast<float>(channels_ == 1 ? gray_of(look.brightness) : look.brightness[c]);
+  screen.channels = channels_;
+  screen.is_plain = look.gradient[0] == 0 && look.gradient[1] == 0 && look.falloff == 0;
+  panel.light.resize(static_cast<std::size_t>(width_) * channels_);
+  for (std::size_t i = 0; i < panel.light.size(); ++i) panel.light[i] = screen.brightness[i % channels_];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d& edge = face.edges[i];
+    const double by_u = edge.x() / intrinsics_.fx, by_v = edge.y() / intrinsics_.fy;
+    const double largest = pixel_ * std::max(intrinsics_.fx, intrinsics_.fy);
+    const double margin = 1.2 * largest * std::hypot(by_u, by_v);
+    panel.edges[i] = {edge.dot(straight_ray(intrinsics_, 0, 0).direction), by_u, by_v, margin};
+    screen.edges[i] = linear(edge / margin);
+  }
+}
+
+void QuickPicture::draw_screens(SpanRow& row) {
+  // Without distortion the first screen leaves to the background what it does not cover.
+  if (panel_count_ == 0 || row.lens.u != nullptr) clear(0, width_, row);
+  for (std::size_t i = 0; i < panel_count_; ++i) draw_panel(panels_[i], i == 0, row);
+}
+
+void QuickPicture::clear(int begin, int end, SpanRow& row) const {
+  const auto count = static_cast<std::size_t>(end - begin);
+  std::fill_n(row.depth + begin, count, nothing);
+  std::copy_n(background_.data(), count * channels_, row.light + static_cast<std::size_t>(begin) * channels_);
 }
 
 // Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are left out.
-void QuickPicture::draw_screen(const Stage& stage, const FacePart& part, bool is_first) {
-  const Screen& screen = stage.scene->screens[static_cast<std::size_t>(part.screen)];
-  const Face& face = part.face;
-  const double scale = face.normal.dot(face.corners[0]);
-  const double limit = width_;
-  const auto whole = [&](double x) { return static_cast<int>(std::clamp(std::ceil(x), 0.0, limit)); };
-  const auto set_behind = [&](int v, int from, int to) {
-    for (int u = from; u < to; ++u) {
-      picture_->depth.at(u, v) = nothing;
-      store(u, v, stage.scene->background);
-    }
+void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
+  if (row.lens.u != nullptr) {
+    kernels_->screen(panel.screen, 0, width_, is_first, row);
+    return;
+  }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double inner_from = -infinity, inner_to = infinity, outer_from = -infinity, outer_to = infinity;
+  for (const Panel::Edge& edge : panel.edges) {
+    const double value = edge.value + edge.by_v * row.v;
+    const auto cut = [&](double least, double& from, double& to) {
+      if (edge.by_u > 0) from = std::max(from, (least - value) / edge.by_u);
+      if (edge.by_u < 0) to = std::min(to, (least - value) / edge.by_u);
+      if (edge.by_u == 0 && value < least) to = -infinity;
+    };
+    cut(edge.margin, inner_from, inner_to);
+    cut(-edge.margin, outer_from, outer_to);
+  }
+  const PixelRange outer = PixelRange::around(outer_from, outer_to, width_);
+  PixelRange inner = PixelRange::around(inner_from, inner_to, width_);
+  inner.begin = std::clamp(inner.begin, outer.begin, outer.end);
+  inner.end = std::clamp(inner.end, inner.begin, outer.end);
+  for (int u = outer.begin; u < inner.begin; ++u) leave(u, row.v);
+  for (int u = inner.end; u < outer.end; ++u) leave(u, row.v);
+  if (is_first) {
+    clear(0, inner.begin, row);
+    clear(inner.end, width_, row);
+  }
+  if (inner.begin == inner.end) return;
+  const Linear& nearness = panel.screen.nearness;
+  const float here = nearness.value + nearness.by_v * (static_cast<float>(row.v) - panel.screen.v0);
+  const auto nearness_at = [&](int u) {
+    return here + nearness.by_u * (static_cast<float>(u) - panel.screen.u0);
   };
-  for (int v = 0; v < height_; ++v) {
-    const Ray row = straight_ray(intrinsics_, 0, v);
-    const double infinity = std::numeric_limits<double>::infinity();
-    double inner_from = -infinity, inner_to = infinity, outer_from = -infinity, outer_to = infinity;
-    for (const Eigen::Vector3d& edge : face.edges) {
-      const double value = edge.dot(row.direction), by_u = edge.x() / intrinsics_.fx;
-      const double margin = 1.2 * std::hypot(by_u, edge.y() / intrinsics_.fy);
-      const auto cut = [&](double least, double& from, double& to) {
-        if (by_u > 0) from = std::max(from, (least - value) / by_u);
-        if (by_u < 0) to = std::min(to, (least - value) / by_u);
-        if (by_u == 0 && value < least) to = -infinity;
-      };
-      cut(margin, inner_from, inner_to);
-      cut(-margin, outer_from, outer_to);
-    }
-    const int outer_begin = whole(outer_from), outer_end = std::max(outer_begin, whole(outer_to));
-    const int begin = std::clamp(whole(inner_from), outer_begin, outer_end);
-    const int end = std::clamp(whole(inner_to), begin, outer_end);
-    if (is_first) set_behind(v, 0, begin), set_behind(v, end, width_);
-    for (int u = outer_begin; u < begin; ++u) leave(u, v);
-    for (int u = end; u < outer_end; ++u) leave(u, v);
-    if (begin == end) continue;
-    const double value = face.normal.dot(row.direction), by_u = face.normal.x() / intrinsics_.fx;
-    const auto depth_at = [&](int u) { return scale / (value + by_u * u); };
-    const bool is_before_camera = depth_at(begin) > 1e-6 && depth_at(end - 1) > 1e-6;
-    if (!is_before_camera) {
-      for (int u = begin; u < end; ++u) leave(u, v);
-      if (is_first) set_behind(v, begin, end);
-      continue;
-    }
-    float* const depth = picture_->depth.row(v).data();
-    const auto count = static_cast<std::size_t>(end - begin);
-    kernels_->plane(static_cast<float>(scale), static_cast<float>(value + by_u * begin),
-                    static_cast<float>(by_u), row_depth_.data(), count);
-    const bool is_plain = is_plain_screen(screen);
-    if (is_first) std::copy_n(row_depth_.data(), count, depth + begin);
-    if (is_first && is_plain && channels_ == 1) {
-      std::fill_n(picture_->light.row(v).data() + begin, count,
-                  static_cast<float>(gray_of(screen.brightness)));
-      continue;
-    }
-    Hit hit;
-    hit.label = {SurfaceKind::screen, static_cast<std::uint16_t>(part.screen)};
-    hit.part = {Part::Kind::face, static_cast<std::uint32_t>(&part - stage.faces.data())};
-    for (int u = begin; u < end; ++u) {
-      const float here = row_depth_[static_cast<std::size_t>(u - begin)];
-      if (!is_first && !(here < depth[u])) continue;
-      depth[u] = here;
-      hit.depth = here;
-      store(u, v, is_plain ? screen.brightness : light_of(stage, hit, straight_ray(intrinsics_, u, v)));
-    }
+  if (!(nearness_at(inner.begin) > 0) || !(nearness_at(inner.end - 1) > 0)) {
+    for (int u = inner.begin; u < inner.end; ++u) leave(u, row.v);
+    if (is_first) clear(inner.begin, inner.end, row);
+    return;
   }
-}
-
-// Where the planes of two screens meet: the difference of their points' inverse depths is linear in the
-// image.
-void QuickPicture::leave_crossing(const Face& one, const Face& other) {
-  const Eigen::Vector3d difference =
-      one.normal / one.normal.dot(one.corners[0]) - other.normal / other.normal.dot(other.corners[0]);
-  if (!difference.allFinite()) return;
-  const double by_u = difference.x() / intrinsics_.fx, by_v = difference.y() / intrinsics_.fy;
-  const double reach = 1.2 * std::hypot(by_u, by_v), limit = width_;
-  for (int v = 0; v < height_; ++v) {
-    const double value = difference.dot(straight_ray(intrinsics_, 0, v).direction);
-    double from = 0, to = limit;
-    if (by_u != 0) {
-      from = std::clamp((-value - std::copysign(reach, by_u)) / by_u, 0.0, limit);
-      to = std::clamp((-value + std::copysign(reach, by_u)) / by_u + 1, 0.0, limit);
-    } else if (std::abs(value) > reach) {
-      continue;
-    }
-    for (int u = static_cast<int>(from); u < static_cast<int>(to); ++u) leave(u, v);
-  }
+  const auto count = static_cast<std::size_t>(inner.end - inner.begin);
+  if (is_first && panel.screen.is_plain)
+    std::copy_n(panel.light.data(), count * channels_,
+                row.light + static_cast<std::size_t>(inner.begin) * channels_);
+  if (is_first && panel.screen.is_plain && nearness.by_u == 0)
+    std::fill_n(row.depth + inner.begin, count, 1 / here);
+  else
+    kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
 }
 
 }  // namespace flexura

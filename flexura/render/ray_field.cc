@@ -7,13 +7,10 @@
 #include <stdexcept>
 
 namespace flexura {
-namespace {
 
 bool is_same(const Intrinsics& a, const Intrinsics& b) {
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
 }
-
-}  // namespace
 
 Ray straight_ray(const Intrinsics& intrinsics, double u, double v) {
   Ray ray;

@@ -8,6 +8,8 @@
 
 namespace flexura {
 
+[[nodiscard]] bool is_same(const Intrinsics& a, const Intrinsics& b);
+
 /// The ray of the point (u, v) of the image of a lens without distortion.
 [[nodiscard]] Ray straight_ray(const Intrinsics& intrinsics, double u, double v);
 

@@ -1,5 +1,6 @@
-// Any bytes as a scene and a view: a picture whose every pixel is a number and its truth, or an
-// std::invalid_argument.
+// Any bytes as a scene and a view: a picture whose every pixel is a number no brighter than anything in the
+// scene, the quick way and the exact one alike, and its truth, or an std::invalid_argument.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -116,15 +117,40 @@ View view_from(Bytes& bytes) {
   Intrinsics intrinsics;
   intrinsics.fx = bytes.number(5, 60);
   intrinsics.fy = bytes.number(5, 60);
-  intrinsics.cx = bytes.number(0, 20);
-  intrinsics.cy = bytes.number(0, 15);
+  intrinsics.cx = bytes.number(0, 30);
+  intrinsics.cy = bytes.number(0, 10);
   if (bytes.choice(3) == 0)
     intrinsics.distortion = {bytes.number(-0.4, 0.4), bytes.number(-0.2, 0.2), 0.001, 0, 0};
   view.lens = Lens(intrinsics);
   view.X_WC = {so3_exp(bytes.vector(-3, 3)), bytes.vector(-1.5, 1.5)};
-  view.width = bytes.choice(24);
-  view.height = bytes.choice(20);
+  // Few pixels, but mostly as many in a row as the quick way needs.
+  view.width = bytes.choice(4) == 0 ? bytes.choice(24) : 32 + bytes.choice(4);
+  view.height = bytes.choice(10);
   return view;
+}
+
+// No surface can be brighter than this.
+double brightest(const Scene& scene) {
+  double result = scene.background.maxCoeff();
+  for (const Screen& screen : scene.screens) result = std::max(result, screen.brightness.maxCoeff());
+  double albedo = std::max(scene.arm.albedo.maxCoeff(), scene.arm.disk_albedo.maxCoeff());
+  for (const MarkerRing& ring : scene.arm.markers) albedo = std::max(albedo, ring.albedo.maxCoeff());
+  if (scene.etalon)
+    albedo = std::max({albedo, scene.etalon->albedo.maxCoeff(), scene.etalon->line_albedo.maxCoeff()});
+  for (const VisibleObstacle& obstacle : scene.obstacles)
+    albedo = std::max(albedo, obstacle.albedo.maxCoeff());
+  return std::max(result, albedo * (scene.light.ambient + scene.light.directional));
+}
+
+// Where three borders meet in a pixel even the exact way takes a sample.
+bool is_close(const LightImage& quick, const LightImage& exact) {
+  for (std::size_t i = 0; i < exact.light.values().size(); ++i)
+    if (std::abs(quick.light.values()[i] - exact.light.values()[i]) > 0.1F) return false;
+  for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {
+    const float a = quick.depth.values()[i], b = exact.depth.values()[i];
+    if (a != b && !(std::abs(a - b) <= 1e-5F * b)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -141,9 +167,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const PixelKind pixels = bytes.choice(2) == 0 ? PixelKind::gray : PixelKind::color;
     renderer.render(scene, view, pixels, quick);
     renderer.render(scene, view, pixels, picture, true);
+    const auto limit = static_cast<float>(1.001 * brightest(scene) + 1e-3);
+    if (!is_close(quick, picture)) std::abort();
     for (const LightImage* one : {&quick, &picture}) {
       for (const float value : one->light.values())
-        if (!std::isfinite(value) || value < -1e-4F) std::abort();
+        if (!std::isfinite(value) || value < -1e-4F || value > limit) std::abort();
       for (const float value : one->depth.values())
         if (!(value > 0)) std::abort();
     }

@@ -61,7 +61,7 @@ void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, Li
   prepare(scene, view);
   fit(view.width, view.height, pixels == PixelKind::gray ? 1 : 3, picture.light);
   fit(view.width, view.height, 1, picture.depth);
-  if (!is_exact && quick_.draw(stage_, view.lens.intrinsics(), pixels, picture)) {
+  if (!is_exact && quick_.draw(stage_, rays_, view.lens.intrinsics(), pixels, picture)) {
     for (const QuickPicture::Pixel& pixel : quick_.left_out())
       render_pixel(pixel.u, pixel.v, pixels, picture);
     return;

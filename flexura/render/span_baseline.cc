@@ -1,3 +1,3 @@
-#include "flexura/render/span_lanes.h"
+#include "flexura/render/span_set.h"
 
 const flexura::SpanKernels* flexura::baseline_span_kernels() { return &span_kernels; }

@@ -11,7 +11,7 @@ namespace flexura {
 enum class SimdPath;
 
 /// Pixels that the kernels take at a time, whatever their width.
-constexpr std::size_t span_step = 16;
+constexpr std::size_t span_step = 32;
 
 /// What a pixel of a quick picture is.
 enum PixelState : std::uint8_t {
@@ -19,11 +19,33 @@ enum PixelState : std::uint8_t {
   state_arm = 1,     ///< Skin of the arm or an end of it.
   state_border = 2,  ///< The arm's contour runs through it.
   state_exact = 4,   ///< To be drawn by the exact way.
+  state_base = 8,    ///< The rim of the arm's base may be seen in it;
+  state_tip = 16,    ///< that of its tip.
 };
 
-/// A function of the image that is linear: value + by_u (u - u0) + by_v (v - v0).
+/// A function of the image that is linear: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion
+/// (u, v) is where the ray would be seen without.
 struct Linear {
   float value, by_u, by_v;
+};
+
+/// Where a lens with distortion sees the rays of a row of pixels: their places without distortion, and how
+/// these change from pixel to pixel. No `u`: the lens has none.
+struct LensRow {
+  const float *u = nullptr, *v = nullptr;
+  const float *u_by_u = nullptr, *u_by_v = nullptr, *v_by_u = nullptr, *v_by_v = nullptr;
+};
+
+/// A row of the picture, no narrower than span_step.
+struct SpanRow {
+  int v, width;
+  float* depth;
+  float* light;
+  std::uint8_t* state;
+  LensRow lens;
+  int* borders;              ///< Columns in which the contour may be, as draw() adds them:
+  std::size_t border_count;  ///< so many.
+  bool has_exact;            ///< Set when a pixel is left to the exact way.
 };
 
 /// A plane across the tube where its colour changes: where p . normal = offset in the piece's frame.
@@ -34,27 +56,63 @@ struct SpanEdge {
 };
 
 /// A piece of tube of one radius in its own frame (docs/renderer.md), as the pixels near (u0, v0) see it: the
-/// point of their rays at depth0, and their directions.
+/// points of their rays at depth0, and their directions.
 struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
+  Linear way;  ///< From there about to the plane along the piece's middle that faces the camera, m of depth.
   float curvature, radius;
-  float middle[3], chord[3];  ///< Of its centreline's ends; unit.
   float end_sine, end_cosine, end_offset;
-  float reach;     ///< m: contours this near may divide the pixel.
-  float light[3];  ///< The directional light's strength over the radius times the direction towards it.
+  float reach;         ///< m: contours this near may divide the pixel.
+  int centering;       ///< Newton's steps to where the ray is deepest,
+  float largest_move;  ///< m: and how small the last one has to be.
+  int refining;        ///< Newton's steps to where it enters,
+  float settled;       ///< m: and how small the last one has to be.
+  float light[3];      ///< The directional light's strength over the radius times the direction towards it.
   float ambient;
   float albedo[3];  ///< At its start.
   const SpanEdge* edges;
   std::size_t edge_count, channels;
+  std::uint8_t rims;  ///< state_base, state_tip: of the ends that it has; it leaves their pixels alone.
 };
 
-/// The pixels of one row from u on, span_step of them.
-struct SpanPixels {
-  int u, v;
-  float* depth;
-  float* light;
-  std::uint8_t* state;
+/// A flat end of the arm. Where a ray meets its plane is, in its radii from its centre, (x, y) / z; z is
+/// positive in front of the camera.
+struct SpanRim {
+  float u0, v0;
+  Linear x, y, z;
+  Linear nearness;  ///< 1/depth of the plane.
+  /// The skin at the rim is seen where (x, y) . facing < 0; `margin` times the length of (x, y) makes sure.
+  float facing[2], margin;
+  float light[3];
+  bool is_front;     ///< Seen itself.
+  PixelState state;  ///< Of its rim.
+};
+
+/// What an end and its tube make of a pixel at the rim.
+struct RimPixel {
+  float share, light[3];  ///< Of the pixel that shows them; their light, times it.
+  float depth;            ///< In the middle of the pixel; infinite: they are not seen there.
+  bool is_sure;
+};
+
+/// A screen: points are where nearness, 1/depth, is positive. Its light is
+/// brightness max(0, 1 + gradient . (x, y)) (1 - falloff (x^2 + y^2) / 2), the place (x, y) being
+/// depth place - middle.
+struct SpanScreen {
+  float u0, v0;
+  Linear nearness, place[2];
+  float middle[2], gradient[2], falloff, brightness[3];
+  Linear edges[4];       ///< Above 1: well within the edge; below -1: well out.
+  float least_distance;  ///< Of the nearness from that of what is there.
+  std::size_t channels;
+  bool is_plain;  ///< Of one brightness.
+};
+
+/// Pixels to be divided: where they are in an image without distortion and how that changes with the pixel.
+struct SpanPlaces {
+  float u[span_step], v[span_step];
+  float u_by_u[span_step], u_by_v[span_step], v_by_u[span_step], v_by_v[span_step];
 };
 
 /// What a contour makes of a pixel.
@@ -64,20 +122,29 @@ struct BorderPixels {
   float depth[span_step];    ///< In the middle of the pixel; infinite outside.
   float contour[span_step];  ///< Depth of the contour.
   std::uint8_t is_simple[span_step];
+  std::uint8_t is_sure[span_step];  ///< Whether it is right; the rest is for the exact way.
 };
 
 /// One instruction set's functions.
 struct SpanKernels {
-  /// Draws the piece where it is nearest and no border is near; the bits of the result tell the pixels in
-  /// which a contour may be.
-  std::uint32_t (*draw)(const SpanPiece& piece, const SpanPixels& pixels);
+  /// Draws the piece's skin in the columns [begin, end) where it is nearest and no contour is near.
+  void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
+  /// Draws the screen in the columns where it is nearest and no edge of it is near; `is_first`: nothing is
+  /// there yet; without distortion what is in the row then is of no meaning, but for a plain screen's light.
+  void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
+  /// Adds the columns in which the rim may be seen to row.borders.
+  void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);
+  /// Draws the end itself where it is nearest, but for the rim's pixels.
+  void (*disc)(const SpanRim& rim, std::size_t channels, int begin, int end, SpanRow& row);
+  /// Works out the rim's pixel of the places' number `index`, the piece being the one that ends there, from
+  /// 256 points.
+  void (*divide_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
+                     RimPixel& pixel);
   /// Works out pixels with contours.
-  void (*divide)(const SpanPiece& piece, const float* u, const float* v, BorderPixels& borders);
-  /// The mean light of what of the piece is in the pixel, from 64 points (256 in colour); left as it is when
-  /// none is within.
-  void (*sample)(const SpanPiece& piece, float u, float v, float* light);
-  /// depth[i] = scale / (value + by_u * i) where that is less than what is there; sets where.
-  void (*plane)(float scale, float value, float by_u, float* depth, std::size_t count);
+  void (*divide)(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders);
+  /// The mean light of what of the piece is in the pixel of the places' number `index`, from 64 or 256
+  /// points; left as it is when none is within. Whether it is right.
+  bool (*sample)(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light);
 };
 
 const SpanKernels* baseline_span_kernels();

@@ -88,6 +88,38 @@ inline bool is_zero(const Words& v) {
 #endif
 }
 
+// Sets `flag` in the bytes whose words of the mask, all ones or zeros, are set.
+inline void set_flag(const Words& mask, std::uint8_t flag, std::uint8_t* bytes) {
+  const Words flags = mask & flag;
+#if defined(__AVX512BW__)
+  const __m128i packed = _mm512_cvtepi32_epi8(reinterpret_cast<__m512i>(flags));
+  auto* const to = reinterpret_cast<__m128i*>(bytes);
+  _mm_storeu_si128(to, _mm_or_si128(_mm_loadu_si128(to), packed));
+#elif defined(__AVX2__)
+  const auto w = reinterpret_cast<__m256i>(flags);
+  const __m128i pairs = _mm_packs_epi32(_mm256_castsi256_si128(w), _mm256_extracti128_si256(w, 1));
+  auto* const to = reinterpret_cast<__m128i*>(bytes);
+  _mm_storel_epi64(to, _mm_or_si128(_mm_loadl_epi64(to), _mm_packs_epi16(pairs, pairs)));
+#else
+  for (std::size_t i = 0; i < lanes; ++i) bytes[i] = static_cast<std::uint8_t>(bytes[i] | flags[i]);
+#endif
+}
+
+// Bytes, one a word.
+inline Words words_of(const std::uint8_t* bytes) {
+#if defined(__AVX512BW__)
+  return reinterpret_cast<Words>(
+      _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes))));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Words>(
+      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes))));
+#else
+  Words words;
+  for (std::size_t i = 0; i < lanes; ++i) words[i] = bytes[i];
+  return words;
+#endif
+}
+
 // The sum of a word's four bytes, weighted with 64 * 128, 63 * 128, 64 * 125 and 63 * 125 from the lowest on.
 inline Words weighted_bytes(const Words& x) {
 #if defined(__AVX512BW__)

@@ -1,0 +1,190 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "flexura/render/quick_picture.h"
+
+namespace flexura {
+namespace {
+
+float number(double x) { return static_cast<float>(x); }
+
+// A function of the image that takes (by_u, by_v) more from pixel to pixel, times `scale`.
+Linear linear(double value, double by_u, double by_v, double scale = 1) {
+  return {number(scale * value), number(scale * by_u), number(scale * by_v)};
+}
+
+// How many of Newton's steps it takes, and how small the last one has to be, so that the parabolas of H stand
+// for it: to where H is least from `start` radii off, to a tenth of a pixel in the contour; and to the entry
+// from the parabola's. `bend`: curvature * radius; `pixels`: in the radius. The third derivative is what they
+// miss.
+void plan_steps(double bend, double start, double pixels, SpanPiece& span) {
+  constexpr int most = 6;
+  const double largest = std::cbrt(0.1 / (std::max(bend, 1e-6) * pixels));
+  span.centering = 1;
+  for (double move = start; move > largest && span.centering < most; move *= 1.5 * bend * move)
+    ++span.centering;
+  span.largest_move = number(largest * static_cast<double>(span.radius));
+  constexpr double settled = 3e-3;
+  span.refining = 1;
+  for (double move = 0.5 * bend; move > 0.7 * settled && span.refining < most; move *= 0.5 * move)
+    ++span.refining;
+  span.settled = number(settled * static_cast<double>(span.radius));
+}
+
+}  // namespace
+
+bool QuickPicture::plan_pieces(const Stage& stage) {
+  skin_count_ = 0;
+  edges_.clear();
+  if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
+    return false;
+  by_row_.clear();
+  active_.clear();
+  next_ = 0;
+  for (std::size_t i = 0; i < skin_count_; ++i) {
+    skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
+    by_row_.push_back(i);
+  }
+  std::ranges::sort(by_row_, {}, [this](std::size_t i) { return std::pair(skins_[i].rows.begin, i); });
+  return true;
+}
+
+bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
+  const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
+  const double widest = std::max(piece.radius, piece.radius + piece.widening * piece.length);
+  const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
+  const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
+  const double slant = chord.dot(center.normalized());
+  // Around the middle between the chord and the arc. The skin goes on beyond the chord's ends as far as the
+  // planes there lean, and as far as a ray gets from the axis' side to the skin.
+  const double turn = piece.curvature * piece.length, sagitta = piece.length * turn / 8;
+  const Eigen::Vector3d chord_P = piece.bound_center.normalized();
+  const Eigen::Vector3d aside = piece.R_CP * Eigen::Vector3d(-chord_P.z(), 0, chord_P.x()) * (0.5 * sagitta);
+  const double steepest = std::min(0.95, std::abs(slant) + 0.1);
+  const double lean = 1.2 * std::tan(0.5 * turn) + steepest / std::sqrt(1 - steepest * steepest);
+  const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
+                                      piece.is_ball ? 2 * widest : widest * (lean + 0.1));
+  if (!region) return false;
+  const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
+  bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
+                  piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;
+  if (is_quick) {
+    if (skin_count_ == skins_.size()) skins_.emplace_back();
+    Skin& skin = skins_[skin_count_];
+    fill_span_piece(stage, piece, skin);
+    // Three pixels across the radius, so that no pixel has both contours.
+    is_quick = 3 * skin.piece.reach < skin.piece.radius && add_edges(stage, piece, skin);
+  }
+  if (!is_quick) {
+    leave(*region);
+    return true;
+  }
+  Skin& skin = skins_[skin_count_++];
+  skin.index = static_cast<int>(&piece - stage.pieces.data());
+  skin.piece.rims = 0;
+  skin.region = *region;
+  skin.rows = map_.rows(*region);
+  skin.contour.clear();
+  return true;
+}
+
+void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const {
+  const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
+  const Eigen::Matrix3d R_PC = piece.R_CP.transpose();
+  SpanPiece& span = skin.piece;
+  const double u0 = std::round(intrinsics_.fx * center.x() / center.z() + intrinsics_.cx);
+  const double v0 = std::round(intrinsics_.fy * center.y() / center.z() + intrinsics_.cy);
+  span.u0 = number(u0), span.v0 = number(v0);
+  span.depth0 = number(center.z());
+  const auto depth0 = static_cast<double>(span.depth0);
+  const Eigen::Vector3d d = R_PC * straight_ray(intrinsics_, u0, v0).direction;
+  const Eigen::Vector3d by_u = R_PC.col(0) / intrinsics_.fx, by_v = R_PC.col(1) / intrinsics_.fy;
+  const Eigen::Vector3d start = piece.p_PC + depth0 * d;
+  const Light& light = stage.scene->light;
+  const Eigen::Vector3d towards = R_PC * stage.light * (light.directional / piece.radius);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    span.direction[i] = linear(d[i], by_u[i], by_v[i]);
+    span.point[i] = linear(start[i], depth0 * by_u[i], depth0 * by_v[i]);
+    span.light[i] = number(towards[i]);
+  }
+  // The plane half-way between chord and arc.
+  const Eigen::Vector3d chord = piece.bound_center.normalized(), aside(-chord.z(), 0, chord.x());
+  const double half_sagitta = piece.length * piece.length * piece.curvature / 16;
+  const Eigen::Vector3d middle = piece.bound_center + half_sagitta * aside;
+  const Eigen::Vector3d normal = (d - d.dot(chord) * chord).normalized();
+  const double rise = normal.dot(d), scale = -1 / rise;
+  span.way = linear(normal.dot(start - middle), depth0 * normal.dot(by_u), depth0 * normal.dot(by_v), scale);
+  span.curvature = number(piece.curvature), span.radius = number(piece.radius);
+  span.end_sine = number(piece.end_tangent.x()), span.end_cosine = number(piece.end_tangent.z());
+  span.end_offset = number(piece.end_offset);
+  const double pixel = (center.z() + piece.bound_radius) * pixel_;
+  span.reach = number(0.9 * pixel);
+  // The rays' rise over that plane changes across the image.
+  const double bend = piece.curvature * piece.radius, slant = std::abs(d.dot(chord)) / rise;
+  const double width = piece.bound_radius * piece.bound_radius / center.z();
+  const double start_error = half_sagitta + slant * slant * width;
+  plan_steps(bend, 0.05 + bend + start_error / piece.radius, piece.radius / pixel, span);
+  span.ambient = number(light.ambient);
+  span.channels = channels_;
+}
+
+// The planes of marker edges at the piece and what they do to its colour; false when they are seen as curves
+// that no line stands for within a pixel.
+bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
+  const ArmLook& arm = stage.scene->arm;
+  const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
+  const double margin = 8 * pixel;
+  const auto albedo_at = [&](double s) {
+    for (std::size_t i = arm.markers.size(); i-- > 0;)
+      if (s >= arm.markers[i].s_from && s < arm.markers[i].s_to) return arm.markers[i].albedo;
+    return arm.albedo;
+  };
+  const auto channel = [&](const Color& color, std::size_t c) {
+    return channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)];
+  };
+  const auto& rings = stage.ring_edges;
+  const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
+  const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
+  Color before = begin == end ? albedo_at(piece.s + 0.5 * piece.length) : Color();
+  if (begin != end) before = albedo_at(std::nextafter(begin->s, -1e9));
+  for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = static_cast<float>(channel(before, c));
+  skin.first_edge = edges_.size();
+  for (auto ring = begin; ring != end; ++ring) {
+    const bool is_last_here = ring + 1 == end || (ring + 1)->s > ring->s;
+    if (!is_last_here) continue;
+    const Color after = albedo_at(ring->s);
+    const Eigen::Vector3d normal = piece.R_CP.transpose() * ring->circle.normal;
+    SpanEdge edge{};
+    for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = static_cast<float>(normal[i]);
+    edge.offset = static_cast<float>(ring->circle.normal.dot(ring->circle.center - piece.p_CP));
+    // Towards the contour the edge of a ring that is seen aslant runs along it.
+    const double aslant = std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
+                          2 * piece.radius / ring->circle.center.z();
+    if (aslant * pixel > 0.02 * piece.radius) return false;
+    edge.far = static_cast<float>(pixel * (1 + aslant * std::sqrt(2.8 * piece.radius / pixel)));
+    for (std::size_t c = 0; c < channels_; ++c)
+      edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));
+    edges_.push_back(edge);
+    before = after;
+  }
+  skin.piece.edge_count = edges_.size() - skin.first_edge;
+  return true;
+}
+
+// Skins that have begun by this row and not yet ended.
+void QuickPicture::draw_pieces(SpanRow& row) {
+  for (; next_ < by_row_.size() && skins_[by_row_[next_]].rows.begin <= row.v; ++next_)
+    active_.push_back(by_row_[next_]);
+  std::erase_if(active_, [&](std::size_t i) { return skins_[i].rows.end <= row.v; });
+  for (const std::size_t i : active_) {
+    Skin& skin = skins_[i];
+    const PixelRange columns = map_.columns(skin.region, row.v);
+    if (columns.begin == columns.end) continue;
+    row.border_count = 0;
+    kernels_->draw(skin.piece, columns.begin, columns.end, row);
+    for (std::size_t j = 0; j < row.border_count; ++j) skin.contour.push_back({row.borders[j], row.v});
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,135 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "flexura/render/quick_picture.h"
+
+namespace flexura {
+namespace {
+
+float number(double x) { return static_cast<float>(x); }
+
+}  // namespace
+
+// The arm's flat ends; where the skin at one is not drawn the quick way, and of all other discs, the exact
+// way draws all.
+bool QuickPicture::plan_rims(const Stage& stage) {
+  rim_count_ = 0;
+  for (const DiscPart& disc : stage.discs) {
+    const Circle& circle = disc.circle;
+    // About the longest diameter of the image.
+    const Eigen::Vector3d across = circle.normal.cross(circle.center);
+    const double sine = across.norm() / circle.center.norm();
+    const Eigen::Vector3d way =
+        sine > 1e-6 ? Eigen::Vector3d(across.normalized() * circle.radius) : across * 0;
+    const double narrow =
+        1.1 * circle.radius * (sine > 1e-6 ? std::sqrt(std::max(0.0, 1 - sine * sine)) : 1.0) +
+        circle.radius * circle.radius / circle.center.norm();
+    const auto region = ImageRegion::of(intrinsics_, circle.center - way, circle.center + way,
+                                        std::min(narrow, circle.radius));
+    if (!region) return false;
+    const SurfaceLabel label = stage.bodies[static_cast<std::size_t>(disc.body)].label;
+    const bool is_end = label.kind == SurfaceKind::cap && label.index < 2;
+    const int piece = label.index == 0 ? stage.first_arm_piece : stage.last_arm_piece;
+    const auto skin = std::find_if(skins_.begin(), skins_.begin() + static_cast<std::ptrdiff_t>(skin_count_),
+                                   [&](const Skin& one) { return is_end && one.index == piece; });
+    if (skin == skins_.begin() + static_cast<std::ptrdiff_t>(skin_count_)) {
+      leave(*region);
+      continue;
+    }
+    if (rim_count_ == rims_.size()) rims_.emplace_back();
+    Rim& rim = rims_[rim_count_++];
+    rim.skin = static_cast<std::size_t>(skin - skins_.begin());
+    rim.region = *region;
+    rim.rows = map_.rows(*region);
+    rim.rim.state = label.index == 0 ? state_base : state_tip;
+    skin->piece.rims |= rim.rim.state;
+    rim.depth = circle.center.z();
+    fill_rim(stage, disc, rim.rim);
+    find_rim(rim);
+  }
+  return true;
+}
+
+void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const {
+  const Circle& circle = disc.circle;
+  const double u0 = std::round(intrinsics_.fx * circle.center.x() / circle.center.z() + intrinsics_.cx);
+  const double v0 = std::round(intrinsics_.fy * circle.center.y() / circle.center.z() + intrinsics_.cy);
+  rim.u0 = number(u0), rim.v0 = number(v0);
+  const Eigen::Vector3d middle = straight_ray(intrinsics_, u0, v0).direction;
+  const auto linear = [&](const Eigen::Vector3d& by, double scale) -> Linear {
+    return {number(scale * by.dot(middle)), number(scale * by.x() / intrinsics_.fx),
+            number(scale * by.y() / intrinsics_.fy)};
+  };
+  const double scale = 1 / (circle.radius * circle.center.norm());
+  rim.x = linear(circle.by_x, scale), rim.y = linear(circle.by_y, scale);
+  rim.z = linear(circle.by_z, scale * circle.radius);
+  rim.nearness = linear(circle.normal, 1 / circle.normal.dot(circle.center));
+  rim.is_front = circle.normal.dot(circle.center) < 0;
+  // The skin at the rim in direction (x, y) is seen where it faces the camera. A pixel of the other half has
+  // to be looked at where its half is near: beside the contour, and everywhere if the image is flat.
+  rim.facing[0] = number(circle.x.dot(circle.center)), rim.facing[1] = number(circle.y.dot(circle.center));
+  const double distance = circle.center.norm();
+  const double flat =
+      circle.radius * std::abs(circle.normal.dot(circle.center)) / (distance * distance * pixel_);
+  rim.margin = number(distance * std::max(0.4, 1.2 / flat));
+  const Light& light = stage.scene->light;
+  const double factor = light.ambient + light.directional * std::max(0.0, circle.normal.dot(stage.light));
+  const Color color = stage.bodies[static_cast<std::size_t>(disc.body)].albedo * factor;
+  for (Eigen::Index c = 0; c < 3; ++c) rim.light[c] = number(channels_ == 1 ? gray_of(color) : color[c]);
+}
+
+// Takes the rim's pixels from those that are drawn as plain.
+void QuickPicture::find_rim(Rim& rim) {
+  rim.pixels.clear();
+  for (int v = rim.rows.begin; v < rim.rows.end; ++v) {
+    const PixelRange columns = map_.columns(rim.region, v);
+    if (columns.begin == columns.end) continue;
+    SpanRow row = row_of(v);
+    kernels_->find_rim(rim.rim, columns.begin, columns.end, row);
+    for (std::size_t i = 0; i < row.border_count; ++i) {
+      rim.pixels.push_back({row.borders[i], v});
+      state(row.borders[i], v) |= rim.rim.state;
+    }
+  }
+}
+
+void QuickPicture::draw_discs(SpanRow& row) {
+  for (std::size_t i = 0; i < rim_count_; ++i) {
+    const Rim& rim = rims_[i];
+    if (!rim.rim.is_front || row.v < rim.rows.begin || row.v >= rim.rows.end) continue;
+    const PixelRange columns = map_.columns(rim.region, row.v);
+    kernels_->disc(rim.rim, channels_, columns.begin, columns.end, row);
+  }
+}
+
+// Lays the end over what is in its rim's pixels.
+void QuickPicture::divide_rim(const Rim& rim) {
+  const SpanPiece& piece = skins_[rim.skin].piece;
+  SpanPlaces places;
+  for (const Pixel pixel : rim.pixels) {
+    const std::uint8_t here = state(pixel.u, pixel.v);
+    if ((here & state_exact) != 0) continue;
+    float& depth = picture_->depth.at(pixel.u, pixel.v);
+    const double before = depth, slack = 2 * static_cast<double>(piece.radius);
+    const bool is_arm = (here & state_arm) != 0;
+    if (is_arm && before < rim.depth - slack) continue;
+    // One rim before the other, or a contour before or behind it, is more than this way knows.
+    const bool is_alone = (here & ~state_arm) == rim.rim.state;
+    const bool is_clear = is_alone && before > rim.depth + (is_arm ? slack : 0.5 * slack);
+    RimPixel seen{};
+    if (is_clear) {
+      map_.place(pixel.u, pixel.v, 0, places);
+      kernels_->divide_rim(rim.rim, piece, places, 0, seen);
+    }
+    if (!is_clear || !seen.is_sure) {
+      leave(pixel.u, pixel.v);
+      continue;
+    }
+    depth = std::min(depth, seen.depth);
+    float* const light = &picture_->light.at(pixel.u, pixel.v);
+    for (std::size_t c = 0; c < channels_; ++c) light[c] = seen.light[c] + (1 - seen.share) * light[c];
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "flexura/render/span_lanes.h"
+
+// Rows of pixels, as many at a time as a vector holds; for span_*.cc alone.
+namespace flexura {
+namespace {
+
+template <std::size_t channels>
+[[gnu::always_inline]] inline void store_light(const Wide (&light)[channels], const WideMask& mask,
+                                               float* to) {
+  if constexpr (channels == 1) {
+    store(to, choose(mask, light[0], wide_load(to)));
+  } else {
+    float values[channels][wide_lanes];
+    for (std::size_t c = 0; c < channels; ++c) store(values[c], light[c]);
+    for (std::uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
+      for (std::size_t c = 0; c < channels; ++c) to[channels * i + c] = values[c][i];
+    }
+  }
+}
+
+// A row's pixels from `begin` to `end`, vector by vector: visit(u, is_asked) with the first one's column. The
+// last vector reaches over the end, or starts earlier rather than reach over the end of the picture's row.
+template <typename Visit>
+[[gnu::always_inline]] inline void for_vectors(int begin, int end, int width, Visit&& visit) {
+  constexpr auto step = static_cast<int>(wide_lanes);
+  for (int u = begin; u < end; u += step) {
+    const int from = u + step <= width ? u : width - step;
+    visit(from, (counted() >= static_cast<float>(u - from)) & (counted() < static_cast<float>(end - from)));
+  }
+}
+
+// Pixels that the kernel cannot be sure of, where the piece may be.
+[[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes& ray,
+                                              const WideMask& is_unsure, int u, SpanRow& row) {
+  const WideMask is_lost = is_unsure & is_within(piece, ray.point, 2 * piece.radius);
+  if (!any(is_lost)) return;
+  set_flag(is_lost, state_exact, row.state + u);
+  row.has_exact = true;
+}
+
+[[gnu::always_inline]] inline void add_borders(const WideMask& is_border, int u, SpanRow& row) {
+  for (auto bits = bits_of(is_border); bits != 0; bits &= bits - 1)
+    row.borders[row.border_count++] = u + __builtin_ctz(bits);
+}
+
+// `piece` is a copy, which no store can change: what is the same in all the row is worked out once.
+template <std::size_t channels, bool is_straight>
+void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
+  const float radius = piece.radius, reach = piece.reach;
+  const float near = reach * (2 * radius + reach), inside = -reach * (2 * radius - reach);
+  float *const depths = row.depth, *const lights = row.light;
+  for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
+    const Place place = place_of<is_straight>(row, u, piece.u0, piece.v0);
+    const RayLanes ray = ray_of(piece, place);
+    const Lowest lowest = lowest_of(piece, ray, piece.centering);
+    const WideMask is_near = lowest.value < near;
+    if (!any(is_near | ~lowest.is_sure)) return;
+    const Entry entry = entry_of(piece, ray, lowest);
+    const WideMask is_settled = lowest.is_sure & (size_of(entry.move) < piece.settled);
+    const WideMask is_inside = lowest.value < inside;
+    const WideMask is_unsure = ~is_settled & (is_inside | ~lowest.is_sure);
+    const Vector p = along(ray.point, ray.direction, entry.t);
+    const WideMask is_here = is_within(piece, p, overlap * radius);
+    if (any(is_unsure)) leave_lost(piece, ray, is_unsure & is_asked, u, row);
+    const WideMask is_border = is_near & ~is_inside & lowest.is_sure;
+    if (any(is_border)) {
+      const WideMask is_passing =
+          is_within(piece, along(ray.point, ray.direction, lowest.t), overlap * radius);
+      add_borders(is_border & is_asked & (is_passing | (is_here & (lowest.value < 0))), u, row);
+    }
+    const Wide depth = ray.depth + entry.t, before = wide_load(depths + u);
+    WideMask is_drawn = is_inside & is_settled & is_here & is_asked & (depth < before);
+    if (piece.rims != 0) is_drawn &= ~has_flag(row.state + u, piece.rims);
+    if (!any(is_drawn)) return;
+    Wide light[channels];
+    skin_light<true>(piece, ray, place, depth, p, normal_of(piece, ray, p, entry.t), light);
+    store(depths + u, choose(is_drawn, depth, before));
+    store_light(light, is_drawn, lights + static_cast<std::size_t>(u) * channels);
+    set_flag(is_drawn, state_arm, row.state + u);
+  });
+}
+
+void draw(const SpanPiece& piece, int begin, int end, SpanRow& row) {
+  const bool is_straight = row.lens.u == nullptr;
+  if (piece.channels == 1)
+    is_straight ? draw_skin<1, true>(piece, begin, end, row) : draw_skin<1, false>(piece, begin, end, row);
+  else
+    is_straight ? draw_skin<3, true>(piece, begin, end, row) : draw_skin<3, false>(piece, begin, end, row);
+}
+
+template <std::size_t channels, bool is_straight>
+void draw_screen(const SpanScreen screen, int begin, int end, bool is_first, SpanRow& row) {
+  for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
+    const Place place = place_of<is_straight>(row, u, screen.u0, screen.v0);
+    const Wide nearness = at(screen.nearness, place), depth = 1 / nearness, before = wide_load(row.depth + u);
+    WideMask is_inside = (nearness > 0) & is_asked, is_edge{};
+    if (!is_straight) {
+      WideMask is_around = is_inside;
+      for (const Linear& edge : screen.edges) {
+        const Wide in = at(edge, place);
+        is_inside &= in > 1;
+        is_around &= in > -1;
+      }
+      is_edge = is_around & ~is_inside;
+    }
+    // Where it meets what is there.
+    if (!is_first) is_edge |= is_inside & (size_of(nearness - 1 / before) < screen.least_distance);
+    if (any(is_edge)) {
+      set_flag(is_edge, state_exact, row.state + u);
+      row.has_exact = true;
+    }
+    const WideMask is_drawn = is_inside & ((depth < before) | WideMask(is_straight && is_first));
+    store(row.depth + u, choose(is_drawn, depth, before));
+    if (is_straight && is_first && screen.is_plain) return;
+    const Wide x = depth * at(screen.place[0], place) - screen.middle[0],
+               y = depth * at(screen.place[1], place) - screen.middle[1];
+    const Wide factor = at_least(0, (1 + screen.gradient[0] * x + screen.gradient[1] * y) *
+                                        (1 - 0.5f * screen.falloff * (x * x + y * y)));
+    Wide light[channels];
+    for (std::size_t c = 0; c < channels; ++c) light[c] = screen.brightness[c] * factor;
+    store_light(light, is_drawn, row.light + static_cast<std::size_t>(u) * channels);
+  });
+}
+
+void screen(const SpanScreen& it, int begin, int end, bool is_first, SpanRow& row) {
+  const bool is_straight = row.lens.u == nullptr;
+  if (it.channels == 1)
+    is_straight ? draw_screen<1, true>(it, begin, end, is_first, row)
+                : draw_screen<1, false>(it, begin, end, is_first, row);
+  else
+    is_straight ? draw_screen<3, true>(it, begin, end, is_first, row)
+                : draw_screen<3, false>(it, begin, end, is_first, row);
+}
+
+}  // namespace
+}  // namespace flexura

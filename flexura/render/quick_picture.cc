@@ -1,6 +1,7 @@
 #include "flexura/render/quick_picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flexura {
 namespace {
@@ -22,8 +23,10 @@ void QuickPicture::leave(const ImageRegion& region) {
 bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics,
                         PixelKind pixels, LightImage& picture) {
   width_ = picture.depth.width(), height_ = picture.depth.height();
-  const bool is_known =
-      stage.scene->light.shadow == 0 && stage.planes.empty() && width_ >= static_cast<int>(span_step);
+  constexpr double farthest = 1e6;  // Of the principal point, px: single precision.
+  const bool is_lens_known = std::abs(intrinsics.cx) < farthest && std::abs(intrinsics.cy) < farthest;
+  const bool is_known = is_lens_known && stage.scene->light.shadow == 0 && stage.planes.empty() &&
+                        width_ >= static_cast<int>(span_step);
   if (!is_known) return false;
   intrinsics_ = intrinsics;
   picture_ = &picture;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -69,6 +70,13 @@ class QuickPicture {
   [[nodiscard]] SpanRow row_of(int v);
   void find_left_out();
 
+  // Whether a point of C is seen so near to the picture that pixels counted from there in single precision
+  // are exact to a thousandth of one.
+  [[nodiscard]] bool is_near_picture(const Eigen::Vector3d& p) const {
+    constexpr double most = 16384;
+    return std::abs(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx) < most &&
+           std::abs(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy) < most;
+  }
   bool plan_pieces(const Stage& stage);
   bool plan_piece(const Stage& stage, const TubePiece& piece);
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;

@@ -68,7 +68,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   if (!region) return false;
   const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
   bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
-                  piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius;
+                  piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius &&
+                  is_near_picture(center);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];

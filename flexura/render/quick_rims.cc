@@ -29,7 +29,7 @@ bool QuickPicture::plan_rims(const Stage& stage) {
                                         std::min(narrow, circle.radius));
     if (!region) return false;
     const SurfaceLabel label = stage.bodies[static_cast<std::size_t>(disc.body)].label;
-    const bool is_end = label.kind == SurfaceKind::cap && label.index < 2;
+    const bool is_end = label.kind == SurfaceKind::cap && label.index < 2 && is_near_picture(circle.center);
     const int piece = label.index == 0 ? stage.first_arm_piece : stage.last_arm_piece;
     const auto skin = std::find_if(skins_.begin(), skins_.begin() + static_cast<std::ptrdiff_t>(skin_count_),
                                    [&](const Skin& one) { return is_end && one.index == piece; });

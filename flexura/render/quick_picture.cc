@@ -93,8 +93,8 @@ bool QuickPicture::leave_face(const FacePart& part) {
 }
 
 void QuickPicture::divide(const Skin& skin) {
-  SpanPlaces places;
-  BorderPixels borders;
+  SpanPlaces places{};
+  BorderPixels borders{};
   for (std::size_t begin = 0; begin < skin.contour.size(); begin += span_step) {
     const std::size_t count = std::min(span_step, skin.contour.size() - begin);
     for (std::size_t i = 0; i < span_step; ++i) {

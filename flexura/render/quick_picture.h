@@ -61,7 +61,7 @@ class QuickPicture {
   struct Panel {
     SpanScreen screen{};
     struct Edge {
-      double value, by_u, by_v, margin;
+      double value = 0, by_u = 0, by_v = 0, margin = 0;
     } edges[4];
     std::vector<float> light;  // A row of its light, if that is plain.
   };

@@ -106,7 +106,7 @@ void QuickPicture::draw_discs(SpanRow& row) {
 // Lays the end over what is in its rim's pixels.
 void QuickPicture::divide_rim(const Rim& rim) {
   const SpanPiece& piece = skins_[rim.skin].piece;
-  SpanPlaces places;
+  SpanPlaces places{};
   for (const Pixel pixel : rim.pixels) {
     const std::uint8_t here = state(pixel.u, pixel.v);
     if ((here & state_exact) != 0) continue;

@@ -33,7 +33,7 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
   const Screen& look = stage.scene->screens[static_cast<std::size_t>(part.screen)];
   const Face& face = part.face;
   SpanScreen& screen = panel.screen;
-  const double u0 = width_ / 2, v0 = height_ / 2;
+  const int u0 = width_ / 2, v0 = height_ / 2;
   screen.u0 = static_cast<float>(u0), screen.v0 = static_cast<float>(v0);
   // A function of the ray's direction.
   const auto linear = [&](const Eigen::Vector3d& by) -> Linear {

@@ -105,7 +105,7 @@ bool sample_at(const Lattice<count>& points, const SpanPiece& piece, const SpanP
   const float u_by_u = places.u_by_u[index], u_by_v = places.u_by_v[index];
   const float v_by_u = places.v_by_u[index], v_by_v = places.v_by_v[index];
   float sums[channels + 1][span_step] = {};
-  WideMask is_sure = WideMask(true);
+  WideMask is_sure(true);
   for (std::size_t i = 0; i < count; i += wide_lanes) {
     const std::size_t slot = i % span_step;
     const Wide x = wide_load(points.x + i), y = wide_load(points.y + i);

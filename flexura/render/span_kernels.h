@@ -38,14 +38,14 @@ struct LensRow {
 
 /// A row of the picture, no narrower than span_step.
 struct SpanRow {
-  int v, width;
-  float* depth;
-  float* light;
-  std::uint8_t* state;
+  int v = 0, width = 0;
+  float* depth = nullptr;
+  float* light = nullptr;
+  std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders;              ///< Columns in which the contour may be, as draw() adds them:
-  std::size_t border_count;  ///< so many.
-  bool has_exact;            ///< Set when a pixel is left to the exact way.
+  int* borders = nullptr;        ///< Columns in which the contour may be, as draw() adds them:
+  std::size_t border_count = 0;  ///< so many.
+  bool has_exact = false;        ///< Set when a pixel is left to the exact way.
 };
 
 /// A plane across the tube where its colour changes: where p . normal = offset in the piece's frame.

@@ -123,7 +123,7 @@ void sample_rim(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& pl
   Wide sums[span_step / wide_lanes][channels + 1];
   for (auto& sum : sums)
     for (Wide& channel : sum) channel = 0;
-  WideMask is_sure = WideMask(true);
+  WideMask is_sure(true);
   for (std::size_t i = 0; i < count; i += wide_lanes) {
     const Wide x = wide_load(many_points.x + i), y = wide_load(many_points.y + i);
     Place place = middle;

@@ -15,11 +15,11 @@ constexpr std::size_t wide_lanes = 2 * lanes;
 #define FLEXURA_INLINE [[gnu::always_inline]] inline
 struct WideMask {
   using Half = decltype(Floats{} < Floats{});
-  Half low, high;
+  Half low = {}, high = {};
 
   WideMask() = default;
   FLEXURA_INLINE WideMask(const Half& l, const Half& h) : low(l), high(h) {}
-  FLEXURA_INLINE explicit WideMask(bool is_set) : low(Half{} - is_set), high(Half{} - is_set) {}
+  FLEXURA_INLINE explicit WideMask(bool is_set) : low(Half{} - (is_set ? 1 : 0)), high(low) {}
 };
 FLEXURA_INLINE WideMask operator&(const WideMask& p, const WideMask& q) {
   return {p.low & q.low, p.high & q.high};
@@ -30,7 +30,7 @@ FLEXURA_INLINE WideMask operator|(const WideMask& p, const WideMask& q) {
 FLEXURA_INLINE WideMask operator~(const WideMask& p) { return {~p.low, ~p.high}; }
 
 struct Wide {
-  Floats low, high;
+  Floats low = {}, high = {};
 
   Wide() = default;
   FLEXURA_INLINE Wide(const Floats& l, const Floats& h) : low(l), high(h) {}

@@ -37,7 +37,7 @@ class TriangleTube {
 
   /// Infinite when nothing is met.
   [[nodiscard]] double depth(const Eigen::Vector3d& direction) const {
-    RTCIntersectContext context;
+    RTCIntersectContext context{};
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
     query.ray.dir_x = static_cast<float>(direction.x());

@@ -22,7 +22,7 @@ Image<T> read_png(const std::string& bytes) {
   png_structp reader = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(reader);
   const char* at = bytes.data();
-  png_set_read_fn(reader, &at, [](png_structp png, png_bytep data, png_size_t size) {
+  png_set_read_fn(reader, static_cast<void*>(&at), [](png_structp png, png_bytep data, png_size_t size) {
     const char*& from = *static_cast<const char**>(png_get_io_ptr(png));
     std::memcpy(data, from, size);
     from += size;

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# a million seeded cases of every fuzz target under ASan + UBSan: ./dev study fuzz [CASES] [SEED]
+# a million seeded cases of every fuzz target, or of those named, under ASan + UBSan: ./dev study fuzz [CASES] [SEED] [TARGET...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cases=${1:-1000000}
 seed=${2:-1}
 page=docs/studies/fuzz.md
+mapfile -t all < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sort)
+targets=("${@:3}")
+[ "${#targets[@]}" -gt 0 ] || targets=("${all[@]}")
 
 ./dev build asan
 export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
-# An answer of inverse kinematics takes a thousand times as long as reading its line: a fiftieth of the cases.
-mapfile -t targets < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sort)
 
 # As many at a time as there are cores; each in a folder of its own, for the input that it leaves when it fails.
 run_target() {
@@ -25,30 +26,41 @@ export -f run_target
 export cases seed
 printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -euo pipefail -c 'run_target {}'
 
+# The row of a target: from the log of this run, or the one that the page has.
+row_of() {
+  if [[ " ${targets[*]} " == *" $1 "* ]]; then
+    awk -v target="$1" -v seed="$seed" -v commit="$(git rev-parse --short HEAD)" '
+      / files, seed / { files = $1 }
+      / cases\/s$/ { speed = $1 }
+      / cases, no failure$/ { cases = $1 }
+      END {
+        if (cases == "") exit 1
+        printf "| `%s` | %d | %d | %d | 0 | %d | %s |\n", target, files, cases, seed, speed, commit
+      }
+    ' "build/studies/fuzz/$1/log"
+  else
+    grep -F "| \`$1\` |" "$page" 2>/dev/null || true
+  fi
+}
+
 mkdir -p docs/studies
 {
   echo "# Fuzzing"
   echo
-  echo "Every reader of foreign text, fed its committed corpus (\`tests/corpus/TARGET\`) and seeded mutations of it,"
-  echo "under AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
+  echo "Every reader of foreign text, pictures and protocols, fed its committed corpus (\`tests/corpus/TARGET\`) and seeded"
+  echo "mutations of it, under AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
   echo "A case fails when the target crashes, lets an exception out, or takes more than half a minute."
   echo
   echo '```console'
-  echo "\$ ./dev study fuzz $cases $seed"
+  echo "\$ ./dev study fuzz 1000000 1"
   echo '```'
   echo
-  echo "| target | corpus files | mutated cases | failures | cases a second |"
-  echo "| --- | ---: | ---: | ---: | ---: |"
-  for target in "${targets[@]}"; do
-    awk -v target="$target" '
-      / files, seed / { files = $1 }
-      / cases\/s$/ { speed = $1 }
-      / cases, no failure$/ { cases = $1 }
-      END { if (cases == "") exit 1; printf "| `%s` | %d | %d | 0 | %d |\n", target, files, cases, speed }
-    ' "build/studies/fuzz/$target/log"
-  done
+  echo "| target | corpus files | mutated cases | seed | failures | cases a second | commit |"
+  echo "| --- | ---: | ---: | ---: | ---: | ---: | --- |"
+  for target in "${all[@]}"; do row_of "$target"; done
   echo
   echo "As many targets ran at a time as there are cores ($(nproc)); the speed is of the sanitized build."
+  echo "The command runs all targets; with their names behind it only those, and the other rows stay."
 } >"$page.new"
 mv "$page.new" "$page"
 echo "wrote $page"

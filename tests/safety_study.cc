@@ -20,12 +20,16 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
   print_row("spans of these that the check reported", found.spans);
   print_row("values above their limit in the samples", found.above);
   print_row("of these outside every reported span (missed)", found.missed);
-  print_row("reported spans longer than two samples that no sample confirms (refuted)", found.refuted);
   print_row("states of which clearances were computed", found.contact_samples);
   print_row("spans of contact that the check reported", found.contact_spans);
   print_row("contacts in these states", found.contacts);
   print_row("of these outside every reported span (missed)", found.contacts_missed);
-  return found.missed + found.contacts_missed + found.refuted == 0 ? 0 : 1;
+  print_row("reported spans longer than two samples that no sample confirms (refuted)", found.refuted);
+  print_row("reported spans with a sample worse than their worst value", found.understated);
+  print_row("reported spans whose worst value is not there at its time", found.overstated);
+  const bool is_right =
+      found.missed + found.contacts_missed + found.refuted + found.understated + found.overstated == 0;
+  return is_right ? 0 : 1;
 }
 
 }  // namespace

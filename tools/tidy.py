@@ -6,7 +6,7 @@ usage: tidy.py --build BUILD [--all]
 BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the files as they were
 when clang-tidy last passed on them. Without --all, it takes the files that differ from the record: a source itself; a
 header through one source that includes it (its own, where there is one). With --all it takes every source, which also
-sees what a changed header means for those that include it. A pass brings the record up to date.
+sees what a changed header means for those that include it. What passes is brought up to date in the record.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
 compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
@@ -73,12 +73,17 @@ def digests(files):
     return {name: hashlib.sha256((ROOT / name).read_bytes()).hexdigest()[:16] for name in names}
 
 
+def recorded(record):
+    """The digests of a record, by file; none when there is no record."""
+    if not record.exists():
+        return {}
+    return dict(reversed(line.split()) for line in record.read_text().splitlines())
+
+
 def changed_since(record, reach):
     """The files of `reach` (sources with what they reach) that differ from the record."""
     now = digests({SETTINGS}.union(*reach.values()))
-    before = {}
-    if record.exists():
-        before = dict(reversed(line.split()) for line in record.read_text().splitlines())
+    before = recorded(record)
     changed = {ROOT / name for name, digest in now.items() if before.get(name) != digest}
     return {ROOT / name for name in now} if SETTINGS in changed else changed
 
@@ -119,6 +124,13 @@ def check_all(build, waiting):
     return failed
 
 
+def keep_record(whole, not_passed):
+    """Brings the record up to date, but for what sources that have not passed reach."""
+    before, left_out = recorded(RECORD), {str(file.relative_to(ROOT)) for file in set().union(*not_passed)}
+    digests_now = {name: digest if name not in left_out else before.get(name) for name, digest in whole.items()}
+    RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in digests_now.items() if digest))
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=Path, required=True)
@@ -129,6 +141,8 @@ def main():
 
     entries = json.loads((arguments.build / "compile_commands.json").read_text())
     commands = {Path(entry["file"]): entry["command"] for entry in entries}
+    # What the build has written itself.
+    commands = {source: command for source, command in commands.items() if not source.is_relative_to(ROOT / "build")}
     reach = {source: reached(source, include_folders(command)) for source, command in commands.items()}
     reach = {source: {file for file in files if not file.is_relative_to(ROOT / "build")}
              for source, files in reach.items()}
@@ -138,13 +152,14 @@ def main():
 
     start = time.monotonic()
     whole = digests({SETTINGS}.union(*reach.values()))
-    failed = check_all(arguments.build, waiting)
+    failed = 0
+    try:
+        failed = check_all(arguments.build, waiting)
+    finally:
+        keep_record(whole, [reach[source] for source, passed in passes.items() if not passed.exists()])
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
-    if failed:
-        return 1
-    RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in whole.items()))
-    return 0
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

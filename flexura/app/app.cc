@@ -16,7 +16,11 @@
 #include <vector>
 
 #include "flexura/app/commands.h"
+#include "flexura/app/estimate.h"
+#include "flexura/app/intrinsics.h"
+#include "flexura/app/measure.h"
 #include "flexura/app/render.h"
+#include "flexura/app/view.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/base/version.h"
@@ -25,6 +29,30 @@ namespace flexura {
 namespace {
 
 using Command = std::function<int()>;
+
+void add_viewer_options(CLI::App& command, ViewerArguments& viewer) {
+  command.add_option("--port", viewer.port, "Port of the viewer (default: 8421, or any that is free)")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint16_t{0}, std::uint16_t{65535}));
+  command.add_flag("!--no-browser", viewer.browser, "Print the address, and open no browser");
+  command.add_option("--address", viewer.address, "Address of the interface to listen on")
+      ->type_name("A")
+      ->capture_default_str();
+  command.add_option("--name", viewer.names, "A further name by which the viewer is called (repeatable)")
+      ->type_name("HOST")
+      ->allow_extra_args(false);
+}
+
+void add_view(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* view = app.add_subcommand("view", "See a rig or a run in the browser, and move what moves");
+  view->add_option("WHAT", arguments->what,
+                   "An experiment file, or a folder made by `flexura run` (default: the paper's arm)");
+  add_viewer_options(*view, arguments->viewer);
+  view->callback([&chosen, arguments] {
+    chosen = [arguments] { return view_command(*arguments, std::cout, std::cerr); };
+  });
+}
 
 void add_run(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<RunArguments>();
@@ -39,7 +67,14 @@ void add_run(CLI::App& app, Command& chosen) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}));
   run->add_flag("--json", arguments->json, "Print the summary as one JSON document");
-  run->callback([&chosen, arguments] {
+  auto viewer = std::make_shared<ViewerArguments>();
+  auto is_viewed = std::make_shared<bool>(false);
+  CLI::Option* view = run->add_flag("--view", *is_viewed, "Watch the run in the browser");
+  add_viewer_options(*run, *viewer);
+  for (const char* option : {"--port", "--no-browser", "--address", "--name"})
+    run->get_option(option)->needs(view);
+  run->callback([&chosen, arguments, viewer, is_viewed] {
+    if (*is_viewed) arguments->viewer = *viewer;
     chosen = [arguments] { return run_command(*arguments, std::cout, std::cerr); };
   });
 }
@@ -53,8 +88,9 @@ void add_check(CLI::App& app, Command& chosen) {
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
   check->add_flag("--json", arguments->json, "Print what was found as one JSON document");
-  check->callback(
-      [&chosen, arguments] { chosen = [arguments] { return check_command(*arguments, std::cout); }; });
+  check->callback([&chosen, arguments] {
+    chosen = [arguments] { return check_command(*arguments, std::cout, std::cerr); };
+  });
 }
 
 // The commands that answer lines about an arm.
@@ -109,6 +145,107 @@ void add_schema(CLI::App& app, Command& chosen) {
   command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
 }
 
+void add_measure(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<MeasureArguments>();
+  CLI::App* measure =
+      app.add_subcommand("measure", "Find the arm, its markers, a circle or the etalon in pictures");
+  measure->add_option("IMAGE", arguments->images, "Picture files, 8 or 16 bits, gray or colour")->required();
+  measure->add_option("--what", arguments->what, "arm, etalon, circle or markers")
+      ->type_name("WHAT")
+      ->capture_default_str();
+  measure
+      ->add_option("--camera", arguments->camera, "The measured cameras (TOML): one, or one for each picture")
+      ->type_name("FILE");
+  measure->add_option("--radius", arguments->radius, "The arm's radius, m: then depths are told too")
+      ->type_name("R");
+  measure->add_option("--threshold", arguments->threshold, "otsu, two_mode, by_block or fixed")
+      ->type_name("METHOD")
+      ->capture_default_str();
+  measure->add_option("--level", arguments->level, "The fixed threshold, 0 to 255")->type_name("LEVEL");
+  measure->add_option("--base", arguments->base, "A place near the arm's base, px: U,V")
+      ->type_name("U,V")
+      ->delimiter(',')
+      ->expected(2);
+  measure->add_option("--overlay", arguments->overlay, "Draw what is found over the picture (.png)")
+      ->type_name("FILE");
+  measure->callback(
+      [&chosen, arguments] { chosen = [arguments] { return measure_command(*arguments, std::cout); }; });
+}
+
+void add_estimate(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<EstimateArguments>();
+  CLI::App* estimate =
+      app.add_subcommand("estimate", "Find the arm's shape from pictures of two or more cameras");
+  estimate->add_option("IMAGE", arguments->images, "Picture files, one of each camera")->required();
+  estimate->add_option("--cameras", arguments->cameras, "The measured cameras (TOML), in the pictures' order")
+      ->type_name("FILE")
+      ->required();
+  estimate->add_option("--base", arguments->base, "Where the arm begins, m: X,Y,Z")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3);
+  estimate->add_option("--length", arguments->length, "The arm's length, m")->type_name("L");
+  estimate->add_option("--arm", arguments->arm, "The arm's sections, when they are known (TOML)")
+      ->type_name("FILE");
+  estimate
+      ->add_option("--markers", arguments->markers,
+                   "Where the arm's bands are: m, or shares of its length, 25%")
+      ->delimiter(',')
+      ->type_name("S,...");
+  estimate->add_option("--points", arguments->points, "Of the backbone that is printed")
+      ->capture_default_str();
+  estimate->callback(
+      [&chosen, arguments] { chosen = [arguments] { return estimate_command(*arguments, std::cout); }; });
+}
+
+void add_intrinsics(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<IntrinsicsArguments>();
+  CLI::App* intrinsics = app.add_subcommand("intrinsics", "Calibrate cameras from pictures of a board");
+  intrinsics->add_option("IMAGE", arguments->images, "Pictures of the board by one camera");
+  intrinsics->add_option("--left", arguments->left, "Pictures by the first camera of a pair")
+      ->type_name("IMAGE");
+  intrinsics->add_option("--right", arguments->right, "Pictures by the second, taken together with those")
+      ->type_name("IMAGE");
+  intrinsics
+      ->add_option("--zoom", arguments->zooms,
+                   "A folder of pictures at one zoom: RATIO=, RATIO@COUNT= or @COUNT=FOLDER (repeatable)")
+      ->type_name("ZOOM=FOLDER")
+      ->allow_extra_args(false);
+  intrinsics->add_option("--board", arguments->board, "Inner corners, or circles: COLUMNSxROWS")
+      ->type_name("CxR")
+      ->required();
+  intrinsics->add_option("--square", arguments->square, "Side of a square, or distance of rows of circles, m")
+      ->type_name("S")
+      ->required();
+  intrinsics->add_option("--pattern", arguments->pattern, "chessboard, circles or asymmetric-circles")
+      ->type_name("PATTERN")
+      ->capture_default_str();
+  intrinsics->add_option("--distortion", arguments->distortion, "How many of k1, k2, p1, p2, k3 to estimate")
+      ->type_name("N")
+      ->capture_default_str();
+  intrinsics->add_option("--hold-out", arguments->hold_out, "Leave every Nth view out of the fit, as a check")
+      ->type_name("N");
+  intrinsics->add_option("--name", arguments->names, "The camera's name; twice for a pair")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  intrinsics->add_option("--position", arguments->position, "Of the first camera in the world, m: X,Y,Z")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3);
+  intrinsics->add_option("--rotation", arguments->rotation, "Of the first camera in the world: W,X,Y,Z")
+      ->type_name("W,X,Y,Z")
+      ->delimiter(',')
+      ->expected(4);
+  intrinsics->add_option("--out", arguments->out, "Write a file of measured cameras (.toml)")
+      ->type_name("FILE");
+  intrinsics->add_option("--rig", arguments->rig, "Write a file that experiments include (.toml)")
+      ->type_name("FILE");
+  intrinsics->add_option("--rig-from", arguments->rig_from, "An experiment whose cameras the rig file takes")
+      ->type_name("EXPERIMENT");
+  intrinsics->callback(
+      [&chosen, arguments] { chosen = [arguments] { return intrinsics_command(*arguments, std::cout); }; });
+}
+
 // CLI11 would only say that it misses a command. Tells it on stderr.
 bool is_unknown_command(const CLI::App& app, std::string_view word) {
   if (word.starts_with('-')) return false;
@@ -132,9 +269,13 @@ int parse_and_run(int argc, const char* const* argv) {
   Command chosen;
   add_run(app, chosen);
   add_check(app, chosen);
+  add_view(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
   add_render(app, chosen);
+  add_measure(app, chosen);
+  add_estimate(app, chosen);
+  add_intrinsics(app, chosen);
   add_export(app, chosen);
   add_schema(app, chosen);
   if (argc > 1 && is_unknown_command(app, argv[1])) return exit_bad_input;

@@ -5,11 +5,15 @@
 
 #include <chrono>
 #include <istream>
+#include <memory>
+#include <optional>
 #include <ostream>
 
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
+#include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
+#include "flexura/app/view.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"
 #include "flexura/experiment/export_mp4.h"
@@ -17,9 +21,11 @@
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/safety/violation_groups.h"
 #include "flexura/store/json.h"
 #include "flexura/store/schema.h"
 #include "flexura/store/text_file.h"
+#include "flexura/view/run_link.h"
 
 namespace flexura {
 namespace {
@@ -48,6 +54,22 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   }
   out << fmt::format("results: {}\n", result.folder.string());
 }
+
+// A run that people look at, while it goes on and then until somebody ends the program, which ends a run
+// early.
+class WatchedRun {
+ public:
+  WatchedRun(const Experiment& experiment, const std::shared_ptr<RunLink>& link,
+             const ViewerArguments& arguments, std::ostream& out)
+      : stop_([link] { link->cancel(); }),
+        viewer_({.session = {}, .rig = std::make_shared<const ViewedRig>(experiment), .run = link}, arguments,
+                out) {}
+  void wait() const { stop_.wait(); }
+
+ private:
+  StopSignal stop_;
+  OpenViewer viewer_;
+};
 
 // A line of input without its end; what is longer than the bound is dropped, and `too_long` says so.
 bool read_line(std::istream& in, std::string& line, bool& too_long) {
@@ -91,7 +113,10 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   const auto folder = make_new_folder(arguments.out.empty() ? default_results_folder(arguments.experiment)
                                                             : std::filesystem::path(arguments.out));
   TerminalProgress progress(err);
-  const RunResult result = run_experiment(experiment, folder, progress);
+  const auto link = std::make_shared<RunLink>(&progress);
+  std::optional<WatchedRun> watched;
+  if (arguments.viewer) watched.emplace(experiment, link, *arguments.viewer, arguments.json ? err : out);
+  const RunResult result = run_experiment(experiment, folder, *link, link.get());
   progress.clear();
   // A film is an extra: a run without ffmpeg is as good.
   if (experiment.record.cameras) {
@@ -109,18 +134,23 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   } else {
     print_result(experiment, result, out);
   }
+  out.flush();
+  link->finish({name_of(result.outcome), result.reasons.empty() ? "" : result.reasons.front(), folder});
+  if (watched) watched->wait();
   return result.outcome == RunOutcome::done ? exit_done : exit_missed;
 }
 
-int check_command(const CheckArguments& arguments, std::ostream& out) {
+int check_command(const CheckArguments& arguments, std::ostream& out, std::ostream& err) {
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, {}});
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
-  const SafetyReport report = Schedule(experiment).check();
+  TerminalProgress progress(err);
+  const SafetyReport report = Schedule(experiment).check(&progress);
+  progress.clear();
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {
-    for (const Violation& violation : report.violations) out << "unsafe: " << violation.text() << '\n';
+    for (const std::string& line : violation_lines(report)) out << "unsafe: " << line << '\n';
     for (const std::string& caveat : report.caveats) out << "caveat: " << caveat << '\n';
     for (const std::string& note : report.notes) out << "note: " << note << '\n';
     if (report.is_safe()) out << "safe\n";

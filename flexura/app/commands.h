@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/app/view.h"
+
 namespace flexura {
 
 /// The program's exit statuses (docs/command-line.md).
@@ -18,6 +20,7 @@ struct RunArguments {
   std::vector<std::string> sets;
   std::optional<std::int64_t> seed;
   bool json = false;
+  std::optional<ViewerArguments> viewer;  ///< Watched meanwhile, and looked at afterwards.
 };
 
 /// What `flexura check` is told.
@@ -31,7 +34,7 @@ struct CheckArguments {
 // throws InputError for bad input and other exceptions for failures of the system.
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
-int check_command(const CheckArguments& arguments, std::ostream& out);
+int check_command(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int export_command(const std::string& results, const std::string& format, std::ostream& out,

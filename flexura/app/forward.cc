@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/app/problems.h"
+#include "flexura/base/problems.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"

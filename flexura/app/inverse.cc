@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/app/problems.h"
+#include "flexura/base/problems.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/inverse.h"
@@ -104,20 +104,6 @@ TipTarget tip_target(const InverseRequest& request) {
   return target;
 }
 
-std::string_view reason_of(InverseOutcome outcome) {
-  switch (outcome) {
-    case InverseOutcome::converged:
-      return "converged";
-    case InverseOutcome::not_reachable:
-      return "not_reachable";
-    case InverseOutcome::at_limit:
-      return "at_limit";
-    case InverseOutcome::no_convergence:
-      break;
-  }
-  return "no_convergence";
-}
-
 bool stretches(const Arm& arm) {
   return std::ranges::any_of(
       arm.sections, [](const Section& section) { return section.stretch_limits != std::array{1.0, 1.0}; });
@@ -149,7 +135,7 @@ void add_state(const Arm& arm, const InverseRequest& request, const InverseResul
 
 Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResult& result) {
   Node::Table members{{"converged", {}, {result.converged(), {}}},
-                      {"reason", {}, {std::string(reason_of(result.outcome)), {}}}};
+                      {"reason", {}, {std::string(name_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);
   if (!result.converged()) {
     members.push_back({"nearest", {}, point_node(result.tip)});

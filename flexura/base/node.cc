@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -46,6 +47,9 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   auto* table = node->as<Node::Table>();
   if (table == nullptr) return fmt::format("nothing named \"{}\" inside {}", part, node->brief());
   Node* found = node->find(part);
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  if (found == nullptr && std::ranges::all_of(part, is_digit))
+    return fmt::format("there is no array to set entry {} of: set the whole of it, as [..., ...]", part);
   if (found == nullptr) {
     table->push_back({std::string(part), where, {Node::Table{}, where}});
     found = &table->back().node;

@@ -158,28 +158,52 @@ std::string ways_to_write(const FieldInfo& field) {
   return ways;
 }
 
-// "did you mean ...", for a key that no field of the table has.
-std::string unknown_key(std::string_view key, const TableInfo& table, std::string_view tag) {
-  for (const FieldInfo& field : table.fields) {
-    if (!key.starts_with(field.name)) continue;
-    if (std::ranges::count(all_unit_suffixes(), key.substr(field.name.size())) > 0) {
-      return field.spec.unit == Unit::none
-                 ? fmt::format("unknown key: {} has no unit, write {}", field.name, field.name)
-                 : fmt::format("wrong unit: expected {}", ways_to_write(field));
-    }
-  }
-  std::vector<std::string> names;
+// The field of another spelling, or nearly the same one, that a key without a field may be meant for; or
+// null.
+const FieldInfo* field_in_another_unit(std::string_view key, const TableInfo& table) {
+  const auto found = std::ranges::find_if(table.fields, [&](const FieldInfo& field) {
+    return key.starts_with(field.name) &&
+           std::ranges::count(all_unit_suffixes(), key.substr(field.name.size())) > 0;
+  });
+  return found == table.fields.end() ? nullptr : &*found;
+}
+
+std::string_view nearest_spelling(std::string_view key, const TableInfo& table, std::string_view tag,
+                                  std::vector<std::string>& names) {
   for (const FieldInfo& field : table.fields) {
     for (const UnitSpelling& way : spellings(field.spec.unit))
       names.push_back(field.name + std::string(way.suffix));
   }
   if (!tag.empty()) names.emplace_back(tag);
-  if (const std::string_view near = nearest_name(key, names); !near.empty()) {
-    return fmt::format("unknown key; did you mean \"{}\"?", near);
+  return nearest_name(key, names);
+}
+
+// What is said of a key that no field of the table has, "did you mean ...", and the field that it is meant
+// for.
+struct UnknownKey {
+  std::string what;
+  const FieldInfo* meant = nullptr;
+};
+
+UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string_view tag) {
+  if (const FieldInfo* field = field_in_another_unit(key, table)) {
+    return {field->spec.unit == Unit::none
+                ? fmt::format("unknown key: {} has no unit, write {}", field->name, field->name)
+                : fmt::format("wrong unit: expected {}", ways_to_write(*field)),
+            field};
   }
+  std::vector<std::string> names;
+  if (const std::string_view near = nearest_spelling(key, table, tag, names); !near.empty()) {
+    UnitSpelling spelling{};
+    const auto meant = std::ranges::find_if(
+        table.fields, [&](const FieldInfo& field) { return has_suffix(field, near, spelling); });
+    return {fmt::format("unknown key; did you mean \"{}\"?", near),
+            meant == table.fields.end() ? nullptr : &*meant};
+  }
+  if (table.fields.empty()) return {"unknown key; no more is expected here"};
   std::string known;
   for (const FieldInfo& field : table.fields) known += (known.empty() ? "" : ", ") + field.name;
-  return fmt::format("unknown key; expected one of: {}", known);
+  return {fmt::format("unknown key; expected one of: {}", known)};
 }
 
 std::string missing(const FieldInfo& field) {
@@ -197,6 +221,7 @@ std::string missing(const FieldInfo& field) {
 std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Reader& reader,
                                     std::string_view tag) {
   std::vector<FoundField> found(table.fields.size());
+  std::vector<const FieldInfo*> meant;
   const auto* members = node.as<Node::Table>();
   if (members == nullptr) {
     reader.unexpected(node, "a table");
@@ -212,7 +237,9 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
     if (field == table.fields.end()) {
       const Reader::Scope scope(reader, std::string_view(shown_key).substr(1, shown_key.size() - 2),
                                 member.where);
-      reader.problem(unknown_key(member.key, table, tag));
+      UnknownKey unknown = unknown_key(member.key, table, tag);
+      reader.problem(std::move(unknown.what));
+      meant.push_back(unknown.meant);
       continue;
     }
     FoundField& slot = found[static_cast<std::size_t>(field - table.fields.begin())];
@@ -227,9 +254,10 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
     slot = {&member, spelling};
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].member == nullptr && table.fields[i].spec.required) {
-      reader.problem_at(table.fields[i].name, missing(table.fields[i]));
-    }
+    const FieldInfo& field = table.fields[i];
+    // One mistake, one line: a misspelt field is not missing, too.
+    if (found[i].member == nullptr && field.spec.required && std::ranges::count(meant, &field) == 0)
+      reader.problem_at(field.name, missing(field));
   }
   return found;
 }

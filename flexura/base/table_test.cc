@@ -166,6 +166,18 @@ TEST(Table, SaysWhereSomethingIsMissing) {
               ElementsAre("cart.toml:5:1: part[0]: kind is missing: expected one of \"wheel\", \"bell\""));
 }
 
+TEST(Table, CallsNothingMissingThatIsMisspelt) {
+  const auto problems_of_wheel = [](const char* key) {
+    Node wheel{Node::Table{{key, at(5, 3), {1.0, at(5, 9)}}}, at(5, 1)};
+    return problems_of({member("wheel", Node::Array{std::move(wheel)})});
+  };
+  EXPECT_THAT(problems_of_wheel("raduis"),
+              ElementsAre("cart.toml:5:3: wheel[0].raduis: unknown key; did you mean \"radius\"?"));
+  EXPECT_THAT(problems_of_wheel("radius_deg"), ElementsAre(HasSubstr("wrong unit: expected radius (m)")));
+  EXPECT_THAT(problems_of_wheel("weight"),
+              ElementsAre(HasSubstr("weight: unknown key; expected"), HasSubstr("radius: missing")));
+}
+
 TEST(Table, ReportsBadEntriesOfArrays) {
   EXPECT_THAT(problems_of({member("notes", Node::Array{{1.0, at(2, 3)}, {"la", at(2, 7)}})}),
               ElementsAre("cart.toml:2:7: notes[1] = \"la\": expected a finite number"));

@@ -1,8 +1,10 @@
 // Bad experiment files: each gets clear lines that say where, what, and what was expected.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/experiment_files.h"
+#include "tests/support/random_cases.h"
 
 namespace flexura {
 namespace {
@@ -63,7 +65,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"two units", with("length = 2.0", "length = 2.0\nlength_mm = 2000"),
        "x.toml:5:1: arm.section[0].length_mm: written twice: length stands in line 4 already"},
       {"duplicate key", with("length = 2.0", "length = 2.0\nlength = 3.0"),
-       "x.toml:5:10: Error while parsing key-value pair: cannot redefine"},
+       "x.toml:5:10: 'length' is written twice: expected each key once"},
       {"unclosed text", with("\"planar\"", "\"planar"), "x.toml:2:"},
       {"unknown kind of task", with("\"move\"", "\"jump\""),
        "x.toml:8:8: task[0].kind = \"jump\": expected one of \"move\", \"hold\""},
@@ -101,7 +103,11 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
        std::string("\x7f"
                    "ELF\x02\x01\x01\0\0\0",
                    10),
-       "x.toml:1:1: "},
+       "x.toml:1:8: not a text: byte 0x00: expected TOML in UTF-8"},
+      {"a picture", "\x89PNG\r\n", "x.toml:1:1: not a text: byte 0x89: expected TOML in UTF-8"},
+      {"another encoding", with("planar", "r\xE4umlich"), "not a text: byte 0xE4: expected TOML in UTF-8"},
+      {"brackets that are no text", std::string(40, '[') + std::string(1, '\0'),
+       "x.toml:1:41: not a text: byte 0x00: expected TOML in UTF-8"},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }
@@ -116,11 +122,26 @@ TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
       "(Arc length of the section's centreline when not stretched.)");
 }
 
+TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {
+  EXPECT_EQ(
+      error_of_file("[arm]\nkind = 'planar'\nkind = 'spatial'\n[[arm.section]]\nlength = -1\nlength = 2\n"),
+      "x.toml:3:8: 'kind' is written twice: expected each key once\n"
+      "x.toml:6:10: 'length' is written twice: expected each key once\n"
+      "x.toml:5:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m");
+  EXPECT_EQ(error_of_file("[arm]\nkind = 'planar'\nkind = [\n 1]\n[[arm.section]]\nlength = -1\n"),
+            "x.toml:3:8: 'kind' is written twice: expected each key once")
+      << "what follows a value of several lines is not judged";
+  EXPECT_EQ(error_of_file("[arm]\nsection = [{length = 1, length = 2}]\n"),
+            "x.toml:2:34: 'length' is written twice: expected each key once")
+      << "nor what stands beside it";
+}
+
 TEST(BadFiles, AMillionSectionsAreTooMany) {
+  constexpr int count = 1'000'000 / one_case_of;
   std::string text = "[arm]\nsection = [";
-  for (int i = 0; i < 1000000; ++i) text += "{length=1},";
+  for (int i = 0; i < count; ++i) text += "{length=1},";
   EXPECT_THAT(error_of_file(text + "]\n"),
-              HasSubstr("arm.section is an array of 1000000: expected an array of 1 to 1000"));
+              HasSubstr(fmt::format("arm.section is an array of {}: expected an array of 1 to 1000", count)));
 }
 
 }  // namespace

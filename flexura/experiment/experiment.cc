@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/study_config.h"
 
 namespace flexura {
@@ -33,6 +34,9 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
                fmt::format("task[{}]", i), reader);
     if (const auto* study = std::get_if<StudyTask>(&experiment.task[i]))
       check_study(*study, experiment.cameras(), fmt::format("task[{}]", i), reader);
+    if (const auto* calibration = std::get_if<CalibrateTask>(&experiment.task[i]))
+      check_calibration(*calibration, experiment.arm, experiment.cameras(), fmt::format("task[{}]", i),
+                        reader);
   }
 }
 
@@ -60,6 +64,10 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
                   .range = between(1, 1e9)})
           .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."})
           .field("cameras", &RecordConfig::cameras, {.meaning = "Keep the cameras' images in the log."})
+          .field(
+              "scene", &RecordConfig::scene,
+              {.meaning = "Keep in the log, for programs that draw it, what stands around the arm, and ten "
+                          "times a second how the arm lies."})
           .field(
               "curve", &RecordConfig::curve,
               {.meaning =

@@ -28,6 +28,7 @@ struct RecordConfig {
   std::int64_t every = 1;  ///< Steps from one state in the log to the next; the last one is always kept.
   bool report = true;      ///< Write report.html and figures/.
   bool cameras = false;    ///< Keep the cameras' images in the log.
+  bool scene = true;       ///< Keep in the log what stands there, for programs that draw it.
   CurveKind curve = CurveKind::arcs;  ///< Drawn over the arm in the report.
   double tension = 0.5;               ///< Of the Catmull-Rom curve.
 };
@@ -56,6 +57,7 @@ struct Experiment {
   std::vector<CameraConfig> camera;  ///< None: the paper's two (cameras()).
   std::optional<TruthConfig> truth;
   std::vector<TaskConfig> task;
+  std::filesystem::path folder;  ///< In which the file is; not a part of it.
 
   /// The rig as tasks believe it to be, and as it is.
   [[nodiscard]] RigConfig model_rig() const;

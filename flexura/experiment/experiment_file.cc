@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -108,26 +109,35 @@ Node with_whole_truth(Node document) {
   return document;
 }
 
-// The document's experiment with the keyframes of its files. Whatever is wrong with either is told at once.
-Experiment read_with_keyframes(const Node& document, const std::filesystem::path& folder) {
-  std::vector<Problem> problems = missing_keyframes(document, folder);
-  const auto tell = [&](const InputError& error) {
-    problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-  };
+void append(std::vector<Problem>& problems, const InputError& error) {
+  problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+}
+
+// The document's experiment. Whatever is wrong with it is told at once, after the problems there were before.
+Experiment read_document(const Node& document, std::vector<Problem> problems) {
   Experiment experiment;
   try {
     experiment = read_as<Experiment>(with_whole_truth(document));
   } catch (const InputError& error) {
-    tell(error);
+    append(problems, error);
   }
   if (!problems.empty()) throw InputError(std::move(problems));
+  return experiment;
+}
+
+// The same, with the keyframes of its files.
+Experiment read_with_keyframes(const Node& document, const std::filesystem::path& folder,
+                               std::vector<Problem> problems) {
+  std::ranges::move(missing_keyframes(document, folder), std::back_inserter(problems));
+  auto experiment = read_document(document, std::move(problems));
+  problems.clear();
   for (TaskConfig& task : experiment.task) {
     auto* keyframes = std::get_if<KeyframesTask>(&task);
     if (keyframes == nullptr || keyframes->file.empty()) continue;
     try {
       read_keyframes(*keyframes, experiment.arm, folder);
     } catch (const InputError& error) {
-      tell(error);
+      append(problems, error);
     }
   }
   if (!problems.empty()) throw InputError(std::move(problems));
@@ -191,16 +201,19 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
 }  // namespace
 
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
-  const Node document = resolved_overrides(read_toml_file(file), overrides);
-  auto experiment = read_with_keyframes(document, file.parent_path());
+  std::vector<Problem> repeated;
+  const Node document = resolved_overrides(read_toml_file(file, &repeated), overrides);
+  auto experiment = read_with_keyframes(document, file.parent_path(), std::move(repeated));
   if (experiment.title.empty()) experiment.title = file.stem().string();
+  experiment.folder = file.parent_path();
   check_whole(experiment, document);
   return experiment;
 }
 
 Experiment parse_experiment(std::string_view text, const std::string& source) {
-  const Node document = parse_toml(text, source);
-  auto experiment = read_as<Experiment>(with_whole_truth(document));
+  std::vector<Problem> repeated;
+  const Node document = parse_toml(text, source, &repeated);
+  auto experiment = read_document(document, std::move(repeated));
   for (const TaskConfig& task : experiment.task) {
     const auto* keyframes = std::get_if<KeyframesTask>(&task);
     if (keyframes != nullptr && !keyframes->file.empty())

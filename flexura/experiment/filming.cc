@@ -42,6 +42,22 @@ void Filming::play_to(double time, const ArmState& state, const TakeFrame& take)
   ports.clock->wait_until(time);
 }
 
+void Filming::pass_to(double time, const ArmState& state) {
+  const RigPorts ports = rig_.ports();
+  (void)ports.arm->command(state, time - ports.clock->now()).value();
+  ports.clock->wait_until(time);
+}
+
+void Filming::skip_to_now() {
+  for (std::size_t i = 0; i < cameras_.size(); ++i)
+    while (frame_times(cameras_[i].sensor, frames_[i]).received <= rig_.clock().now()) ++frames_[i];
+}
+
+RigStance Filming::true_stance(std::size_t camera) {
+  const double now = rig_.clock().now();
+  return {camera, rig_.camera(camera).head().truth(now), rig_.camera(camera).stage().truth(now)};
+}
+
 double Filming::play_to(double until, const Schedule& schedule) {
   const RigPorts ports = rig_.ports();
   double played = 0;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/photographer.h"
 #include "flexura/experiment/schedule.h"
@@ -27,6 +28,14 @@ class Filming {
   /// Commands the arm to be in `state` at `time` s, not before the call's before, and gives every frame
   /// received until then, in the order of time and then of the cameras.
   void play_to(double time, const ArmState& state, const TakeFrame& take);
+
+  /// The same, and no frame is taken on the way.
+  void pass_to(double time, const ArmState& state);
+  /// Frames received up to now are not handed out any more.
+  void skip_to_now();
+
+  /// Where a camera of the simulated world truly stands: not for algorithms.
+  [[nodiscard]] RigStance true_stance(std::size_t camera);
 
   /// The rig that plays; its clock is at the last call's time.
   [[nodiscard]] RigPorts ports() { return rig_.ports(); }

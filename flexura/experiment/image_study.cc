@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 
 #include "flexura/camera/camera.h"
+#include "flexura/experiment/measured_target.h"
 #include "flexura/experiment/study_view.h"
 #include "flexura/render/renderer.h"
 
 namespace flexura {
 namespace {
+
+// Places of the columns.
+constexpr std::size_t formula = 0, rendered = 1, measured = 2;
 
 double difference(const std::optional<double>& a, const std::optional<double>& b) {
   if (a && b) return std::abs(*a - *b);
@@ -33,15 +39,26 @@ bool ImageStudy::is_seen(std::size_t i) const {
 
 std::array<double, 2> ImageStudy::largest_difference() const {
   std::array<double, 2> largest{0, 0};
-  for (const StudyColumn& column : columns) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      for (std::size_t k = 0; k < feature_names.size(); ++k) {
-        double& most = largest[k < length_features ? 0 : 1];
-        most = std::max(most, difference(columns.front().features[i][k], column.features[i][k]));
-      }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = 0; k < feature_names.size(); ++k) {
+      double& most = largest[k < length_features ? 0 : 1];
+      most = std::max(most, difference(columns[formula].features[i][k], columns[rendered].features[i][k]));
     }
   }
   return largest;
+}
+
+ImageStudy::Measured ImageStudy::measured_difference() const {
+  Measured result;
+  double squares = 0;
+  for (std::size_t i = 0; columns.size() > measured && i < values.size(); ++i) {
+    for (std::size_t k = 0; k < length_features; ++k) {
+      const auto &expected = columns[formula].features[i][k], &found = columns[measured].features[i][k];
+      if (expected && found) ++result.count, squares += (*expected - *found) * (*expected - *found);
+    }
+  }
+  if (result.count > 0) result.rms = std::sqrt(squares / static_cast<double>(result.count));
+  return result;
 }
 
 ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras) {
@@ -52,6 +69,7 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
   const Camera camera(*config);
   const StudyTarget target(task.target);
   Renderer renderer;
+  MeasuredTarget measured_target(target, config->sensor);
   ImageStudy study{.name = task.name.empty() ? "study" : task.name,
                    .camera = config->name,
                    .variation = varied.front(),
@@ -60,6 +78,7 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
                    .values = {},
                    .images = {},
                    .columns = {{"formula", {}}, {"rendered", {}}}};
+  if (task.measure) study.columns.push_back({"measured", {}});
   const auto& [first, last] = study.variation.values;
   for (std::int64_t i = 0; i < task.points; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(task.points - 1);
@@ -67,8 +86,11 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
     study.values.push_back((1 - share) * first + share * last);
     const View view = view_with(camera, study.variation.parameter, study.values.back(), target);
     study.images.push_back(target.projected(view));
-    study.columns[0].features.push_back(features_of(study.images.back()));
-    study.columns[1].features.push_back(features_of(target.rendered(view, renderer)));
+    study.columns[formula].features.push_back(features_of(study.images.back()));
+    study.columns[rendered].features.push_back(features_of(target.rendered(view, renderer)));
+    if (!task.measure) continue;
+    study.columns[measured].features.push_back(
+        features_of(measured_target.image(view, static_cast<std::uint64_t>(i))));
   }
   return study;
 }

@@ -101,6 +101,26 @@ TEST(ImageStudy, FollowsThePapersClosedFormsInOrbit) {
   }
 }
 
+TEST(ImageStudy, MeasuresInPicturesThroughADistortedLensAndItsNoise) {
+  for (const double noise : {0.0, 2.0}) {
+    CameraConfig camera = front_camera();
+    camera.lens.distortion = {-0.15, 0.02, 0, 0, 0};
+    camera.sensor.width = 640, camera.sensor.height = 480;
+    camera.sensor.psf = 0.7, camera.sensor.read_noise = noise;
+    StudyTask task;
+    task.vary.orbit = {{-50 * degree, 50 * degree}};
+    task.points = 7, task.measure = true;
+    task.target.radius = circle_radius;
+    const ImageStudy study = study_images(task, {camera});
+    ASSERT_EQ(study.columns.size(), 3U);
+    EXPECT_EQ(study.columns[2].source, "measured");
+    const auto [count, rms] = study.measured_difference();
+    EXPECT_EQ(count, 7 * length_features);
+    EXPECT_LT(rms, 0.1);
+    EXPECT_GT(rms, 1e-4);
+  }
+}
+
 TEST(ImageStudy, ZoomsLinearly) {
   const ImageStudy zoom = study(&VaryConfig::zoom, 1, 10, 19);
   for (std::size_t i = 0; i < zoom.values.size(); ++i) {

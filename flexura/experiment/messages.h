@@ -85,6 +85,60 @@ struct HeadReadingMessage {
   bool moving = false;
 };
 
+/// flexura.CalibrationMove, on /calibration/moves: a command of a calibration.
+struct CalibrationMoveMessage {
+  double time = 0;                                          ///< s
+  std::string device;                                       ///< "arm", or a camera's name.
+  std::optional<std::vector<std::array<double, 2>>> bends;  ///< Of the arm, rad.
+  std::optional<double> duration;                           ///< Of its way there, s.
+  std::optional<double> pan, tilt;                          ///< Of a camera, rad.
+  std::optional<double> zoom;                               ///< A position of the lens's table.
+  std::optional<std::array<double, 3>> stage;               ///< m
+};
+
+struct MarkerMessage {
+  double s = 0;         ///< m along the unstretched arm.
+  double u = 0, v = 0;  ///< px
+  double sigma = 0;     ///< px
+};
+
+struct AxisPointMessage {
+  double u = 0, v = 0;  ///< px
+  double sigma = 0;     ///< px
+};
+
+/// flexura.CalibrationSighting, on /calibration/sightings: what was measured in one picture.
+struct CalibrationSightingMessage {
+  double time = 0;        ///< Middle of the exposure, s.
+  std::int64_t look = 0;  ///< From 1; 0: the arm is looked for.
+  std::string camera;
+  std::int64_t frame = 0;                    ///< Its number.
+  double pan = 0, tilt = 0;                  ///< As read, rad.
+  double zoom = 1;                           ///< Likewise.
+  std::array<double, 3> stage = {0, 0, 0};   ///< Likewise, m.
+  std::vector<std::array<double, 2>> bends;  ///< Likewise, rad.
+  std::vector<MarkerMessage> markers;
+  std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
+  std::int64_t unknown = 0;              ///< Markers seen that were not recognised.
+  std::optional<std::string> reason;     ///< Why the picture is of no use.
+};
+
+/// flexura.CalibrationDecision, on /calibration/decisions: what is known after a look, and what follows.
+struct CalibrationDecisionMessage {
+  double time = 0;         ///< s
+  std::int64_t looks = 0;  ///< Up to now.
+  bool found = false;
+  std::optional<std::string> reason;  ///< Why no rig was found.
+  double rms = 0;                     ///< Of the residuals, in standard deviations.
+  std::int64_t doubts = 0;            ///< Things seen that were left out.
+  double angle = 0;                   ///< Between the axes where the cameras would be sent, rad.
+  double angle_sigma = 0;
+  std::array<double, 2> focal = {0, 0};        ///< px
+  std::array<double, 2> focal_sigma = {0, 0};  ///< Shares.
+  double zoom_ratio_sigma = 0;                 ///< Share.
+  std::string next;                            ///< In words.
+};
+
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
 struct ImageMessage {
   TimeMessage timestamp;  ///< Middle of the exposure.
@@ -98,6 +152,9 @@ inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
+inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
+inline constexpr std::string_view calibration_sightings_topic = "/calibration/sightings";
+inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
 
 const Table<TimeMessage>& fields_of(const TimeMessage*);
 const Table<ArmStateMessage>& fields_of(const ArmStateMessage*);
@@ -110,6 +167,11 @@ const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);
+const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);
+const Table<MarkerMessage>& fields_of(const MarkerMessage*);
+const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
+const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
+const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 
 /// The topics of a camera's images, and of its head's readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);

@@ -32,13 +32,22 @@ struct Recorder::Channels {
   void write(std::uint16_t channel, std::uint64_t time, const M& message) {
     log.write(channel, time, write_json(Codec<M>::write(message)));
   }
+  // Opens the channel at its first message.
+  template <class M>
+  void write(std::optional<std::uint16_t>& channel, std::string_view topic, double time, const M& message) {
+    if (!channel) channel = add<M>(topic);
+    write(*channel, nanoseconds(time), message);
+  }
 
   McapWriter log;
   std::uint16_t state;
   std::uint16_t poses;
   std::uint16_t events;
+  std::optional<std::uint16_t> scene;
+  std::optional<std::uint16_t> frames;
   std::optional<std::uint16_t> commands;
   std::optional<std::uint16_t> arm_reading;
+  std::optional<std::uint16_t> calibration_moves, calibration_sightings, calibration_decisions;
   std::map<std::string, std::uint16_t> heads;   // by camera
   std::map<std::string, std::uint16_t> images;  // by camera
 };
@@ -72,6 +81,16 @@ void Recorder::event(double time, Level level, std::string_view source, std::str
                                 std::string(source), "", 0});
 }
 
+void Recorder::scene(double time, const SceneMessage& message) {
+  if (!channels_->scene) channels_->scene = channels_->add<SceneMessage>(scene_topic);
+  channels_->write(*channels_->scene, nanoseconds(time), message);
+}
+
+void Recorder::frames(double time, const FramesMessage& message) {
+  if (!channels_->frames) channels_->frames = channels_->add<FramesMessage>(frames_topic);
+  channels_->write(*channels_->frames, nanoseconds(time), message);
+}
+
 void Recorder::commands(const DriveCommandsMessage& message) {
   if (!channels_->commands) channels_->commands = channels_->add<DriveCommandsMessage>(drive_commands_topic);
   channels_->write(*channels_->commands, nanoseconds(message.time), message);
@@ -95,6 +114,18 @@ void Recorder::reading(const std::string& camera, const HeadReading& reading) {
   const HeadState& state = reading.state;
   channels_->write(channel->second, nanoseconds(reading.time),
                    HeadReadingMessage{reading.time, state.pan, state.tilt, state.zoom, reading.moving});
+}
+
+void Recorder::calibration(const CalibrationMoveMessage& message) {
+  channels_->write(channels_->calibration_moves, calibration_moves_topic, message.time, message);
+}
+
+void Recorder::calibration(const CalibrationSightingMessage& message, double received) {
+  channels_->write(channels_->calibration_sightings, calibration_sightings_topic, received, message);
+}
+
+void Recorder::calibration(const CalibrationDecisionMessage& message) {
+  channels_->write(channels_->calibration_decisions, calibration_decisions_topic, message.time, message);
 }
 
 void Recorder::image(const std::string& camera, const Frame& frame) {

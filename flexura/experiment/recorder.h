@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "flexura/experiment/messages.h"
+#include "flexura/experiment/scene_messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
@@ -28,12 +29,21 @@ class Recorder {
   enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< foxglove.Log's numbers.
   void event(double time, Level level, std::string_view source, std::string_view text);
 
+  /// What stands there, or part of it. The first message opens the channel (both).
+  void scene(double time, const SceneMessage& message);
+  void frames(double time, const FramesMessage& message);
+
   /// The first command opens the channel: logs of arms without a drive have none.
   void commands(const DriveCommandsMessage& message);
 
   /// What a rig's devices say of themselves. The first reading opens the channel.
   void reading(const ArmReading& reading);
   void reading(const std::string& camera, const HeadReading& reading);
+
+  /// What a calibration does, sees and decides. The first message of each kind opens its channel.
+  void calibration(const CalibrationMoveMessage& message);
+  void calibration(const CalibrationSightingMessage& message, double received);
+  void calibration(const CalibrationDecisionMessage& message);
 
   /// A frame, as PNG. The first one of a camera opens its channel.
   void image(const std::string& camera, const Frame& frame);

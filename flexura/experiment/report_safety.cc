@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "flexura/safety/motion_check.h"
+#include "flexura/safety/violation_groups.h"
 
 namespace flexura {
 namespace {
@@ -16,6 +17,8 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
     for (const auto& section : {violation.section, violation.other_section})
       if (section) told.sections.push_back(*section);
   }
+  for (const ViolationGroup& group : grouped(safety))
+    shown.lines.push_back({safety.violations[group.members.front()].start, text_of(safety, group)});
   shown.remarks = safety.caveats;
   shown.remarks.insert(shown.remarks.end(), safety.notes.begin(), safety.notes.end());
   return shown;

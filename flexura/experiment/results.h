@@ -18,6 +18,7 @@ inline constexpr const char* experiment_file_name = "experiment.toml";
 inline constexpr const char* log_file_name = "log.mcap";
 inline constexpr const char* commands_file_name = "commands.csv";
 inline constexpr const char* summary_file_name = "summary.json";
+inline constexpr const char* rig_file_name = "rig.toml";
 inline constexpr const char* timing_file_name = "timing.json";
 inline constexpr const char* report_file_name = "report.html";
 inline constexpr const char* figures_folder_name = "figures";

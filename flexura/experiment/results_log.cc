@@ -3,15 +3,24 @@
 #include <fmt/format.h>
 
 #include "flexura/experiment/results.h"
+#include "flexura/store/text_file.h"
 
 namespace flexura {
 
-McapReader open_log(const std::filesystem::path& results) {
-  const auto file = results / log_file_name;
-  if (!std::filesystem::exists(file)) {
+std::filesystem::path file_of_results(const std::filesystem::path& results, const char* name) {
+  if (!std::filesystem::exists(results / name)) {
     throw input_error(results.string(),
-                      fmt::format("holds no {}: expected a folder made by `flexura run`", log_file_name));
+                      fmt::format("holds no {}: expected a folder made by `flexura run`", name));
   }
+  try {
+    return file_inside(results, name);
+  } catch (const InputError& refusal) {
+    throw input_error(results.string(), refusal.what());
+  }
+}
+
+McapReader open_log(const std::filesystem::path& results) {
+  const auto file = file_of_results(results, log_file_name);
   return from_log([&] { return McapReader(file); });
 }
 

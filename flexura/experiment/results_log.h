@@ -21,6 +21,10 @@ auto from_log(Read&& read) {
   }
 }
 
+/// The file `name` of a results folder. InputError when there is none, or where it is a link that leads out
+/// of the folder: such a file is none of the results.
+[[nodiscard]] std::filesystem::path file_of_results(const std::filesystem::path& results, const char* name);
+
 /// The log of a results folder. InputError when there is none or it is damaged.
 [[nodiscard]] McapReader open_log(const std::filesystem::path& results);
 

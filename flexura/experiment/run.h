@@ -8,14 +8,20 @@
 #include "flexura/base/node.h"
 #include "flexura/base/progress.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/model/arm.h"
 
 namespace flexura {
 
 /// How a run ended.
 enum class RunOutcome {
   done,
-  unsafe,  ///< A task would break a limit of the arm or touch something; simulated to be looked at.
+  unsafe,     ///< A task would break a limit of the arm or touch something; simulated to be looked at.
+  failed,     ///< A calibration stopped, and the run with it.
+  cancelled,  ///< Progress::cancelled: the log ends with the last step that was played.
 };
+
+/// "done", "unsafe", "failed", "cancelled", as summaries have it.
+[[nodiscard]] const char* name_of(RunOutcome outcome);
 
 /// What a run says of itself at its end.
 struct RunResult {
@@ -25,10 +31,24 @@ struct RunResult {
   Node summary;  ///< As in summary.json.
 };
 
+/// Sees a run as it plays, on the run's thread. What it does with that changes nothing of the run.
+class RunWatcher {
+ public:
+  virtual ~RunWatcher() = default;
+  RunWatcher() = default;
+  RunWatcher(const RunWatcher&) = delete;
+  RunWatcher& operator=(const RunWatcher&) = delete;
+
+  /// The arm's state at every step of the clock, s.
+  virtual void state(double time, const ArmState& state) = 0;
+};
+
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,
 /// the log, the summary, the report and its figures (docs/results.md). The same experiment writes the same
-/// bytes. Throws InputError when there is no task; std::runtime_error when a file cannot be written.
+/// bytes, whether it is watched or not. A run that is cancelled writes what it has come to: all files but the
+/// report, its figures and tables. Throws InputError when there is no task; std::runtime_error when a file
+/// cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
-                                       Progress& progress);
+                                       Progress& progress, RunWatcher* watcher = nullptr);
 
 }  // namespace flexura

@@ -100,6 +100,61 @@ TEST_F(Run, RunsItsOwnExperimentFileToTheSameBytes) {
   EXPECT_EQ(files_in(first.folder), files_in(second.folder));
 }
 
+// Ends a run early, and keeps what it has seen.
+class CancelAfter : public Progress, public RunWatcher {
+ public:
+  explicit CancelAfter(std::size_t states) : most_(states) {}
+  void update(double, std::string_view) override {}
+  [[nodiscard]] bool cancelled() const override { return times_.size() >= most_; }
+  void state(double time, const ArmState& state) override {
+    times_.push_back(time);
+    last_ = state;
+  }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  [[nodiscard]] const ArmState& last() const { return last_; }
+
+ private:
+  std::size_t most_;
+  std::vector<double> times_;
+  ArmState last_;
+};
+
+TEST_F(Run, ThatIsCancelledLeavesWhatItHasComeTo) {
+  const Experiment experiment = load_experiment(paper_arm);
+  CancelAfter cancel(51);
+  const RunResult result = run_experiment(experiment, folder_.path(), cancel, &cancel);
+  EXPECT_EQ(result.outcome, RunOutcome::cancelled);
+  EXPECT_EQ(*result.summary.find("outcome")->as<std::string>(), "cancelled");
+  EXPECT_EQ(*result.summary.find("duration")->as<double>(), 1);
+  EXPECT_EQ(cancel.times().size(), 51);
+  EXPECT_EQ(cancel.last().bends, Schedule(experiment).state_at(1).bends);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / report_file_name));
+  const McapReader log(folder_.path() / log_file_name);
+  EXPECT_FALSE(log.truncated());
+  EXPECT_THAT(std::string(log.messages().back().text()), HasSubstr("cancelled"));
+}
+
+TEST_F(Run, ThatIsCancelledAtOnceLeavesTheStart) {
+  CancelAfter cancel(0);
+  const RunResult result = run_experiment(load_experiment(paper_arm), folder_.path(), cancel);
+  EXPECT_EQ(result.outcome, RunOutcome::cancelled);
+  EXPECT_EQ(*result.summary.find("duration")->as<double>(), 0);
+}
+
+TEST_F(Run, ThatIsCancelledAtItsEndIsDone) {
+  CancelAfter cancel(251);
+  EXPECT_EQ(run_experiment(load_experiment(paper_arm), folder_.path(), cancel, &cancel).outcome,
+            RunOutcome::done);
+}
+
+TEST_F(Run, WritesTheSameBytesWhenItIsWatched) {
+  const Experiment experiment = load_experiment(paper_arm);
+  CancelAfter watcher(1000);
+  const auto folder = make_new_folder(folder_.path() / "watched");
+  (void)run_experiment(experiment, folder, watcher, &watcher);
+  EXPECT_EQ(files_in(folder), files_in(run(experiment).folder));
+}
+
 TEST_F(Run, NeverWritesIntoResultsThatExist) {
   const Experiment experiment = load_experiment(paper_arm);
   EXPECT_EQ(run(experiment).folder.filename(), "results");
@@ -295,6 +350,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
   EXPECT_THAT(error("arm.section.0.length=-1"),
               HasSubstr(":1:22: arm.section[0].length = -1: expected a number above 0 m"));
   EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of 8"));
+  EXPECT_THAT(error("arm.base.position.1=3"), HasSubstr("there is no array to set entry 1 of"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
   EXPECT_THAT(error("arm.section.0.length"), HasSubstr("expected path=value"));
   EXPECT_THAT(error("=1"), HasSubstr("is no path"));

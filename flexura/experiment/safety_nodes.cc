@@ -1,9 +1,12 @@
 #include "flexura/experiment/safety_nodes.h"
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "flexura/safety/violation_groups.h"
 
 namespace flexura {
 namespace {
@@ -18,7 +21,8 @@ const char* name_key(Hazard hazard) {
   return is_of_task ? "task" : "axis";
 }
 
-Node violation_node(const Violation& violation) {
+// `text` is what is said of it, or of all of its kind.
+Node::Table violation_table(const Violation& violation, const std::string& text) {
   Node::Table table{{"hazard", {}, {std::string(name_of(violation.hazard)), {}}},
                     {"start", {}, {violation.start, {}}},
                     {"end", {}, {violation.end, {}}},
@@ -29,7 +33,17 @@ Node violation_node(const Violation& violation) {
   const bool has_value = violation.hazard != Hazard::not_finite && std::isfinite(violation.value);
   if (has_value) table.push_back({"value", {}, {violation.value, {}}});
   if (has_value && violation.hazard != Hazard::jump) table.push_back({"limit", {}, {violation.limit, {}}});
-  table.push_back({"text", {}, {violation.text(), {}}});
+  table.push_back({"text", {}, {text, {}}});
+  return table;
+}
+
+// Its worst violation, with the times and the number of all.
+Node group_node(const SafetyReport& report, const ViolationGroup& group) {
+  Violation all = report.violations[group.worst];
+  all.start = report.violations[group.members.front()].start;
+  all.end = group.end;
+  Node::Table table = violation_table(all, text_of(report, group));
+  table.push_back({"count", {}, {static_cast<std::int64_t>(group.members.size()), {}}});
   return {std::move(table), {}};
 }
 
@@ -42,9 +56,17 @@ Node lines_node(const std::vector<std::string>& lines) {
 }  // namespace
 
 Node safety_node(const SafetyReport& report) {
+  const std::vector<ViolationGroup> kept = most_telling(report, grouped(report), max_violation_lines);
+  Node::Array groups;
+  for (const ViolationGroup& group : kept) groups.push_back(group_node(report, group));
   Node::Array violations;
-  for (const Violation& violation : report.violations) violations.push_back(violation_node(violation));
+  for (const std::size_t i : listed_violations(report, kept, max_listed_violations)) {
+    const Violation& violation = report.violations[i];
+    violations.push_back({violation_table(violation, violation.text()), {}});
+  }
   return {Node::Table{{"safe", {}, {report.is_safe(), {}}},
+                      {"violation_count", {}, {static_cast<std::int64_t>(report.violations.size()), {}}},
+                      {"groups", {}, {std::move(groups), {}}},
                       {"violations", {}, {std::move(violations), {}}},
                       {"caveats", {}, lines_node(report.caveats)},
                       {"notes", {}, lines_node(report.notes)}},

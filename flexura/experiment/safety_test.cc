@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
+#include "flexura/safety/violation.h"
 #include "flexura/store/json.h"
 #include "tests/support/experiment_files.h"
 
@@ -145,6 +147,31 @@ TEST(SafetyNodes, HoldWhatTheReportSays) {
   EXPECT_EQ(*violation.find("text")->as<std::string>(), report.violations[0].text());
   EXPECT_THAT(*node.find("caveats")->as<Node::Array>()->at(0).as<std::string>(),
               HasSubstr("sampled every 0.02 s"));
+}
+
+TEST(SafetyNodes, StaySmallWhenAMotionRepeatsItself) {
+  SafetyReport report;
+  for (int k = 0; k < 2000; ++k) {
+    report.violations.push_back({.hazard = Hazard::bend,
+                                 .start = k + 0.1,
+                                 .end = k + 0.4,
+                                 .worst_time = k + 0.25,
+                                 .section = 1,
+                                 .value = k == 1900 ? 3.0 : 2.0,
+                                 .limit = 1});
+  }
+  const Node node = safety_node(report);
+  EXPECT_EQ(*node.find("violation_count")->as<std::int64_t>(), 2000);
+  const auto& groups = *node.find("groups")->as<Node::Array>();
+  ASSERT_EQ(groups.size(), 1U);
+  EXPECT_EQ(*groups[0].find("count")->as<std::int64_t>(), 2000);
+  EXPECT_EQ(*groups[0].find("section")->as<std::int64_t>(), 2);
+  EXPECT_EQ(*groups[0].find("start")->as<double>(), 0.1);
+  EXPECT_EQ(*groups[0].find("end")->as<double>(), 1999.4);
+  EXPECT_EQ(*groups[0].find("worst_time")->as<double>(), 1900.25);
+  const auto& listed = *node.find("violations")->as<Node::Array>();
+  ASSERT_EQ(listed.size(), max_listed_violations);
+  EXPECT_EQ(*listed.back().find("value")->as<double>(), 3);
 }
 
 }  // namespace

@@ -16,22 +16,25 @@ constexpr double target_tolerance = 1e-6;
 
 }  // namespace
 
-Schedule::Schedule(const Experiment& experiment)
+Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed)
     : arm_(experiment.arm.arm()),
       initial_(arm_state(arm_, experiment.arm.initial)),
       obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {
   if (experiment.drive) drive_ = experiment.drive->drive();
-  for (const TaskConfig& task : experiment.task)
-    add(task, legs_.empty() ? initial_ : legs_.back().motion->at(legs_.back().motion->duration()));
+  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
+    const auto known = performed.find(i);
+    const ArmState from = legs_.empty() ? initial_ : legs_.back().motion->at(legs_.back().motion->duration());
+    add(experiment.task[i],
+        known != performed.end() ? known->second : task_motion(experiment.task[i], arm_, from));
+  }
   if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
   // A duration of a whole number of steps, but for rounding, takes just that many.
   constexpr double rounding = 1e-9;
   steps_ = static_cast<std::size_t>(std::max(0.0, std::ceil(duration_ / step_ - rounding)));
 }
 
-void Schedule::add(const TaskConfig& task, const ArmState& from) {
-  const MotionPtr motion = task_motion(task, arm_, from);
+void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
   legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
   duration_ += motion->duration();
   const auto target = tip_target(task);
@@ -60,13 +63,13 @@ ArmState Schedule::state_at(double time) const {
   return leg.motion->at(std::clamp(time - leg.start, 0.0, leg.motion->duration()));
 }
 
-SafetyReport Schedule::check() const {
+SafetyReport Schedule::check(Progress* progress) const {
   std::vector<TimedMotion> motions;
   motions.reserve(legs_.size());
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start, leg.name});
-  SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_);
+  SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_, progress);
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
-  if (drive_) {
+  if (drive_ && report.is_complete) {
     std::vector<double> times;
     times.reserve(steps_ + 1);
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
@@ -27,7 +29,9 @@ struct Leg {
 /// What an experiment is going to do: the arm's state at every time, known before anything moves.
 class Schedule {
  public:
-  explicit Schedule(const Experiment& experiment);
+  /// `performed` has what tasks did whose motion is decided on the way (calibrations), by their numbers;
+  /// those that are left out are taken to do everything that they may.
+  explicit Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed = {});
 
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< s
@@ -41,11 +45,11 @@ class Schedule {
   /// The arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
   /// What would harm the arm or be too much for its motors, and targets out of reach; known before anything
-  /// moves.
-  [[nodiscard]] SafetyReport check() const;
+  /// moves. `progress` may be null, and may end the check early.
+  [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;
 
  private:
-  void add(const TaskConfig& task, const ArmState& from);
+  void add(const TaskConfig& task, const MotionPtr& motion);
 
   Arm arm_;
   std::optional<Drive> drive_;

@@ -101,15 +101,21 @@ NamedDrawing target_picture(const ImageStudy& study) {
 
 std::string text_of(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
+  const auto [measured, rms] = study.measured_difference();
+  const std::string pictures =
+      measured == 0 ? ""
+                    : fmt::format(" {} lengths measured in pictures of the square are {:.3f} px rms off.",
+                                  measured, rms);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(
       "Camera {}, {} from {} to {}; the target could be measured at {} of {} values. Lines: by the "
       "projection "
       "formulas; dots: by the renderer's truth. They differ by at most {:.1e} px, and the ratio of axes by "
-      "{:.1e}.",
+      "{:.1e}.{}",
       study.camera, plain_name(study.variation.name), value_text(study.variation, study.variation.values[0]),
-      value_text(study.variation, study.variation.values[1]), seen, study.values.size(), length, ratio);
+      value_text(study.variation, study.variation.values[1]), seen, study.values.size(), length, ratio,
+      pictures);
 }
 
 }  // namespace

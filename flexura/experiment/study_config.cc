@@ -142,6 +142,10 @@ const Table<StudyTask>& fields_of(const StudyTask*) {
           .field(
               "points", &StudyTask::points,
               {.meaning = "Number of values, evenly from the first to the last.", .range = between(2, 10000)})
+          .field(
+              "measure", &StudyTask::measure,
+              {.meaning = "Also in pictures of the square, found and measured as a camera's: a third column. "
+                          "Takes a tenth of a second a value."})
           .field("target", &StudyTask::target, {.meaning = "What the camera looks at."});
   return table;
 }

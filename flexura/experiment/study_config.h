@@ -49,6 +49,7 @@ struct StudyTask {
   std::string camera;  ///< Its name; the first one when empty.
   VaryConfig vary;
   std::int64_t points = 101;
+  bool measure = false;  ///< In pictures of the square too.
   StudyTargetConfig target;
 };
 

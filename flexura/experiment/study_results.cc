@@ -91,6 +91,11 @@ Node study_nodes(const std::vector<ImageStudy>& studies) {
                                 {"largest_difference_px", {}, value_node(length)},
                                 {"largest_difference_axes_ratio", {}, value_node(ratio)}},
                     {}});
+    const auto [count, rms] = study.measured_difference();
+    if (count == 0) continue;
+    Node::Table& entry = *list.back().as<Node::Table>();
+    entry.push_back({"measured_lengths", {}, {static_cast<std::int64_t>(count), {}}});
+    entry.push_back({"measured_rms_px", {}, value_node(rms)});
   }
   return {std::move(list), {}};
 }

@@ -80,9 +80,14 @@ class RayMeeting {
 
 StudyTarget::StudyTarget(const StudyTargetConfig& config) : X_WF_(pose_of(config)), radius_(config.radius) {}
 
-Eigen::Vector3d StudyTarget::point(std::size_t i) const {
+Eigen::Vector2d StudyTarget::plane_point(std::size_t i) const {
   const double angle = 2 * pi * static_cast<double>(i) / circle_points;
-  return X_WF_ * Eigen::Vector3d(radius_ * std::sin(angle), -radius_ * std::cos(angle), 0);
+  return {radius_ * std::sin(angle), -radius_ * std::cos(angle)};
+}
+
+Eigen::Vector3d StudyTarget::point(std::size_t i) const {
+  const Eigen::Vector2d place = plane_point(i);
+  return X_WF_ * Eigen::Vector3d(place.x(), place.y(), 0);
 }
 
 TargetImage StudyTarget::projected(const View& view) const {

@@ -34,8 +34,11 @@ class StudyTarget {
   [[nodiscard]] const Eigen::Vector3d& center() const { return X_WF_.position; }
   /// The level axis in the plane, unit, W.
   [[nodiscard]] Eigen::Vector3d level_axis() const { return X_WF_.rotation.col(0); }
-  /// The circle's point number i, W, m.
+  [[nodiscard]] const Pose& frame() const { return X_WF_; }
+  [[nodiscard]] double radius() const { return radius_; }
+  /// The circle's point number i, in W, and along the target's x and y, m.
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const;
+  [[nodiscard]] Eigen::Vector2d plane_point(std::size_t i) const;
 
   /// By the projection formulas.
   [[nodiscard]] TargetImage projected(const View& view) const;

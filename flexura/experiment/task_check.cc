@@ -21,6 +21,9 @@ void check_one(const HoldTask&, ArmKind, std::size_t, const std::string&, Reader
 // Studies depend on the cameras, not on the arm (check_study).
 void check_one(const StudyTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
 
+// Calibrations on both, and on the arm's markers (check_calibration).
+void check_one(const CalibrateTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
+
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   check_shape(task.to, kind, sections, path + ".to", reader);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/study_config.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm_config.h"
@@ -72,7 +73,8 @@ struct ExpressionTask {
   std::optional<std::vector<std::string>> stretches;
 };
 
-using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask>;
+using TaskConfig =
+    std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask, CalibrateTask>;
 
 const std::vector<std::string>& names_of(const MoveLaw*);
 const std::vector<std::string>& names_of(const Interpolation*);

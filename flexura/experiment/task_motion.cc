@@ -37,6 +37,19 @@ MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
 
 MotionPtr motion_of(const StudyTask&, const Arm&, const ArmState& from) { return hold_motion(from, 0); }
 
+// Every way that a calibration may take, once: out to each pose and back.
+MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& from) {
+  std::vector<double> times = {0};
+  std::vector<ArmState> states = {from};
+  for (const ArmState& pose : calibration_poses(task, arm)) {
+    for (const ArmState* next : {&pose, &from}) {
+      times.push_back(times.back() + task.move_duration);
+      states.push_back(*next);
+    }
+  }
+  return keyframe_motion(std::move(times), states, Interpolation::linear);
+}
+
 // The shape that a move goes to. The search for one starts from where the arm is.
 ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const auto tip = tip_target(task);

@@ -152,8 +152,10 @@ std::vector<InverseResult> all_answers(const Question& q) {
   InverseStarts starts = q.starts();
   std::vector<Found> distinct;
   for (int i = 0; i < q.options.max_starts; ++i) {
+    // As patient with the i-th start as a search for one answer is, which is then among all.
     Found found;
-    search(problem, q.variables, starts, 1, memory, found);
+    found.starts = i;
+    search(problem, q.variables, starts, i + 1, memory, found);
     if (!found.is_met()) continue;
     follow_wish(problem, q.variables.bounds(), scale, found.x, memory);
     const bool is_known = std::ranges::any_of(distinct, [&](const Found& other) {
@@ -187,6 +189,20 @@ std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget
   if (target.rotation) return all_answers<6>(question);
   if (target.direction) return all_answers<5>(question);
   return all_answers<3>(question);
+}
+
+std::string_view name_of(InverseOutcome outcome) {
+  switch (outcome) {
+    case InverseOutcome::converged:
+      return "converged";
+    case InverseOutcome::not_reachable:
+      return "not_reachable";
+    case InverseOutcome::at_limit:
+      return "at_limit";
+    case InverseOutcome::no_convergence:
+      break;
+  }
+  return "no_convergence";
 }
 
 }  // namespace flexura

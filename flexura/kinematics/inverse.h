@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "flexura/model/arm.h"
@@ -50,6 +51,9 @@ enum class InverseOutcome {
   at_limit,        ///< The best state found is held by a limit: without it the arm would come nearer.
   no_convergence,  ///< Undecided.
 };
+
+/// As answers call it: "converged", "not_reachable", "at_limit", "no_convergence".
+[[nodiscard]] std::string_view name_of(InverseOutcome outcome);
 
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;

@@ -92,15 +92,20 @@ bool QuickPicture::leave_face(const FacePart& part) {
   return region.has_value();
 }
 
+// Of the pixels from number `begin` on; where there are too few, the last one stands for the rest.
+void QuickPicture::set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const {
+  for (std::size_t i = 0; i < span_step; ++i) {
+    const Pixel& pixel = pixels[std::min(begin + i, pixels.size() - 1)];
+    map_.place(pixel.u, pixel.v, i, places);
+  }
+}
+
 void QuickPicture::divide(const Skin& skin) {
   SpanPlaces places{};
   BorderPixels borders{};
   for (std::size_t begin = 0; begin < skin.contour.size(); begin += span_step) {
     const std::size_t count = std::min(span_step, skin.contour.size() - begin);
-    for (std::size_t i = 0; i < span_step; ++i) {
-      const Pixel& pixel = skin.contour[begin + std::min(i, count - 1)];
-      map_.place(pixel.u, pixel.v, i, places);
-    }
+    set_places(skin.contour, begin, places);
     kernels_->divide(skin.piece, places, borders);
     for (std::size_t i = 0; i < count; ++i) merge(skin.piece, skin.contour[begin + i], places, borders, i);
   }

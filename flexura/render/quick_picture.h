@@ -88,7 +88,9 @@ class QuickPicture {
   void fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const;
   void find_rim(Rim& rim);
   void draw_discs(SpanRow& row);
-  void divide_rim(const Rim& rim);
+  bool takes_rim(const Rim& rim, Pixel pixel);
+  void divide_rim(Rim& rim);
+  void lay_rim(Pixel pixel, const RimPixels& seen, std::size_t i);
 
   void plan_screens(const Stage& stage);
   void fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const;
@@ -96,6 +98,7 @@ class QuickPicture {
   void clear(int begin, int end, SpanRow& row) const;
   void draw_panel(const Panel& panel, bool is_first, SpanRow& row);
 
+  void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
   void divide(const Skin& skin);
   void merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& places, const BorderPixels& borders,
              std::size_t i);

@@ -103,33 +103,47 @@ void QuickPicture::draw_discs(SpanRow& row) {
   }
 }
 
-// Lays the end over what is in its rim's pixels.
-void QuickPicture::divide_rim(const Rim& rim) {
+// Whether the rim's pixel can be laid over what is there: false where that is nearer than the rim, and where
+// it is more than this way knows (one rim before the other, a contour before or behind it), which is left.
+bool QuickPicture::takes_rim(const Rim& rim, Pixel pixel) {
+  const std::uint8_t here = state(pixel.u, pixel.v);
+  if ((here & state_exact) != 0) return false;
+  const auto before = static_cast<double>(picture_->depth.at(pixel.u, pixel.v)),
+             slack = 2 * static_cast<double>(skins_[rim.skin].piece.radius);
+  const bool is_arm = (here & state_arm) != 0;
+  if (is_arm && before < rim.depth - slack) return false;
+  const bool is_alone = (here & ~state_arm) == rim.rim.state;
+  if (is_alone && before > rim.depth + (is_arm ? slack : 0.5 * slack)) return true;
+  leave(pixel.u, pixel.v);
+  return false;
+}
+
+void QuickPicture::divide_rim(Rim& rim) {
   const SpanPiece& piece = skins_[rim.skin].piece;
+  std::erase_if(rim.pixels, [&](Pixel pixel) { return !takes_rim(rim, pixel); });
   SpanPlaces places{};
-  for (const Pixel pixel : rim.pixels) {
-    const std::uint8_t here = state(pixel.u, pixel.v);
-    if ((here & state_exact) != 0) continue;
-    float& depth = picture_->depth.at(pixel.u, pixel.v);
-    const double before = depth, slack = 2 * static_cast<double>(piece.radius);
-    const bool is_arm = (here & state_arm) != 0;
-    if (is_arm && before < rim.depth - slack) continue;
-    // One rim before the other, or a contour before or behind it, is more than this way knows.
-    const bool is_alone = (here & ~state_arm) == rim.rim.state;
-    const bool is_clear = is_alone && before > rim.depth + (is_arm ? slack : 0.5 * slack);
-    RimPixel seen{};
-    if (is_clear) {
-      map_.place(pixel.u, pixel.v, 0, places);
-      kernels_->divide_rim(rim.rim, piece, places, 0, seen);
+  RimPixels seen{};
+  for (std::size_t begin = 0; begin < rim.pixels.size(); begin += span_step) {
+    const std::size_t count = std::min(span_step, rim.pixels.size() - begin);
+    set_places(rim.pixels, begin, places);
+    kernels_->divide_rim(rim.rim, piece, places, seen);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Pixel pixel = rim.pixels[begin + i];
+      if (seen.is_plain[i] != 0 || kernels_->sample_rim(rim.rim, piece, places, i, seen))
+        lay_rim(pixel, seen, i);
+      else
+        leave(pixel.u, pixel.v);
     }
-    if (!is_clear || !seen.is_sure) {
-      leave(pixel.u, pixel.v);
-      continue;
-    }
-    depth = std::min(depth, seen.depth);
-    float* const light = &picture_->light.at(pixel.u, pixel.v);
-    for (std::size_t c = 0; c < channels_; ++c) light[c] = seen.light[c] + (1 - seen.share) * light[c];
   }
+}
+
+// Lays the end over what is in the pixel.
+void QuickPicture::lay_rim(Pixel pixel, const RimPixels& seen, std::size_t i) {
+  float& depth = picture_->depth.at(pixel.u, pixel.v);
+  depth = std::min(depth, seen.depth[i]);
+  float* const light = &picture_->light.at(pixel.u, pixel.v);
+  for (std::size_t c = 0; c < channels_; ++c)
+    light[c] = seen.light[c * span_step + i] + (1 - seen.share[i]) * light[c];
 }
 
 }  // namespace flexura

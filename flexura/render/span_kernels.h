@@ -89,11 +89,12 @@ struct SpanRim {
   PixelState state;  ///< Of its rim.
 };
 
-/// What an end and its tube make of a pixel at the rim.
-struct RimPixel {
-  float share, light[3];  ///< Of the pixel that shows them; their light, times it.
-  float depth;            ///< In the middle of the pixel; infinite: they are not seen there.
-  bool is_sure;
+/// What an end and its tube make of pixels at the rim.
+struct RimPixels {
+  float share[span_step];      ///< Of the pixel that shows them;
+  float light[3 * span_step];  ///< their light, times it.
+  float depth[span_step];      ///< In the middle of the pixel; infinite: they are not seen there.
+  std::uint8_t is_plain[span_step];
 };
 
 /// A screen: points are where nearness, 1/depth, is positive. Its light is
@@ -136,10 +137,12 @@ struct SpanKernels {
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);
   /// Draws the end itself where it is nearest, but for the rim's pixels.
   void (*disc)(const SpanRim& rim, std::size_t channels, int begin, int end, SpanRow& row);
-  /// Works out the rim's pixel of the places' number `index`, the piece being the one that ends there, from
-  /// 256 points.
-  void (*divide_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
-                     RimPixel& pixel);
+  /// Works out the rim's pixels, the piece being the one that ends there, as far as nothing else is seen to
+  /// divide them: those that are plain.
+  void (*divide_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels);
+  /// Works out any one, the places' number `index`, from 256 points. Whether it is right.
+  bool (*sample_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
+                     RimPixels& pixels);
   /// Works out pixels with contours.
   void (*divide)(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders);
   /// The mean light of what of the piece is in the pixel of the places' number `index`, from 64 or 256

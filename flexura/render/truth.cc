@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "flexura/render/cell.h"
 #include "flexura/render/tracer.h"
@@ -62,6 +63,17 @@ std::uint16_t label_value(SurfaceLabel label) {
 SurfaceLabel label_from_value(std::uint16_t value) {
   return {static_cast<SurfaceKind>(value / values_per_kind),
           static_cast<std::uint16_t>(value % values_per_kind)};
+}
+
+PixelTruth pixel_truth(const Renderer& renderer, int u, int v) {
+  const RayField& rays = renderer.rays();
+  if (u < 0 || v < 0 || u >= rays.width() || v >= rays.height())
+    throw std::out_of_range("there is no such pixel");
+  const auto ray = rays.ray(u, v);
+  if (!ray) return {};
+  const auto parts = renderer.tiles().parts(u / Tiles::size, v / Tiles::size);
+  const Hit hit = Tracer(renderer.stage(), parts).hit(*ray);
+  return {hit.label, hit.depth, hit.s};
 }
 
 void truth_maps(const Renderer& renderer, TruthMaps& maps) {

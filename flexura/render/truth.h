@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,15 @@ namespace flexura {
 /// A label as one number: 4096 times the kind's place in SurfaceKind, plus the index.
 [[nodiscard]] std::uint16_t label_value(SurfaceLabel label);
 [[nodiscard]] SurfaceLabel label_from_value(std::uint16_t value);
+
+/// What is seen in the middle of one pixel.
+struct PixelTruth {
+  SurfaceLabel label;
+  double depth = std::numeric_limits<double>::infinity();  ///< As in TruthMaps, m.
+  double s = std::numeric_limits<double>::quiet_NaN();     ///< m.
+};
+/// (u, v) must be in the image, else std::out_of_range.
+[[nodiscard]] PixelTruth pixel_truth(const Renderer& renderer, int u, int v);
 
 /// What is seen in the middle of each pixel.
 struct TruthMaps {

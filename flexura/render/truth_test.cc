@@ -57,7 +57,12 @@ TEST(Truth, NamesWhatEachPixelShows) {
       if (y >= marker.s_from && y < marker.s_to) expected = {SurfaceKind::marker, i};
     }
     EXPECT_EQ(label_from_value(maps.label.at(80, v)), expected) << v;
+    const PixelTruth one = pixel_truth(renderer, 80, v);
+    EXPECT_EQ(one.label, expected);
+    EXPECT_EQ(static_cast<float>(one.depth), maps.depth.at(80, v));
+    EXPECT_EQ(static_cast<float>(one.s), maps.s.at(80, v));
   }
+  EXPECT_THROW((void)pixel_truth(renderer, 161, 0), std::out_of_range);
   EXPECT_EQ(label_from_value(maps.label.at(0, 0)).kind, SurfaceKind::background);
   EXPECT_EQ(maps.depth.at(0, 0), std::numeric_limits<float>::infinity());
   EXPECT_TRUE(std::isnan(maps.s.at(0, 0)));

@@ -19,6 +19,7 @@ constexpr double flattest_plot = 0.4;  // Height over width.
 // What of the image the outlines take up along one axis; all of it where they are outside.
 Interval shown_along(const ImagePlot& plot, int axis) {
   const Interval all = {-0.5, (axis == 0 ? plot.width : plot.height) - 0.5};
+  if (!plot.background.empty()) return all;
   Interval range = {all.high, all.low};
   for (const ImageOutline& outline : plot.outlines) {
     for (const ImageOutline::Line& line : outline.lines) {
@@ -37,13 +38,25 @@ Interval grown_to(Interval range, double extent) {
 }
 
 PlotFrame frame_of(const ImagePlot& plot) {
-  Interval x = padded(shown_along(plot, 0), 1, 0.05);
-  Interval y = padded(shown_along(plot, 1), 1, 0.05);
+  const double margin = plot.background.empty() ? 0.05 : 0;
+  Interval x = padded(shown_along(plot, 0), 1, margin);
+  Interval y = padded(shown_along(plot, 1), 1, margin);
   const double left = left_of_axes(y, tallest_plot);
   const double width = picture_width - left - right_space;
   x = grown_to(x, y.extent() * width / tallest_plot);
   y = grown_to(y, flattest_plot * x.extent());
   return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}, true};
+}
+
+void draw_background(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
+  if (plot.background.empty()) return;
+  const Eigen::Vector2d corner = frame.page({-0.5, -0.5});
+  const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));
+  svg.leaf("image", {{"href", plot.background},
+                     {"x", page_number(corner.x())},
+                     {"y", page_number(corner.y())},
+                     {"width", page_number(size.x())},
+                     {"height", page_number(size.y())}});
 }
 
 void draw_border(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
@@ -80,6 +93,7 @@ Drawing image_picture(const ImagePlot& plot) {
                    {"width", page_number(frame.size.x())},
                    {"height", page_number(frame.size.y())},
                    {"viewBox", page_point(frame.corner) + ' ' + page_point(frame.size)}});
+  draw_background(svg, plot, frame);
   draw_border(svg, plot, frame);
   for (const ImageOutline& outline : plot.outlines) draw_outline(svg, frame, outline);
   svg.close();

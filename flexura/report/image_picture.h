@@ -27,6 +27,8 @@ struct ImagePlot {
   std::string legend;  ///< What the outlines are; may be empty.
   int width = 0, height = 0;
   std::vector<ImageOutline> outlines;
+  /// The image itself, "data:image/jpeg;base64,..."; then all of it is shown, and drawn below the outlines.
+  std::string background = {};
 };
 
 /// Draws the part of the image in which the outlines are, at one scale along both axes: columns to the right,

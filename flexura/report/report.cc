@@ -116,19 +116,19 @@ std::string events_html(const ReportData& data) {
 
 std::string safety_html(const ReportData& data) {
   if (!data.safety) return "";
-  const auto& [violations, remarks] = *data.safety;
+  const auto& [violations, lines, remarks] = *data.safety;
   std::string html =
       "<section aria-labelledby=\"safety-title\" class=\"safety\">\n<h2 id=\"safety-title\">Safety</h2>\n";
   if (violations.empty()) html += "<p>The motion keeps to its limits and touches nothing.</p>\n";
   if (!violations.empty() || !remarks.empty()) html += "<ul>\n";
-  for (std::size_t i = 0; i < std::min(violations.size(), max_listed_events); ++i) {
+  for (std::size_t i = 0; i < std::min(lines.size(), max_listed_events); ++i) {
     html += fmt::format(
         "<li><button type=\"button\" class=\"jump\" data-time=\"{:.9g}\">{}</button> <span "
         "class=\"unsafe\">unsafe:</span> {}</li>\n",
-        violations[i].start, fixed(violations[i].start, 3), xml_escape(violations[i].text));
+        lines[i].start, fixed(lines[i].start, 3), xml_escape(lines[i].text));
   }
-  if (violations.size() > max_listed_events)
-    html += fmt::format("<li>and {} more</li>\n", violations.size() - max_listed_events);
+  if (lines.size() > max_listed_events)
+    html += fmt::format("<li>and {} more</li>\n", lines.size() - max_listed_events);
   for (const std::string& remark : remarks) html += fmt::format("<li>{}</li>\n", xml_escape(remark));
   if (!violations.empty() || !remarks.empty()) html += "</ul>\n";
   return html + "</section>\n";
@@ -158,10 +158,14 @@ std::string chapters_html(const ReportData& data) {
   std::string html;
   for (std::size_t i = 0; i < data.chapters.size(); ++i) {
     const Chapter& chapter = data.chapters[i];
+    std::string points;
+    for (const std::string& point : chapter.points) points += fmt::format("<li>{}</li>\n", xml_escape(point));
+    if (!points.empty()) points = fmt::format("<ul>\n{}</ul>\n", points);
     html += fmt::format(
-        "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n<div "
-        "class=\"charts chapter\">\n{3}</div>\n</section>\n",
-        i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), figures_html(chapter.drawings));
+        "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n{3}<div "
+        "class=\"charts{4}\">\n{5}</div>\n</section>\n",
+        i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), points,
+        chapter.is_first_tall ? " chapter" : "", figures_html(chapter.drawings));
   }
   return html;
 }
@@ -201,7 +205,7 @@ std::string policy() {
 
 }  // namespace
 
-std::vector<Figure> report_figures(const ReportData& data) {
+std::vector<FigureFile> report_figures(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
   const PlotScene scene = motion_scene(motion);
   std::vector<NamedDrawing> drawings = arm_drawings(motion, scene);
@@ -210,7 +214,7 @@ std::vector<Figure> report_figures(const ReportData& data) {
   for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
   for (const Chapter& chapter : data.chapters)
     drawings.insert(drawings.end(), chapter.drawings.begin(), chapter.drawings.end());
-  std::vector<Figure> figures;
+  std::vector<FigureFile> figures;
   figures.reserve(drawings.size());
   for (const NamedDrawing& named : drawings)
     figures.push_back({named.name + ".svg", standalone_svg(named.drawing)});

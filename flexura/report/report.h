@@ -20,10 +20,11 @@ struct NamedDrawing {
 
 /// A part of a report for what its makers measured beside the motion.
 struct Chapter {
-  std::string heading;  ///< Any text.
-  std::string text;     ///< Likewise: a paragraph.
-  std::vector<NamedDrawing>
-      drawings;  ///< The first as high as two. Names that make file names, each once in the report.
+  std::string heading;                   ///< Any text.
+  std::string text;                      ///< Likewise: a paragraph.
+  std::vector<NamedDrawing> drawings;    ///< Names that make file names, each once in the report.
+  std::vector<std::string> points = {};  ///< Any text: a list below the paragraph.
+  bool is_first_tall = true;             ///< The first drawing is as high as two.
 };
 
 /// What a finished run hands to its report.
@@ -41,11 +42,17 @@ struct ReportData {
       double start = 0.0;                 ///< s
       double end = 0.0;                   ///< s
       std::vector<std::size_t> sections;  ///< From 0; drawn with a warning in that time.
-      std::string text;
+      std::string text;                   ///< Said beside its picture.
       /// When to draw it in a picture of its own, s; such a time should be among the report's times.
       std::optional<double> pictured_at = {};
     };
+    /// What is listed: of one violation, or of all of a kind.
+    struct Line {
+      double start = 0.0;  ///< s
+      std::string text;
+    };
     std::vector<Violation> violations;
+    std::vector<Line> lines;
     std::vector<std::string> remarks;
   };
 
@@ -65,7 +72,7 @@ struct ReportData {
 };
 
 /// A picture as a file.
-struct Figure {
+struct FigureFile {
   std::string file_name;  ///< "arm-start.svg"
   std::string svg;        ///< The file's text.
 };
@@ -79,6 +86,6 @@ struct Figure {
 /// moments), tip-path, bends (a spatial arm: bends-x and
 /// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip; and those of the
 /// chapters. Throws as report_html does.
-[[nodiscard]] std::vector<Figure> report_figures(const ReportData& data);
+[[nodiscard]] std::vector<FigureFile> report_figures(const ReportData& data);
 
 }  // namespace flexura

@@ -48,14 +48,14 @@ ReportData spatial_run() {
   return data;
 }
 
-std::set<std::string> names_of(const std::vector<Figure>& figures) {
+std::set<std::string> names_of(const std::vector<FigureFile>& figures) {
   std::set<std::string> names;
-  for (const Figure& figure : figures) names.insert(figure.file_name);
+  for (const FigureFile& figure : figures) names.insert(figure.file_name);
   return names;
 }
 
-const std::string& svg_of(const std::vector<Figure>& figures, const std::string& name) {
-  for (const Figure& figure : figures) {
+const std::string& svg_of(const std::vector<FigureFile>& figures, const std::string& name) {
+  for (const FigureFile& figure : figures) {
     if (figure.file_name == name) return figure.svg;
   }
   throw std::out_of_range(name);
@@ -101,12 +101,13 @@ std::size_t warnings_in(const std::string& svg) {
 TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
   ReportData data = paper_run(50);
   EXPECT_EQ(report_html(data).find("safety-title"), std::string::npos);
-  data.safety = {.violations = {{.start = 4.0, .end = 5.0, .sections = {1, 6}, .text = "section 2 < 7"}},
+  data.safety = {.violations = {{.start = 4.0, .end = 5.0, .sections = {1, 6}, .text = "both"}},
+                 .lines = {{.start = 4.0, .text = "section 2 < 7"}},
                  .remarks = {"a note"}};
   const std::string html = report_html(data);
   for (const char* part : {"section 2 &lt; 7", "<li>a note</li>", R"("unsafe":[[4,5,1],[4,5,6]])"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
-  const std::vector<Figure> figures = report_figures(data);
+  const std::vector<FigureFile> figures = report_figures(data);
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-start.svg")), 0U);
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-end.svg")), 2U);
 }
@@ -117,6 +118,7 @@ TEST(Report, DrawsViolationsAtTheirWorstMoments) {
       .violations = {{.start = 1, .end = 2, .sections = {3}, .text = "no picture of its own"},
                      {.start = 3.1, .end = 3.2, .sections = {2}, .text = "3 < 4", .pictured_at = 3.12345},
                      {.start = 6, .end = 6, .sections = {5}, .text = "after the end", .pictured_at = 6}},
+      .lines = {},
       .remarks = {}};
   data.times.insert(data.times.begin() + 31235, 3.12345);
   data.states.insert(data.states.begin() + 31235, data.states[31235]);
@@ -126,7 +128,7 @@ TEST(Report, DrawsViolationsAtTheirWorstMoments) {
   EXPECT_NE(html.find(caption), std::string::npos);
   EXPECT_NE(html.find(",3.12345,"), std::string::npos) << "the player's times";
   EXPECT_EQ(report_html(paper_run(10)).find("worst moment"), std::string::npos);
-  const std::vector<Figure> figures = report_figures(data);
+  const std::vector<FigureFile> figures = report_figures(data);
   EXPECT_FALSE(names_of(figures).contains("arm-unsafe-3.svg"));
   const std::string& first = svg_of(figures, "arm-unsafe-1.svg");
   EXPECT_EQ(xml_fault(first), "");
@@ -153,7 +155,7 @@ TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
                     SphereConfig{.center = {0.1, 0, 0}, .radius = 0.1},
                     CapsuleConfig{.name = "rod", .from = {0, 0, 0}, .to = {0, 0.2, 0}, .radius = 0.05},
                     BoxConfig{.name = "desk", .center = {0, 0.1, 0}, .half_sizes = {0.1, 0.2, 0.3}}};
-  const std::vector<Figure> figures = report_figures(data);
+  const std::vector<FigureFile> figures = report_figures(data);
   for (const char* name : {"arm-start.svg", "arm-middle.svg", "arm-end.svg"}) {
     const std::string& svg = svg_of(figures, name);
     EXPECT_EQ(xml_fault(svg), "");
@@ -187,14 +189,14 @@ TEST(Report, DrawsAPlaneWhereItCutsThePlaneOfTheArm) {
   ReportData data = paper_run(10);
   data.obstacles = {PlaneConfig{.name = "slope", .normal = {1, 1, 1}},
                     PlaneConfig{.name = "paper", .point = {0, 0, -1}, .normal = {0, 0, 1}}};
-  const std::vector<Figure> figures = report_figures(data);
+  const std::vector<FigureFile> figures = report_figures(data);
   EXPECT_NE(svg_of(figures, "arm-end.svg").find("<title>slope"), std::string::npos);
   EXPECT_EQ(svg_of(figures, "arm-end.svg").find("<title>paper"), std::string::npos);
 }
 
 TEST(ReportFigures, AreWellFormedAndHaveNoMissingNumbers) {
   for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
-    for (const Figure& figure : report_figures(data)) {
+    for (const FigureFile& figure : report_figures(data)) {
       SCOPED_TRACE(figure.file_name);
       EXPECT_EQ(xml_fault(figure.svg), "");
       EXPECT_TRUE(figure.svg.starts_with("<svg xmlns="));
@@ -205,7 +207,7 @@ TEST(ReportFigures, AreWellFormedAndHaveNoMissingNumbers) {
 }
 
 TEST(ReportFigures, OfThePapersArmShowItsEndEffector) {
-  const std::vector<Figure> figures = report_figures(paper_run(100));
+  const std::vector<FigureFile> figures = report_figures(paper_run(100));
   EXPECT_EQ(names_of(figures),
             (std::set<std::string>{"arm-start.svg", "arm-middle.svg", "arm-end.svg", "tip-path.svg",
                                    "bends.svg", "archings.svg", "cord-angles.svg", "tip.svg"}));
@@ -226,13 +228,13 @@ int tubes_with_arcs(const std::string& svg) {
 }
 
 TEST(ReportFigures, OfAnArmInXoyAreTrueArcs) {
-  const std::vector<Figure> figures = report_figures(paper_run(10));
+  const std::vector<FigureFile> figures = report_figures(paper_run(10));
   EXPECT_EQ(tubes_with_arcs(svg_of(figures, "arm-end.svg")), 8);
   EXPECT_EQ(tubes_with_arcs(svg_of(figures, "arm-start.svg")), 0) << "straight sections are lines";
 }
 
 TEST(ReportFigures, OfASpatialArmShowBothViewsAndStretches) {
-  const std::vector<Figure> figures = report_figures(spatial_run());
+  const std::vector<FigureFile> figures = report_figures(spatial_run());
   EXPECT_EQ(names_of(figures),
             (std::set<std::string>{"arm-start.svg", "arm-middle.svg", "arm-end.svg", "tip-path.svg",
                                    "bends-x.svg", "bends-y.svg", "stretches.svg", "tip.svg"}));
@@ -254,7 +256,7 @@ std::vector<double> numbers_of(const std::string& svg, const std::string& attrib
 
 TEST(ReportFigures, KeepEveryLabelAndDotOnThePage) {
   for (const ReportData& data : {paper_run(100), paper_run(0), spatial_run()}) {
-    for (const Figure& figure : report_figures(data)) {
+    for (const FigureFile& figure : report_figures(data)) {
       SCOPED_TRACE(figure.file_name);
       const double width = numbers_of(figure.svg, "width").front();
       const double height = numbers_of(figure.svg, "height").front();

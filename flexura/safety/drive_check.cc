@@ -1,5 +1,7 @@
 #include "flexura/safety/drive_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -101,6 +103,8 @@ std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive&
   return wanted;
 }
 
+bool is_acceleration(const Violation& violation) { return violation.hazard == Hazard::motor_acceleration; }
+
 }  // namespace
 
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
@@ -124,6 +128,11 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
     last = now;
   }
   for (AxisCheck& axis : axes) axis.stop(last, report);
+  if (!std::ranges::any_of(report.violations, is_acceleration)) return;
+  report.caveats.push_back(fmt::format(
+      "motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that starts "
+      "or turns at once the value goes with that step",
+      times[1] - times[0]));
 }
 
 }  // namespace flexura

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "flexura/safety/motion_check.h"
@@ -83,6 +84,8 @@ TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {
   drive_.axes[0].motor.max_acceleration = 500;
   const SafetyReport report = check_bend(1);
   ASSERT_EQ(report.violations.size(), 2U);
+  ASSERT_EQ(report.caveats.size(), 1U);
+  EXPECT_NE(report.caveats[0].find("the next, 0.01 s; "), std::string::npos) << report.caveats[0];
   EXPECT_EQ(report.violations[0].start, 0);
   EXPECT_EQ(report.violations[1].start, 1);
   // The least jerk takes 10/sqrt(3) of the way a second squared.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/obstacle.h"
@@ -22,10 +23,11 @@ struct TimedMotion {
 /// What would harm the arm in motions played one after another from the state `initial`: bends, bend rates,
 /// stretches, folding, contact with itself and with obstacles, jumps. Where a law knows bounds on its rates,
 /// nothing slips between two samples (spans.h); elsewhere it is sampled every `step` s, and the report says
-/// so. See docs/safety.md.
+/// so. See docs/safety.md. `progress` may be null; when it says so, the check ends early, and its report is
+/// not complete.
 [[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
-                                         double step);
+                                         double step, Progress* progress = nullptr);
 
 /// Whether the arm can stand in this state at all: finite bends, finite lengths above 0.
 [[nodiscard]] bool is_possible(const ArmState& state);

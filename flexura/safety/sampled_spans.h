@@ -1,23 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 #include "flexura/safety/spans.h"
+#include "flexura/safety/worst.h"
 
 namespace flexura {
 
-/// What a quantity is at its largest, and when.
-struct WorstValue {
-  double time = 0;  ///< s
-  double value = 0;
-};
-
-/// Where the value is largest in a span, of its ends and what lies evenly between.
-[[nodiscard]] WorstValue worst_in(const std::function<double(double time)>& value, const Span& span);
-
-/// Spans that grow with samples: a sample stands for the time up to the next.
+/// Spans that grow with samples: those of steps that follow each other are one.
 class SampledSpans {
  public:
   struct Found {
@@ -25,8 +16,8 @@ class SampledSpans {
     WorstValue worst;
   };
 
-  /// Takes the sample at a step, after those of all earlier steps.
-  void sample(std::size_t step, double time, double value, bool is_bad);
+  /// Takes what is too much at a step, after all earlier steps: the value for the time `span`, as of its end.
+  void add(std::size_t step, const Span& span, double value);
   [[nodiscard]] const std::vector<Found>& spans() const { return spans_; }
 
  private:

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,11 +37,32 @@ struct WatchedQuantity {
 [[nodiscard]] WatchedQuantity with_rate(std::function<double(double time)> value,
                                         std::function<double(double start, double end)> rate);
 
+/// Quantities, numbered from 0, that are looked at together because what they need to know of a time is the
+/// same.
+class WatchedQuantities {
+ public:
+  virtual ~WatchedQuantities() = default;
+  WatchedQuantities() = default;
+  WatchedQuantities(const WatchedQuantities&) = delete;
+  WatchedQuantities& operator=(const WatchedQuantities&) = delete;
+
+  [[nodiscard]] virtual std::size_t count() const = 0;
+  /// The values at `time` of those in `which` (ascending), one each.
+  virtual void find_values(double time, std::span<const std::size_t> which,
+                           std::span<double> values) const = 0;
+  /// Bounds as those of WatchedQuantity.
+  virtual void find_bounds(const Span& span, std::span<const std::size_t> which,
+                           std::span<QuantityBounds> bounds) const = 0;
+};
+
 /// When an interval is looked into no further.
 struct SpanSearch {
   double time = 0;                       ///< s: intervals that are undecided and longer are halved,
   double value = 0;                      ///< and so are those whose upper bound is above the limit by more.
-  std::size_t most_intervals = 200'000;  ///< After so many, samples decide what is open.
+  std::size_t most_intervals = 200'000;  ///< Of one quantity: after so many, samples decide what is open.
+  std::size_t most_together = std::numeric_limits<std::size_t>::max();  ///< Of all, shared evenly.
+  /// Told which share of the time is decided, now and then; false ends the search, with what it has found.
+  std::function<bool(double decided)> go_on = {};
 };
 
 /// What a search found.
@@ -50,20 +73,29 @@ struct FoundSpans {
   double sampled_every = 0;  ///< s, in there at most.
 };
 
-/// The spans of `whole` in which the quantity is above `limit`.
+/// The spans of `whole` in which each of the quantities is above `limit`.
 ///
 /// Nothing slips through: an interval is let go only when its bounds prove it safe, is taken whole when they
-/// prove it unsafe, and is halved otherwise, until it is as short as `search` says and its upper bound as
-/// near to the limit; then its ends and middle decide. So what is missed, if anything, is shorter than half
-/// of that time, and above the limit by no more than that value; and the ends of spans are right to that
-/// time. What time cannot resolve (`shortest_interval`) is unsafe unless proved safe.
+/// prove it unsafe, and is halved otherwise. One as short as `search` says is unsafe when its ends or middle
+/// are, and safe when they are not and its upper bound is as near to the limit. So what is missed, if
+/// anything, is shorter than half of that time, and above the limit by no more than that value; and the ends
+/// of spans are right to that time. What time cannot resolve (`shortest_interval`) is unsafe unless proved
+/// safe.
 ///
-/// All intervals of one length come before shorter ones, so that what is open when there are too many is
-/// looked into evenly.
+/// All intervals of one length come before shorter ones, and all of one length are looked into or none: what
+/// is open when there are too many is looked into evenly.
+[[nodiscard]] std::vector<FoundSpans> spans_above(double limit, const WatchedQuantities& quantities,
+                                                  Span whole, const SpanSearch& search);
+
+/// Those of one quantity.
 [[nodiscard]] FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole,
                                      const SpanSearch& search);
 
 /// No interval is halved below this, s.
 inline constexpr double shortest_interval = 1e-12;
+
+/// Whether the span is as short as time can be told apart: late times are less fine than the shortest
+/// interval.
+[[nodiscard]] bool is_shortest(const Span& span);
 
 }  // namespace flexura

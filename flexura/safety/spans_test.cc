@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "tests/support/random_cases.h"
 
 namespace flexura {
 namespace {
 
-constexpr SpanSearch fine{.time = 1e-7, .value = 1e-7};
+const SpanSearch fine{.time = 1e-7, .value = 1e-7};
 
 TEST(Spans, FindWhatRisesAboveALimitFromStartToEnd) {
   const auto sine = with_rate([](double t) { return std::sin(t); }, [](double, double) { return 1.0; });
@@ -64,8 +67,8 @@ TEST(Spans, WhatIsFarAboveTheLimitIsFoundHoweverShort) {
                                 [](double a, double b) { return a <= 3 + 2e-9 && b >= 3 ? 1e12 : 0.0; });
   const std::vector<Span> spans = spans_above(0.5, needle, {0, 10}, fine).spans;
   ASSERT_EQ(spans.size(), 1u);
-  EXPECT_NEAR(spans[0].start, 3, 1e-11);
-  EXPECT_NEAR(spans[0].end, 3 + 2e-9, 1e-11);
+  EXPECT_NEAR(spans[0].start, 3, fine.time);
+  EXPECT_NEAR(spans[0].end, 3 + 2e-9, fine.time);
 }
 
 TEST(Spans, AreSampledEvenlyWhereThereAreTooManyToLookInto) {
@@ -76,7 +79,7 @@ TEST(Spans, AreSampledEvenlyWhereThereAreTooManyToLookInto) {
                                return QuantityBounds{0, 3};
                              }};
   const FoundSpans found = spans_above(1, near, {0, 8}, {1e-7, 1e-7, 1000});
-  EXPECT_EQ(asked, 1000u);
+  EXPECT_EQ(asked, 511u) << "1 + 2 + ... + 256; 512 more are too many";
   ASSERT_TRUE(found.undecided);
   EXPECT_EQ(found.undecided->start, 0);
   EXPECT_EQ(found.undecided->end, 8);
@@ -84,6 +87,61 @@ TEST(Spans, AreSampledEvenlyWhereThereAreTooManyToLookInto) {
   ASSERT_EQ(found.spans.size(), 1u);
   EXPECT_NEAR(found.spans[0].start, 5, 0.02);
   EXPECT_NEAR(found.spans[0].end, 5.1, 0.02);
+}
+
+// Quantities that are above 0 for a moment around their number; the last one never lets itself be decided.
+class Moments : public WatchedQuantities {
+ public:
+  [[nodiscard]] std::size_t count() const override { return 4; }
+  void find_values(double time, std::span<const std::size_t> which, std::span<double> values) const override {
+    for (std::size_t k = 0; k < which.size(); ++k) values[k] = value(which[k], time);
+  }
+  void find_bounds(const Span& span, std::span<const std::size_t> which,
+                   std::span<QuantityBounds> bounds) const override {
+    const double half = (span.end - span.start) / 2;
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const double middle = value(which[k], span.start + half);
+      const double around = which[k] < 3 ? half : 10;
+      bounds[k] = {middle - around, middle + around};
+    }
+  }
+
+ private:
+  static double value(std::size_t i, double time) {
+    return i < 3 ? 0.01 - std::abs(time - 1 - static_cast<double>(i)) : -1;
+  }
+};
+
+TEST(Spans, AreFoundForEachOfSeveralQuantities) {
+  SpanSearch search{1e-7, 1e-7, 1000};
+  const std::vector<FoundSpans> found = spans_above(0, Moments{}, {0, 5}, search);
+  ASSERT_EQ(found.size(), 4u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(found[i].spans.size(), 1u);
+    EXPECT_NEAR(found[i].spans[0].start, 1 + static_cast<double>(i) - 0.01, 1e-6);
+    EXPECT_NEAR(found[i].spans[0].end, 1 + static_cast<double>(i) + 0.01, 1e-6);
+    EXPECT_FALSE(found[i].undecided);
+  }
+  EXPECT_TRUE(found[3].spans.empty());
+  ASSERT_TRUE(found[3].undecided);
+  EXPECT_EQ(found[3].undecided->end, 5);
+  // What one of them takes is not taken from the others.
+  search.most_together = 1000;
+  const std::vector<FoundSpans> shared = spans_above(0, Moments{}, {0, 5}, search);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(shared[i].undecided);
+  EXPECT_TRUE(shared[3].undecided);
+}
+
+TEST(Spans, EndWhenAsked) {
+  std::vector<double> told;
+  const SpanSearch search{1e-7, 1e-7, 100'000, 100'000, [&](double decided) {
+                            told.push_back(decided);
+                            return told.size() < 3;
+                          }};
+  (void)spans_above(0, Moments{}, {0, 5}, search);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_GT(told[0], 0.7) << "three of the four are decided soon";
 }
 
 }  // namespace

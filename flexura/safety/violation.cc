@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -44,6 +45,13 @@ const HazardText& text_of(Hazard hazard) {
 }  // namespace
 
 const char* name_of(Hazard hazard) { return text_of(hazard).name; }
+
+std::string amount_text(Hazard hazard, double amount) {
+  const HazardText& shown = text_of(hazard);
+  std::string_view unit = shown.unit;
+  if (unit.ends_with(" deep")) unit.remove_suffix(5);
+  return fmt::format("{:.3g}{}", amount * shown.factor, unit);
+}
 
 std::string Violation::place() const {
   switch (hazard) {
@@ -84,7 +92,9 @@ std::string Violation::finding() const {
   }
 }
 
-std::string Violation::text() const { return span_text({start, end}) + ": " + place() + finding(); }
+std::string Violation::what() const { return place() + finding(); }
+
+std::string Violation::text() const { return span_text({start, end}) + ": " + what(); }
 
 std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most) {
   const std::vector<Violation>& all = report.violations;
@@ -110,7 +120,7 @@ std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t mo
 
 void SafetyReport::sort() {
   std::ranges::sort(violations, {}, [](const Violation& v) {
-    return std::tuple(v.start, v.section.value_or(0), v.hazard, v.name, v.end);
+    return std::tuple(v.start, v.section.value_or(0), v.hazard, v.name, v.end, v.other_section);
   });
 }
 

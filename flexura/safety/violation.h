@@ -39,6 +39,8 @@ struct Violation {
 
   /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg"; the times as span_text (spans.h) writes them.
   [[nodiscard]] std::string text() const;
+  /// The same without its times.
+  [[nodiscard]] std::string what() const;
 
  private:
   [[nodiscard]] std::string place() const;
@@ -52,8 +54,9 @@ struct SafetyReport {
   /// ...".
   std::vector<std::string> caveats;
   std::vector<std::string> notes;  ///< Worth knowing, and no reason to refuse.
+  bool is_complete = true;         ///< False: the check was cancelled.
 
-  [[nodiscard]] bool is_safe() const { return violations.empty(); }
+  [[nodiscard]] bool is_safe() const { return violations.empty() && is_complete; }
   /// Puts the violations in their order.
   void sort();
 };
@@ -62,6 +65,9 @@ struct SafetyReport {
 /// obstacle) before others, those of a section before those of a motor or a task. Places in
 /// `report.violations`, ascending; of several with one worst time only the first is told.
 [[nodiscard]] std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most);
+
+/// "1.5 deg": an amount in the unit that texts show for the hazard.
+[[nodiscard]] std::string amount_text(Hazard hazard, double amount);
 
 /// The hazard's name in reports: "bend", "bend rate", ...
 [[nodiscard]] const char* name_of(Hazard hazard);

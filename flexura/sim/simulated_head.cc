@@ -12,12 +12,13 @@ HeadState head_state(const Eigen::Vector3d& positions) { return {positions[0], p
 
 }  // namespace
 
-ThreeAxes::ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& start,
-                     double delay, double horizon)
-    : link_(std::move(link)), configs_(axes) {
+ThreeAxes::ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes,
+                     const Eigen::Vector3d& counted, const Eigen::Vector3d& start, double delay,
+                     double horizon)
+    : link_(std::move(link)), configs_(axes), offset_(start - counted) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double play = 0.5 * axes[i].backlash;
-    axes_.emplace_back(axes[i], AxisMotion::Play{-play, play}, start[static_cast<Eigen::Index>(i)], delay,
+    axes_.emplace_back(axes[i], AxisMotion::Play{-play, play}, counted[static_cast<Eigen::Index>(i)], delay,
                        horizon);
   }
 }
@@ -47,12 +48,13 @@ Outcome<ThreeAxes::Reading> ThreeAxes::read() const {
 }
 
 Eigen::Vector3d ThreeAxes::positions(double time) const {
-  return {axes_[0].position(time), axes_[1].position(time), axes_[2].position(time)};
+  return offset_ + Eigen::Vector3d(axes_[0].position(time), axes_[1].position(time), axes_[2].position(time));
 }
 
-SimulatedHead::SimulatedHead(const Camera& camera, const ClockPort& clock, double horizon)
+SimulatedHead::SimulatedHead(const Camera& camera, const HeadState& counted, const ClockPort& clock,
+                             double horizon)
     : zoom_limits_(camera.head_axes()[2].limits),
-      axes_({"the head of camera " + camera.config().name, clock}, camera.head_axes(),
+      axes_({"the head of camera " + camera.config().name, clock}, camera.head_axes(), vector(counted),
             vector(camera.initial_head()), camera.config().head.delay, horizon) {}
 
 CommandOutcome SimulatedHead::command(const HeadState& state) { return axes_.command(vector(state)); }
@@ -65,13 +67,14 @@ Outcome<HeadReading> SimulatedHead::read() {
 
 HeadState SimulatedHead::truth(double time) const {
   HeadState state = head_state(axes_.positions(time));
-  // What is carried stays among the motor's positions; rounding alone leads past the lens's end.
+  // Rounding, or an offset, leads past the lens's ends.
   state.zoom = std::clamp(state.zoom, zoom_limits_[0], zoom_limits_[1]);
   return state;
 }
 
-SimulatedStage::SimulatedStage(const Camera& camera, const ClockPort& clock, double horizon)
-    : axes_({"the stage of camera " + camera.config().name, clock}, camera.stage_axes(),
+SimulatedStage::SimulatedStage(const Camera& camera, const StageState& counted, const ClockPort& clock,
+                               double horizon)
+    : axes_({"the stage of camera " + camera.config().name, clock}, camera.stage_axes(), counted.offset,
             camera.initial_stage().offset, camera.config().mount.stage.delay, horizon) {}
 
 Outcome<StageReading> SimulatedStage::read() {

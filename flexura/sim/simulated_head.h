@@ -22,10 +22,11 @@ class ThreeAxes {
     bool moving;
   };
 
-  /// Half of each axis's backlash lies to either side of its motor at the start. Commands take effect `delay`
-  /// s after they were given, and positions are known back to `horizon` s before now.
-  ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& start,
-            double delay, double horizon);
+  /// What they carry stands at `start`, where the motors count `counted`: a difference stays as an offset.
+  /// Half of each axis's backlash lies to either side of its motor. Commands take effect `delay` s after they
+  /// were given, and positions are known back to `horizon` s before now.
+  ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& counted,
+            const Eigen::Vector3d& start, double delay, double horizon);
 
   CommandOutcome command(const Eigen::Vector3d& target);
   CommandOutcome halt();
@@ -38,13 +39,15 @@ class ThreeAxes {
   SimulatedLink link_;
   std::array<AxisConfig, 3> configs_;
   std::vector<AxisMotion> axes_;
+  Eigen::Vector3d offset_;  // of what they carry, from what the motors count
 };
 
 /// A head whose motors obey limits, rates, accelerations, resolution, backlash and delay.
 class SimulatedHead : public HeadPort {
  public:
-  /// The head of `camera`, which it can be asked about back to `horizon` s before now.
-  SimulatedHead(const Camera& camera, const ClockPort& clock, double horizon);
+  /// The head of `camera` as it truly is, which stands at its start and counts `counted` there. It can be
+  /// asked about back to `horizon` s before now.
+  SimulatedHead(const Camera& camera, const HeadState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const HeadState& state) override;
   CommandOutcome halt() override { return axes_.halt(); }
@@ -62,7 +65,7 @@ class SimulatedHead : public HeadPort {
 /// The same of a stage.
 class SimulatedStage : public StagePort {
  public:
-  SimulatedStage(const Camera& camera, const ClockPort& clock, double horizon);
+  SimulatedStage(const Camera& camera, const StageState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const StageState& state) override { return axes_.command(state.offset); }
   CommandOutcome halt() override { return axes_.halt(); }

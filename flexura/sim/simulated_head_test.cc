@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -43,7 +44,7 @@ TEST(SimulatedHead, ObeysItsLimitsRatesAndBacklashWhateverItIsTold) {
   for_random_cases(60, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     SimulatedClock clock;
-    SimulatedHead head(camera, clock, forever);
+    SimulatedHead head(camera, camera.initial_head(), clock, forever);
     for (int i = 0; i < 12; ++i) {
       ASSERT_TRUE(head.command(anywhere(random)));
       clock.wait_until(clock.now() + random.uniform(0, 2));
@@ -67,7 +68,7 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
   for_random_cases(100, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     SimulatedClock clock;
-    SimulatedHead head(camera, clock, forever);
+    SimulatedHead head(camera, camera.initial_head(), clock, forever);
     for (int i = 0; i < 8; ++i) {
       ASSERT_TRUE(head.command(anywhere(random)));
       clock.wait_until(clock.now() + random.uniform(0, 2));
@@ -92,12 +93,82 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
   });
 }
 
+// From below what is carried hangs half the play behind its motor, from above half of it before.
+void expect_play(const Eigen::Vector3d& carried, const Eigen::Vector3d& motors,
+                 const std::array<AxisConfig, 3>& axes, double side) {
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(carried[i], motors[i] + side * 0.5 * axes[static_cast<std::size_t>(i)].backlash, 1e-9) << i;
+}
+
+TEST(SimulatedHead, HangsHalfItsBacklashBehindWhereItCameFrom) {
+  for_random_cases(60, [](TestRandom& random) {
+    CameraConfig config = real_camera(random);
+    config.mount.stage.z.backlash = 0.002;
+    auto& [x, y, z, delay] = config.mount.stage;
+    for (SlideConfig* slide : {&x, &y, &z}) slide->limits = {-0.2, 0.2};
+    const Camera camera(config);
+    SimulatedClock clock;
+    SimulatedHead head(camera, camera.initial_head(), clock, forever);
+    SimulatedStage stage(camera, camera.initial_stage(), clock, forever);
+    const auto go = [&](double pan, double tilt, double share, double offset) {
+      const auto& zoom = camera.head_axes()[2].limits;
+      ASSERT_TRUE(head.command({pan, tilt, zoom[0] + share * (zoom[1] - zoom[0])}));
+      ASSERT_TRUE(stage.command({Eigen::Vector3d::Constant(offset)}));
+      clock.wait_until(clock.now() + 100);
+    };
+    const auto expect_side = [&](double side) {
+      expect_play(vector(head.truth(clock.now())), vector(head.read().value().state), camera.head_axes(),
+                  side);
+      expect_play(stage.truth(clock.now()).offset, stage.read().value().state.offset, camera.stage_axes(),
+                  side);
+    };
+    go(-0.5, -0.3, 0.2, -0.1);
+    go(0.5, 0.6, 0.8, 0.1);
+    expect_side(-1);
+    go(0.1, 0.2, 0.5, 0.0);
+    expect_side(1);
+  });
+}
+
+TEST(SimulatedHead, CountsFromWhereItIsBelievedToStand) {
+  CameraConfig config = cameras_at({5, 5})[0];
+  const HeadState counted = Camera(config).initial_head();
+  config.initial.pan = 0.03, config.initial.tilt = -0.02;
+  config.initial.stage = {0.01, 0, 0};
+  config.mount.stage.x.limits = config.mount.stage.z.limits = {-0.2, 0.2};
+  const Camera camera(config);
+  SimulatedClock clock;
+  SimulatedHead head(camera, counted, clock, forever);
+  SimulatedStage stage(camera, {}, clock, forever);
+  EXPECT_EQ(head.read().value().state, counted);
+  EXPECT_NEAR(head.truth(0).pan, 0.03, 1e-15);
+  ASSERT_TRUE(head.command({counted.pan + 0.5, counted.tilt, counted.zoom}));
+  ASSERT_TRUE(stage.command({{0, 0, 0.1}}));
+  clock.wait_until(60);
+  EXPECT_NEAR(head.truth(60).pan - head.read().value().state.pan, 0.03, 1e-12);
+  EXPECT_NEAR(head.truth(60).tilt - head.read().value().state.tilt, -0.02, 1e-12);
+  EXPECT_NEAR(stage.truth(60).offset.x() - stage.read().value().state.offset.x(), 0.01, 1e-12);
+}
+
+TEST(SimulatedStage, MovesAfterItsDelay) {
+  CameraConfig config = cameras_at({5, 5})[0];
+  config.mount.stage.delay = 0.25, config.mount.stage.x.limits = {-0.2, 0.2};
+  const Camera camera(config);
+  SimulatedClock clock;
+  SimulatedStage stage(camera, camera.initial_stage(), clock, forever);
+  clock.wait_until(1);
+  ASSERT_TRUE(stage.command({{0.1, 0, 0}}));
+  EXPECT_EQ(stage.truth(1.25).offset, camera.initial_stage().offset);
+  clock.wait_until(1.5);
+  EXPECT_GT(stage.truth(1.5).offset.x(), camera.initial_stage().offset.x());
+}
+
 TEST(SimulatedHead, MovesAfterItsDelayAndArrives) {
   for_random_cases(100, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     const double delay = camera.config().head.delay;
     SimulatedClock clock;
-    SimulatedHead head(camera, clock, forever);
+    SimulatedHead head(camera, camera.initial_head(), clock, forever);
     clock.wait_until(1);
     const HeadState target = anywhere(random);
     ASSERT_TRUE(head.command(target));
@@ -117,7 +188,7 @@ TEST(SimulatedHead, ItsLensStaysWithinTheTable) {
   for_random_cases(100, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     SimulatedClock clock;
-    SimulatedHead head(camera, clock, forever);
+    SimulatedHead head(camera, camera.initial_head(), clock, forever);
     for (const double zoom : {-1e6, 1e6, -1e6}) {
       ASSERT_TRUE(head.command({0, 0, zoom}));
       clock.wait_until(clock.now() + 20);
@@ -130,7 +201,7 @@ TEST(SimulatedHead, HaltsOnItsWay) {
   CameraConfig config = cameras_at({5, 5})[0];
   const Camera camera(config);
   SimulatedClock clock;
-  SimulatedHead head(camera, clock, forever);
+  SimulatedHead head(camera, camera.initial_head(), clock, forever);
   ASSERT_TRUE(head.command({2, 0, 1}));
   clock.wait_until(1);
   ASSERT_TRUE(head.halt());
@@ -144,7 +215,7 @@ TEST(SimulatedHead, HaltsOnItsWay) {
 TEST(SimulatedHead, RefusesNumbersThatAreNoneAndMovesNothing) {
   const Camera camera(cameras_at({5, 5})[0]);
   SimulatedClock clock;
-  SimulatedHead head(camera, clock, forever);
+  SimulatedHead head(camera, camera.initial_head(), clock, forever);
   const CommandOutcome outcome = head.command({0.5, std::nan(""), 1});
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.fault()->kind, FaultKind::refused);
@@ -157,7 +228,7 @@ TEST(SimulatedHead, RefusesNumbersThatAreNoneAndMovesNothing) {
 TEST(SimulatedHead, DoesNotAnswerWhileItsLinkIsLostAndGoesOn) {
   const Camera camera(cameras_at({5, 5})[0]);
   SimulatedClock clock;
-  SimulatedHead head(camera, clock, forever);
+  SimulatedHead head(camera, camera.initial_head(), clock, forever);
   head.link().lose(1, 2);
   ASSERT_TRUE(head.command({1, 0, 1}));
   clock.wait_until(1.5);
@@ -172,7 +243,7 @@ TEST(SimulatedStage, ObeysItsLimitsAndRates) {
   for_random_cases(60, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     SimulatedClock clock;
-    SimulatedStage stage(camera, clock, forever);
+    SimulatedStage stage(camera, camera.initial_stage(), clock, forever);
     Eigen::Vector3d target;
     for (int i = 0; i < 6; ++i) {
       target = random.vector<3>(-1.5, 1.5);

@@ -28,11 +28,11 @@ Shot with_view(Shot shot, std::function<View(double)> view) {
 
 }  // namespace
 
-SimulatedView::SimulatedView(const CameraConfig& config, Shot shot, const TakePicture& take_picture,
-                             SimulatedClock& clock, double horizon)
+SimulatedView::SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
+                             const TakePicture& take_picture, SimulatedClock& clock, double horizon)
     : description_(config),
-      head_(description_, clock, horizon),
-      stage_(description_, clock, horizon),
+      head_(description_, Camera(believed).initial_head(), clock, horizon),
+      stage_(description_, Camera(believed).initial_stage(), clock, horizon),
       camera_(description_, with_view(std::move(shot), [this](double time) { return view(time); }),
               take_picture, clock) {}
 
@@ -44,8 +44,8 @@ SimulatedRig::SimulatedRig(const RigConfig& model, const RigConfig& truth, const
     shot.camera = i;
     shot.seed = seed;
     shot.backbone = [this](double time) { return arm_.backbone(time); };
-    cameras_.push_back(std::make_unique<SimulatedView>(truth.cameras[i], std::move(shot), take_picture,
-                                                       clock_, horizon_of(truth.cameras)));
+    cameras_.push_back(std::make_unique<SimulatedView>(model.cameras[i], truth.cameras[i], std::move(shot),
+                                                       take_picture, clock_, horizon_of(truth.cameras)));
   }
 }
 

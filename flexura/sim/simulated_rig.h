@@ -18,9 +18,10 @@ namespace flexura {
 /// A camera of the simulated world with what moves it.
 class SimulatedView {
  public:
-  /// `shot` and `take_picture` as SimulatedCamera takes them; the shot's view is filled in.
-  SimulatedView(const CameraConfig& config, Shot shot, const TakePicture& take_picture, SimulatedClock& clock,
-                double horizon);
+  /// The camera as it is `believed` to be, whose start its head and stage count, and as it truly is. `shot`
+  /// and `take_picture` as SimulatedCamera takes them; the shot's view is filled in.
+  SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
+                const TakePicture& take_picture, SimulatedClock& clock, double horizon);
 
   [[nodiscard]] const Camera& description() const { return description_; }
   /// What the camera truly sees at a time: not for algorithms.
@@ -44,8 +45,9 @@ class SimulatedView {
 /// frames, bit for bit, and asking does not change what happens.
 class SimulatedRig {
  public:
-  /// `truth` is the simulated world; of `model` only arm and drive are used, to turn commanded shapes into
-  /// motor positions. std::invalid_argument: truth_problem's text, or what is no arm or camera.
+  /// `truth` is the simulated world; of `model` arm and drive are used, to turn commanded shapes into
+  /// motor positions, and where the cameras stand at the start, which their heads and stages count.
+  /// std::invalid_argument: truth_problem's text, or what is no arm or camera.
   SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
                std::uint64_t seed);
 

@@ -4,11 +4,15 @@
 #include <png.h>
 #include <tiffio.h>
 
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
+
+// jpeglib.h needs FILE and size_t before it.
+#include <jpeglib.h>
 
 #include "tests/support/random_cases.h"
 #include "tests/support/temporary_folder.h"
@@ -58,6 +62,70 @@ TEST(ImageFile, KeepsEveryValueOfAPng) {
   });
 }
 
+TEST(ImageFile, ReadsBackEveryValueOfAPng) {
+  for_random_cases(40, [](TestRandom& random) {
+    for (const int channels : {1, 3}) {
+      const auto bytes = random_image<std::uint8_t>(random, channels);
+      EXPECT_EQ(std::get<Image<std::uint8_t>>(flexura::read_png(png(bytes))), bytes);
+      const auto words = random_image<std::uint16_t>(random, channels);
+      EXPECT_EQ(std::get<Image<std::uint16_t>>(flexura::read_png(png(words))), words);
+    }
+  });
+}
+
+TEST(ImageFile, RefusesADamagedPng) {
+  for_random_cases(60, [](TestRandom& random) {
+    const std::string whole = png(random_image<std::uint8_t>(random, 3));
+    const auto at = [&] {
+      return static_cast<std::size_t>(random.uniform(0, static_cast<double>(whole.size())));
+    };
+    EXPECT_THROW((void)flexura::read_png(whole.substr(0, at())), std::runtime_error);
+    std::string changed = whole;
+    char& byte = changed[at()];
+    byte = static_cast<char>(byte ^ 0x10);
+    EXPECT_THROW((void)flexura::read_png(changed), std::runtime_error);
+  });
+  EXPECT_THROW((void)flexura::read_png(png(Image<std::uint8_t>(9, 9)), 80), std::runtime_error);
+}
+
+// What libjpeg reads from a file's bytes.
+Image<std::uint8_t> read_jpeg(const std::string& bytes) {
+  jpeg_decompress_struct job{};
+  jpeg_error_mgr errors{};
+  job.err = jpeg_std_error(&errors);
+  jpeg_create_decompress(&job);
+  jpeg_mem_src(&job, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&job, TRUE);
+  jpeg_start_decompress(&job);
+  Image<std::uint8_t> image(static_cast<int>(job.output_width), static_cast<int>(job.output_height),
+                            job.output_components);
+  while (job.output_scanline < job.output_height) {
+    JSAMPROW row = image.row(static_cast<int>(job.output_scanline)).data();
+    jpeg_read_scanlines(&job, &row, 1);
+  }
+  jpeg_finish_decompress(&job);
+  jpeg_destroy_decompress(&job);
+  return image;
+}
+
+TEST(ImageFile, KeepsASmoothPictureInAJpegNearly) {
+  for (const int channels : {1, 3}) {
+    Image<std::uint8_t> image(61, 43, channels);
+    for (int v = 0; v < image.height(); ++v)
+      for (int u = 0; u < image.width(); ++u)
+        for (int c = 0; c < channels; ++c) image.at(u, v, c) = static_cast<std::uint8_t>(2 * u + v + 20 * c);
+    const std::string file = jpeg(image, {.quality = 95});
+    EXPECT_EQ(file, jpeg(image, {.quality = 95}));
+    EXPECT_LT(jpeg(image, {.quality = 30}).size(), file.size());
+    const Image<std::uint8_t> back = read_jpeg(file);
+    ASSERT_EQ(back.width(), image.width());
+    ASSERT_EQ(back.height(), image.height());
+    ASSERT_EQ(back.channels(), channels);
+    for (std::size_t i = 0; i < image.values().size(); ++i)
+      ASSERT_NEAR(back.values()[i], image.values()[i], 6) << i;
+  }
+}
+
 TEST(ImageFile, KeepsEveryValueOfATiff) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "depth.tiff";
@@ -80,6 +148,10 @@ TEST(ImageFile, RefusesWhatIsNoPicture) {
   EXPECT_THROW((void)png(Image<std::uint8_t>()), std::invalid_argument);
   EXPECT_THROW((void)png(Image<std::uint8_t>(3, 3, 2)), std::invalid_argument);
   EXPECT_THROW((void)tiff(Image<float>()), std::invalid_argument);
+  EXPECT_THROW((void)jpeg(Image<std::uint8_t>()), std::invalid_argument);
+  EXPECT_THROW((void)jpeg(Image<std::uint8_t>(3, 3, 2)), std::invalid_argument);
+  EXPECT_THROW((void)jpeg(Image<std::uint8_t>(65501, 1)), std::invalid_argument);
+  EXPECT_THROW((void)jpeg(Image<std::uint8_t>(3, 3), {.quality = 0}), std::invalid_argument);
 }
 
 }  // namespace

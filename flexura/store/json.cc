@@ -55,7 +55,9 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception& error) override {
     // nlohmann's text: "[json.exception.parse_error.101] parse error at line 1, column 5: ...".
     std::string_view what = error.what();
-    if (const auto colon = what.find(": "); colon != std::string_view::npos) what.remove_prefix(colon + 2);
+    for (const std::string_view before : {"] ", ": "}) {
+      if (const auto at = what.find(before); at != std::string_view::npos) what.remove_prefix(at + 2);
+    }
     throw InputError(
         {{position_of(text_, byte == 0 ? 0 : byte - 1, source_), fmt::format("not JSON: {}", what)}});
   }

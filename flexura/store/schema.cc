@@ -227,8 +227,17 @@ Node json_schema(const TableInfo& info) {
   add(schema, "$schema", text("http://json-schema.org/draft-07/schema#"));
   add(schema, "title", text(info.name));
   Node body = table_schema(info, false, false);
+  const bool may_include = info.find("include") != nullptr;
   for (Node::Member& member : *body.as<Node::Table>()) {
-    add(schema, std::move(member.key), std::move(member.node));
+    if (may_include && member.key == "required") {
+      // The files that it includes may have what is required: an editor sees one file.
+      Node as_it_stands = object(), with_others = object();
+      add(as_it_stands, "required", std::move(member.node));
+      add(with_others, "required", {Node::Array{text("include")}, {}});
+      add(schema, "anyOf", {Node::Array{std::move(as_it_stands), std::move(with_others)}, {}});
+    } else {
+      add(schema, std::move(member.key), std::move(member.node));
+    }
   }
   return schema;
 }

@@ -20,9 +20,11 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "flexura/base/utf8.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml_depth.h"
 
@@ -98,12 +100,13 @@ constexpr int max_included_files = 100;
 struct Including {
   int depth = 0;
   int files = 0;
+  std::vector<Problem>* repeated = nullptr;  // As for parse_toml.
 };
 
 void lay_upon_includes(Node& document, const std::filesystem::path& file, Including& including);
 
 Node read_with_includes(const std::filesystem::path& file, Including& including) {
-  Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string());
+  Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string(), including.repeated);
   ++including.depth;
   lay_upon_includes(document, file, including);
   --including.depth;
@@ -167,27 +170,80 @@ void shift(Node& node, int columns) {
   }
 }
 
-// What is meant by a text without its closing quote, which toml++ tells as a line end that must not be in it.
+// Only these are left out and read on: without a line that opens a table, what follows would belong
+// elsewhere.
+bool is_repeated_key(std::string_view description) {
+  return description.find("key-value pair") != std::string_view::npos &&
+         description.find("cannot redefine existing") != std::string_view::npos;
+}
+
+// What is meant by a text without its closing quote, which toml++ tells as a line end that must not be in it,
+// and by the second of two keys.
 std::string plain_words(std::string_view description) {
-  if (description.find("control characters other than TAB") == std::string_view::npos)
-    return std::string(description);
-  return "the text does not end on its line: expected a closing quote, and no control characters before it";
+  if (description.find("control characters other than TAB") != std::string_view::npos)
+    return "the text does not end on its line: expected a closing quote, and no control characters before it";
+  if (is_repeated_key(description)) {
+    const std::string_view name = description.substr(std::min(description.find('\''), description.size()));
+    return fmt::format("{} is written twice: expected each key once", name);
+  }
+  return std::string(description);
+}
+
+// What toml++ would call a nesting too deep or a sequence of bytes.
+void check_is_text(std::string_view text, const std::string& source) {
+  const std::size_t at = std::min(text.find('\0'), utf8_length(text));
+  if (at >= text.size()) return;
+  const std::string_view before = text.substr(0, at);
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  throw input_error(
+      source,
+      fmt::format("not a text: byte 0x{:02X}: expected TOML in UTF-8", static_cast<unsigned char>(text[at])),
+      static_cast<int>(line), static_cast<int>(column));
+}
+
+constexpr std::size_t most_repetitions = 20;
+
+// Makes white space of the line on which a key was found to be there already, so that all others stay where
+// they are. Not where it stands in a table of one line, with others that belong to the document.
+bool leave_out(std::string& text, const toml::source_position& at) {
+  std::size_t begin = 0;
+  for (std::size_t line = 1; line < at.line; ++line) begin = text.find('\n', begin) + 1;
+  const std::size_t end = std::min(text.find('\n', begin), text.size());
+  const std::size_t found = std::min(begin + at.column - 1, end);
+  const auto offset = [&](std::size_t i) { return text.begin() + static_cast<std::ptrdiff_t>(i); };
+  if (std::count(offset(begin), offset(found), '=') != 1) return false;
+  std::fill(offset(begin), offset(end), ' ');
+  return true;
 }
 
 }  // namespace
 
-Node parse_toml(std::string_view text, const std::string& source) {
+Node parse_toml(std::string_view text, const std::string& source, std::vector<Problem>* repeated) {
+  check_is_text(text, source);
   check_toml_depth(text, source);
-  try {
-    const toml::table table = toml::parse(text, source);
-    Node document = convert(table, std::make_shared<const std::string>(source));
-    document.where.line = document.where.column = 1;
-    return document;
-  } catch (const toml::parse_error& error) {
-    const auto& at = error.source().begin;
-    throw input_error(source, plain_words(error.description()), static_cast<int>(at.line),
-                      static_cast<int>(at.column));
+  const auto name = std::make_shared<const std::string>(source);
+  std::string without_repetitions(text);
+  std::vector<Problem> found;
+  std::optional<toml::table> table;
+  while (!table) {
+    try {
+      table = toml::parse(std::string_view(without_repetitions), source);
+    } catch (const toml::parse_error& error) {
+      // What comes after a line that was left out may be wrong for that alone: a value of several lines.
+      const bool is_repetition = is_repeated_key(error.description());
+      if (is_repetition || found.empty())
+        found.push_back({position(name, error.source().begin), plain_words(error.description())});
+      if (!is_repetition || found.size() >= most_repetitions ||
+          !leave_out(without_repetitions, error.source().begin))
+        throw InputError(found);
+    }
   }
+  if (!found.empty() && repeated == nullptr) throw InputError(found);
+  if (repeated != nullptr) repeated->insert(repeated->end(), found.begin(), found.end());
+  Node document = convert(*table, name);
+  document.where.line = document.where.column = 1;
+  return document;
 }
 
 Node parse_toml_value(std::string_view text, const std::string& source, int line, int column) {
@@ -212,8 +268,8 @@ Node parse_toml_value(std::string_view text, const std::string& source, int line
   return value;
 }
 
-Node read_toml_file(const std::filesystem::path& file) {
-  Including including;
+Node read_toml_file(const std::filesystem::path& file, std::vector<Problem>* repeated) {
+  Including including{.repeated = repeated};
   return read_with_includes(file, including);
 }
 

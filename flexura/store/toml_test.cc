@@ -39,6 +39,20 @@ TEST(ParseToml, ReportsWhatIsNotToml) {
   EXPECT_THAT(error_of("a = \"open\nb = 1\n"), HasSubstr("x.toml:1:10: the text does not end on its line"));
 }
 
+TEST(ParseToml, CanReadOnWhereAKeyIsWrittenTwice) {
+  std::vector<Problem> repeated;
+  const Node node = parse_toml("a = 1\na = 2\nb = 3\n[t]\nc = 1\nc = 'x'\nd = 4\n", "x.toml", &repeated);
+  ASSERT_EQ(repeated.size(), 2U);
+  EXPECT_EQ(repeated[0].where.line, 2);
+  EXPECT_EQ(repeated[1].where.line, 6);
+  EXPECT_EQ(node.find("a")->brief(), "1");
+  EXPECT_EQ(node.find("b")->where.text(), "x.toml:3:5");
+  EXPECT_EQ(node.find("t")->find("d")->where.text(), "x.toml:7:5");
+  // A table opened twice, or anything else that is no TOML, ends the reading; both are told.
+  EXPECT_THAT(error_of("a = 1\na = 2\n[t]\n[t]\nb = 1\nb = 2\n"), HasSubstr("x.toml:2:"));
+  EXPECT_THAT(error_of("[t]\n[t]\n"), HasSubstr("x.toml:2:"));
+}
+
 TEST(ParseToml, NamesDatesSoThatNoFieldTakesThem) {
   EXPECT_EQ(parse_toml("a = 2026-01-02", "x.toml").find("a")->brief(), "the date 2026-01-02");
 }

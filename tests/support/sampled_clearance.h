@@ -31,33 +31,51 @@ class SampledArm {
 
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
-  /// To an obstacle, m: right to rounding where it is below `need`, and surely not below it otherwise.
-  [[nodiscard]] double clearance(const Obstacle& obstacle, double need) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < turns_.size(); ++i) {
-      const auto at = [&](double u) { return obstacle.distance(point(i, u)) - radius(i, u); };
-      int best = 0;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (int k = 0; k <= cuts; ++k) {
-        const double now = obstacle.distance(points_[index(i, k)]) - radius(i, fraction(k));
-        if (now < nearest) nearest = now, best = k;
-      }
-      if (nearest - spacing(i) < need)
-        nearest = descended([&](double u, double) { return at(u); }, fraction(best), 0, nearest);
-      least = std::min(least, nearest);
+  /// Of section i to an obstacle, m: right to rounding where it is below `need`, and surely not below it
+  /// otherwise.
+  [[nodiscard]] double clearance(std::size_t i, const Obstacle& obstacle, double need) const {
+    const auto at = [&](double u) { return obstacle.distance(point(i, u)) - radius(i, u); };
+    int best = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= cuts; ++k) {
+      const double now = obstacle.distance(points_[index(i, k)]) - radius(i, fraction(k));
+      if (now < nearest) nearest = now, best = k;
     }
-    return least;
+    if (nearest - spacing(i) >= need) return nearest;
+    return descended([&](double u, double) { return at(u); }, fraction(best), 0, nearest);
   }
 
-  /// Of the arm to itself, between points that are no neighbours: between which the backbone has half a turn
-  /// or more, or, where something is thinner than they are, is longer than half a circle of their mean
-  /// radius; as above.
+  /// Of the arm to itself, all sections together.
   [[nodiscard]] double clearance(double need) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       for (std::size_t j = i; j < turns_.size(); ++j) least = std::min(least, clearance(i, j, need));
     }
     return least;
+  }
+
+  /// Of the sections i and j >= i to each other, between points that are no neighbours: between which the
+  /// backbone has half a turn or more, or, where something is thinner than they are, is longer than half a
+  /// circle of their mean radius; as above.
+  [[nodiscard]] double clearance(std::size_t i, std::size_t j, double need) const {
+    if (turn(j, 1) - turns_[i] < half_turn && !is_thinner_between(i, j))
+      return std::numeric_limits<double>::infinity();
+    double nearest = std::numeric_limits<double>::infinity();
+    std::pair<int, int> best;
+    for (int k = 0; k <= cuts; ++k) {
+      for (int m = 0; m <= cuts; ++m) {
+        if (are_neighbours(i, fraction(k), j, fraction(m))) continue;
+        const double now = (points_[index(i, k)] - points_[index(j, m)]).norm() - radius(i, fraction(k)) -
+                           radius(j, fraction(m));
+        if (now < nearest) nearest = now, best = {k, m};
+      }
+    }
+    if (nearest - spacing(i) - spacing(j) >= need) return nearest;
+    const auto at = [&](double u, double v) {
+      if (are_neighbours(i, u, j, v)) return std::numeric_limits<double>::infinity();
+      return (point(i, u) - point(j, v)).norm() - radius(i, u) - radius(j, v);
+    };
+    return descended(at, fraction(best.first), fraction(best.second), nearest);
   }
 
  private:
@@ -103,27 +121,6 @@ class SampledArm {
   [[nodiscard]] double spacing(std::size_t i) const {
     const auto& r = arm_.sections[i].radius;
     return (backbone_.arcs()[i].length + std::abs(r[1] - r[0])) / cuts;
-  }
-
-  [[nodiscard]] double clearance(std::size_t i, std::size_t j, double need) const {
-    if (turn(j, 1) - turns_[i] < half_turn && !is_thinner_between(i, j))
-      return std::numeric_limits<double>::infinity();
-    double nearest = std::numeric_limits<double>::infinity();
-    std::pair<int, int> best;
-    for (int k = 0; k <= cuts; ++k) {
-      for (int m = 0; m <= cuts; ++m) {
-        if (are_neighbours(i, fraction(k), j, fraction(m))) continue;
-        const double now = (points_[index(i, k)] - points_[index(j, m)]).norm() - radius(i, fraction(k)) -
-                           radius(j, fraction(m));
-        if (now < nearest) nearest = now, best = {k, m};
-      }
-    }
-    if (nearest - spacing(i) - spacing(j) >= need) return nearest;
-    const auto at = [&](double u, double v) {
-      if (are_neighbours(i, u, j, v)) return std::numeric_limits<double>::infinity();
-      return (point(i, u) - point(j, v)).norm() - radius(i, u) - radius(j, v);
-    };
-    return descended(at, fraction(best.first), fraction(best.second), nearest);
   }
 
   // Goes down from (u, v), where the value is `best`, by ever smaller steps.

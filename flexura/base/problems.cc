@@ -1,4 +1,4 @@
-#include "flexura/app/problems.h"
+#include "flexura/base/problems.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "flexura/base/image.h"
+#include "flexura/vision/conic.h"
+
+namespace flexura {
+
+using PenColor = std::array<std::uint8_t, 3>;
+
+/// Draws thin lines over a picture.
+class Canvas {
+ public:
+  /// Of a gray picture or one of three channels.
+  explicit Canvas(const Image<std::uint8_t>& picture);
+
+  void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const PenColor& color);
+  /// A cross of so many pixels to each side.
+  void cross(const Eigen::Vector2d& at, double size, const PenColor& color);
+  void ellipse(const EllipseFit& ellipse, const PenColor& color);
+
+  [[nodiscard]] const Image<std::uint8_t>& picture() const { return picture_; }
+
+ private:
+  void dot(const Eigen::Vector2d& at, const PenColor& color);
+
+  Image<std::uint8_t> picture_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,254 @@
+#include "flexura/app/estimate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <ostream>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "flexura/app/commands.h"
+#include "flexura/base/source.h"
+#include "flexura/camera/measured_camera.h"
+#include "flexura/estimate/curve_angles.h"
+#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/model/backbone.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml.h"
+#include "flexura/vision/arm_finder.h"
+#include "flexura/vision/picture_file.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 29;
+
+Node number(double value) { return {value, {}}; }
+Node text(const std::string& value) { return {value, {}}; }
+Node texts(const std::vector<std::string>& values) {
+  Node::Array entries;
+  for (const std::string& value : values) entries.push_back(text(value));
+  return {std::move(entries), {}};
+}
+Node vector(const Eigen::Vector3d& p) {
+  return {Node::Array{number(p.x()), number(p.y()), number(p.z())}, {}};
+}
+
+void check(const EstimateArguments& arguments) {
+  if (arguments.images.size() < 2)
+    throw input_error("IMAGE", "expected at least two pictures, one of each camera");
+  for (const double x : arguments.base)
+    if (!std::isfinite(x)) throw input_error("--base", "expected three finite numbers x,y,z");
+  const auto is_size = [](double x) { return x > 0 && std::isfinite(x); };
+  if (arguments.length && !is_size(*arguments.length))
+    throw input_error("--length", fmt::format("{} m: expected a number above 0", *arguments.length));
+  if (arguments.length && !arguments.arm.empty())
+    throw input_error("--length", "--arm says how long the arm is");
+  constexpr std::int64_t most = 100000;
+  if (arguments.points < 2 || arguments.points > most)
+    throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
+}
+
+std::vector<MeasuredCamera> cameras_of(const EstimateArguments& arguments) {
+  auto cameras = read_as<MeasuredCameras>(read_toml_file(arguments.cameras)).camera;
+  if (cameras.size() != arguments.images.size()) {
+    throw input_error(arguments.cameras, fmt::format("{} cameras for {} pictures: expected one for each",
+                                                     cameras.size(), arguments.images.size()));
+  }
+  for (std::size_t i = 1; i < cameras.size(); ++i)
+    if ((cameras[i].pose().position - cameras[0].pose().position).norm() < 1e-6)
+      throw input_error(arguments.cameras,
+                        fmt::format("camera[0] and camera[{}] stand in the same place: expected the position "
+                                    "and rotation of each",
+                                    i));
+  return cameras;
+}
+
+std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
+  if (arguments.base.empty()) return std::nullopt;
+  return Eigen::Vector3d(arguments.base.data());
+}
+
+ShapePrior arm_of(const EstimateArguments& arguments) {
+  const auto base = base_of(arguments);
+  if (arguments.arm.empty()) return unknown_arm(base, arguments.length);
+  ShapePrior prior;
+  prior.arm = load_experiment(arguments.arm).arm.arm();
+  if (base) prior.arm.X_WB.position = *base;
+  return prior;
+}
+
+// "0.25" m or "25%" of the arm's length, as m along the unstretched arm.
+double marker_place(const std::string& word, const ShapePrior& prior) {
+  const bool is_share = word.ends_with('%');
+  const std::string digits = word.substr(0, word.size() - (is_share ? 1 : 0));
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    throw input_error("--markers",
+                      fmt::format("\"{}\": expected arc lengths, m, or shares as \"25%\"", word));
+  if (!is_share && !prior.is_length_known)
+    throw input_error("--markers",
+                      fmt::format("{} m of an arm of unknown length: expected --length, --arm, or "
+                                  "shares as \"25%\"",
+                                  word));
+  constexpr double percent = 0.01;
+  const double s = is_share ? percent * value * prior.arm.length() : value;
+  const bool is_on_arm = s >= 0 && s <= prior.arm.length();
+  if (!is_on_arm) throw input_error("--markers", fmt::format("\"{}\" is not on the arm", word));
+  return s;
+}
+
+ShapePrior prior_of(const EstimateArguments& arguments) {
+  ShapePrior prior = arm_of(arguments);
+  for (const std::string& word : arguments.markers) prior.markers.push_back(marker_place(word, prior));
+  std::ranges::sort(prior.markers);
+  return prior;
+}
+
+// One picture: what it shows of the arm.
+struct Look {
+  Sighting sighting;
+  std::string reason;  // Why there is none.
+  std::vector<std::string> notes;
+  std::size_t samples = 0;
+};
+
+ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
+  if (!photograph.words.values().empty()) {
+    const Image<std::uint16_t> gray = gray_picture(photograph.words);
+    return finder.find(gray, photograph.white);
+  }
+  return finder.find(gray_picture(photograph.bytes));
+}
+
+Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapePrior& prior) {
+  Look look;
+  const std::string file = read_text_file(name, most_bytes);
+  const Photograph photograph =
+      decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
+  const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
+  ArmFinderConfig config;
+  if (prior.is_base_position_known) config.base = view.project(prior.arm.X_WB.position);
+  ArmFinder finder(config);
+  const ArmSighting found = sighted(photograph, finder);
+  look.reason = found.reason, look.notes = found.notes;
+  look.sighting = sighting_of(found, view, photograph.bytes);
+  look.samples = look.sighting.points.size();
+  return look;
+}
+
+Node image_node(const std::string& name, const MeasuredCamera& camera, const Look& look) {
+  Node::Table entry{{"image", {}, text(name)},
+                    {"camera", {}, text(camera.name)},
+                    {"points", {}, {static_cast<std::int64_t>(look.samples), {}}}};
+  if (!look.reason.empty()) entry.push_back({"reason", {}, text(look.reason)});
+  if (!look.notes.empty()) entry.push_back({"notes", {}, texts(look.notes)});
+  return {std::move(entry), {}};
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double square = 0;
+  for (const double value : values) square += value * value / static_cast<double>(values.size());
+  return std::sqrt(square);
+}
+
+void add_angles(const std::vector<DirectionAngles>& angles, const std::string& before, Node::Table& answer) {
+  Node::Array azimuths, elevations;
+  for (const DirectionAngles& angle : angles) {
+    azimuths.push_back(number(angle.azimuth));
+    elevations.push_back(number(angle.elevation));
+  }
+  answer.push_back({before + "azimuth", {}, {std::move(azimuths), {}}});
+  answer.push_back({before + "elevation", {}, {std::move(elevations), {}}});
+}
+
+// As two image planes show them, if the cameras stand for that: one looks along Z, the other one along X.
+void add_plane_angles(std::span<const Sighting> sightings, std::size_t count, Node::Table& answer) {
+  if (sightings.size() != 2) return;
+  constexpr double roughly = 0.7;
+  const auto looks_along = [](const Sighting& seen, Eigen::Index axis) {
+    return std::abs(seen.view.X_WC.rotation(axis, 2)) > roughly;
+  };
+  const bool is_front_first = looks_along(sightings[0], 2) && looks_along(sightings[1], 0);
+  if (!is_front_first && !(looks_along(sightings[1], 2) && looks_along(sightings[0], 0))) return;
+  const auto angles = is_front_first ? plane_angles(sightings[0], sightings[1], count)
+                                     : plane_angles(sightings[1], sightings[0], count);
+  if (angles.empty()) return;
+  Node::Table planes;
+  add_angles(angles, "", planes);
+  Node::Array singular;
+  for (const DirectionAngles& angle : angles) singular.push_back({angle.is_singular, {}});
+  planes.push_back({"singular", {}, {std::move(singular), {}}});
+  answer.push_back({"planes", {}, {std::move(planes), {}}});
+}
+
+void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Table& answer) {
+  if (found.markers.empty()) return;
+  Node::Array markers;
+  for (const PlacedMarker& marker : found.markers) {
+    Node::Table entry{{"s", {}, number(marker.s)},
+                      {"at", {}, vector(backbone.pose(std::min(marker.s, backbone.length())).position)},
+                      {"images", {}, {static_cast<std::int64_t>(marker.looks), {}}}};
+    markers.push_back({std::move(entry), {}});
+  }
+  answer.push_back({"markers", {}, {std::move(markers), {}}});
+}
+
+void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
+               const EstimateArguments& arguments, Node::Table& answer) {
+  const Backbone backbone(found.shape.arm, found.shape.state);
+  Node::Array points;
+  for (std::int64_t i = 0; i < arguments.points; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(arguments.points - 1);
+    points.push_back(vector(backbone.pose(share * backbone.length()).position));
+  }
+  answer.push_back({"backbone", {}, {std::move(points), {}}});
+  const auto count = static_cast<std::size_t>(arguments.points);
+  add_angles(direction_angles(backbone, count), "", answer);
+  add_plane_angles(sightings, count, answer);
+  answer.push_back({"length", {}, number(backbone.length())});
+  answer.push_back({"sigma", {}, number(root_mean_square(found.sigma))});
+  answer.push_back({"rms_px", {}, number(found.rms)});
+  add_markers(found, backbone, answer);
+  if (arguments.arm.empty()) return;
+  Node::Array bends;
+  for (const Eigen::Vector2d& bend : found.shape.state.bends)
+    bends.push_back({Node::Array{number(bend.x()), number(bend.y())}, {}});
+  answer.push_back({"bends", {}, {std::move(bends), {}}});
+}
+
+}  // namespace
+
+int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
+  check(arguments);
+  const std::vector<MeasuredCamera> cameras = cameras_of(arguments);
+  const ShapePrior prior = prior_of(arguments);
+  std::vector<Sighting> sightings;
+  Node::Array images;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    Look look = look_at(arguments.images[i], cameras[i], prior);
+    images.push_back(image_node(arguments.images[i], cameras[i], look));
+    sightings.push_back(std::move(look.sighting));
+  }
+  const ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
+  Node::Table answer{{"found", {}, {found.is_found, {}}}};
+  if (found.is_found)
+    add_shape(found, sightings, arguments, answer);
+  else
+    answer.push_back({"reason", {}, text(found.reason)});
+  if (!found.notes.empty()) answer.push_back({"notes", {}, texts(found.notes)});
+  answer.push_back({"images", {}, {std::move(images), {}}});
+  out << write_json({std::move(answer), {}}, 2) << '\n';
+  return found.is_found ? exit_done : exit_missed;
+}
+
+}  // namespace flexura

@@ -1,0 +1,118 @@
+#include "flexura/app/intrinsics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "flexura/app/commands.h"
+#include "flexura/app/intrinsics_answer.h"
+#include "flexura/app/intrinsics_files.h"
+#include "flexura/app/intrinsics_pictures.h"
+#include "flexura/app/intrinsics_zoom.h"
+#include "flexura/base/source.h"
+#include "flexura/math/arrays.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+Node text(const std::string& value) { return {value, {}}; }
+Node number(double value) { return {value, {}}; }
+Node texts(const std::vector<std::string>& values) {
+  Node::Array entries;
+  for (const std::string& value : values) entries.push_back(text(value));
+  return {std::move(entries), {}};
+}
+
+void check_file(const std::string& option, const std::string& file) {
+  if (file.empty() || std::filesystem::path(file).extension() == ".toml") return;
+  throw input_error(option, fmt::format("{}: expected a file name that ends in .toml", text(file).brief()));
+}
+
+void check(const IntrinsicsArguments& arguments) {
+  const bool has_pair = !arguments.left.empty() || !arguments.right.empty();
+  const int kinds =
+      (arguments.images.empty() ? 0 : 1) + (has_pair ? 1 : 0) + (arguments.zooms.empty() ? 0 : 1);
+  if (kinds != 1)
+    throw input_error("IMAGE", "expected pictures of one camera, or --left and --right, or --zoom groups");
+  if (arguments.left.size() != arguments.right.size())
+    throw input_error("--right",
+                      fmt::format("{} pictures for {} of --left: expected one for each, taken together",
+                                  arguments.right.size(), arguments.left.size()));
+  if (arguments.distortion < 0 || arguments.distortion > 5)
+    throw input_error("--distortion",
+                      fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));
+  constexpr std::int64_t most = 1000000;
+  if (arguments.hold_out != 0 && (arguments.hold_out < 2 || arguments.hold_out > most))
+    throw input_error("--hold-out", fmt::format("{}: expected 2 or more: every so-manieth view is left out",
+                                                arguments.hold_out));
+  for (const double x : arguments.position)
+    if (!std::isfinite(x)) throw input_error("--position", "expected three finite numbers X,Y,Z");
+  if (arguments.rotation.size() == 4) {
+    const std::string problem = quaternion_problem(
+        {arguments.rotation[0], arguments.rotation[1], arguments.rotation[2], arguments.rotation[3]});
+    if (!problem.empty()) throw input_error("--rotation", problem);
+  }
+  check_file("--out", arguments.out), check_file("--rig", arguments.rig);
+  if (!arguments.rig_from.empty() && arguments.rig.empty())
+    throw input_error("--rig-from", "needs --rig, the file to write");
+  if (!arguments.zooms.empty() && !arguments.out.empty())
+    throw input_error("--out", "a lens at several zooms is no measured camera: --rig FILE writes it");
+}
+
+// One camera, or two that stand still to each other.
+int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out) {
+  const bool is_pair = arguments.images.empty();
+  const auto names = names_of_cameras(
+      arguments, is_pair ? std::vector<std::string>{"left", "right"} : std::vector<std::string>{"camera"});
+  if (is_pair && board.is_ambiguous())
+    throw input_error("--board",
+                      fmt::format("{}x{}: looks the same upside down, so that two cameras may take "
+                                  "different corners for the first: expected one even and one odd number "
+                                  "of a chessboard, or an odd number of rows of asymmetric circles",
+                                  board.columns, board.rows));
+  std::vector<BoardPictures> pictures;
+  pictures.push_back(
+      look_for_board(is_pair ? arguments.left : arguments.images, board, is_pair ? "--left" : "IMAGE"));
+  if (is_pair) pictures.push_back(look_for_board(arguments.right, board, "--right"));
+  const IntrinsicsFit fit = fit_pictures(arguments, board, pictures);
+  Node::Table answer{{"found", {}, {fit.is_found, {}}}};
+  if (!fit.is_found) answer.push_back({"reason", {}, text(fit.reason)});
+  answer.push_back({"board", {}, board_node(board)});
+  if (const auto notes = notes_of(pictures, fit); !notes.empty())
+    answer.push_back({"notes", {}, texts(notes)});
+  if (fit.points > 0) answer.push_back({"rms_px", {}, number(fit.rms)});
+  add_held_out(fit, answer);
+  if (fit.is_found) {
+    std::vector<CalibratedCamera> cameras;
+    cameras.reserve(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      cameras.push_back({names[i], first_pose(arguments) * fit.poses[i], lens_config(fit.cameras[i].lens),
+                         pictures[i].size});
+    write_files(arguments, cameras, fit.rms, fit.points, answer);
+    if (is_pair) answer.push_back({"pair", {}, pair_node(fit)});
+  }
+  Node::Array entries;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    entries.push_back(camera_node(names[i], pictures[i], fit, i, static_cast<int>(arguments.distortion)));
+  answer.push_back({"cameras", {}, {std::move(entries), {}}});
+  out << write_json({std::move(answer), {}}, 2) << '\n';
+  return fit.is_found ? exit_done : exit_missed;
+}
+
+}  // namespace
+
+int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out) {
+  check(arguments);
+  const BoardTarget board = board_of(arguments);
+  return arguments.zooms.empty() ? cameras_command(arguments, board, out)
+                                 : zoom_command(arguments, board, out);
+}
+
+}  // namespace flexura

@@ -1,0 +1,157 @@
+#include "flexura/app/intrinsics_answer.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "flexura/math/pose.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::array<const char*, intrinsics_count> parameter_names = {"fx", "fy", "cx", "cy", "k1",
+                                                                       "k2", "p1", "p2", "k3"};
+
+Node number(double value) { return {value, {}}; }
+Node whole(std::size_t value) { return {static_cast<std::int64_t>(value), {}}; }
+Node text(const std::string& value) { return {value, {}}; }
+template <typename Vector>
+Node numbers(const Vector& values) {
+  Node::Array entries;
+  for (const double value : values) entries.push_back(number(value));
+  return {std::move(entries), {}};
+}
+template <typename Matrix>
+Node rows_of(const Matrix& matrix) {
+  Node::Array rows;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(numbers(Eigen::RowVectorXd(matrix.row(i))));
+  return {std::move(rows), {}};
+}
+
+Node views_node(const BoardPictures& pictures, const IntrinsicsFit& fit, std::size_t camera) {
+  Node::Array views;
+  for (std::size_t i = 0; i < pictures.names.size(); ++i) {
+    Node::Table entry{{"image", {}, text(pictures.names[i])}};
+    if (!pictures.sightings[i].is_found()) {
+      entry.push_back({"reason", {}, text(pictures.sightings[i].reason)});
+    } else if (camera < fit.cameras.size() && i < fit.cameras[camera].view_rms.size()) {
+      const auto rms = fit.cameras[camera].view_rms[i];
+      entry.push_back({"rms_px", {}, rms ? number(*rms) : Node{}});
+      if (fit.is_held_out[i]) entry.push_back({"held_out", {}, {true, {}}});
+    }
+    views.push_back({std::move(entry), {}});
+  }
+  return {std::move(views), {}};
+}
+
+void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, Node::Table& entry) {
+  const Intrinsics& lens = fit.lens;
+  Node::Table sigma;
+  for (int i = 0; i < static_cast<int>(estimated); ++i)
+    sigma.push_back({parameter_names[static_cast<std::size_t>(i)], {}, number(fit.sigma(i))});
+  Node::Array untold;
+  for (const int i : fit.untold) untold.push_back(text(parameter_names[static_cast<std::size_t>(i)]));
+  entry.insert(entry.end(),
+               {{"fx", {}, number(lens.fx)},
+                {"fy", {}, number(lens.fy)},
+                {"cx", {}, number(lens.cx)},
+                {"cy", {}, number(lens.cy)},
+                {"distortion", {}, numbers(lens.distortion)},
+                {"sigma", {}, {std::move(sigma), {}}},
+                {"untold", {}, {std::move(untold), {}}},
+                {"corner_sigma_px", {}, std::isfinite(fit.corner_sigma) ? number(fit.corner_sigma) : Node{}},
+                {"rms_px", {}, number(fit.rms)}});
+  if (!is_alone) entry.push_back({"rms_alone_px", {}, number(fit.rms_alone)});
+  entry.push_back({"covariance", {}, rows_of(fit.covariance.topLeftCorner(estimated, estimated))});
+}
+
+// The pictures that a camera's lens explains much worse than the others.
+void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector<std::string>& notes) {
+  std::vector<double> known;
+  for (const auto& rms : fit.view_rms)
+    if (rms) known.push_back(*rms);
+  if (known.size() < 3) return;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::ranges::nth_element(known, middle);
+  constexpr double suspicious = 3;
+  for (std::size_t i = 0; i < fit.view_rms.size(); ++i) {
+    if (!fit.view_rms[i] || *fit.view_rms[i] <= suspicious * *middle) continue;
+    notes.push_back(fmt::format("{} fits {:.1f} times worse than the middle one: look at it",
+                                pictures.names[i], *fit.view_rms[i] / *middle));
+  }
+}
+
+}  // namespace
+
+Node board_node(const BoardTarget& board) {
+  const auto& names = names_of(static_cast<const BoardPattern*>(nullptr));
+  return {Node::Table{{"pattern", {}, text(names[static_cast<std::size_t>(board.pattern)])},
+                      {"columns", {}, {std::int64_t{board.columns}, {}}},
+                      {"rows", {}, {std::int64_t{board.rows}, {}}},
+                      {"square", {}, number(board.square)}},
+          {}};
+}
+
+Node camera_node(const std::string& name, const BoardPictures& pictures, const IntrinsicsFit& fit,
+                 std::size_t camera, int distortion) {
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < pictures.sightings.size(); ++i)
+    used += pictures.sightings[i].is_found() && !fit.is_held_out[i] ? 1 : 0;
+  Node::Table entry{
+      {"name", {}, text(name)},
+      {"size",
+       {},
+       {Node::Array{{std::int64_t{pictures.size[0]}, {}}, {std::int64_t{pictures.size[1]}, {}}}, {}}},
+      {"views_used", {}, whole(used)}};
+  // A fit that broke off has no numbers.
+  if (fit.noise > 0 || fit.is_found)
+    add_numbers(fit.cameras[camera], 4 + distortion, fit.cameras.size() == 1, entry);
+  entry.push_back({"views", {}, views_node(pictures, fit, camera)});
+  return {std::move(entry), {}};
+}
+
+Node pair_node(const IntrinsicsFit& fit) {
+  const Pose& X_12 = fit.poses[1];
+  const Eigen::Matrix<double, 6, 6>& covariance = fit.pose_covariance[1];
+  const Eigen::Vector<double, 6> sigma = covariance.diagonal().cwiseSqrt();
+  return {Node::Table{{"rms_px", {}, number(fit.rms)},
+                      {"position", {}, numbers(X_12.position)},
+                      {"rotation", {}, numbers(quaternion_wxyz(X_12.rotation))},
+                      {"distance", {}, number(X_12.position.norm())},
+                      {"sigma_position", {}, numbers(Eigen::Vector3d(sigma.head<3>()))},
+                      {"sigma_rotation", {}, numbers(Eigen::Vector3d(sigma.tail<3>()))},
+                      {"covariance", {}, rows_of(covariance)}},
+          {}};
+}
+
+std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, const IntrinsicsFit& fit) {
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < fit.cameras.size() && i < cameras.size(); ++i) {
+    add_doubts(cameras[i], fit.cameras[i], notes);
+    const auto& untold = fit.cameras[i].untold;
+    if (!untold.empty() && untold.front() >= 4)
+      notes.push_back(
+          fmt::format("the views do not tell {} of a lens: fewer coefficients with --distortion, or "
+                      "boards that reach the image's corners, would",
+                      parameter_names[static_cast<std::size_t>(untold.front())]));
+  }
+  return notes;
+}
+
+void add_held_out(const IntrinsicsFit& fit, Node::Table& answer) {
+  if (!fit.held_out_rms) return;
+  const auto views = static_cast<std::int64_t>(std::ranges::count(fit.is_held_out, true));
+  answer.push_back(
+      {"held_out",
+       {},
+       {Node::Table{{"views", {}, {views, {}}}, {"rms_px", {}, number(*fit.held_out_rms)}}, {}}});
+}
+
+}  // namespace flexura

@@ -1,0 +1,135 @@
+#include "flexura/app/intrinsics_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "flexura/base/source.h"
+#include "flexura/camera/measured_camera.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/math/arrays.h"
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml.h"
+
+namespace flexura {
+namespace {
+
+std::array<double, 3> array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+std::array<double, 4> array_of(const Eigen::Vector4d& v) { return {v[0], v[1], v[2], v[3]}; }
+
+void put_lens(const CalibratedCamera& camera, CameraConfig& config) {
+  config.lens = camera.lens;
+  config.sensor.width = camera.size[0], config.sensor.height = camera.size[1];
+}
+
+}  // namespace
+
+const Table<RigFile>& fields_of(const RigFile*) {
+  static const auto table =
+      Table<RigFile>("rig", "Cameras for experiments to include.")
+          .field("camera", &RigFile::camera, {.meaning = "The cameras.", .required = true})
+          .check([](const RigFile& rig, Reader& reader) { check_cameras(rig.camera, "camera", reader); });
+  return table;
+}
+
+LensConfig lens_config(const Intrinsics& lens) {
+  return {
+      .fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .distortion = lens.distortion, .zoom = {}};
+}
+
+std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, const std::string& remark) {
+  MeasuredCameras file;
+  for (const CalibratedCamera& camera : cameras) {
+    MeasuredCamera& written = file.camera.emplace_back();
+    written.name = camera.name;
+    written.fx = camera.lens.fx, written.fy = camera.lens.fy;
+    written.cx = *camera.lens.cx, written.cy = *camera.lens.cy;
+    written.distortion = camera.lens.distortion;
+    written.position = array_of(camera.pose.position);
+    written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));
+  }
+  return fmt::format("# {}\n", remark) +
+         write_toml(Codec<MeasuredCameras>::write(file), fields_of(&file).info());
+}
+
+std::string rig_toml(const std::vector<CalibratedCamera>& cameras, const std::string& from,
+                     const std::string& remark) {
+  RigFile rig;
+  if (!from.empty()) rig.camera = load_experiment(from).cameras();
+  for (const CalibratedCamera& camera : cameras) {
+    if (from.empty()) {
+      CameraConfig& config = rig.camera.emplace_back();
+      config.name = camera.name;
+      config.mount.position = array_of(camera.pose.position);
+      config.mount.rotation = array_of(quaternion_wxyz(camera.pose.rotation));
+      put_lens(camera, config);
+      continue;
+    }
+    const auto same = std::ranges::find(rig.camera, camera.name, &CameraConfig::name);
+    if (same == rig.camera.end())
+      throw input_error(from, fmt::format("has no camera {}: expected one, to put the lens in (--name)",
+                                          Node{camera.name, {}}.brief()));
+    put_lens(camera, *same);
+  }
+  std::string text =
+      fmt::format("# {}\n", remark) + write_toml(Codec<RigFile>::write(rig), fields_of(&rig).info());
+  (void)read_as<RigFile>(parse_toml(text, "the rig file"));
+  return text;
+}
+
+std::filesystem::path write_beside(const std::filesystem::path& wanted, std::string_view text) {
+  std::error_code error;
+  for (int number = 1;; ++number) {
+    std::filesystem::path file = wanted;
+    if (number > 1)
+      file.replace_filename(
+          fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string()));
+    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;
+    write_new_file(file, text);
+    return file;
+  }
+}
+
+Pose first_pose(const IntrinsicsArguments& arguments) {
+  Pose X_WC;
+  if (arguments.position.size() == 3) X_WC.position = Eigen::Vector3d(arguments.position.data());
+  const auto& q = arguments.rotation;
+  if (q.size() == 4) X_WC.rotation = rotation_of({q[0], q[1], q[2], q[3]});
+  return X_WC;
+}
+
+std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
+                                          std::vector<std::string> usual) {
+  if (arguments.names.empty()) return usual;
+  if (arguments.names.size() != usual.size())
+    throw input_error("--name", fmt::format("{} names: expected {}", arguments.names.size(), usual.size()));
+  // Names end up in files that others include.
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    const bool is_plain = std::ranges::all_of(arguments.names[i], [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+             c == '_';
+    });
+    if (arguments.names[i].empty() || !is_plain ||
+        std::ranges::count(arguments.names, arguments.names[i]) > 1)
+      throw input_error("--name", fmt::format("{}: expected different names of letters, digits, - and _",
+                                              Node{arguments.names[i], {}}.brief()));
+  }
+  return arguments.names;
+}
+
+void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
+                 double rms, std::size_t points, Node::Table& answer) {
+  const std::string remark =
+      fmt::format("Measured by flexura intrinsics: rms {:.4g} px over {} points of a board.", rms, points);
+  // All of it is made before any of it is written.
+  const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark),
+                    rig = arguments.rig.empty() ? "" : rig_toml(cameras, arguments.rig_from, remark);
+  if (!measured.empty()) answer.push_back({"file", {}, {write_beside(arguments.out, measured).string(), {}}});
+  if (!rig.empty()) answer.push_back({"rig", {}, {write_beside(arguments.rig, rig).string(), {}}});
+}
+
+}  // namespace flexura

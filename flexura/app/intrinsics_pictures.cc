@@ -1,0 +1,163 @@
+#include "flexura/app/intrinsics_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "flexura/base/node.h"
+#include "flexura/base/source.h"
+#include "flexura/calibrate/board_bundle.h"
+#include "flexura/store/text_file.h"
+#include "flexura/vision/picture_file.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 29;
+
+// The whole text as a number, or nothing.
+template <typename Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<double> finite(std::string_view text) {
+  const auto value = number_in<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::string quoted(const std::string& text) { return Node{text, {}}.brief(); }
+
+ZoomGroup zoom_group(const std::string& text) {
+  const auto fail = [&] {
+    return input_error("--zoom",
+                       quoted(text) + ": expected RATIO=FOLDER, RATIO@COUNT=FOLDER or @COUNT=FOLDER");
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals + 1 == text.size()) throw fail();
+  const std::string_view position = std::string_view(text).substr(0, equals);
+  const std::size_t at = position.find('@');
+  const std::string_view ratio = position.substr(0, at);
+  ZoomGroup group;
+  group.folder = text.substr(equals + 1);
+  if (!ratio.empty() || at == std::string_view::npos) {
+    group.ratio = finite(ratio);
+    if (!group.ratio || *group.ratio <= 0) throw fail();
+  }
+  if (at != std::string_view::npos) {
+    group.count = finite(position.substr(at + 1));
+    if (!group.count) throw fail();
+  }
+  return group;
+}
+
+// The views of cameras whose pictures belong together one by one.
+std::vector<BoardView> views_of(const std::vector<BoardPictures>& cameras) {
+  std::vector<BoardView> views(cameras.front().sightings.size());
+  for (std::size_t view = 0; view < views.size(); ++view)
+    for (const BoardPictures& camera : cameras) views[view].pixels.push_back(camera.sightings[view].pixels);
+  return views;
+}
+
+}  // namespace
+
+BoardTarget board_of(const IntrinsicsArguments& arguments) {
+  constexpr int least = 3, most = 50;
+  BoardTarget board;
+  const std::size_t cross = arguments.board.find('x');
+  const std::string_view text = arguments.board;
+  const auto columns = number_in<int>(text.substr(0, cross));
+  const auto rows = cross == std::string::npos ? std::nullopt : number_in<int>(text.substr(cross + 1));
+  const auto is_size = [](const std::optional<int>& n) { return n && *n >= least && *n <= most; };
+  if (!is_size(columns) || !is_size(rows))
+    throw input_error(
+        "--board", fmt::format("{}: expected COLUMNSxROWS of inner corners (or circles), each from {} to {}",
+                               quoted(arguments.board), least, most));
+  board.columns = *columns, board.rows = *rows;
+  if (!(arguments.square > 0) || !std::isfinite(arguments.square))
+    throw input_error("--square", fmt::format("{} m: expected a number above 0", arguments.square));
+  board.square = arguments.square;
+  const std::vector<std::string>& names = names_of(static_cast<const BoardPattern*>(nullptr));
+  const auto found = std::ranges::find(names, arguments.pattern);
+  if (found == names.end())
+    throw input_error("--pattern", fmt::format("{}: expected one of \"{}\"", quoted(arguments.pattern),
+                                               fmt::join(names, "\", \"")));
+  board.pattern = static_cast<BoardPattern>(found - names.begin());
+  return board;
+}
+
+BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
+                             const std::string& option) {
+  if (files.size() < 2)
+    throw input_error(option,
+                      fmt::format("{} picture{}: expected two at least, of the board from different sides",
+                                  files.size(), files.size() == 1 ? "" : "s"));
+  BoardPictures pictures;
+  pictures.names = files;
+  for (const std::string& name : files) {
+    const std::string file = read_text_file(name, most_bytes);
+    const Photograph photograph =
+        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
+    const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};
+    if (pictures.sightings.empty()) pictures.size = size;
+    if (size != pictures.size)
+      throw input_error(name, fmt::format("{} x {} px: expected {} x {} px, as {}", size[0], size[1],
+                                          pictures.size[0], pictures.size[1], files.front()));
+    pictures.sightings.push_back(find_board(gray_picture(photograph.bytes), board));
+  }
+  return pictures;
+}
+
+std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
+  std::vector<ZoomGroup> groups;
+  for (const std::string& text : zooms) {
+    const ZoomGroup& group = groups.emplace_back(zoom_group(text));
+    if (group.ratio.has_value() != groups.front().ratio.has_value() ||
+        group.count.has_value() != groups.front().count.has_value())
+      throw input_error("--zoom", quoted(text) + ": expected a ratio, and a count, in all groups or in none");
+  }
+  if (groups.size() < 2) throw input_error("--zoom", "one group of pictures: expected two at least");
+  return groups;
+}
+
+std::vector<std::string> pictures_in(const std::string& folder) {
+  static const std::vector<std::string> kinds = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                                 ".bmp", ".pgm", ".ppm",  ".webp"};
+  std::error_code error;
+  std::vector<std::string> files;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::string kind = entry->path().extension().string();
+    std::ranges::transform(kind, kind.begin(), [](char c) {
+      return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    if (std::ranges::count(kinds, kind) > 0) files.push_back(entry->path().string());
+  }
+  if (error) throw input_error(folder, "no folder that can be read");
+  std::ranges::sort(files);
+  return files;
+}
+
+IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
+                           const std::vector<BoardPictures>& pictures) {
+  std::vector<std::array<int, 2>> sizes;
+  sizes.reserve(pictures.size());
+  for (const BoardPictures& camera : pictures) sizes.push_back(camera.size);
+  const std::vector<BoardView> views = views_of(pictures);
+  return fit_intrinsics(board.points(), views, sizes,
+                        {.distortion = static_cast<int>(arguments.distortion),
+                         .hold_out = static_cast<int>(arguments.hold_out)});
+}
+
+}  // namespace flexura

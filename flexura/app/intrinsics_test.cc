@@ -1,0 +1,250 @@
+#include "flexura/app/intrinsics.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "flexura/app/commands.h"
+#include "flexura/base/image.h"
+#include "flexura/base/node.h"
+#include "flexura/base/source.h"
+#include "flexura/calibrate/board_target.h"
+#include "flexura/camera/measured_camera.h"
+#include "flexura/camera/zoom.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/math/so3.h"
+#include "flexura/store/image_file.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml.h"
+#include "tests/support/boards.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int width = 240, height = 180;
+const BoardTarget board{.columns = 6, .rows = 5, .square = 0.03};
+
+Intrinsics lens_of(double focal) { return {.fx = focal, .fy = focal, .cx = 119.5, .cy = 89.5}; }
+
+// Pictures of a board by cameras without distortion, as a laboratory has them.
+class IntrinsicsCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    arguments_.board = "6x5";
+    arguments_.square = board.square;
+    arguments_.distortion = 0;
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string write(const std::string& name, const Image<std::uint8_t>& picture) {
+    write_new_file(folder_.path() / name, png(picture));
+    return path(name);
+  }
+  // Boards in view of the camera X_1C, the same ones for every camera.
+  std::vector<std::string> photograph(const std::string& name, double focal, const Pose& X_1C = {},
+                                      int count = 5) {
+    std::vector<std::string> files;
+    for (int i = 0; i < count; ++i) {
+      TestRandom random(static_cast<std::uint64_t>(i) + 7);
+      const Pose X_1B = random_board(random, board, 0.0013 * focal, 0.6, 0.02);
+      files.push_back(
+          write(fmt::format("{}{}.png", name, i),
+                board_picture(board, Lens(lens_of(focal)), X_1C.inverse() * X_1B, width, height)));
+    }
+    return files;
+  }
+  Node answer(int status) {
+    std::ostringstream out;
+    EXPECT_EQ(intrinsics_command(arguments_, out), status) << out.str();
+    return parse_json(out.str(), "answer");
+  }
+  std::string refusal() {
+    std::ostringstream out;
+    try {
+      (void)intrinsics_command(arguments_, out);
+    } catch (const InputError& error) {
+      EXPECT_EQ(out.str(), "");
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      return error.what();
+    }
+    ADD_FAILURE() << "not refused: " << out.str();
+    return "";
+  }
+  static double number(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
+  static const Node& entry(const Node& node, const char* key, std::size_t i) {
+    return node.find(key)->as<Node::Array>()->at(i);
+  }
+
+  TemporaryFolder folder_;
+  IntrinsicsArguments arguments_;
+};
+
+TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
+  arguments_.images = photograph("a", 260);
+  arguments_.images.push_back(write("blank.png", Image<std::uint8_t>(width, height, 1, 200)));
+  arguments_.out = path("cameras.toml");
+  arguments_.position = {1, 2, 3};
+  const Node found = answer(exit_done);
+  const Node& camera = entry(found, "cameras", 0);
+  EXPECT_NEAR(number(camera, "fx"), 260, 4 * number(*camera.find("sigma"), "fx") + 0.5);
+  EXPECT_LT(number(found, "rms_px"), 0.15);
+  EXPECT_EQ(*camera.find("views_used")->as<std::int64_t>(), 5);
+  EXPECT_EQ(camera.find("covariance")->as<Node::Array>()->size(), 4U);
+  EXPECT_THAT(*entry(camera, "views", 5).find("reason")->as<std::string>(), HasSubstr("no board"));
+  EXPECT_EQ(*found.find("file")->as<std::string>(), path("cameras.toml"));
+  const std::string first = read_text_file(path("cameras.toml"), 1 << 20);
+  const auto written = read_as<MeasuredCameras>(read_toml_file(path("cameras.toml"))).camera;
+  ASSERT_EQ(written.size(), 1U);
+  EXPECT_EQ(written[0].fx, number(camera, "fx"));
+  EXPECT_EQ(written[0].pose().position, Eigen::Vector3d(1, 2, 3));
+  // Once more, of fewer pictures.
+  arguments_.images.pop_back(), arguments_.images.pop_back();
+  EXPECT_EQ(*answer(exit_done).find("file")->as<std::string>(), path("cameras-2.toml"));
+  EXPECT_EQ(read_text_file(path("cameras.toml"), 1 << 20), first);
+}
+
+TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
+  const Pose X_12{so3_exp({0.02, -0.14, -0.03}), {0.05, 0.01, -0.02}};
+  arguments_.left = photograph("left", 260), arguments_.right = photograph("right", 260, X_12);
+  arguments_.names = {"front", "side"};
+  arguments_.rig = path("rig.toml");
+  arguments_.rotation = {0, 1, 0, 0};
+  arguments_.hold_out = 5;
+  const Node found = answer(exit_done);
+  const Node& pair = *found.find("pair");
+  const auto& position = *pair.find("position")->as<Node::Array>();
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(*position[i].as<double>(), X_12.position[static_cast<Eigen::Index>(i)], 1.5e-3);
+  EXPECT_EQ(*found.find("held_out")->find("views")->as<std::int64_t>(), 1);
+  EXPECT_NE(entry(found, "cameras", 1).find("rms_alone_px"), nullptr);
+  // An experiment includes it.
+  write_new_file(folder_.path() / "experiment.toml", "include = ['rig.toml']\n[[arm.section]]\nlength = 1\n");
+  const auto cameras = load_experiment(path("experiment.toml")).cameras();
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[1].name, "side");
+  EXPECT_EQ(cameras[1].sensor.width, width);
+  const Pose X_WC = cameras[1].mount.pose();
+  EXPECT_NEAR(X_WC.position.y(), -X_12.position.y(), 1.5e-3);
+  EXPECT_LT((X_WC.rotation - so3_exp({std::numbers::pi, 0, 0}) * X_12.rotation).norm(), 5e-3);
+}
+
+TEST_F(IntrinsicsCommand, MeasuresAZoom) {
+  int number_of = 0;
+  for (const double focal : {240.0, 360.0, 500.0}) {
+    const std::string name = fmt::format("zoom{}", ++number_of);
+    std::filesystem::create_directory(folder_.path() / name);
+    (void)photograph(name + "/", focal);
+    write_new_file(folder_.path() / name / "notes.txt", "no picture");
+    arguments_.zooms.push_back(fmt::format("@{}={}", 1000 - 200 * number_of, path(name)));
+  }
+  arguments_.rig = path("rig.toml");
+  arguments_.names = {"front"};
+  Node found = answer(exit_done);
+  EXPECT_NEAR(number(entry(found, "zoom", 2), "ratio"), 500.0 / 240, 0.03);
+  write_new_file(folder_.path() / "experiment.toml", "include = ['rig.toml']\n[[arm.section]]\nlength = 1\n");
+  const CameraConfig camera = load_experiment(path("experiment.toml")).cameras().at(0);
+  EXPECT_EQ(camera.lens.zoom.size(), 3U);
+  const ZoomTable table(camera.lens, width, height);
+  EXPECT_NEAR(table.at(600).fx, 360, 4);
+  // The lens put into cameras that are there already.
+  write_new_file(
+      folder_.path() / "before.toml",
+      "[[arm.section]]\nlength = 1\n[[camera]]\nname = 'front'\nmount = { position = [0, 0, 5], look_at = "
+      "[0, 0, 0] }\n[[camera]]\nname = 'side'\nmount = { position = [5, 0, 0], look_at = [0, 0, 0] }\n");
+  arguments_.rig_from = path("before.toml");
+  EXPECT_EQ(*answer(exit_done).find("rig")->as<std::string>(), path("rig-2.toml"));
+  write_new_file(folder_.path() / "after.toml", "include = ['rig-2.toml']\n[[arm.section]]\nlength = 1\n");
+  const auto cameras = load_experiment(path("after.toml")).cameras();
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[0].mount.position[2], 5);
+  EXPECT_EQ(cameras[0].lens.zoom.size(), 3U);
+  EXPECT_TRUE(cameras[1].lens.zoom.empty());
+  arguments_.names = {"other"};
+  EXPECT_THAT(refusal(), HasSubstr("no camera"));
+}
+
+TEST_F(IntrinsicsCommand, DoesNotTakeForAZoomWhatDoesNotZoom) {
+  arguments_.images = {};
+  for (const std::string name : {"one", "two"}) {
+    std::filesystem::create_directory(folder_.path() / name);
+    (void)photograph(name + "/", 260);
+    arguments_.zooms.push_back(fmt::format("{}={}", name == "one" ? 1 : 2, path(name)));
+  }
+  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("rising"));
+}
+
+TEST_F(IntrinsicsCommand, SaysWhyThereIsNoCamera) {
+  for (const char* name : {"a.png", "b.png"})
+    arguments_.images.push_back(write(name, Image<std::uint8_t>(width, height, 1, 200)));
+  arguments_.out = path("cameras.toml");
+  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("no view"));
+  EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
+}
+
+TEST_F(IntrinsicsCommand, RefusesPicturesThatItCannotUse) {
+  const std::string good = write("good.png", Image<std::uint8_t>(width, height));
+  arguments_.images = {good};
+  EXPECT_THAT(refusal(), HasSubstr("expected two"));
+  arguments_.images = {good, write("other.png", Image<std::uint8_t>(height, width))};
+  EXPECT_THAT(refusal(), HasSubstr("expected 240 x 180"));
+  write_new_file(folder_.path() / "cut.png",
+                 png(board_picture(board, Lens(lens_of(200)), {}, 60, 40)).substr(0, 100));
+  arguments_.images = {good, path("cut.png")};
+  EXPECT_THAT(refusal(), HasSubstr("cut.png"));
+  arguments_.images = {good, path("missing.png")};
+  EXPECT_THAT(refusal(), HasSubstr("no such file"));
+  arguments_.images = {};
+  EXPECT_THAT(refusal(), HasSubstr("--left"));
+  arguments_.left = {good, good}, arguments_.right = {good};
+  EXPECT_THAT(refusal(), HasSubstr("one for each"));
+  arguments_.right = {good, good}, arguments_.board = "6x4";
+  EXPECT_THAT(refusal(), HasSubstr("upside down"));
+}
+
+TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {
+  arguments_.images = {"a.png", "b.png"};
+  const IntrinsicsArguments good = arguments_;
+  for (const char* text :
+       {"", "9", "x", "9x", "0x6", "9x-6", "2x6", "1000000x1000000", "99999999999x6", "9x6x2", "9.5x6"}) {
+    arguments_.board = text;
+    EXPECT_THAT(refusal(), HasSubstr("--board")) << text;
+  }
+  arguments_ = good;
+  for (const double square :
+       {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    arguments_.square = square;
+    EXPECT_THAT(refusal(), HasSubstr("--square"));
+  }
+  const auto refuses = [&](const char* what, auto&& change) {
+    arguments_ = good;
+    change(arguments_);
+    EXPECT_THAT(refusal(), HasSubstr(what));
+  };
+  refuses("--pattern", [](auto& a) { a.pattern = "dots"; });
+  refuses("--distortion", [](auto& a) { a.distortion = 6; });
+  refuses("--hold-out", [](auto& a) { a.hold_out = 1; });
+  refuses("--position", [](auto& a) { a.position = {0, NAN, 0}; });
+  refuses("--rotation", [](auto& a) { a.rotation = {0, 0, 0, 0}; });
+  refuses("--out", [](auto& a) { a.out = "a.png"; });
+  refuses("--rig-from", [](auto& a) { a.rig_from = "a.toml"; });
+  for (const char* zoom : {"", "1", "1=", "=a", "@=a", "0=a", "-1=a", "nan=a", "1@x=a"})
+    refuses("--zoom", [&](auto& a) { a.images = {}, a.zooms = {zoom, "2=b"}; });
+  refuses("--zoom", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2@5=b"}; });
+  refuses("no folder", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2=b"}; });
+}
+
+}  // namespace
+}  // namespace flexura

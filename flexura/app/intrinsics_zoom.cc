@@ -1,0 +1,122 @@
+#include "flexura/app/intrinsics_zoom.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/app/commands.h"
+#include "flexura/app/intrinsics_answer.h"
+#include "flexura/app/intrinsics_files.h"
+#include "flexura/app/intrinsics_pictures.h"
+#include "flexura/base/source.h"
+#include "flexura/camera/zoom.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+Node text(const std::string& value) { return {value, {}}; }
+Node number(double value) { return {value, {}}; }
+Node texts(const std::vector<std::string>& values) {
+  Node::Array entries;
+  for (const std::string& value : values) entries.push_back(text(value));
+  return {std::move(entries), {}};
+}
+
+// One position of a zoom, measured.
+struct MeasuredZoom {
+  ZoomGroup group;
+  BoardPictures pictures;
+  IntrinsicsFit fit;
+
+  [[nodiscard]] double focal_length() const {
+    return std::sqrt(fit.cameras.front().lens.fx * fit.cameras.front().lens.fy);
+  }
+};
+
+// The lens of all positions, by rising focal length. Ratios that were not told are those of the focal
+// lengths.
+LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
+  std::ranges::sort(zooms, {}, &MeasuredZoom::focal_length);
+  const double shortest = zooms.front().focal_length();
+  LensConfig lens;
+  for (MeasuredZoom& zoom : zooms) {
+    if (!zoom.group.ratio) zoom.group.ratio = zoom.focal_length() / shortest;
+    const Intrinsics& own = zoom.fit.cameras.front().lens;
+    lens.zoom.push_back(
+        {*zoom.group.ratio, zoom.group.count, own.fx, own.fy, own.cx, own.cy, own.distortion});
+  }
+  // The lens at ratio 1: the row nearest to it, by its own ratio.
+  const ZoomRow& one = *std::ranges::min_element(
+      lens.zoom, {}, [](const ZoomRow& row) { return std::abs(std::log(row.ratio)); });
+  lens.fx = *one.fx / one.ratio, lens.fy = *one.fy / one.ratio;
+  lens.cx = one.cx, lens.cy = one.cy, lens.distortion = *one.distortion;
+  return lens;
+}
+
+Node zoom_node(const IntrinsicsArguments& arguments, const std::string& name, const MeasuredZoom& zoom) {
+  Node::Table entry;
+  if (zoom.group.ratio) entry.push_back({"ratio", {}, number(*zoom.group.ratio)});
+  if (zoom.group.count) entry.push_back({"count", {}, number(*zoom.group.count)});
+  entry.push_back({"folder", {}, text(zoom.group.folder)});
+  if (!zoom.fit.is_found) entry.push_back({"reason", {}, text(zoom.fit.reason)});
+  if (const auto notes = notes_of({zoom.pictures}, zoom.fit); !notes.empty())
+    entry.push_back({"notes", {}, texts(notes)});
+  add_held_out(zoom.fit, entry);
+  Node camera = camera_node(name, zoom.pictures, zoom.fit, 0, static_cast<int>(arguments.distortion));
+  auto& members = *camera.as<Node::Table>();
+  entry.insert(entry.end(), members.begin(), members.end());
+  return {std::move(entry), {}};
+}
+
+}  // namespace
+
+int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out) {
+  const std::string name = names_of_cameras(arguments, {"camera"}).front();
+  std::vector<MeasuredZoom> zooms;
+  std::string reason;
+  for (const ZoomGroup& group : zoom_groups(arguments.zooms)) {
+    MeasuredZoom& zoom = zooms.emplace_back();
+    zoom.group = group;
+    const auto files = pictures_in(group.folder);
+    zoom.pictures = look_for_board(files, board, group.folder);
+    if (zoom.pictures.size != zooms.front().pictures.size)
+      throw input_error(group.folder,
+                        fmt::format("pictures of another size than in {}", zooms.front().group.folder));
+    zoom.fit = fit_pictures(arguments, board, {zoom.pictures});
+    if (!zoom.fit.is_found && reason.empty()) reason = group.folder + ": " + zoom.fit.reason;
+  }
+  CalibratedCamera camera{name, first_pose(arguments), {}, zooms.front().pictures.size};
+  if (reason.empty()) {
+    camera.lens = zoom_lens(zooms);
+    if (const auto fault = ZoomTable::fault(camera.lens))
+      reason = fmt::format("this is no zoom: {}: {}", fault->path, fault->what);
+  }
+  Node::Table answer{{"found", {}, {reason.empty(), {}}}};
+  if (!reason.empty()) answer.push_back({"reason", {}, text(reason)});
+  answer.push_back({"board", {}, board_node(board)});
+  if (reason.empty()) {
+    double square = 0;
+    std::size_t points = 0;
+    for (const MeasuredZoom& zoom : zooms) {
+      points += zoom.fit.points;
+      square += zoom.fit.rms * zoom.fit.rms * static_cast<double>(zoom.fit.points);
+    }
+    const double rms = std::sqrt(square / static_cast<double>(points));
+    answer.push_back({"rms_px", {}, number(rms)});
+    write_files(arguments, {camera}, rms, points, answer);
+  }
+  Node::Array entries;
+  for (const MeasuredZoom& zoom : zooms) entries.push_back(zoom_node(arguments, name, zoom));
+  answer.push_back({"zoom", {}, {std::move(entries), {}}});
+  out << write_json({std::move(answer), {}}, 2) << '\n';
+  return reason.empty() ? exit_done : exit_missed;
+}
+
+}  // namespace flexura

@@ -1,0 +1,132 @@
+#include "flexura/app/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/app/commands.h"
+#include "flexura/base/problems.h"
+#include "flexura/base/source.h"
+#include "flexura/camera/measured_camera.h"
+#include "flexura/store/image_file.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 29;
+
+template <typename E>
+E named(const std::string& option, const std::string& word) {
+  const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));
+  const auto found = std::ranges::find(names, word);
+  if (found == names.end())
+    throw input_error(option,
+                      fmt::format("\"{}\": expected one of \"{}\"", word, fmt::join(names, "\", \"")));
+  return static_cast<E>(found - names.begin());
+}
+
+MeasureSettings settings_of(const MeasureArguments& arguments) {
+  MeasureSettings settings;
+  settings.what = named<MeasureTarget>("--what", arguments.what);
+  settings.finder.threshold.method = named<ThresholdMethod>("--threshold", arguments.threshold);
+  if (arguments.level) {
+    const bool is_level = *arguments.level >= 0 && *arguments.level <= 255;
+    if (!is_level) throw input_error("--level", fmt::format("{}: expected 0 to 255", *arguments.level));
+    settings.finder.threshold.method = ThresholdMethod::fixed;
+    settings.finder.threshold.level = *arguments.level;
+  } else if (settings.finder.threshold.method == ThresholdMethod::fixed) {
+    throw input_error("--threshold", "\"fixed\" needs --level, from 0 to 255");
+  }
+  if (arguments.base.size() == 2) {
+    if (!std::isfinite(arguments.base[0]) || !std::isfinite(arguments.base[1]))
+      throw input_error("--base", "expected two finite numbers u,v");
+    settings.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
+  }
+  const auto is_size = [](double x) { return x > 0 && std::isfinite(x); };
+  if (arguments.radius && !is_size(*arguments.radius))
+    throw input_error("--radius", fmt::format("{} m: expected a number above 0", *arguments.radius));
+  settings.radius = arguments.radius;
+  return settings;
+}
+
+// The lens of each picture; none without a file of cameras.
+std::vector<std::optional<Lens>> lenses_of(const MeasureArguments& arguments) {
+  std::vector<std::optional<Lens>> lenses(arguments.images.size());
+  if (arguments.camera.empty()) {
+    if (arguments.radius) throw input_error("--radius", "needs --camera, a file of measured cameras");
+    return lenses;
+  }
+  const auto cameras = read_as<MeasuredCameras>(read_toml_file(arguments.camera)).camera;
+  if (cameras.size() != 1 && cameras.size() != lenses.size()) {
+    throw input_error(arguments.camera,
+                      fmt::format("{} cameras for {} pictures: expected one camera, or one for each "
+                                  "picture",
+                                  cameras.size(), lenses.size()));
+  }
+  for (std::size_t i = 0; i < lenses.size(); ++i) lenses[i] = cameras[cameras.size() == 1 ? 0 : i].lens();
+  return lenses;
+}
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+int measure_one(const MeasureArguments& arguments, MeasureSettings settings, const std::optional<Lens>& lens,
+                std::ostream& out) {
+  const std::string& name = arguments.images.front();
+  settings.lens = lens;
+  const Measurement found =
+      measure_picture(bytes_of(read_text_file(name, most_bytes)), name, settings, !arguments.overlay.empty());
+  if (!arguments.overlay.empty()) replace_file(arguments.overlay, png(found.overlay));
+  out << write_json(found.answer, 2) << '\n';
+  return found.is_found ? exit_done : exit_missed;
+}
+
+int measure_many(const MeasureArguments& arguments, MeasureSettings settings,
+                 const std::vector<std::optional<Lens>>& lenses, std::ostream& out) {
+  int status = exit_done;
+  for (std::size_t i = 0; i < arguments.images.size(); ++i) {
+    const std::string& name = arguments.images[i];
+    settings.lens = lenses[i];
+    try {
+      const Measurement found = measure_picture(bytes_of(read_text_file(name, most_bytes)), name, settings);
+      out << write_json(found.answer) << '\n';
+      if (!found.is_found && status == exit_done) status = exit_missed;
+    } catch (const InputError& error) {
+      const Node line{Node::Table{{"image", {}, {name, {}}}, {"error", {}, {joined(error.problems()), {}}}},
+                      {}};
+      out << write_json(line) << '\n';
+      status = exit_bad_input;
+    }
+  }
+  return status;
+}
+
+}  // namespace
+
+int measure_command(const MeasureArguments& arguments, std::ostream& out) {
+  if (!arguments.overlay.empty()) {
+    if (arguments.images.size() != 1) throw input_error("--overlay", "expected one picture to draw it over");
+    if (std::filesystem::path(arguments.overlay).extension() != ".png")
+      throw input_error("--overlay",
+                        fmt::format("\"{}\": expected a file name that ends in .png", arguments.overlay));
+  }
+  const MeasureSettings settings = settings_of(arguments);
+  const auto lenses = lenses_of(arguments);
+  return arguments.images.size() == 1 ? measure_one(arguments, settings, lenses.front(), out)
+                                      : measure_many(arguments, settings, lenses, out);
+}
+
+}  // namespace flexura

@@ -1,0 +1,119 @@
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/app/measure_job.h"
+#include "flexura/vision/backbone_image.h"
+#include "flexura/vision/markers.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+
+// Every fourth sample of an axis is as good as independent of the others.
+constexpr std::size_t independent = 4;
+
+Node end_node(const AxisEnd& end) {
+  return TableMaker()
+      .add("kind",
+           text_node(names_of(static_cast<const AxisEndKind*>(nullptr))[static_cast<std::size_t>(end.kind)]))
+      .add("at", pixel_pair(end.pixel))
+      .add("bulge", number_node(px(end.bulge)))
+      .take();
+}
+
+Node marker_node(const MarkerSighting& marker) {
+  Node::Array color;
+  for (int c = 0; c < 3; ++c) color.push_back(number_node(std::round(marker.color[c])));
+  return TableMaker()
+      .add("at", pixel_pair(marker.pixel))
+      .add("along", number_node(px(marker.along)))
+      .add("length", number_node(px(marker.length)))
+      .add("sigma", number_node(marker.sigma))
+      .add("kind", text_node(marker.is_band ? "band" : "spot"))
+      .add("color", {std::move(color), {}})
+      .add("may_be_merged", {marker.may_be_merged, {}})
+      .take();
+}
+
+void add_axis(const Job& job, const std::vector<AxisSample>& axis, bool is_backbone) {
+  Node::Array points, widths, sigmas, seen;
+  for (const AxisSample& sample : axis) {
+    points.push_back(pixel_pair(sample.pixel));
+    widths.push_back(number_node(px(sample.width)));
+    sigmas.push_back(number_node(rounded(sample.sigma, 1e4)));
+    seen.push_back({sample.is_seen, {}});
+  }
+  job.answer.add("axis_kind", text_node(is_backbone ? "backbone" : "middle"))
+      .add("axis", {std::move(points), {}})
+      .add("width", {std::move(widths), {}})
+      .add("sigma", {std::move(sigmas), {}})
+      .add("seen", {std::move(seen), {}});
+  if (!is_backbone || !job.settings.radius) return;
+  Node::Array depths;
+  for (const double depth : backbone_depths(*job.settings.lens, axis, *job.settings.radius))
+    depths.push_back(std::isfinite(depth) ? number_node(rounded(depth, 1e6)) : Node{});
+  job.answer.add("depth", {std::move(depths), {}});
+}
+
+void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSample>& axis,
+              const std::vector<MarkerSighting>& markers) {
+  for (std::size_t i = 0; i + 1 < arm.axis.size(); ++i) {
+    const AxisSample &a = arm.axis[i], &b = arm.axis[i + 1];
+    canvas.line(axis[i].pixel, axis[i + 1].pixel, axis_color);
+    if (!a.is_seen || !b.is_seen) continue;
+    for (const double side : {0.5, -0.5})
+      canvas.line(a.pixel + side * a.width * a.normal, b.pixel + side * b.width * b.normal, border_color);
+  }
+  for (const MarkerSighting& marker : markers) canvas.cross(marker.pixel, 4, marker_color);
+  canvas.cross(arm.ends[0].pixel, 7, fit_color);
+}
+
+}  // namespace
+
+bool measure_arm(const Job& job) {
+  ArmFinder finder(job.settings.finder);
+  const bool has_words = job.photograph.words.width() > 0;
+  const ArmSighting& arm = has_words ? finder.find(gray_picture(job.photograph.words), job.photograph.white)
+                                     : finder.find(job.gray);
+  add_threshold(arm.threshold, job.answer);
+  job.answer.add("found", {arm.is_found(), {}});
+  if (!arm.is_found()) {
+    job.answer.add("reason", text_node(arm.reason));
+    return false;
+  }
+  std::vector<AxisSample> axis = arm.axis;
+  if (job.settings.lens) to_backbone_image(*job.settings.lens, axis);
+  ArmSighting corrected = arm;
+  corrected.axis = axis;
+  MarkerSightings markers = find_markers(job.photograph.bytes, corrected);
+  std::vector<std::string> notes = arm.notes;
+  notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
+  job.answer.add("notes", texts_node(notes))
+      .add("base", end_node(arm.ends[0]))
+      .add("tip", end_node(arm.ends[1]));
+  job.answer.add("blur", number_node(arm.blur))
+      .add("noise", number_node(arm.noise))
+      .add("contrast", number_node(arm.contrast));
+  Node::Array marker_nodes;
+  for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
+  if (job.settings.what == MeasureTarget::arm) {
+    add_axis(job, axis, job.settings.lens.has_value());
+    std::vector<Vector2d> points;
+    for (std::size_t i = 0; i < axis.size(); i += independent)
+      if (axis[i].is_seen) points.push_back(axis[i].pixel);
+    job.answer.add("markers", {std::move(marker_nodes), {}})
+        .add("circle", circle_node(fit_circle(points)))
+        .add("ellipse", ellipse_node(fit_ellipse(points)));
+  } else {
+    job.answer.add("markers", {std::move(marker_nodes), {}});
+  }
+  if (job.canvas != nullptr) draw_arm(*job.canvas, arm, axis, markers.markers);
+  return job.settings.what == MeasureTarget::arm || !markers.markers.empty();
+}
+
+}  // namespace flexura

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/app/measure_job.h"
+#include "flexura/vision/border.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+
+// Whether most of a figure's border lies near the circle or the ellipse.
+bool is_round(const std::optional<CircleFit>& circle, const std::optional<EllipseFit>& ellipse,
+              std::size_t used, const FigureBorder& figure) {
+  constexpr double least_share = 0.4, roughest = 0.03;
+  if (static_cast<double>(used) < least_share * static_cast<double>(figure.points.size())) return false;
+  // Through half a circle's height at least: what is nearly straight fits some huge one.
+  const double size = std::sqrt(static_cast<double>(figure.area));
+  constexpr double widest = 20;
+  return (circle && circle->rms < roughest * circle->radius && circle->radius < widest * size) ||
+         (ellipse && ellipse->rms < roughest * ellipse->semi_axes.y() &&
+          ellipse->semi_axes.x() < widest * size);
+}
+
+}  // namespace
+
+bool measure_circle(const Job& job) {
+  const FigureBorder figure = largest_figure(job.gray, job.settings.finder.threshold);
+  add_threshold(figure.threshold, job.answer);
+  std::vector<Vector2d> points;
+  points.reserve(figure.points.size());
+  for (const BorderPoint& point : figure.points) points.push_back(point.pixel);
+  const std::optional<EllipseFit> ellipse = fit_ellipse_to_most(points);
+  const std::optional<CircleFit> circle = fit_circle(points);
+  const bool is_found = figure.reason.empty() && is_round(circle, ellipse, points.size(), figure);
+  job.answer.add("found", {is_found, {}});
+  if (!is_found) {
+    job.answer.add("reason", text_node(figure.reason.empty() ? "no circle or ellipse fits the largest figure"
+                                                             : figure.reason));
+    return false;
+  }
+  std::vector<std::string> notes;
+  if (figure.touches_border) notes.emplace_back("the picture's border cuts the figure");
+  if (points.size() < figure.points.size())
+    notes.push_back(fmt::format("{} of {} points of the border left out: they do not lie on it",
+                                figure.points.size() - points.size(), figure.points.size()));
+  job.answer.add("notes", texts_node(notes))
+      .add("area", {figure.area, {}})
+      .add("blur", number_node(figure.blur))
+      .add("points", {static_cast<std::int64_t>(points.size()), {}})
+      .add("circle", circle_node(circle))
+      .add("ellipse", ellipse_node(ellipse));
+  if (job.canvas != nullptr) {
+    for (const Vector2d& point : points) job.canvas->line(point, point, border_color);
+    if (ellipse) job.canvas->ellipse(*ellipse, fit_color);
+  }
+  return true;
+}
+
+}  // namespace flexura

@@ -1,0 +1,61 @@
+#include "flexura/app/measure_job.h"
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace flexura {
+namespace {
+
+double degrees(double angle) { return angle * 180 / std::numbers::pi; }
+
+}  // namespace
+
+double rounded(double value, double parts) { return std::round(value * parts) / parts; }
+double px(double value) { return rounded(value, 1e4); }
+
+Node number_node(double value) { return {value, {}}; }
+Node text_node(const std::string& value) { return {value, {}}; }
+Node texts_node(const std::vector<std::string>& values) {
+  Node::Array entries;
+  for (const std::string& value : values) entries.push_back(text_node(value));
+  return {std::move(entries), {}};
+}
+Node pixel_pair(const Eigen::Vector2d& value) {
+  return {Node::Array{number_node(px(value.x())), number_node(px(value.y()))}, {}};
+}
+
+Node circle_node(const std::optional<CircleFit>& fit) {
+  if (!fit) return {};
+  return TableMaker()
+      .add("center", pixel_pair(fit->center))
+      .add("radius", number_node(px(fit->radius)))
+      .add("rms", number_node(fit->rms))
+      .add("sigma", number_node(std::sqrt(fit->covariance(2, 2))))
+      .add("arc_deg", number_node(degrees(fit->arc)))
+      .add("verified", {fit->is_verified, {}})
+      .add("detectable_tilt_deg", number_node(degrees(fit->detectable_tilt)))
+      .take();
+}
+
+Node ellipse_node(const std::optional<EllipseFit>& fit) {
+  if (!fit) return {};
+  return TableMaker()
+      .add("center", pixel_pair(fit->center))
+      .add("semi_axes", pixel_pair(fit->semi_axes))
+      .add("angle_deg", number_node(degrees(fit->angle)))
+      .add("rms", number_node(fit->rms))
+      .take();
+}
+
+void add_threshold(const Threshold& threshold, TableMaker& answer) {
+  answer.add("threshold", number_node(threshold.level))
+      .add("method", text_node(names_of(static_cast<const ThresholdMethod*>(
+                         nullptr))[static_cast<std::size_t>(threshold.method)]));
+  if (threshold.reason.empty())
+    answer.add(
+        "figure",
+        text_node(names_of(static_cast<const Figure*>(nullptr))[static_cast<std::size_t>(threshold.figure)]));
+}
+
+}  // namespace flexura

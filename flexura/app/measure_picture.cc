@@ -1,0 +1,50 @@
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/app/measure_job.h"
+
+namespace flexura {
+
+const std::vector<std::string>& names_of(const MeasureTarget*) {
+  static const std::vector<std::string> names = {"arm", "etalon", "circle", "markers"};
+  return names;
+}
+
+Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
+                            const MeasureSettings& settings, bool with_overlay) {
+  const Photograph photograph = decode_picture(file, name);
+  const Image<std::uint8_t> gray = gray_picture(photograph.bytes);
+  std::optional<Canvas> canvas;
+  if (with_overlay) canvas.emplace(photograph.bytes);
+  TableMaker answer;
+  const auto whole = [](int value) { return Node{static_cast<std::int64_t>(value), {}}; };
+  answer.add("image", text_node(name))
+      .add("what", text_node(names_of(
+                       static_cast<const MeasureTarget*>(nullptr))[static_cast<std::size_t>(settings.what)]))
+      .add("size", {Node::Array{whole(gray.width()), whole(gray.height())}, {}})
+      .add("channels", whole(photograph.bytes.channels()))
+      .add("bits", whole(photograph.words.width() > 0 ? 16 : 8));
+  const Job job{photograph, gray, settings, answer, canvas ? &*canvas : nullptr};
+  Measurement result;
+  switch (settings.what) {
+    case MeasureTarget::arm:
+    case MeasureTarget::markers:
+      result.is_found = measure_arm(job);
+      break;
+    case MeasureTarget::etalon:
+      result.is_found = measure_etalon(job);
+      break;
+    case MeasureTarget::circle:
+      result.is_found = measure_circle(job);
+      break;
+  }
+  result.answer = answer.take();
+  if (canvas) result.overlay = canvas->picture();
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,165 @@
+#include "flexura/app/measure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "flexura/app/commands.h"
+#include "flexura/base/source.h"
+#include "flexura/store/image_file.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+/// The share of a pixel that lies within `distance` (a signed distance of its middle, px, positive outside).
+double share(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
+
+/// A dark bent tube 12 px wide before a bright ground, with three red bands.
+Image<std::uint8_t> tube() {
+  Image<std::uint8_t> picture(320, 240, 3);
+  for (int v = 0; v < 240; ++v) {
+    for (int u = 0; u < 320; ++u) {
+      const double radius = std::hypot(u - 300.0, v - 120.0), inside = v > 20 && v < 220 && u < 300 ? 1 : 0;
+      const double dark = inside * share(std::abs(radius - 150) - 6);
+      const bool is_band = std::abs(v - 70) < 4 || std::abs(v - 120) < 4 || std::abs(v - 170) < 4;
+      for (int c = 0; c < 3; ++c) {
+        const double figure = is_band && c == 0 ? 150 : 20;
+        picture.at(u, v, c) = static_cast<std::uint8_t>(std::lround(220 + dark * (figure - 220)));
+      }
+    }
+  }
+  return picture;
+}
+
+Measurement measured(const std::string& file, MeasureTarget what = MeasureTarget::arm) {
+  MeasureSettings settings;
+  settings.what = what;
+  return measure_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "test.png",
+                         settings, true);
+}
+
+double number_at(const Node& node, const char* table, const char* key) {
+  return *node.find(table)->find(key)->as<double>();
+}
+
+TEST(Measure, TellsAxisMarkersAndTheCircleOfAnArm) {
+  const Measurement found = measured(png(tube()));
+  ASSERT_TRUE(found.is_found) << write_json(found.answer);
+  EXPECT_EQ(*found.answer.find("axis_kind")->as<std::string>(), "middle");
+  EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 150, 0.1);
+  EXPECT_EQ(found.answer.find("markers")->as<Node::Array>()->size(), 3U);
+  EXPECT_EQ(found.answer.find("axis")->as<Node::Array>()->size(),
+            found.answer.find("width")->as<Node::Array>()->size());
+  EXPECT_EQ(found.overlay.width(), 320);
+  // A line over the picture.
+  EXPECT_NE(found.overlay, tube());
+}
+
+TEST(Measure, TellsTheCircleOfADisc) {
+  Image<std::uint8_t> disc(200, 160);
+  for (int v = 0; v < 160; ++v)
+    for (int u = 0; u < 200; ++u)
+      disc.at(u, v) =
+          static_cast<std::uint8_t>(std::lround(30 + 180 * share(std::hypot(u - 90.3, v - 80.6) - 50.2)));
+  const Measurement found = measured(png(disc), MeasureTarget::circle);
+  ASSERT_TRUE(found.is_found) << write_json(found.answer);
+  EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 50.2, 0.05);
+  EXPECT_LT(number_at(found.answer, "circle", "rms"), 0.1);
+  EXPECT_LT(number_at(found.answer, "circle", "detectable_tilt_deg"), 10);
+}
+
+TEST(Measure, TellsSidesAndLinesOfTheEtalon) {
+  Image<std::uint8_t> picture(200, 240, 3);
+  for (int v = 0; v < 240; ++v) {
+    for (int u = 0; u < 200; ++u) {
+      const double dark = v > 30 && v < 210 ? share(std::abs(u - 100.3) - 40) : 0,
+                   red = share(std::abs(u - 110.4) - 2);
+      for (int c = 0; c < 3; ++c) {
+        const double figure = 30 + (c == 0 ? 150 * red : 0);
+        picture.at(u, v, c) = static_cast<std::uint8_t>(std::lround(220 + dark * (figure - 220)));
+      }
+    }
+  }
+  const Measurement found = measured(png(picture), MeasureTarget::etalon);
+  ASSERT_TRUE(found.is_found) << write_json(found.answer);
+  EXPECT_NEAR(number_at(found.answer, "left", "u"), 60.3, 0.1);
+  EXPECT_NEAR(number_at(found.answer, "right", "u"), 140.3, 0.1);
+  const auto& lines = *found.answer.find("lines")->as<Node::Array>();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NEAR(*lines[0].find("offset")->as<double>(), 10.1, 0.1);
+}
+
+TEST(Measure, SaysWhyThereIsNothing) {
+  const Measurement found = measured(png(Image<std::uint8_t>(30, 20, 1, 90)));
+  EXPECT_FALSE(found.is_found);
+  EXPECT_THAT(*found.answer.find("reason")->as<std::string>(), HasSubstr("blank"));
+}
+
+TEST(Measure, TakesNoBoxForACircleAndNoBrightFigureForTheEtalon) {
+  Image<std::uint8_t> picture(200, 150, 1, 40);
+  for (int v = 30; v < 120; ++v)
+    for (int u = 20; u < 180; ++u) picture.at(u, v) = 220;
+  const Measurement circle = measured(png(picture), MeasureTarget::circle);
+  EXPECT_FALSE(circle.is_found);
+  const Measurement etalon = measured(png(picture), MeasureTarget::etalon);
+  EXPECT_FALSE(etalon.is_found);
+  EXPECT_THAT(*etalon.answer.find("reason")->as<std::string>(), HasSubstr("bright"));
+}
+
+TEST(Measure, RefusesWhatIsNoPictureInOneLine) {
+  const std::string whole = png(tube());
+  for (const std::string& file :
+       {std::string(), std::string("GIF"), whole.substr(0, 60), std::string("P5\n100000 100000\n255\n"),
+        std::string("P6\n30 30\n255\nabcdef"),
+        // A JPEG file's header that claims 30000 x 30000 px.
+        std::string("\xFF\xD8\xFF\xC0\x00\x0B\x08\x75\x30\x75\x30\x01\x01\x11\x00\xFF\xDA\x00\x08", 19)}) {
+    try {
+      (void)measured(file);
+      FAIL() << file.size();
+    } catch (const InputError& error) {
+      EXPECT_THAT(std::string(error.what()), HasSubstr("test.png"));
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+}
+
+TEST(Measure, AnswersSeveralPicturesInLinesAndTellsTheWorstByItsStatus) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& name, const std::string& bytes) {
+    write_new_file(folder.path() / name, bytes);
+    return (folder.path() / name).string();
+  };
+  const std::string good = write("good.png", png(tube())), bad = write("bad.png", "no picture");
+  const std::string blank = write("blank.png", png(Image<std::uint8_t>(30, 20, 1, 90)));
+  const auto status = [](const std::vector<std::string>& images, std::string& text) {
+    MeasureArguments arguments;
+    arguments.images = images;
+    std::ostringstream out;
+    const int result = measure_command(arguments, out);
+    text = out.str();
+    return result;
+  };
+  std::string text;
+  EXPECT_EQ(status({good, good}, text), exit_done);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 2);
+  EXPECT_EQ(text.substr(0, text.find('\n')), text.substr(text.find('\n') + 1, text.size() / 2 - 1));
+  EXPECT_EQ(status({good, blank}, text), exit_missed);
+  EXPECT_EQ(status({bad, good, blank}, text), exit_bad_input);
+  EXPECT_THAT(text, HasSubstr("\"error\":\"not a picture"));
+  EXPECT_EQ(status({blank}, text), exit_missed);
+  EXPECT_THROW((void)status({bad}, text), InputError);
+}
+
+}  // namespace
+}  // namespace flexura

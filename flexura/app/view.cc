@@ -1,0 +1,105 @@
+#include "flexura/app/view.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <random>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "embedded/experiment_toml.h"
+#include "embedded/page.h"
+#include "flexura/app/browser.h"
+#include "flexura/app/commands.h"
+#include "flexura/app/kept_token.h"
+#include "flexura/app/stop_signal.h"
+#include "flexura/base/source.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/results.h"
+#include "flexura/store/gzip.h"
+#include "flexura/view/recording.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::uint16_t usual_port = 8421;
+
+// Another for each start of the program: no secret, and no result depends on it.
+std::string session_name() {
+  std::random_device device;
+  return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+ViewStart start_of(const std::string& what) {
+  ViewStart start;
+  if (std::filesystem::is_directory(what)) {
+    start.recording = std::make_shared<const Recording>(what);
+    start.results = std::filesystem::path("results") / "view";
+  } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
+    throw input_error(what, "is a log: expected the folder in which it lies, as `flexura run` made it");
+  } else if (what.empty()) {
+    start.rig =
+        std::make_shared<const ViewedRig>(parse_experiment(embedded::experiment_toml, "the paper's arm"));
+    start.results = std::filesystem::path("results") / "paper_arm";
+  } else {
+    start.rig = std::make_shared<const ViewedRig>(load_experiment(what));
+    start.results = default_results_folder(what);
+  }
+  return start;
+}
+
+std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments& arguments,
+                                  std::span<const Asset> assets) {
+  ServerConfig config;
+  config.address = arguments.address;
+  config.names = arguments.names;
+  config.port = arguments.port.value_or(usual_port);
+  // A port that the system chose is another one the next time: nothing would find its token again.
+  if (config.port != 0) config.token = [](std::uint16_t port) { return kept_token(private_folder(), port); };
+  try {
+    return std::make_unique<ViewServer>(start, config, assets);
+  } catch (const std::system_error&) {
+    if (arguments.port) throw;
+  }
+  config.port = 0;
+  config.token = {};
+  return std::make_unique<ViewServer>(start, config, assets);
+}
+
+}  // namespace
+
+struct OpenViewer::Parts {
+  std::vector<std::uint8_t> no_page = gzip(
+      "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
+      "and npm.\n");
+  Asset no_page_asset{"/index.html", "text/plain; charset=utf-8", no_page};
+  std::unique_ptr<ViewServer> server;
+  std::optional<BrowserPage> page;
+};
+
+OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::ostream& out)
+    : parts_(std::make_unique<Parts>()) {
+  if (start.session.empty()) start.session = session_name();
+  std::span<const Asset> assets = embedded::page();
+  if (assets.empty()) assets = {&parts_->no_page_asset, 1};
+  parts_->server = serve(start, arguments, assets);
+  out << "viewer: " << parts_->server->url() << '\n' << std::flush;
+  if (arguments.browser) parts_->page.emplace(parts_->server->url());
+}
+
+OpenViewer::~OpenViewer() = default;
+
+int view_command(const ViewArguments& arguments, std::ostream& out, std::ostream& err) {
+  ViewStart start = start_of(arguments.what);
+  const StopSignal stop;
+  const OpenViewer viewer(std::move(start), arguments.viewer, out);
+  if (isatty(STDERR_FILENO) == 1) err << "Ctrl-C ends it\n" << std::flush;
+  stop.wait();
+  return exit_done;
+}
+
+}  // namespace flexura

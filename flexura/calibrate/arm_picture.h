@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/calibrate/marker_match.h"
+#include "flexura/camera/view.h"
+#include "flexura/estimate/sighting.h"
+#include "flexura/model/arm.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+struct ArmPictureConfig {
+  std::vector<KnownMarker> markers;  ///< Of the arm, base first.
+  /// Axis points are taken so far apart that their errors have nothing to do with each other: so many widths
+  /// of the arm, and px at least.
+  double spacing_widths = 1, spacing = 10;
+  /// No axis point is known better than this, px: lenses are not. Markers are known to 0.2 px at best.
+  double least_sigma = 0.05;
+  int white = 255;  ///< The largest value of a picture.
+};
+
+/// What is seen of an arm in one picture, its markers recognised.
+struct SeenArm {
+  std::vector<SeenMarker> markers;
+  std::vector<CurvePoint> points;  ///< Of the backbone, from base to tip, independent of each other.
+  std::size_t unknown = 0;         ///< Markers that were seen and not recognised.
+  std::string reason;              ///< Why there are no markers; "" when there are.
+};
+
+/// Where an arm's markers and ends are to be seen, if the arm and the view are as believed.
+[[nodiscard]] MarkerScene expected_markers(const Arm& arm, const ArmState& state,
+                                           const std::vector<KnownMarker>& markers, const View& view);
+
+/// Measures pictures of an arm. The same picture and expectation give the same answer, whatever was seen
+/// before.
+class ArmPicture {
+ public:
+  explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
+
+  /// `lens` corrects for what a wide tube shows of itself (vision/backbone_image.h); `expected` tells which
+  /// marker is which.
+  [[nodiscard]] SeenArm see(const Picture& picture, const Lens& lens, const MarkerScene& expected);
+
+ private:
+  ArmPictureConfig config_;
+  ArmFinder finder_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,84 @@
+#include "flexura/calibrate/board_alone.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "flexura/calibrate/board_start.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+
+BundleFit fit_from(const Intrinsics& lens, std::span<const Vector2d> points, std::span<const BoardView> views,
+                   const BundleConfig& config) {
+  BoardBundle start{{lens}, {Pose{}}, {}};
+  for (const BoardView& view : views) {
+    const auto pose = start_pose(Lens(lens), points, view.pixels.front());
+    if (!pose) return {};
+    start.boards.push_back(*pose);
+  }
+  return fit_bundle(points, views, start, config);
+}
+
+}  // namespace
+
+double rms_of(double square_sum, std::size_t points) {
+  return points > 0 ? std::sqrt(square_sum / static_cast<double>(points)) : 0;
+}
+
+CameraAlone fit_alone(std::span<const Vector2d> points, std::span<const BoardView> views, std::size_t camera,
+                      const std::array<int, 2>& size, const BundleConfig& config) {
+  CameraAlone alone;
+  std::vector<BoardView> own;
+  std::vector<Eigen::Matrix3d> homographies;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto& pixels = views[i].pixels[camera];
+    const auto H = pixels.empty() ? std::nullopt : board_homography(points, pixels);
+    if (!H) continue;
+    own.push_back({{pixels}}), homographies.push_back(*H), alone.views.push_back(i);
+  }
+  if (own.size() < 2) return alone;
+  Intrinsics lens = start_lens(homographies, size[0], size[1]);
+  alone.fit = fit_from(lens, points, own, config);
+  // A good fit is a few tenths of a pixel off. One that ended elsewhere began in the wrong place.
+  constexpr double bad = 2;
+  for (const double focal : {0.6, 1.2, 2.5, 6.0}) {
+    if (alone.fit.is_converged && rms_of(alone.fit.square_sum, alone.fit.points) < bad) break;
+    lens = {
+        .fx = focal * size[0], .fy = focal * size[0], .cx = 0.5 * (size[0] - 1), .cy = 0.5 * (size[1] - 1)};
+    BundleFit other = fit_from(lens, points, own, config);
+    const bool is_better =
+        other.is_converged && (!alone.fit.is_converged || other.square_sum < alone.fit.square_sum);
+    if (is_better) alone.fit = std::move(other);
+  }
+  return alone;
+}
+
+std::optional<Pose> start_camera(const CameraAlone& first, const CameraAlone& other) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < first.views.size(); ++i) {
+    const auto same = std::ranges::find(other.views, first.views[i]);
+    if (same == other.views.end()) continue;
+    const auto j = static_cast<std::size_t>(same - other.views.begin());
+    const Pose X_1C = first.fit.bundle.boards[i] * other.fit.bundle.boards[j].inverse();
+    sum += X_1C.rotation, position += X_1C.position, ++count;
+  }
+  if (count == 0) return std::nullopt;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> nearest(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d left = nearest.matrixU();
+  if ((left * nearest.matrixV().transpose()).determinant() < 0) left.col(2) *= -1;
+  return Pose{left * nearest.matrixV().transpose(), position / count};
+}
+
+}  // namespace flexura

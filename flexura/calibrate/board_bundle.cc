@@ -1,0 +1,271 @@
+#include "flexura/calibrate/board_bundle.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+using Vector6 = Eigen::Vector<double, 6>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+Pose moved(const Pose& pose, const Vector6& twist) {
+  return {so3_exp(twist.tail<3>()) * pose.rotation, pose.position + twist.head<3>()};
+}
+
+// The same by the first numbers of a lens.
+Intrinsics moved(const Intrinsics& lens, const VectorXd& step) {
+  const auto part = [&](Index i) { return i < step.size() ? step[i] : 0.0; };
+  Intrinsics result = lens;
+  result.fx += part(0), result.fy += part(1), result.cx += part(2), result.cy += part(3);
+  for (std::size_t i = 0; i < 5; ++i) result.distortion[i] += part(4 + static_cast<Index>(i));
+  return result;
+}
+
+// Lenses ready to project; none when a number is none of a lens.
+std::optional<std::vector<Lens>> lenses_of(const BoardBundle& bundle) {
+  std::vector<Lens> lenses;
+  for (const Intrinsics& lens : bundle.lenses) {
+    const bool is_lens =
+        lens.fx > 0 && lens.fy > 0 && std::isfinite(lens.fx + lens.fy + lens.cx + lens.cy) &&
+        std::ranges::all_of(lens.distortion, [](double part) { return std::isfinite(part); });
+    if (!is_lens) return std::nullopt;
+    lenses.emplace_back(lens);
+  }
+  return lenses;
+}
+
+// The unknowns of all views together and their normal equations: of the cameras (A), of each board (D), and
+// between the two (B).
+class NormalEquations {
+ public:
+  NormalEquations(std::span<const Vector2d> points, std::span<const BoardView> views,
+                  const BundleConfig& config, std::size_t cameras)
+      : points_(points),
+        views_(views),
+        lens_size_(config.cameras ? 4 + config.distortion : 0),
+        pose_size_(config.cameras ? 6 : 0) {
+    const auto count = static_cast<Index>(cameras);
+    const Index size = count * lens_size_ + (count - 1) * pose_size_;
+    A_.resize(size, size), cameras_right_.resize(size);
+    B_.assign(views.size(), MatrixXd(size, 6));
+    D_.resize(views.size()), boards_right_.resize(views.size());
+  }
+
+  [[nodiscard]] Index lens_size() const { return lens_size_; }
+  [[nodiscard]] Index lens_at(std::size_t camera) const { return static_cast<Index>(camera) * lens_size_; }
+  // Of a camera but the first.
+  [[nodiscard]] Index pose_at(std::size_t camera, std::size_t cameras) const {
+    return lens_at(cameras) + (static_cast<Index>(camera) - 1) * pose_size_;
+  }
+
+  // False where a point is shown nowhere.
+  bool linearize(const BoardBundle& bundle) {
+    const auto lenses = lenses_of(bundle);
+    if (!lenses) return false;
+    A_.setZero(), cameras_right_.setZero();
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      B_[view].setZero(), D_[view].setZero(), boards_right_[view].setZero();
+      for (std::size_t camera = 0; camera < lenses->size(); ++camera)
+        if (!views_[view].pixels[camera].empty() && !add(bundle, (*lenses)[camera], camera, view))
+          return false;
+    }
+    return true;
+  }
+
+  // The steps of the cameras' unknowns and of each board's, with Marquardt's damping; false when there is
+  // none.
+  bool solve(double damping, VectorXd& cameras, std::vector<Vector6>& boards) {
+    reduced_ = A_;
+    reduced_.diagonal() *= 1 + damping;
+    cameras = cameras_right_;
+    boards.resize(views_.size());
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      Matrix6 D = D_[view];
+      D.diagonal() *= 1 + damping;
+      const Eigen::LLT<Matrix6> factor(D);
+      if (factor.info() != Eigen::Success) return false;
+      boards[view] = factor.solve(boards_right_[view]);
+      if (cameras.size() == 0) continue;
+      const Eigen::Matrix<double, 6, Eigen::Dynamic> through = factor.solve(B_[view].transpose());
+      reduced_.noalias() -= B_[view] * through;
+      cameras.noalias() -= B_[view] * boards[view];
+    }
+    if (cameras.size() == 0) return true;
+    const Eigen::LDLT<MatrixXd> factor(reduced_);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return false;
+    cameras = factor.solve(cameras).eval();
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      Matrix6 D = D_[view];
+      D.diagonal() *= 1 + damping;
+      boards[view] -= D.llt().solve(B_[view].transpose() * cameras);
+    }
+    return cameras.allFinite();
+  }
+
+  // Of the last linearization, undamped.
+  [[nodiscard]] MatrixXd information() const {
+    MatrixXd result = A_;
+    for (std::size_t view = 0; result.size() > 0 && view < views_.size(); ++view)
+      result -= B_[view] * D_[view].llt().solve(B_[view].transpose());
+    return result;
+  }
+
+ private:
+  bool add(const BoardBundle& bundle, const Lens& lens, std::size_t camera, std::size_t view) {
+    const auto rows = 2 * static_cast<Index>(points_.size());
+    const Index own = lens_size_ + (camera > 0 ? pose_size_ : 0);
+    J_.resize(rows, own + 6), error_.resize(rows);
+    const Pose &X_1B = bundle.boards[view], &X_1C = bundle.cameras[camera];
+    const Eigen::Matrix3d R_C1 = X_1C.rotation.transpose();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const auto row = 2 * static_cast<Index>(i);
+      const Vector3d arm = X_1B.rotation.leftCols<2>() * points_[i],
+                     p_CP_1 = X_1B.position + arm - X_1C.position;
+      const auto projection = lens.project_with_derivatives(R_C1 * p_CP_1);
+      if (!projection) return false;
+      const Eigen::Matrix<double, 2, 3> by_point = projection->by_point * R_C1;
+      J_.block(row, 0, 2, lens_size_) = projection->by_intrinsics.leftCols(lens_size_);
+      if (own > lens_size_) {
+        J_.block<2, 3>(row, lens_size_) = -by_point;
+        J_.block<2, 3>(row, lens_size_ + 3).noalias() = by_point * skew(p_CP_1);
+      }
+      J_.block<2, 3>(row, own) = by_point;
+      J_.block<2, 3>(row, own + 3).noalias() = -by_point * skew(arm);
+      error_.segment<2>(row) = views_[view].pixels[camera][i] - projection->pixel;
+    }
+    normal_.setZero(own + 6, own + 6);
+    normal_.selfadjointView<Eigen::Upper>().rankUpdate(J_.transpose());
+    normal_.triangularView<Eigen::StrictlyLower>() = normal_.transpose();
+    right_.noalias() = J_.transpose() * error_;
+    scatter(camera, view, bundle.cameras.size(), own);
+    return true;
+  }
+
+  // Adds one camera's part of one view.
+  void scatter(std::size_t camera, std::size_t view, std::size_t cameras, Index own) {
+    std::array<std::array<Index, 3>, 2> parts{};  // from, to, size
+    std::size_t count = 0;
+    if (lens_size_ > 0) parts[count++] = {0, lens_at(camera), lens_size_};
+    if (own > lens_size_) parts[count++] = {lens_size_, pose_at(camera, cameras), pose_size_};
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [from, to, size] = parts[i];
+      for (std::size_t j = 0; j < count; ++j)
+        A_.block(to, parts[j][1], size, parts[j][2]) += normal_.block(from, parts[j][0], size, parts[j][2]);
+      B_[view].middleRows(to, size) += normal_.block(from, own, size, 6);
+      cameras_right_.segment(to, size) += right_.segment(from, size);
+    }
+    D_[view] += normal_.bottomRightCorner<6, 6>();
+    boards_right_[view] += right_.tail<6>();
+  }
+
+  std::span<const Vector2d> points_;
+  std::span<const BoardView> views_;
+  Index lens_size_, pose_size_;
+  MatrixXd A_, reduced_, J_, normal_;
+  VectorXd cameras_right_, error_, right_;
+  std::vector<MatrixXd> B_;
+  std::vector<Matrix6> D_;
+  std::vector<Vector6> boards_right_;
+};
+
+BoardBundle moved(const BoardBundle& bundle, const NormalEquations& equations, const VectorXd& cameras,
+                  const std::vector<Vector6>& boards) {
+  BoardBundle result = bundle;
+  for (std::size_t i = 0; i < bundle.lenses.size() && cameras.size() > 0; ++i) {
+    result.lenses[i] = moved(bundle.lenses[i], cameras.segment(equations.lens_at(i), equations.lens_size()));
+    if (i > 0)
+      result.cameras[i] =
+          moved(bundle.cameras[i], cameras.segment<6>(equations.pose_at(i, bundle.lenses.size())));
+  }
+  for (std::size_t i = 0; i < boards.size(); ++i) result.boards[i] = moved(bundle.boards[i], boards[i]);
+  return result;
+}
+
+std::optional<double> total(std::span<const Vector2d> points, std::span<const BoardView> views,
+                            const BoardBundle& bundle) {
+  const auto lenses = lenses_of(bundle);
+  if (!lenses) return std::nullopt;
+  double sum = 0;
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    for (std::size_t camera = 0; camera < lenses->size(); ++camera) {
+      const auto part = square_sum(points, views[view], bundle, camera, bundle.boards[view]);
+      if (!part) return std::nullopt;
+      sum += *part;
+    }
+  }
+  return std::isfinite(sum) ? std::optional(sum) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> square_sum(std::span<const Vector2d> points, const BoardView& view,
+                                 const BoardBundle& bundle, std::size_t camera, const Pose& X_1B) {
+  if (view.pixels[camera].empty()) return 0;
+  const Lens lens(bundle.lenses[camera]);
+  const Pose X_CB = bundle.cameras[camera].inverse() * X_1B;
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = lens.project(X_CB.position + X_CB.rotation.leftCols<2>() * points[i]);
+    if (!pixel) return std::nullopt;
+    sum += (*pixel - view.pixels[camera][i]).squaredNorm();
+  }
+  return sum;
+}
+
+BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView> views,
+                     const BoardBundle& start, const BundleConfig& config) {
+  BundleFit fit;
+  fit.bundle = start;
+  NormalEquations equations(points, views, config, start.lenses.size());
+  const auto first = total(points, views, start);
+  if (!first || !equations.linearize(start)) return fit;
+  fit.square_sum = *first;
+  for (const BoardView& view : views)
+    for (const auto& pixels : view.pixels) fit.points += pixels.size();
+  constexpr double most_damping = 1e12;
+  VectorXd cameras;
+  std::vector<Vector6> boards;
+  double damping = 1e-4;
+  for (fit.steps = 1; fit.steps < config.most_steps && !fit.is_converged && damping < most_damping;
+       ++fit.steps) {
+    std::optional<double> sum;
+    BoardBundle tried;
+    if (equations.solve(damping, cameras, boards)) {
+      tried = moved(fit.bundle, equations, cameras, boards);
+      sum = total(points, views, tried);
+    }
+    if (!sum || *sum > fit.square_sum) {
+      // Where rounding alone is left, no step is better.
+      fit.is_converged = sum && *sum <= fit.square_sum * (1 + config.least_gain);
+      damping = std::max(damping, 1e-6) * 10;
+      continue;
+    }
+    constexpr double exact = 1e-20;  // px^2 a point
+    fit.is_converged = fit.square_sum - *sum <= config.least_gain * fit.square_sum ||
+                       *sum < exact * static_cast<double>(fit.points);
+    fit.bundle = std::move(tried), fit.square_sum = *sum;
+    damping *= 0.01;
+    if (!equations.linearize(fit.bundle)) return fit;
+  }
+  fit.information = equations.information();
+  fit.unknowns = static_cast<std::size_t>(fit.information.rows()) + 6 * views.size();
+  return fit;
+}
+
+}  // namespace flexura

@@ -1,0 +1,109 @@
+#include "flexura/calibrate/board_finder.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flexura/calibrate/board_target.h"
+#include "flexura/camera/intrinsics.h"
+#include "tests/support/boards.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+constexpr int width = 320, height = 240;
+const Intrinsics lens_numbers = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
+
+// The root mean square of the distances from where the board's points are.
+double error(const BoardSighting& found, const BoardTarget& board, const Pose& X_CB) {
+  const Lens lens(lens_numbers);
+  const auto points = board.points();
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = lens.project(X_CB * Eigen::Vector3d(points[i].x(), points[i].y(), 0));
+    sum += (found.pixels[i] - *pixel).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+BoardSighting look(const BoardTarget& board, const Pose& X_CB) {
+  return find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), board);
+}
+
+TEST(BoardFinder, FindsCornersToATwelfthOfAPixelInTheBoardsOrder) {
+  const BoardTarget board{.columns = 7, .rows = 4};
+  for_random_cases(6, [&](TestRandom& random) {
+    const Pose X_CB = random_board(random, board, 0.3, 0.5, 0.05);
+    const BoardSighting found = look(board, X_CB);
+    ASSERT_TRUE(found.is_found()) << found.reason;
+    EXPECT_LT(error(found, board, X_CB), 0.08);
+  });
+}
+
+TEST(BoardFinder, KnowsTheFirstCornerOfABoardThatIsUpsideDown) {
+  const BoardTarget board{.columns = 7, .rows = 4};
+  for_random_cases(4, [&](TestRandom& random) {
+    Pose X_CB = random_board(random, board, 0.3, 0.4, 0.02);
+    const Eigen::Vector3d last(6 * board.square, 3 * board.square, 0);
+    X_CB = X_CB * Pose{Eigen::Vector3d(-1, -1, 1).asDiagonal(), last};
+    const BoardSighting found = look(board, X_CB);
+    ASSERT_TRUE(found.is_found()) << found.reason;
+    EXPECT_LT(error(found, board, X_CB), 0.08);
+  });
+}
+
+TEST(BoardFinder, FindsGridsOfCircles) {
+  // Two opposite first circles are as good where the board cannot tell.
+  const BoardTarget circles{.pattern = BoardPattern::circles, .columns = 7, .rows = 5},
+      shifted{.pattern = BoardPattern::asymmetric_circles, .columns = 4, .rows = 7, .square = 0.02};
+  for (const BoardTarget& board : {circles, shifted}) {
+    TestRandom random(case_seed(0));
+    Pose X_CB = random_board(random, board, 0.3, 0.3, 0.02);
+    X_CB.position.x() -= board.pattern == BoardPattern::circles ? 0.0 : 0.03;
+    const BoardSighting found = look(board, X_CB);
+    ASSERT_TRUE(found.is_found()) << found.reason;
+    BoardSighting reversed = found;
+    std::ranges::reverse(reversed.pixels);
+    const double least = std::min(error(found, board, X_CB), error(reversed, board, X_CB));
+    EXPECT_LT(board.is_ambiguous() ? least : error(found, board, X_CB), 0.3);
+    EXPECT_EQ(look(board, X_CB).pixels, found.pixels);
+  }
+}
+
+TEST(BoardFinder, SaysWhyThereIsNone) {
+  const BoardTarget board;
+  for (const auto& picture :
+       {Image<std::uint8_t>(64, 48, 1, 90), Image<std::uint8_t>(1, 1), Image<std::uint8_t>(3, 200)})
+    for (const BoardPattern pattern :
+         {BoardPattern::chessboard, BoardPattern::circles, BoardPattern::asymmetric_circles}) {
+      BoardTarget other = board;
+      other.pattern = pattern;
+      const BoardSighting found = find_board(picture, other);
+      EXPECT_FALSE(found.is_found());
+      EXPECT_NE(found.reason, "");
+    }
+}
+
+TEST(BoardFinder, IsNotContentWithAPartOfTheBoard) {
+  const BoardTarget board{.columns = 7, .rows = 4}, larger{.columns = 9, .rows = 6};
+  TestRandom random(case_seed(0));
+  const Pose X_CB = random_board(random, board, 0.3, 0.3, 0.02);
+  EXPECT_FALSE(find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), larger).is_found());
+}
+
+TEST(BoardTarget, CannotTellItsFirstPointWhereItLooksTheSameUpsideDown) {
+  EXPECT_FALSE((BoardTarget{.columns = 9, .rows = 6}.is_ambiguous()));
+  EXPECT_TRUE((BoardTarget{.columns = 8, .rows = 6}.is_ambiguous()));
+  EXPECT_TRUE((BoardTarget{.pattern = BoardPattern::circles, .columns = 9, .rows = 6}.is_ambiguous()));
+  EXPECT_FALSE(
+      (BoardTarget{.pattern = BoardPattern::asymmetric_circles, .columns = 4, .rows = 11}.is_ambiguous()));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,103 @@
+// The chessboards of the Debian package opencv-doc, which nobody here made: thirteen pairs of pictures.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "flexura/calibrate/board_finder.h"
+#include "flexura/calibrate/board_target.h"
+#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/vision/picture_file.h"
+
+namespace flexura {
+namespace {
+
+const std::filesystem::path folder = "/usr/share/doc/opencv-doc/examples/data";
+const std::vector<std::array<int, 2>> one_size = {{640, 480}}, two_sizes = {{640, 480}, {640, 480}};
+
+class RealBoards : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::filesystem::exists(folder / "left01.jpg")) return;
+    if (std::getenv("FLEXURA_REQUIRE_DATA") != nullptr) FAIL() << folder << " is not there";
+    GTEST_SKIP() << "skipped: " << folder << " is not there";
+  }
+
+  static BoardSighting look(const std::string& name) {
+    std::ifstream in(folder / name, std::ios::binary);
+    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+    return find_board(gray_picture(decode_picture(bytes, name).bytes), board);
+  }
+  // Found once for all tests.
+  static const std::vector<BoardView>& pairs() {
+    static const std::vector<BoardView> found = [] {
+      std::vector<BoardView> views;
+      for (int number = 1; number <= 14; ++number) {
+        if (number == 10) continue;
+        BoardView& view = views.emplace_back();
+        for (const char* side : {"left", "right"}) {
+          const BoardSighting seen = look(fmt::format("{}{:02}.jpg", side, number));
+          EXPECT_TRUE(seen.is_found()) << side << number;
+          view.pixels.push_back(seen.pixels);
+        }
+      }
+      return views;
+    }();
+    return found;
+  }
+  static std::vector<BoardView> side(std::size_t camera) {
+    std::vector<BoardView> views;
+    for (const BoardView& pair : pairs()) views.push_back({{pair.pixels[camera]}});
+    return views;
+  }
+
+  static constexpr BoardTarget board{};
+  const std::vector<Eigen::Vector2d> points_ = board.points();
+};
+
+TEST_F(RealBoards, GiveEachCameraTheKnownResidual) {
+  const IntrinsicsFit left = fit_intrinsics(points_, side(0), one_size),
+                      right = fit_intrinsics(points_, side(1), one_size);
+  ASSERT_TRUE(left.is_found && right.is_found);
+  EXPECT_EQ(left.points, 13 * points_.size());
+  EXPECT_NEAR(left.rms, 0.195, 0.005 * 0.195);
+  EXPECT_NEAR(right.rms, 0.207, 0.005 * 0.207);
+  // No board comes near the corners of the left pictures: the last coefficient is not told, and the rest is
+  // enough.
+  EXPECT_EQ(left.cameras[0].untold, std::vector<int>{8});
+  EXPECT_TRUE(right.cameras[0].untold.empty());
+  const IntrinsicsFit fewer = fit_intrinsics(points_, side(0), one_size, {.distortion = 4});
+  EXPECT_TRUE(fewer.cameras[0].untold.empty());
+  EXPECT_LT(fewer.rms, 1.002 * left.rms);
+  EXPECT_NEAR(left.cameras[0].lens.fx, 532.8, 1);
+  EXPECT_NEAR(right.cameras[0].lens.fx, 537.5, 1);
+}
+
+TEST_F(RealBoards, GiveThePairTheKnownResidual) {
+  const IntrinsicsFit pair = fit_intrinsics(points_, pairs(), two_sizes);
+  ASSERT_TRUE(pair.is_found);
+  EXPECT_NEAR(pair.rms, 0.2150, 0.005 * 0.2150);
+  EXPECT_NEAR(pair.poses[1].position.x(), 0.0832, 0.0003);
+}
+
+TEST_F(RealBoards, ArePredictedWhenTheyAreHeldOut) {
+  const IntrinsicsFit left = fit_intrinsics(points_, side(0), one_size, {.hold_out = 2});
+  EXPECT_EQ(left.points, 7 * points_.size());
+  ASSERT_TRUE(left.held_out_rms);
+  EXPECT_LE(*left.held_out_rms, 0.197);
+  // The other cameras and the pair have no figure to keep; they must not be much worse than their fits.
+  const IntrinsicsFit right = fit_intrinsics(points_, side(1), one_size, {.hold_out = 2}),
+                      pair = fit_intrinsics(points_, pairs(), two_sizes, {.hold_out = 2});
+  EXPECT_LT(*right.held_out_rms, 1.03 * right.rms);
+  EXPECT_LT(*pair.held_out_rms, 1.1 * pair.rms);
+}
+
+}  // namespace
+}  // namespace flexura

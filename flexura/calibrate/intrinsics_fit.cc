@@ -1,0 +1,274 @@
+#include "flexura/calibrate/intrinsics_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/calibrate/board_alone.h"
+#include "flexura/calibrate/board_certainty.h"
+#include "flexura/calibrate/board_start.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::VectorXd;
+using Size = std::array<int, 2>;
+
+constexpr const char* untilted =
+    "the views do not tell focal length and principal point apart from where the board was: expected boards "
+    "tilted to different sides";
+
+// What the views do not tell wanders off without end, and they are explained all the same.
+const char* why_not_converged(const BundleFit& fit) {
+  constexpr double good = 2;  // px
+  const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
+  return is_explained ? untilted : "no lens explains the views";
+}
+
+class Calibration {
+ public:
+  Calibration(std::span<const Vector2d> points, std::span<const BoardView> views, std::span<const Size> sizes,
+              const IntrinsicsConfig& config)
+      : points_(points), views_(views), sizes_(sizes), config_(config) {
+    check();
+    result_.is_held_out.assign(views.size(), false);
+    result_.boards.resize(views.size());
+    int count = 0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const bool is_seen =
+          std::ranges::any_of(views[i].pixels, [](const auto& pixels) { return !pixels.empty(); });
+      if (!is_seen) continue;
+      const bool is_held_out = config.hold_out > 0 && ++count % config.hold_out == 0;
+      result_.is_held_out[i] = is_held_out;
+      if (!is_held_out) numbers_.push_back(i), fitted_.push_back(views[i]);
+    }
+  }
+
+  IntrinsicsFit run() {
+    BoardBundle start;
+    if (!find_start(start)) return std::move(result_);
+    const BundleFit fit = fit_bundle(points_, fitted_, start, bundle_config(1e-12));
+    if (!fit.is_converged) return fail(why_not_converged(fit));
+    take(fit);
+    tell_views();
+    predict();
+    judge();
+    return std::move(result_);
+  }
+
+ private:
+  void check() const {
+    for (const BoardView& view : views_) {
+      if (view.pixels.size() != sizes_.size())
+        throw std::invalid_argument("a view has another number of cameras");
+      for (const auto& pixels : view.pixels)
+        if (!pixels.empty() && pixels.size() != points_.size())
+          throw std::invalid_argument("a view has another number of points than the board");
+    }
+    if (config_.distortion < 0 || config_.distortion > 5)
+      throw std::invalid_argument("of five distortion coefficients, 0 to 5 can be estimated");
+  }
+
+  [[nodiscard]] BundleConfig bundle_config(double least_gain) const {
+    return {.distortion = config_.distortion, .least_gain = least_gain};
+  }
+  [[nodiscard]] std::string camera_text(std::size_t camera) const {
+    return sizes_.size() == 1 ? "" : fmt::format("camera {}: ", camera + 1);
+  }
+  IntrinsicsFit fail(std::string reason) {
+    result_.reason = std::move(reason);
+    return std::move(result_);
+  }
+
+  bool find_start(BoardBundle& start) {
+    constexpr double start_gain = 1e-7;  // The joint fit goes on from there.
+    std::vector<CameraAlone> alone;
+    for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
+      alone.push_back(fit_alone(points_, fitted_, camera, sizes_[camera], bundle_config(start_gain)));
+      const CameraAlone& own = alone.back();
+      if (own.views.size() < 2) {
+        result_.reason = camera_text(camera) +
+                         fmt::format("{} to fit: expected two at least, from different sides",
+                                     own.views.empty() ? "no view of the board" : "one view of the board");
+      } else if (!own.fit.is_converged) {
+        result_.reason = camera_text(camera) + why_not_converged(own.fit);
+      }
+      if (!result_.reason.empty()) return false;
+      start.lenses.push_back(own.fit.bundle.lenses.front());
+      const auto pose = camera == 0 ? std::optional(Pose{}) : start_camera(alone.front(), own);
+      if (!pose) {
+        result_.reason = camera_text(camera) + "no view of the board together with camera 1";
+        return false;
+      }
+      start.cameras.push_back(*pose);
+      CameraFit& fit = result_.cameras.emplace_back();
+      fit.rms_alone = rms_of(own.fit.square_sum, own.fit.points);
+    }
+    for (std::size_t view = 0; view < fitted_.size(); ++view) {
+      for (std::size_t camera = 0; camera < alone.size() && start.boards.size() == view; ++camera) {
+        const auto& seen = alone[camera].views;
+        const auto at = std::ranges::find(seen, view);
+        if (at == seen.end()) continue;
+        start.boards.push_back(start.cameras[camera] *
+                               alone[camera].fit.bundle.boards[static_cast<std::size_t>(at - seen.begin())]);
+      }
+      // Pixels on a line: no camera can say where that board was.
+      if (start.boards.size() == view) {
+        result_.reason = "the points of a view lie on a line";
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // The unknowns' order is that of BundleFit::information.
+  void take(const BundleFit& fit) {
+    bundle_ = fit.bundle;
+    result_.rms = rms_of(fit.square_sum, fit.points);
+    result_.points = fit.points, result_.steps = fit.steps;
+    const double freedom = 2 * static_cast<double>(fit.points) - static_cast<double>(fit.unknowns);
+    result_.noise = freedom > 0 ? std::sqrt(fit.square_sum / freedom) : 0;
+    const auto cameras = static_cast<Index>(sizes_.size());
+    const Index lens_size = 4 + config_.distortion;
+    VectorXd scale(fit.information.rows());
+    for (Index i = 0; i < cameras; ++i) {
+      const auto camera = static_cast<std::size_t>(i);
+      const Intrinsics& lens = bundle_.lenses[camera];
+      scale.segment(i * lens_size, lens_size) = intrinsics_effects(lens, seen_by(camera)).head(lens_size);
+      if (i == 0) continue;
+      const double depth = bundle_.boards.front().position.norm();
+      scale.segment<3>(pose_at(camera)).setConstant(lens.fx / std::max(depth, 1e-6));
+      scale.segment<3>(pose_at(camera) + 3).setConstant(lens.fx);
+    }
+    unit_covariance_ = covariance_of(fit.information, scale);
+    const double variance = result_.noise * result_.noise;
+    for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
+      CameraFit& own = result_.cameras[camera];
+      own.lens = bundle_.lenses[camera];
+      own.covariance.setZero();
+      const Index at = static_cast<Index>(camera) * lens_size;
+      own.covariance.topLeftCorner(lens_size, lens_size) =
+          variance * unit_covariance_.block(at, at, lens_size, lens_size);
+      result_.poses.push_back(bundle_.cameras[camera]);
+      Eigen::Matrix<double, 6, 6>& pose = result_.pose_covariance.emplace_back();
+      pose.setZero();
+      if (camera > 0) pose = variance * unit_covariance_.block<6, 6>(pose_at(camera), pose_at(camera));
+    }
+  }
+
+  [[nodiscard]] Index pose_at(std::size_t camera) const {
+    return static_cast<Index>(sizes_.size()) * (4 + config_.distortion) +
+           6 * (static_cast<Index>(camera) - 1);
+  }
+
+  void tell_views() {
+    for (std::size_t i = 0; i < numbers_.size(); ++i) result_.boards[numbers_[i]] = bundle_.boards[i];
+    for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
+      CameraFit& own = result_.cameras[camera];
+      own.view_rms.resize(views_.size());
+      double sum = 0;
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < fitted_.size(); ++i) {
+        if (fitted_[i].pixels[camera].empty()) continue;
+        const double part = square_sum(points_, fitted_[i], bundle_, camera, bundle_.boards[i]).value_or(0);
+        own.view_rms[numbers_[i]] = rms_of(part, points_.size());
+        sum += part, count += points_.size();
+      }
+      own.rms = rms_of(sum, count);
+    }
+  }
+
+  // Where the boards of held-out views were, and how well the cameras then say their pixels.
+  void predict() {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      if (!result_.is_held_out[view]) continue;
+      BoardBundle start{bundle_.lenses, bundle_.cameras, {}};
+      for (std::size_t camera = 0; camera < sizes_.size() && start.boards.empty(); ++camera) {
+        if (views_[view].pixels[camera].empty()) continue;
+        const auto pose = start_pose(Lens(bundle_.lenses[camera]), points_, views_[view].pixels[camera]);
+        if (pose) start.boards.push_back(bundle_.cameras[camera] * *pose);
+      }
+      if (start.boards.empty()) continue;
+      const BundleFit fit = fit_bundle(points_, views_.subspan(view, 1), start, {.cameras = false});
+      if (!fit.is_converged) continue;
+      result_.boards[view] = fit.bundle.boards.front();
+      sum += fit.square_sum, count += fit.points;
+      for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
+        if (views_[view].pixels[camera].empty()) continue;
+        const auto part = square_sum(points_, views_[view], bundle_, camera, fit.bundle.boards.front());
+        if (part) result_.cameras[camera].view_rms[view] = rms_of(*part, points_.size());
+      }
+    }
+    if (count > 0) result_.held_out_rms = rms_of(sum, count);
+  }
+
+  [[nodiscard]] std::vector<Vector2d> seen_by(std::size_t camera) const {
+    std::vector<Vector2d> all;
+    for (const BoardView& view : fitted_)
+      all.insert(all.end(), view.pixels[camera].begin(), view.pixels[camera].end());
+    return all;
+  }
+
+  void judge() {
+    for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
+      judge(camera);
+      const auto& untold = result_.cameras[camera].untold;
+      if (!untold.empty() && untold.front() < 4) result_.reason = camera_text(camera) + untilted;
+    }
+    result_.is_found = result_.reason.empty();
+  }
+
+  void judge(std::size_t camera) {
+    constexpr double best_noise = 0.05, largest_share = 0.01;
+    CameraFit& own = result_.cameras[camera];
+    const auto [width, height] = sizes_[camera];
+    const double largest = largest_share * std::hypot(width, height);
+    own.corner_sigma = corner_sigma(own.lens, own.covariance, width, height);
+    // Perfect pictures would tell everything.
+    const double grown = result_.noise < best_noise ? best_noise / std::max(result_.noise, 1e-12) : 1;
+    const auto seen = intrinsics_effects(own.lens, seen_by(camera)),
+               corners = intrinsics_effects(own.lens, image_corners(width, height));
+    const bool are_corners_known = grown * own.corner_sigma <= largest;
+    for (int i = 0; i < 4 + config_.distortion; ++i) {
+      const double sigma = grown * own.sigma(i);
+      const bool is_told = seen[i] * sigma <= largest && (are_corners_known || corners[i] * sigma <= largest);
+      if (!is_told) own.untold.push_back(i);
+    }
+  }
+
+  std::span<const Vector2d> points_;
+  std::span<const BoardView> views_;
+  std::span<const Size> sizes_;
+  IntrinsicsConfig config_;
+  std::vector<std::size_t> numbers_;  // Of the views that are fitted.
+  std::vector<BoardView> fitted_;
+  BoardBundle bundle_;
+  MatrixXd unit_covariance_;
+  IntrinsicsFit result_;
+};
+
+}  // namespace
+
+double CameraFit::sigma(int parameter) const { return std::sqrt(covariance(parameter, parameter)); }
+
+IntrinsicsFit fit_intrinsics(std::span<const Vector2d> points, std::span<const BoardView> views,
+                             std::span<const Size> sizes, const IntrinsicsConfig& config) {
+  return Calibration(points, views, sizes, config).run();
+}
+
+}  // namespace flexura

@@ -1,0 +1,278 @@
+#include "flexura/calibrate/rig_aim.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "flexura/camera/camera.h"
+#include "flexura/math/so3.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+constexpr double half_pi = 1.57079632679489661923;
+
+// The angles of a head, zeros included, whose camera looks along a direction of W.
+HeadState along(const Camera& camera, HeadState head, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d u = (camera.mount().rotation.transpose() * direction).normalized();
+  head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0)), head.pan = std::atan2(-u.x(), u.z());
+  return head;
+}
+
+HeadState with_zeros(const RigCamera& camera, HeadState head, double sign) {
+  head.pan += sign * camera.pan_zero, head.tilt += sign * camera.tilt_zero;
+  return head;
+}
+
+Pose pose_of(const RigCamera& model, const Camera& camera, const RigStance& stance) {
+  return camera.pose(stance.stage, with_zeros(model, stance.head, 1));
+}
+
+double focal_of(const Camera& camera, double zoom) {
+  const Intrinsics lens = camera.lens().at(zoom);
+  return std::sqrt(lens.fx * lens.fy);
+}
+
+// Where in the zoom's travel the focal length is this, or comes nearest; it grows or falls all the way.
+double zoom_of(const Camera& camera, double focal) {
+  auto [low, high] = camera.head_axes()[2].limits;
+  low = std::max(low, camera.lens().first()), high = std::min(high, camera.lens().last());
+  if (focal_of(camera, low) > focal_of(camera, high)) std::swap(low, high);
+  if (!(focal > focal_of(camera, low))) return low;
+  if (!(focal < focal_of(camera, high))) return high;
+  constexpr int halvings = 100;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (focal_of(camera, middle) < focal ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Two cameras on their way to the wanted configuration.
+class Seeker {
+ public:
+  Seeker(const RigModel& model, const RigWish& wish)
+      : wish_(wish),
+        stances_(wish.now),
+        models_{&model.cameras.at(wish.now[0].camera), &model.cameras.at(wish.now[1].camera)},
+        cameras_{Camera(models_[0]->config), Camera(models_[1]->config)} {
+    if (wish.now[0].camera == wish.now[1].camera)
+      throw std::invalid_argument("a wanted configuration of one camera with itself");
+  }
+
+  WantedRig seek(const RigModel& model) {
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      start_[i] = focal_of(cameras_[i], stances_[i].head.zoom) / depth(i);
+    constexpr int rounds = 5;  // The pupils shift with the zooms, a little.
+    for (int round = 0; round < rounds; ++round) {
+      zoom();
+      if (wish_.may_use_stages) slide();
+    }
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) settle(i);
+    turn();
+    WantedRig result;
+    draw_to_steps(model);
+    note(result);
+    result.stances = stances_;
+    result.remainder = remainder(model, stances_, wish_.target);
+    return result;
+  }
+
+ private:
+  void aim(std::size_t i) { stances_[i].head = aimed(*models_[i], stances_[i], wish_.target); }
+  [[nodiscard]] Eigen::Vector3d sight(std::size_t i) const {
+    return wish_.target - pose_of(*models_[i], cameras_[i], stances_[i]).position;
+  }
+  [[nodiscard]] double depth(std::size_t i) const { return sight(i).norm(); }
+
+  void zoom() {
+    double least = 0, most = std::numeric_limits<double>::infinity();
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      aim(i);
+      const double a = focal_of(cameras_[i], zoom_of(cameras_[i], 0)) / depth(i);
+      const double b =
+          focal_of(cameras_[i], zoom_of(cameras_[i], std::numeric_limits<double>::infinity())) / depth(i);
+      least = std::max(least, a), most = std::min(most, b);
+    }
+    const double wanted = wish_.magnification.value_or(std::sqrt(start_[0] * start_[1]));
+    magnification_ = std::min(std::max(wanted, least), most);
+    is_zoom_short_ = least > most;
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      stances_[i].head.zoom = zoom_of(cameras_[i], magnification_ * depth(i));
+  }
+
+  // Newton's steps of least length towards orthogonal lines of sight, within the travels.
+  void slide() {
+    constexpr int most = 50;
+    constexpr double enough = 1e-13;
+    for (int step = 0; step < most; ++step) {
+      for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) aim(i);
+      const Eigen::Vector3d a = sight(0), b = sight(1);
+      const double cosine = a.normalized().dot(b.normalized());
+      if (std::abs(cosine) < enough) return;
+      Eigen::Vector<double, 6> slope;
+      slope << by_stage(0, a, b, cosine), by_stage(1, b, a, cosine);
+      for (Eigen::Index j = 0; j < 6; ++j)
+        if (is_stopped(j, -cosine * slope[j])) slope[j] = 0;
+      if (!(slope.squaredNorm() > enough)) return;
+      const Eigen::Vector<double, 6> move = -cosine / slope.squaredNorm() * slope;
+      for (Eigen::Index j = 0; j < 6; ++j) {
+        const auto& limits = slide_of(j).limits;
+        double& offset = stances_[static_cast<std::size_t>(j / 3)].stage.offset[j % 3];
+        offset = std::clamp(offset + move[j], limits[0], limits[1]);
+      }
+    }
+  }
+
+  // d cosine / d stage offset, for the camera whose line of sight is `own`.
+  [[nodiscard]] Eigen::Vector3d by_stage(std::size_t i, const Eigen::Vector3d& own,
+                                         const Eigen::Vector3d& other, double cosine) const {
+    const Eigen::Vector3d by_pupil = (cosine * own.normalized() - other.normalized()) / own.norm();
+    return cameras_[i].mount().rotation.transpose() * by_pupil;
+  }
+  [[nodiscard]] const AxisConfig& slide_of(Eigen::Index j) const {
+    return cameras_[static_cast<std::size_t>(j / 3)].stage_axes()[static_cast<std::size_t>(j % 3)];
+  }
+  [[nodiscard]] bool is_stopped(Eigen::Index j, double way) const {
+    const auto& limits = slide_of(j).limits;
+    const double offset = stances_[static_cast<std::size_t>(j / 3)].stage.offset[j % 3];
+    return way > 0 ? offset >= limits[1] : offset <= limits[0];
+  }
+
+  // Draws the stage and the zoom to what can be commanded.
+  void settle(std::size_t i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      double& offset = stances_[i].stage.offset[j];
+      offset = commandable(cameras_[i].stage_axes()[static_cast<std::size_t>(j)], offset);
+    }
+    stances_[i].head.zoom = commandable(cameras_[i].head_axes()[2], stances_[i].head.zoom);
+  }
+
+  // Along the lines of sight, and what is missing to 90 degrees by half from each.
+  void turn() {
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) aim(i);
+    const Eigen::Vector3d a = sight(0).normalized(), b = sight(1).normalized();
+    const Eigen::Vector3d across = a.cross(b);
+    const double excess = std::atan2(across.norm(), a.dot(b)) - half_pi;
+    if (!(across.norm() > 0)) return;
+    const Eigen::Vector3d half = 0.5 * excess * across.normalized();
+    look_along(0, so3_exp(half) * a), look_along(1, so3_exp(-half) * b);
+  }
+  void look_along(std::size_t i, const Eigen::Vector3d& direction) {
+    stances_[i].head = with_zeros(*models_[i], along(cameras_[i], stances_[i].head, direction), -1);
+  }
+
+  // Of the positions around the wanted one, those with the most nearly orthogonal axes, and of these the ones
+  // that look best at the target.
+  void draw_to_steps(const RigModel& model) {
+    wanted_ = stances_;
+    constexpr unsigned ways = 16;
+    constexpr double axes_first = 1e4;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned way = 0; way < ways; ++way) {
+      std::array<RigStance, 2> tried = wanted_;
+      for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+        const unsigned bits = way >> (2 * i);
+        tried[i].head.pan = neighbour(cameras_[i].head_axes()[0], wanted_[i].head.pan, (bits & 1) != 0);
+        tried[i].head.tilt = neighbour(cameras_[i].head_axes()[1], wanted_[i].head.tilt, (bits & 2) != 0);
+      }
+      const RigRemainder left = remainder(model, tried, wish_.target);
+      double cost = axes_first * left.angle * left.angle;
+      for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+        cost += left.aim[i].squaredNorm() / (depth(i) * depth(i));
+      if (cost < least) least = cost, stances_ = tried;
+    }
+  }
+  static double neighbour(const AxisConfig& axis, double position, bool is_above) {
+    if (!(axis.resolution > 0)) return commandable(axis, position);
+    const double step = position / axis.resolution;
+    return commandable(axis, axis.resolution * (is_above ? std::ceil(step) : std::floor(step)));
+  }
+
+  void note(WantedRig& result) const {
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      const std::array<double, 2> is = {stances_[i].head.pan, stances_[i].head.tilt},
+                                  should = {wanted_[i].head.pan, wanted_[i].head.tilt};
+      constexpr std::array<const char*, 2> names = {"pan", "tilt"};
+      for (std::size_t j = 0; j < 2; ++j) {
+        const AxisConfig& axis = cameras_[i].head_axes()[j];
+        if (std::abs(is[j] - should[j]) > axis.resolution * (1 + 1e-9) + 1e-12)
+          result.notes.push_back(fmt::format("{}: {} ends at {:.4f} rad, wanted {:.4f}",
+                                             models_[i]->config.name, names[j], is[j], should[j]));
+      }
+    }
+    if (is_zoom_short_) result.notes.emplace_back("no zoom that both cameras have shows the target alike");
+    const double cosine = sight(0).normalized().dot(sight(1).normalized());
+    constexpr double visible = 1e-3;
+    if (std::abs(cosine) > visible)
+      result.notes.push_back(fmt::format(
+          "the lines of sight are {:.4f} rad off 90 degrees where the stages end: the axes pass the target",
+          std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
+  }
+
+  const RigWish& wish_;
+  std::array<RigStance, 2> stances_, wanted_;
+  std::array<const RigCamera*, 2> models_;
+  std::array<Camera, 2> cameras_;
+  std::array<double, 2> start_ = {0, 0};
+  double magnification_ = 0;
+  bool is_zoom_short_ = false;
+};
+
+}  // namespace
+
+Eigen::Vector3d arm_middle(const RigModel& model, const ArmState& state) {
+  const Backbone backbone(model.arm, model.bent(state));
+  return backbone.pose(0.5 * backbone.length()).position;
+}
+
+HeadState aimed(const RigCamera& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
+  const Camera camera(model.config);
+  HeadState head = with_zeros(model, stance.head, 1);
+  // The pupil moves with the head; each round leaves a share of its lever over the distance.
+  constexpr int most = 60;
+  for (int round = 0; round < most; ++round) {
+    const HeadState next = along(camera, head, p_WP - camera.pose(stance.stage, head).position);
+    const bool is_same = next == head;
+    head = next;
+    if (is_same) break;
+  }
+  return with_zeros(model, head, -1);
+}
+
+HeadState commanded_head(const RigCamera& model, const HeadState& head) {
+  const Camera camera(model.config);
+  const auto& [pan, tilt, zoom] = camera.head_axes();
+  return {commandable(pan, head.pan), commandable(tilt, head.tilt), commandable(zoom, head.zoom)};
+}
+
+RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& stances,
+                       const Eigen::Vector3d& target) {
+  RigRemainder left;
+  std::array<Eigen::Vector3d, 2> axes;
+  std::array<double, 2> sizes = {1, 1};
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+    const RigCamera& camera_model = model.cameras.at(stances[i].camera);
+    const Camera camera(camera_model.config);
+    const Pose X_WC = pose_of(camera_model, camera, stances[i]);
+    const Eigen::Vector3d p_CT = X_WC.inverse() * target;
+    axes[i] = X_WC.rotation.col(2);
+    left.aim[i] = -p_CT.head<2>();
+    left.roll[i] = roll_of(X_WC.rotation).value_or(0);
+    sizes[i] = focal_of(camera, stances[i].head.zoom) / p_CT.z();
+  }
+  left.angle = std::atan2(axes[0].cross(axes[1]).norm(), axes[0].dot(axes[1])) - half_pi;
+  left.zoom_ratio = sizes[0] / sizes[1];
+  return left;
+}
+
+WantedRig wanted_rig(const RigModel& model, const RigWish& wish) { return Seeker(model, wish).seek(model); }
+
+}  // namespace flexura

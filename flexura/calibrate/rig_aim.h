@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/calibrate/rig_model.h"
+
+namespace flexura {
+
+/// The middle of the arm, commanded to `state`, as the model has it: halfway along, in W, m.
+[[nodiscard]] Eigen::Vector3d arm_middle(const RigModel& model, const ArmState& state);
+
+/// The pan and tilt, as the head counts them, that bring a point of W onto the camera's optical axis, from
+/// where the stance's stage and zoom stand. Not drawn to the head's limits or steps.
+[[nodiscard]] HeadState aimed(const RigCamera& model, const RigStance& stance, const Eigen::Vector3d& p_WP);
+
+/// The nearest position of the head that can be commanded.
+[[nodiscard]] HeadState commanded_head(const RigCamera& model, const HeadState& head);
+
+/// The configuration that section 3.4 of the paper asks for.
+struct RigWish {
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What both cameras look at, in W, m.
+  std::array<RigStance, 2> now;                      ///< From where they go: of two cameras.
+  bool may_use_stages = true;
+  /// Focal length over depth that both shall have, px/m; the one between their present ones that both can
+  /// reach when left out.
+  std::optional<double> magnification;
+};
+
+/// What remains of it, by the model.
+struct RigRemainder {
+  double angle = 0;                     ///< Between the axes, beyond 90 degrees, rad.
+  std::array<Eigen::Vector2d, 2> aim;   ///< By which each axis passes the target, right and down, m.
+  double zoom_ratio = 1;                ///< First camera's magnification over the second's.
+  std::array<double, 2> roll = {0, 0};  ///< Of each camera about its axis, rad: no head can correct it.
+};
+
+struct WantedRig {
+  std::array<RigStance, 2> stances;  ///< To be commanded: within the limits, in steps of the resolutions.
+  RigRemainder remainder;
+  std::vector<std::string> notes;  ///< What keeps it from being had: "front: pan ends at ...".
+};
+
+/// The commands after which both cameras look at the target along orthogonal axes and show it equally large:
+/// the stages (by as little as does it) bring the lines of sight to 90 degrees, as far as they travel, and
+/// the heads turn along these. What the stages cannot do, the heads do half each: orthogonal axes come before
+/// axes through the target. Then everything is drawn to what can be commanded; of the positions around it,
+/// those whose axes are the most nearly orthogonal. std::invalid_argument: stances of one camera.
+[[nodiscard]] WantedRig wanted_rig(const RigModel& model, const RigWish& wish);
+
+/// What remains when cameras stand like this.
+[[nodiscard]] RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& stances,
+                                     const Eigen::Vector3d& target);
+
+}  // namespace flexura

@@ -1,0 +1,208 @@
+#include "flexura/calibrate/rig_calibration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "flexura/calibrate/rig_descent.h"
+#include "flexura/math/arrays.h"
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+// The same observations by their markers alone, which say themselves where on the arm they belong; all of
+// them where there are none.
+RigObservations marked(const RigObservations& seen) {
+  RigObservations marked = seen;
+  std::size_t count = 0;
+  for (RigImage& image : marked.images) count += image.markers.size(), image.points.clear();
+  return count > 0 ? marked : seen;
+}
+
+// Which columns belong to the first `count` slots, from `first` on, of any camera.
+void free_slots(const RigVariables& variables, Eigen::Index first, Eigen::Index count,
+                std::vector<bool>& is_free) {
+  for (std::size_t camera = 0; camera < variables.guess().cameras.size(); ++camera) {
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      const Eigen::Index column =
+          variables.column(variables.camera_slots(camera) + static_cast<std::size_t>(i));
+      if (column >= 0) is_free[static_cast<std::size_t>(column)] = true;
+    }
+  }
+}
+
+// A guess in which each camera stands `nearer` times as far from the arm's base, carried about the vertical
+// through it by `turn` and facing it as before.
+struct Detour {
+  double nearer = 1, turn = 0;
+};
+
+Eigen::VectorXd start_of(const RigVariables& variables, const Detour& detour) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(variables.count());
+  const Eigen::Vector3d turn(0, detour.turn, 0);
+  for (std::size_t i = 0; i < variables.guess().cameras.size(); ++i) {
+    const Eigen::Vector3d& base = variables.guess().arm.X_WB.position;
+    const Eigen::Vector3d way = vector(variables.guess().cameras[i].config.mount.position) - base;
+    const Eigen::Vector3d move = detour.nearer * (so3_exp(turn) * way) - way;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const auto set = [&](Eigen::Index slot, double value) {
+        const Eigen::Index column =
+            variables.column(variables.camera_slots(i) + static_cast<std::size_t>(slot + j));
+        if (column >= 0) x[column] = value;
+      };
+      set(mount_position_slot, move[j]), set(mount_rotation_slot, turn[j]);
+    }
+  }
+  return x;
+}
+
+// First where the cameras look, then where they stand, then how long their lenses are, then everything: what
+// is rough before what is fine, so that the arm is not bent to make up for a camera.
+RigDescent approach(RigProblem& coarse, RigProblem& problem, const Detour& detour,
+                    const RigCalibrationConfig& config) {
+  const RigVariables& variables = problem.variables();
+  RigDescentConfig descent;
+  descent.bound = config.linear_beyond, descent.most_iterations = config.most_iterations;
+  RigDescent result{.x = start_of(variables, detour)};
+  int iterations = 0;
+  const auto go = [&](RigProblem& on) {
+    result = descend(on, result.x, descent);
+    iterations += result.iterations;
+  };
+  descent.is_free.assign(static_cast<std::size_t>(variables.count()), false);
+  constexpr std::array<std::array<Eigen::Index, 2>, 3> stages = {
+      {{mount_rotation_slot, 3}, {mount_position_slot, 3}, {focal_slot, 1}}};
+  constexpr int enough = 15;  // iterations towards a minimum that is not the last
+  descent.most_iterations = std::min(enough, config.most_iterations);
+  for (const auto& [first, count] : stages) {
+    free_slots(variables, first, count, descent.is_free);
+    go(coarse);
+  }
+  descent.is_free.clear(), descent.most_iterations = config.most_iterations;
+  go(coarse);
+  go(problem);
+  descent.does_bound_rise = false;
+  go(problem);
+  result.iterations = iterations;
+  return result;
+}
+
+Eigen::MatrixXd covariance_of(const RigProblem& problem, double bound) {
+  const RigVariables& variables = problem.variables();
+  Eigen::VectorXd gradient, scales(variables.count());
+  Eigen::MatrixXd normal;
+  problem.normal(bound, gradient, normal);
+  for (Eigen::Index i = 0; i < scales.size(); ++i) scales[i] = variables.variable(i).scale;
+  const Eigen::MatrixXd whole = normal.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd scaled = scales.asDiagonal() * whole * scales.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factors(scaled);
+  constexpr double dependent = 1e-13;
+  Eigen::MatrixXd inverse;
+  if (factors.info() == Eigen::Success && factors.rcond() > dependent) {
+    inverse = factors.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  } else {
+    // Directions of which nothing is known get a variance beyond all others.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+    const double least = dependent * solver.eigenvalues().maxCoeff();
+    const auto unknown = [&](double value) { return value > least ? 1 / value : 1 / (dependent * least); };
+    inverse = solver.eigenvectors() * solver.eigenvalues().unaryExpr(unknown).asDiagonal() *
+              solver.eigenvectors().transpose();
+  }
+  return scales.asDiagonal() * inverse * scales.asDiagonal();
+}
+
+double scale_of(const RigProblem& problem, const Eigen::VectorXd& x) {
+  double sum = problem.rms() * problem.rms() * static_cast<double>(problem.entries());
+  auto freedom = static_cast<double>(problem.entries());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double off = x[i] / problem.variables().variable(i).sigma;
+    sum += off * off;
+    freedom -= std::isfinite(problem.variables().variable(i).sigma) ? 0 : 1;
+  }
+  return freedom > 0 ? std::max(1.0, std::sqrt(sum / freedom)) : 1.0;
+}
+
+void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibrationConfig& config,
+           RigCalibration& result) {
+  constexpr double most_doubted = 0.3;
+  const auto doubted = static_cast<double>(result.doubts.size());
+  const double all = doubted + static_cast<double>(problem.sizes().size());
+  if (!std::isfinite(descent.cost)) {
+    result.reason = "nothing that was seen can be seen from where the cameras are guessed to stand";
+  } else if (!(doubted <= most_doubted * all)) {
+    result.reason = fmt::format("{:.0f} % of what was seen is not explained by any rig near the guess",
+                                100 * doubted / all);
+  } else if (!(result.rms <= config.most_rms)) {
+    result.reason =
+        fmt::format("what was seen is {:.1f} times farther off than its noise explains", result.rms);
+  } else if (!descent.is_settled) {
+    result.reason = fmt::format("the fit did not settle in {} iterations", result.iterations);
+  }
+  result.is_found = result.reason.empty();
+}
+
+// Leaves out what the fit does not explain and fits again, until that is the same.
+RigDescent without_doubtful(RigProblem& problem, RigDescent found, const RigCalibrationConfig& config) {
+  RigDescentConfig descent;
+  descent.bound = config.linear_beyond, descent.most_iterations = config.most_iterations;
+  descent.does_bound_rise = false;
+  constexpr int most = 8;
+  for (int round = 0; round < most && std::isfinite(found.cost); ++round) {
+    if (!problem.doubt_beyond(config.doubted_beyond)) break;
+    const int before = found.iterations;
+    found = descend(problem, found.x, descent);
+    found.iterations += before;
+  }
+  return found;
+}
+
+// Half of what is seen may be something else's and still leave a fit that is clearly the one.
+bool is_clear(const RigProblem& problem, const RigDescent& found, const RigCalibrationConfig& config) {
+  std::vector<double> sizes = problem.sizes();
+  if (!std::isfinite(found.cost) || sizes.empty()) return false;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle < config.most_rms;
+}
+
+}  // namespace
+
+RigCalibration calibrate_rig(RigProblem& problem, const RigCalibrationConfig& config) {
+  constexpr std::array<Detour, 7> detours = {
+      {{}, {0.8, 0}, {1.25, 0}, {1, 0.3}, {1, -0.3}, {0.8, 0.15}, {0.8, -0.15}}};
+  const RigVariables& variables = problem.variables();
+  RigProblem coarse(variables.guess(), problem.prior(), marked(problem.observations()));
+  RigCalibration result;
+  RigDescent best;
+  problem.doubt_nothing();
+  for (const Detour& detour : detours) {
+    RigDescent found = approach(coarse, problem, detour, config);
+    ++result.starts, result.iterations += found.iterations;
+    const bool is_last = is_clear(problem, found, config);
+    if (result.starts == 1 || found.cost < best.cost) best = std::move(found);
+    if (is_last) break;
+  }
+  (void)problem.linearise(best.x);
+  best = without_doubtful(problem, std::move(best), config);
+  result.x = best.x, result.doubts = problem.doubts();
+  result.model = variables.model(result.x);
+  for (std::size_t i = 0; i < variables.commanded().size(); ++i)
+    result.poses.push_back(variables.pose(result.x, i));
+  for (std::size_t i = 0; i < variables.read().size(); ++i)
+    result.stances.push_back(variables.stance(result.x, i));
+  if (std::isfinite(best.cost)) {
+    result.rms = problem.rms(), result.scale = scale_of(problem, result.x);
+    result.covariance = result.scale * result.scale * covariance_of(problem, config.linear_beyond);
+  }
+  judge(problem, best, config, result);
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,84 @@
+#include "flexura/calibrate/rig_descent.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace flexura {
+namespace {
+
+// Where residuals begin to count linearly: far from the answer most are large, and have to draw.
+double bound_of(const RigProblem& problem, const RigDescentConfig& config) {
+  if (!config.does_bound_rise) return config.bound;
+  constexpr double spread = 2;
+  std::vector<double> sizes = problem.sizes();
+  if (sizes.empty()) return config.bound;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return std::max(config.bound, spread * *middle);
+}
+
+void hold(const std::vector<bool>& is_free, Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    if (is_free.empty() || is_free[static_cast<std::size_t>(i)]) continue;
+    gradient[i] = 0;
+    matrix.row(i).setZero(), matrix.col(i).setZero(), matrix(i, i) = 1;
+  }
+}
+
+class Descent {
+ public:
+  Descent(RigProblem& problem, const RigDescentConfig& config) : problem_(problem), config_(config) {}
+
+  RigDescent run(const Eigen::VectorXd& start) {
+    RigDescent result{.x = start, .cost = std::numeric_limits<double>::infinity()};
+    if (!problem_.linearise(start)) return result;
+    while (result.iterations < config_.most_iterations && !result.is_settled) {
+      ++result.iterations;
+      result.is_settled = step(result.x);
+    }
+    (void)problem_.linearise(result.x);
+    result.cost = problem_.cost(config_.bound);
+    return result;
+  }
+
+ private:
+  // Moves x down, if it can. Whether there is nowhere left to go.
+  bool step(Eigen::VectorXd& x) {
+    constexpr double small = 1e-14, most_damping = 1e12, least_damping = 1e-12;
+    const double bound = bound_of(problem_, config_), before = problem_.cost(bound);
+    problem_.normal(bound, gradient_, normal_);
+    hold(config_.is_free, gradient_, normal_);
+    for (; damping_ < most_damping; damping_ *= 5) {
+      damped_ = normal_;
+      damped_.diagonal() += damping_ * normal_.diagonal().cwiseMax(std::numeric_limits<double>::min());
+      const Eigen::LLT<Eigen::MatrixXd> factors(damped_);
+      if (factors.info() != Eigen::Success) continue;
+      move_ = factors.solve(-gradient_);
+      const double promised = -0.5 * gradient_.dot(move_);
+      if (!(promised > small * before)) return true;
+      there_ = x + move_;
+      if (!problem_.linearise(there_) || !(problem_.cost(bound) < before)) continue;
+      x = there_;
+      damping_ = std::max(damping_ / 10, least_damping);
+      return false;
+    }
+    return true;
+  }
+
+  RigProblem& problem_;
+  const RigDescentConfig& config_;
+  double damping_ = 1e-4;
+  Eigen::VectorXd gradient_, move_, there_;
+  Eigen::MatrixXd normal_, damped_;
+};
+
+}  // namespace
+
+RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start, const RigDescentConfig& config) {
+  return Descent(problem, config).run(start);
+}
+
+}  // namespace flexura

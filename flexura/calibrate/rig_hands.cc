@@ -1,0 +1,142 @@
+#include "flexura/calibrate/rig_hands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "flexura/camera/camera.h"
+#include "flexura/camera/sensor.h"
+
+namespace flexura {
+namespace {
+
+// An axis stands where it was sent: within a step, and rounding.
+bool stands(const AxisConfig& axis, double sent, double reads) {
+  constexpr double rounding = 1e-6;
+  return std::abs(commandable(axis, sent) - reads) <= axis.resolution + rounding;
+}
+
+}  // namespace
+
+RigHands::RigHands(const RigPorts& ports, const RigModel& believed, const RigPatience& patience)
+    : ports_(ports), patience_(patience), sent_(ports.cameras.size()) {
+  for (const RigCamera& camera : believed.cameras) cameras_.push_back(camera.config);
+}
+
+std::variant<ArmState, std::string> RigHands::arm() const {
+  const auto reading = ports_.arm->read();
+  if (const auto fault = reading.fault()) return text(*fault);
+  return reading.value().state;
+}
+
+std::variant<RigStance, std::string> RigHands::stance(std::size_t camera) const {
+  const auto head = ports_.cameras[camera].head->read();
+  if (const auto fault = head.fault()) return text(*fault);
+  const auto stage = ports_.cameras[camera].stage->read();
+  if (const auto fault = stage.fault()) return text(*fault);
+  return RigStance{camera, head.value().state, stage.value().state};
+}
+
+RigHands::Trouble RigHands::bend(const ArmState& state, double duration) {
+  if (const auto fault = ports_.arm->command(state, duration).fault()) return text(*fault);
+  sent_arm_ = state;
+  return std::nullopt;
+}
+
+RigHands::Trouble RigHands::go(const RigStance& stance) {
+  const CameraPorts& camera = ports_.cameras[stance.camera];
+  if (const auto fault = camera.head->command(stance.head).fault()) return text(*fault);
+  if (const auto fault = camera.stage->command(stance.stage).fault()) return text(*fault);
+  sent_[stance.camera] = stance;
+  return std::nullopt;
+}
+
+std::variant<bool, std::string> RigHands::is_moving() const {
+  const auto arm = ports_.arm->read();
+  if (const auto fault = arm.fault()) return text(*fault);
+  bool is_moving = arm.value().moving;
+  for (const CameraPorts& camera : ports_.cameras) {
+    const auto head = camera.head->read();
+    if (const auto fault = head.fault()) return text(*fault);
+    const auto stage = camera.stage->read();
+    if (const auto fault = stage.fault()) return text(*fault);
+    is_moving = is_moving || head.value().moving || stage.value().moving;
+  }
+  return is_moving;
+}
+
+RigHands::Trouble RigHands::settle() {
+  const double until = now() + patience_.settle;
+  for (;;) {
+    const auto moving = is_moving();
+    if (const auto* trouble = std::get_if<std::string>(&moving)) return *trouble;
+    if (!std::get<bool>(moving)) break;
+    if (now() >= until)
+      return fmt::format("something still moves {:.4g} s after it was sent", patience_.settle);
+    ports_.clock->wait_until(now() + patience_.poll);
+  }
+  if (auto trouble = arm_elsewhere()) return trouble;
+  for (std::size_t i = 0; i < sent_.size(); ++i)
+    if (auto trouble = camera_elsewhere(i)) return trouble;
+  return std::nullopt;
+}
+
+RigHands::Trouble RigHands::arm_elsewhere() const {
+  if (!sent_arm_) return std::nullopt;
+  const auto state = arm();
+  if (const auto* trouble = std::get_if<std::string>(&state)) return *trouble;
+  const auto& bends = std::get<ArmState>(state).bends;
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    const double off = (bends[i] - sent_arm_->bends[i]).norm();
+    if (off > patience_.bend)
+      return fmt::format(
+          "the arm does not follow: section {} says that it is {:.3g} rad from where it was sent", i + 1,
+          off);
+  }
+  return std::nullopt;
+}
+
+RigHands::Trouble RigHands::camera_elsewhere(std::size_t camera) const {
+  if (!sent_[camera]) return std::nullopt;
+  const auto where = stance(camera);
+  if (const auto* trouble = std::get_if<std::string>(&where)) return *trouble;
+  const RigStance &sent = *sent_[camera], &reads = std::get<RigStance>(where);
+  const Camera optics(cameras_[camera]);
+  const auto off = [&](const char* device, const char* axis_name, const AxisConfig& axis, double to,
+                       double is) -> Trouble {
+    if (stands(axis, to, is)) return std::nullopt;
+    return fmt::format("the {} of camera {} does not follow: {} was sent to {:.6g} and stands at {:.6g}",
+                       device, name(camera), axis_name, commandable(axis, to), is);
+  };
+  const auto& [pan, tilt, zoom] = optics.head_axes();
+  if (auto trouble = off("head", "pan", pan, sent.head.pan, reads.head.pan)) return trouble;
+  if (auto trouble = off("head", "tilt", tilt, sent.head.tilt, reads.head.tilt)) return trouble;
+  if (auto trouble = off("head", "zoom", zoom, sent.head.zoom, reads.head.zoom)) return trouble;
+  constexpr std::array<const char*, 3> names = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    if (auto trouble =
+            off("stage", names[i], optics.stage_axes()[i], sent.stage.offset[j], reads.stage.offset[j]))
+      return trouble;
+  }
+  return std::nullopt;
+}
+
+std::variant<Frame, std::string> RigHands::frame(std::size_t camera, double time) const {
+  const SensorConfig& sensor = cameras_[camera].sensor;
+  const double until = std::max(now(), time) + patience_.frame;
+  for (;;) {
+    const auto outcome = ports_.cameras[camera].camera->wait(until - now());
+    if (const auto fault = outcome.fault()) return text(*fault);
+    const std::optional<Frame>& frame = outcome.value();
+    if (!frame) return fmt::format("camera {} gave no frame for {:.4g} s", name(camera), patience_.frame);
+    const double start = frame->time - 0.5 * (last_row_delay(sensor) + frame->exposure);
+    constexpr double rounding = 1e-9;
+    if (start >= time - rounding) return *frame;
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/camera/camera_config.h"
+#include "flexura/camera/head.h"
+#include "flexura/camera/mount.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// A camera of a rig, and where its head's zeros lie.
+struct RigCamera {
+  CameraConfig config;
+  double pan_zero = 0, tilt_zero = 0;  ///< What is added to what the head says, rad.
+};
+
+/// An arm and the cameras that look at it: as they are believed to be, or as they were found. The arm's base
+/// is where the world is counted from (docs/calibration.md, "Gauge").
+struct RigModel {
+  Arm arm;
+  std::vector<double> bend_gains;  ///< Factor on each section's commanded bend; empty: all 1.
+  std::vector<RigCamera> cameras;
+
+  /// How the arm stands when it is commanded to `state`, as far as the model knows.
+  [[nodiscard]] ArmState bent(const ArmState& state) const;
+};
+
+/// A model of that arm and these cameras, nothing of which is known to be wrong.
+[[nodiscard]] RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras);
+
+/// How wrong a camera may be: standard deviations of what its description says; 0 holds a number, infinity
+/// says that nothing is known of it.
+struct CameraPrior {
+  double position = 0.7;        ///< Of the mount, in each direction, m.
+  double rotation = 0.1745;     ///< Of the mount, about each axis, rad: 10 degrees.
+  double pan_zero = 0;          ///< rad; held, for a turned mount does the same unless the stage moves.
+  double tilt_zero = 0.01;      ///< rad
+  double tilt_axis = 0.003;     ///< m, in each direction.
+  double pupil = 0.003;         ///< m, in each direction.
+  double pupil_shift = 0.001;   ///< m for each 1 of zoom ratio.
+  double focal = 0.1;           ///< Share of the focal length.
+  double aspect = 0.001;        ///< Share of fy alone.
+  double principal_point = 10;  ///< px, in each direction.
+  std::array<double, 5> distortion = {0.02, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
+  double zoom_row = 0.01;  ///< Share of the focal length of each row of a zoom table.
+  /// Of the true place of an axis of the head or the stage, in steps of its resolution: evenly anywhere
+  /// within half a step. 0: counts are exact.
+  double steps = 0.288675134594812882;
+};
+
+/// How wrong an arm may be: standard deviations, 0 holds.
+struct ArmPrior {
+  double length = 0.005;     ///< Share of each section's length.
+  double bend_gain = 0.01;   ///< Share of each section's bend, the same in all poses.
+  double bend_share = 0.01;  ///< Share of each bend, another in each pose.
+  double bend = 0.001;       ///< And beside that, rad.
+};
+
+struct RigPrior {
+  ArmPrior arm;
+  std::vector<CameraPrior> cameras;  ///< One a camera.
+};
+
+/// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from the arm's
+/// base, 10 % of its focal length, its principal point 10 px off.
+[[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2);
+
+/// A way in which one camera stood, as its head and stage say.
+struct RigStance {
+  std::size_t camera = 0;
+  HeadState head = {};
+  StageState stage = {};
+  /// An earlier stance (of the observations) since which the camera was neither panned nor tilted, though it
+  /// may have zoomed or slid: what its head truly stands at, beside what it says, is then the same.
+  std::optional<std::size_t> turned_as = {};
+};
+
+}  // namespace flexura

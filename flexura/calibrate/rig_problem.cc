@@ -1,0 +1,123 @@
+#include "flexura/calibrate/rig_problem.h"
+
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+
+RigProblem::RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen)
+    : prior_(prior), variables_(guess, prior, seen), seen_(std::move(seen)), rows_(seen_.images.size()) {
+  for (const RigImage& image : seen_.images)
+    is_doubted_.emplace_back(image.markers.size() + image.points.size(), false);
+}
+
+bool RigProblem::linearise(const Eigen::VectorXd& x) {
+  if (!variables_.is_rig(x)) return false;
+  x_ = x;
+  RigProjector projector(variables_, x);
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    if (!projector.rows(seen_.images[i], rows_[i]) || !rows_[i].derivatives.allFinite()) return false;
+  return true;
+}
+
+// Calls visit(image, first row, rows, size of the residual) for each thing that is not doubted.
+template <class Visit>
+void RigProblem::for_each_thing(const Visit& visit) const {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Eigen::Index first = 0;
+    for (std::size_t j = 0; j < rows_[i].sizes.size(); ++j) {
+      const Eigen::Index count = rows_[i].sizes[j];
+      if (!is_doubted_[i][j]) visit(i, first, count, rows_[i].residuals.segment(first, count).norm());
+      first += count;
+    }
+  }
+}
+
+double RigProblem::cost(double bound) const {
+  double sum = 0;
+  for_each_thing([&](std::size_t, Eigen::Index, Eigen::Index, double size) {
+    sum += size <= bound ? 0.5 * size * size : bound * (size - 0.5 * bound);
+  });
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const double off = x_[i] / variables_.variable(i).sigma;
+    sum += 0.5 * off * off;
+  }
+  return sum;
+}
+
+void RigProblem::normal(double bound, Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) const {
+  gradient.setZero(x_.size()), matrix.setZero(x_.size(), x_.size());
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const double sigma = variables_.variable(i).sigma;
+    gradient[i] = x_[i] / (sigma * sigma), matrix(i, i) = 1 / (sigma * sigma);
+  }
+  std::vector<Eigen::VectorXd> weights;
+  weights.reserve(rows_.size());
+  for (const RigRows& rows : rows_) weights.emplace_back(Eigen::VectorXd::Zero(rows.residuals.size()));
+  for_each_thing([&](std::size_t image, Eigen::Index first, Eigen::Index count, double size) {
+    weights[image].segment(first, count).setConstant(size <= bound ? 1 : bound / size);
+  });
+  Eigen::MatrixXd part;
+  Eigen::VectorXd slope;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const RigRows& rows = rows_[i];
+    const auto weight = weights[i].asDiagonal();
+    part.noalias() = rows.derivatives.transpose() * (weight * rows.derivatives);
+    slope.noalias() = rows.derivatives.transpose() * (weight * rows.residuals);
+    for (Eigen::Index a = 0; a < part.cols(); ++a) {
+      const Eigen::Index column = rows.columns[static_cast<std::size_t>(a)];
+      gradient[column] += slope[a];
+      // Columns rise, so that this is the lower triangle.
+      for (Eigen::Index b = a; b < part.rows(); ++b)
+        matrix(rows.columns[static_cast<std::size_t>(b)], column) += part(b, a);
+    }
+  }
+}
+
+std::vector<double> RigProblem::sizes() const {
+  std::vector<double> sizes;
+  for_each_thing([&](std::size_t, Eigen::Index, Eigen::Index, double size) { sizes.push_back(size); });
+  return sizes;
+}
+
+double RigProblem::rms() const {
+  double sum = 0;
+  for_each_thing([&](std::size_t, Eigen::Index, Eigen::Index, double size) { sum += size * size; });
+  const std::size_t count = entries();
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+}
+
+std::size_t RigProblem::entries() const {
+  Eigen::Index sum = 0;
+  for_each_thing([&](std::size_t, Eigen::Index, Eigen::Index count, double) { sum += count; });
+  return static_cast<std::size_t>(sum);
+}
+
+bool RigProblem::doubt_beyond(double bound) {
+  bool is_changed = false;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Eigen::Index first = 0;
+    for (std::size_t j = 0; j < rows_[i].sizes.size(); ++j) {
+      const Eigen::Index count = rows_[i].sizes[j];
+      const bool is_off = rows_[i].residuals.segment(first, count).norm() > bound;
+      is_changed |= is_off != is_doubted_[i][j];
+      is_doubted_[i][j] = is_off;
+      first += count;
+    }
+  }
+  return is_changed;
+}
+
+void RigProblem::doubt_nothing() {
+  for (std::vector<bool>& image : is_doubted_) image.assign(image.size(), false);
+}
+
+std::vector<RigDoubt> RigProblem::doubts() const {
+  std::vector<RigDoubt> doubts;
+  for (std::size_t i = 0; i < is_doubted_.size(); ++i)
+    for (std::size_t j = 0; j < is_doubted_[i].size(); ++j)
+      if (is_doubted_[i][j]) doubts.push_back({i, j});
+  return doubts;
+}
+
+}  // namespace flexura

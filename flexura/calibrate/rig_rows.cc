@@ -1,0 +1,192 @@
+#include "flexura/calibrate/rig_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "flexura/kinematics/spatial.h"
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+// Knots of the backbone's image in each section: arcs of an eighth of a radian for sections that bend by one.
+constexpr std::size_t intervals = 8;
+
+ShapePrior known_arm(const Arm& arm) {
+  ShapePrior prior;
+  prior.arm = arm;
+  return prior;
+}
+
+// The way in which the points go on at point i, unit.
+Eigen::Vector2d heading(const std::vector<CurvePoint>& points, std::size_t i) {
+  const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, points.size() - 1);
+  return (points[after].pixel - points[before].pixel).normalized();
+}
+
+}  // namespace
+
+RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd& x)
+    : variables_(&variables), x_(x), curve_(ShapeVariables(known_arm(variables.guess().arm)), intervals) {
+  RigModel model = variables.model(x);
+  for (const RigCamera& camera : model.cameras) cameras_.emplace_back(camera.config);
+  for (std::size_t i = 0; i < variables.read().size(); ++i) {
+    RigStance& stance = stances_.emplace_back(variables.stance(x, i));
+    stance.head.pan += model.cameras[stance.camera].pan_zero;
+    stance.head.tilt += model.cameras[stance.camera].tilt_zero;
+  }
+  for (std::size_t i = 0; i < variables.commanded().size(); ++i) {
+    const Shape& shape = shapes_.emplace_back(Shape{model.arm, variables.pose(x, i)});
+    jacobians_.emplace_back(shape.arm, shape.state);
+  }
+  jacobian_.resize(6, 3 * static_cast<Eigen::Index>(model.arm.sections.size()));
+  models_ = std::move(model.cameras);
+}
+
+View RigProjector::view(std::size_t stance) const {
+  const RigStance& where = stances_[stance];
+  return cameras_[where.camera].view(where.stage, where.head);
+}
+
+bool RigProjector::is_in_range(std::size_t stance) const {
+  const RigStance& where = stances_[stance];
+  const ZoomTable& lens = cameras_[where.camera].lens();
+  return where.head.zoom >= lens.first() && where.head.zoom <= lens.last();
+}
+
+std::optional<RigProjector::Shown> RigProjector::show(std::size_t pose, std::size_t stance,
+                                                      const MaterialPoint& point) {
+  const RigStance& where = stances_[stance];
+  const BackboneJacobian& backbone = jacobians_[pose];
+  const auto projection =
+      cameras_[where.camera].project(backbone.pose(point).position, where.stage, where.head);
+  if (!projection) return std::nullopt;
+  backbone.at(point, jacobian_);
+  const auto sections = static_cast<Eigen::Index>(shapes_[pose].arm.sections.size());
+  Shown shown;
+  shown.pixel = projection->pixel;
+  shown.by_slots.resize(2, variables_->slots_a_camera(where.camera) + 4 * sections + stance_slots);
+  add_camera_slots(*projection, stance, shown);
+  add_arm_slots(*projection, pose, shown);
+  return shown;
+}
+
+void RigProjector::add_camera_slots(const CameraProjection& projection, std::size_t stance,
+                                    Shown& shown) const {
+  const RigStance& where = stances_[stance];
+  const ZoomTable& lens = cameras_[where.camera].lens();
+  const Intrinsics now = lens.at(where.head.zoom);
+  const std::vector<ZoomRow>& rows = models_[where.camera].config.lens.zoom;
+  const Eigen::Vector3d turn = variables_->value3(
+      x_, variables_->camera_slots(where.camera) + static_cast<std::size_t>(mount_rotation_slot));
+  const Eigen::Vector2d by_fx = projection.by_intrinsics.col(0), by_fy = projection.by_intrinsics.col(1);
+  auto& by = shown.by_slots;
+  by.middleCols<3>(mount_position_slot) = projection.by_mount.leftCols<3>();
+  by.middleCols<3>(mount_rotation_slot) = projection.by_mount.rightCols<3>() * so3_left_jacobian(turn);
+  by.col(pan_zero_slot) = projection.by_pan;
+  by.col(tilt_zero_slot) = projection.by_tilt;
+  by.middleCols<3>(tilt_axis_slot) = projection.by_tilt_axis;
+  by.middleCols<3>(pupil_slot) = projection.by_pupil;
+  by.col(pupil_shift_slot) = projection.by_pupil_shift;
+  by.col(focal_slot) = now.fx * by_fx + now.fy * by_fy;
+  by.col(aspect_slot) = now.fy * by_fy;
+  by.middleCols<2>(principal_point_slot) = projection.by_intrinsics.middleCols<2>(2);
+  by.middleCols<5>(distortion_slot) = projection.by_intrinsics.middleCols<5>(4);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto by_row = lens.by_row(where.head.zoom, i);
+    by.col(zoom_row_slot + static_cast<Eigen::Index>(i)) =
+        by_row[0] * *rows[i].fx * by_fx + by_row[1] * *rows[i].fy * by_fy;
+  }
+  auto by_stance = by.rightCols<stance_slots>();
+  by_stance.col(0) = projection.by_pan, by_stance.col(1) = projection.by_tilt;
+  by_stance.col(2) = projection.by_zoom;
+  by_stance.rightCols<3>() = projection.by_stage;
+}
+
+// The point's own motion stands in jacobian_.
+void RigProjector::add_arm_slots(const CameraProjection& projection, std::size_t pose, Shown& shown) const {
+  const Shape& shape = shapes_[pose];
+  const auto sections = static_cast<Eigen::Index>(shape.arm.sections.size());
+  const Eigen::Index first = shown.by_slots.cols() - stance_slots - 4 * sections;
+  for (Eigen::Index i = 0; i < sections; ++i) {
+    const auto section = static_cast<std::size_t>(i);
+    const Eigen::Matrix<double, 2, 3> by_state = projection.by_point * jacobian_.block<3, 3>(0, 3 * i);
+    shown.by_slots.col(first + i) = shape.state.stretches[section] * by_state.col(2);
+    shown.by_slots.col(first + sections + i) =
+        by_state.leftCols<2>() * variables_->commanded()[pose].bends[section];
+    shown.by_slots.middleCols<2>(first + 2 * sections + 2 * i) = by_state.leftCols<2>();
+  }
+}
+
+bool RigProjector::rows(const RigImage& image, RigRows& rows) {
+  if (!is_in_range(image.stance)) return false;
+  const std::size_t camera = stances_[image.stance].camera,
+                    sections = shapes_[image.pose].arm.sections.size();
+  const std::array<std::pair<std::size_t, std::size_t>, 4> ranges = {
+      std::pair{variables_->camera_slots(camera),
+                static_cast<std::size_t>(variables_->slots_a_camera(camera))},
+      {variables_->arm_slots(), 2 * sections},
+      {variables_->pose_slots(image.pose), 2 * sections},
+      {variables_->stance_slots_of(image.stance), static_cast<std::size_t>(stance_slots)}};
+  rows.columns.clear(), rows.sizes.clear(), picked_.clear();
+  Eigen::Index local = 0;
+  for (const auto& [first, count] : ranges) {
+    for (std::size_t slot = first; slot < first + count; ++slot, ++local) {
+      if (variables_->column(slot) < 0) continue;
+      rows.columns.push_back(variables_->column(slot));
+      picked_.push_back(local);
+    }
+  }
+  const std::size_t count = 2 * image.markers.size() + image.points.size();
+  rows.residuals.resize(static_cast<Eigen::Index>(count));
+  rows.derivatives.resize(rows.residuals.size(), static_cast<Eigen::Index>(picked_.size()));
+  return add_markers(image, rows) && add_points(image, rows);
+}
+
+void RigProjector::set_row(Eigen::Index row, const Shown& shown, const Eigen::Vector2d& way,
+                           const Eigen::Vector2d& seen, double sigma, RigRows& rows) const {
+  rows.residuals[row] = way.dot(shown.pixel - seen) / sigma;
+  for (std::size_t i = 0; i < picked_.size(); ++i)
+    rows.derivatives(row, static_cast<Eigen::Index>(i)) = way.dot(shown.by_slots.col(picked_[i])) / sigma;
+}
+
+bool RigProjector::add_markers(const RigImage& image, RigRows& rows) {
+  Eigen::Index row = 0;
+  for (const SeenMarker& marker : image.markers) {
+    const auto shown = show(image.pose, image.stance, material_point(variables_->guess().arm, marker.s));
+    if (!shown) return false;
+    set_row(row++, *shown, Eigen::Vector2d::UnitX(), marker.pixel, marker.sigma, rows);
+    set_row(row++, *shown, Eigen::Vector2d::UnitY(), marker.pixel, marker.sigma, rows);
+    rows.sizes.push_back(2);
+  }
+  return true;
+}
+
+// Each point belongs to the nearest one of the backbone's image, looked for a little way on from the one
+// before. It is compared across the image there, so that its own derivative by the place does not matter.
+bool RigProjector::add_points(const RigImage& image, RigRows& rows) {
+  if (image.points.empty()) return true;
+  curve_.set(shapes_[image.pose]);
+  if (!image_.set(view(image.stance), curve_)) return false;
+  const auto knots = static_cast<std::size_t>(image_.last());
+  const std::size_t back = 1 + knots / 16, ahead = 2 + knots / 6;
+  CurveImage::Window window = image_.everywhere();
+  auto row = static_cast<Eigen::Index>(2 * image.markers.size());
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const CurvePoint& point = image.points[i];
+    const CurveImage::Point near = image_.nearest(point.pixel, heading(image.points, i), window);
+    const auto at = static_cast<std::size_t>(near.place);
+    window = {at > back ? at - back : 0, at + ahead, at};
+    const std::size_t section = std::min(at, knots - 1) / intervals;
+    const double fraction =
+        (near.place - static_cast<double>(section * intervals)) / static_cast<double>(intervals);
+    const auto shown = show(image.pose, image.stance, {section, fraction});
+    if (!shown) return false;
+    set_row(row++, *shown, {-near.tangent.y(), near.tangent.x()}, point.pixel, point.sigma, rows);
+    rows.sizes.push_back(1);
+  }
+  return true;
+}
+
+}  // namespace flexura

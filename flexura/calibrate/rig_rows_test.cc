@@ -1,0 +1,147 @@
+#include "flexura/calibrate/rig_rows.h"
+
+#include <gtest/gtest.h>
+
+#include "flexura/calibrate/rig_problem.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "flexura/math/derivative_check.h"
+#include "tests/support/cameras.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+namespace {
+
+// A rig all of whose numbers may be wrong, and two pictures by cameras of which one has a zoom table.
+struct Everything {
+  RigModel model;
+  RigPrior prior;
+  RigObservations seen;
+};
+
+Everything random_everything(TestRandom& random) {
+  Everything all;
+  std::vector<CameraConfig> cameras = cameras_at({2.5, 2.5}, {0, 0.5, 0});
+  for (CameraConfig& camera : cameras) {
+    const CameraConfig other = random_camera(random);
+    camera.head = other.head, camera.lens = other.lens, camera.mount.stage = other.mount.stage;
+    camera.head.pan.resolution = camera.head.tilt.resolution = camera.head.zoom.resolution = 0.01;
+    for (SlideConfig* slide : {&camera.mount.stage.x, &camera.mount.stage.y, &camera.mount.stage.z})
+      slide->resolution = 0.01;
+  }
+  all.model = rig_model(three_section_arm(), cameras);
+  all.prior = rough_prior(all.model);
+  for (CameraPrior& prior : all.prior.cameras)
+    prior.pan_zero = 0.01, prior.distortion = {0.02, 0.01, 0.001, 0.001, 0.01};
+  all.seen.poses = {random_bends(random, all.model.arm, 0.8)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ZoomTable lens(cameras[i].lens, 640, 480);
+    const double zoom = lens.is_linear() ? 1.3 : 0.6 * lens.first() + 0.4 * lens.last();
+    all.seen.stances.push_back(
+        {i, {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), zoom}, {random.vector<3>(-0.1, 0.1)}});
+    RigImage& image = all.seen.images.emplace_back(RigImage{.stance = i});
+    for (const double s : {0.0, 0.21, 1.0 / 3, 0.7, 1.0})
+      image.markers.push_back({random.vector<2>(200, 300), s, 0.5});
+  }
+  return all;
+}
+
+TEST(RigRows, DerivativesByEveryNumberAreThoseOfDifferences) {
+  for_random_cases(4, [](TestRandom& random) {
+    const Everything all = random_everything(random);
+    RigProblem problem(all.model, all.prior, all.seen);
+    const RigVariables& variables = problem.variables();
+    Eigen::VectorXd x(variables.count());
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      x[i] = variables.variable(i).scale * random.uniform(-0.5, 0.5);
+    ASSERT_TRUE(problem.linearise(x));
+    for (std::size_t image = 0; image < 2; ++image) {
+      const RigRows rows = problem.rows()[image];
+      const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
+        Eigen::VectorXd there = x;
+        for (std::size_t i = 0; i < rows.columns.size(); ++i)
+          there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
+        EXPECT_TRUE(problem.linearise(there));
+        return problem.rows()[image].residuals;
+      };
+      const auto numerical =
+          numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 3e-4);
+      for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j) {
+        const double size = std::max(1.0, rows.derivatives.col(j).norm());
+        EXPECT_LE((numerical.value.col(j) - rows.derivatives.col(j)).norm(), 1e-6 * size)
+            << variables.variable(rows.columns[static_cast<std::size_t>(j)]).name;
+      }
+    }
+  });
+}
+
+TEST(RigRows, AxisPointsFollowTheCurveAsItMoves) {
+  for_random_cases(3, [](TestRandom& random) {
+    RigTrialConfig config;
+    config.markers = 2;
+    RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+    take_plan(trial, 2);
+    RigModel model = trial.truth();
+    model.arm = believed_rig().arm;
+    RigProblem problem(model, rough_prior(model), trial.seen());
+    const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.variables().count());
+    ASSERT_TRUE(problem.linearise(x));
+    const RigRows rows = problem.rows()[1];
+    ASSERT_GT(rows.residuals.size(), 20);
+    const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
+      Eigen::VectorXd there = x;
+      for (std::size_t i = 0; i < rows.columns.size(); ++i)
+        there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
+      EXPECT_TRUE(problem.linearise(there));
+      return problem.rows()[1].residuals;
+    };
+    const auto numerical =
+        numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 1e-4);
+    // The normals of a curve that is cubic between knots turn a little otherwise than its own, and what is
+    // beyond its end is not off along them.
+    EXPECT_LE((numerical.value - rows.derivatives).norm(), 1e-2 * rows.derivatives.norm());
+  });
+}
+
+TEST(RigQuantities, DerivativesAreThoseOfDifferences) {
+  for_random_cases(4, [](TestRandom& random) {
+    const Everything all = random_everything(random);
+    const RigVariables variables(all.model, all.prior, all.seen);
+    Eigen::VectorXd x(variables.count());
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      x[i] = variables.variable(i).scale * random.uniform(-0.5, 0.5);
+    const Eigen::Vector3d middle(0.1, 0.5, 0);
+    const auto quantities = [&](const Eigen::VectorXd& at) {
+      const OpticalAxis a = optical_axis(variables, at, observed_stance(variables, 0)),
+                        b = optical_axis(variables, at, observed_stance(variables, 1));
+      return std::vector<RigQuantity>{axes_angle(a, b), log_zoom_ratio(a, b, middle), log_focal(a),
+                                      log_focal(b)};
+    };
+    const auto values = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
+      Eigen::VectorXd result(4);
+      for (Eigen::Index i = 0; i < 4; ++i) result[i] = quantities(at)[static_cast<std::size_t>(i)].value;
+      return result;
+    };
+    const auto numerical = numerical_jacobian(values, x, 1e-3);
+    for (Eigen::Index i = 0; i < 4; ++i)
+      EXPECT_LE(
+          (numerical.value.row(i).transpose() - quantities(x)[static_cast<std::size_t>(i)].gradient).norm(),
+          1e-7);
+    // The way in which an axis passes a point turns with the camera, so that at the point itself alone the
+    // two ways of deriving it agree.
+    const OpticalAxis axis = optical_axis(variables, x, observed_stance(variables, 0));
+    const Eigen::Vector3d on_axis = axis.pupil + 2 * axis.direction;
+    const auto aims = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
+      const auto [right, down] =
+          aim_errors(optical_axis(variables, at, observed_stance(variables, 0)), on_axis);
+      return Eigen::Vector2d(right.value, down.value);
+    };
+    const auto numerical_aims = numerical_jacobian(aims, x, 1e-3);
+    const auto [right, down] = aim_errors(axis, on_axis);
+    EXPECT_LE((numerical_aims.value.row(0).transpose() - right.gradient).norm(), 1e-7);
+    EXPECT_LE((numerical_aims.value.row(1).transpose() - down.gradient).norm(), 1e-7);
+  });
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,344 @@
+#include "flexura/calibrate/rig_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/calibrate/rig_session_plan.h"
+#include "flexura/camera/camera.h"
+
+namespace flexura {
+namespace {
+
+using Trouble = RigHands::Trouble;
+
+// The view of a camera of a model that reads a stance.
+View view_of(const RigModel& model, const RigStance& stance) {
+  const RigCamera& camera = model.cameras[stance.camera];
+  HeadState head = stance.head;
+  head.pan += camera.pan_zero, head.tilt += camera.tilt_zero;
+  return Camera(camera.config).view(stance.stage, head);
+}
+
+bool is_same(const ArmState& a, const ArmState& b) {
+  return a.bends == b.bends && a.stretches == b.stretches;
+}
+
+class Session {
+ public:
+  Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,
+          const RigSessionConfig& config, RigSessionWatcher& watcher)
+      : believed_(believed),
+        prior_(prior),
+        config_(config),
+        watcher_(watcher),
+        hands_(ports, believed, config.patience),
+        plan_(believed, config) {
+    if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
+      throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
+    if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
+      throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
+    for (const std::size_t camera : config.cameras) {
+      ArmPictureConfig picture = config.picture;
+      picture.white = (1 << believed.cameras.at(camera).config.sensor.bits) - 1;
+      eyes_.emplace_back(std::move(picture));
+    }
+  }
+
+  RigSessionResult run() {
+    Trouble trouble = begin();
+    if (!trouble) trouble = look_and_move();
+    if (trouble) {
+      result_.is_done = false;
+      result_.reason = *trouble + retreat();
+    }
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  Trouble begin() {
+    if (auto trouble = hands_.settle()) return trouble;
+    const auto arm = hands_.arm();
+    if (const auto* why = std::get_if<std::string>(&arm)) return *why;
+    home_ = std::get<ArmState>(arm), shown_ = home_;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto stance = hands_.stance(config_.cameras[i]);
+      if (const auto* why = std::get_if<std::string>(&stance)) return *why;
+      start_[i] = std::get<RigStance>(stance), stands_[i] = start_[i];
+    }
+    has_begun_ = true;
+    return std::nullopt;
+  }
+
+  Trouble look_and_move() {
+    for (std::size_t i = 0; i < config_.first; ++i)
+      if (auto trouble = look({pose(i), {stands_[0], stands_[1]}})) return trouble;
+    while (result_.looks + 1 < config_.images) {
+      if (auto trouble = calibrate()) return trouble;
+      if (found_ && is_enough()) break;
+      if (auto trouble = look(next())) return trouble;
+    }
+    if (!found_ || problem_->observations().images.size() < seen_.images.size())
+      if (auto trouble = calibrate()) return trouble;
+    if (!found_) return "no rig explains what was seen: " + result_.steps.back().reason;
+    if (auto trouble = move()) return trouble;
+    if (auto trouble = calibrate()) return trouble;
+    if (!found_) return "what is seen after the move fits nothing: " + result_.steps.back().reason;
+    result_.is_done = true;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] const ArmState& pose(std::size_t number) const {
+    return config_.poses[number % config_.poses.size()];
+  }
+  [[nodiscard]] const RigModel& model() const { return found_ ? found_->model : believed_; }
+
+  // Shows the arm in a pose and takes a picture from each stance.
+  Trouble look(const ViewCandidate& what) {
+    if (watcher_.is_cancelled()) return "cancelled";
+    if (auto trouble = show(what.pose)) return trouble;
+    for (const RigStance& stance : what.stances)
+      if (auto trouble = send(stance)) return trouble;
+    if (auto trouble = hands_.settle()) return trouble;
+    ++result_.looks;
+    const auto arm = hands_.arm();
+    if (const auto* why = std::get_if<std::string>(&arm)) return *why;
+    if (seen_.poses.empty() || !is_same(seen_.poses.back(), std::get<ArmState>(arm)))
+      seen_.poses.push_back(std::get<ArmState>(arm));
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      if (auto trouble = picture(i)) return trouble;
+      if (result_.looks == 1 && misses_[i] > 0)
+        if (auto trouble = search(i)) return trouble;
+      constexpr int patience = 3;
+      if (misses_[i] >= patience)
+        return fmt::format("camera {} does not see the arm in {} pictures in a row: {}", name(i), patience,
+                           sight_.seen.reason);
+    }
+    return std::nullopt;
+  }
+
+  // To a pose by way of the shape in which the arm began: these ways are known before anything moves.
+  Trouble show(const ArmState& pose) {
+    if (is_same(pose, shown_)) return std::nullopt;
+    if (!is_same(home_, shown_))
+      if (auto trouble = bend(home_)) return trouble;
+    return is_same(home_, pose) ? std::nullopt : bend(pose);
+  }
+  Trouble bend(const ArmState& state) {
+    watcher_.arm_sent(hands_.now(), state, config_.move_duration);
+    if (auto trouble = hands_.bend(state, config_.move_duration)) return trouble;
+    shown_ = state;
+    return hands_.settle();
+  }
+  Trouble send(const RigStance& stance) {
+    RigStance& stands = stands_[place_of(stance.camera)];
+    if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
+    is_turned_[place_of(stance.camera)] |=
+        stance.head.pan != stands.head.pan || stance.head.tilt != stands.head.tilt;
+    watcher_.camera_sent(hands_.now(), stance);
+    stands = stance;
+    stance_[place_of(stance.camera)].reset();
+    return hands_.go(stance);
+  }
+  [[nodiscard]] std::size_t place_of(std::size_t camera) const {
+    return camera == config_.cameras[0] ? 0 : 1;
+  }
+  [[nodiscard]] const std::string& name(std::size_t i) const {
+    return believed_.cameras[config_.cameras[i]].config.name;
+  }
+
+  // Takes a picture and measures it; what is of use becomes an image of the observations.
+  Trouble picture(std::size_t i, bool is_search = false) {
+    const auto taken = hands_.frame(config_.cameras[i], hands_.now());
+    if (const auto* why = std::get_if<std::string>(&taken)) return *why;
+    const auto& frame = std::get<Frame>(taken);
+    const auto stance = hands_.stance(config_.cameras[i]);
+    if (const auto* why = std::get_if<std::string>(&stance)) return *why;
+    const View view = view_of(model(), std::get<RigStance>(stance));
+    const ArmState& pose = seen_.poses.back();
+    const MarkerScene expected =
+        expected_markers(model().arm, model().bent(pose), config_.picture.markers, view);
+    sight_ = {.look = is_search ? 0 : result_.looks,
+              .stance = std::get<RigStance>(stance),
+              .pose = pose,
+              .frame = frame,
+              .seen = eyes_[i].see(*frame.picture, view.lens, expected)};
+    ++result_.pictures[i];
+    const bool is_of_use = sight_.seen.markers.size() >= config_.fewest;
+    if (!is_of_use && sight_.seen.reason.empty())
+      sight_.seen.reason =
+          fmt::format("{} markers are recognised, fewer than {}", sight_.seen.markers.size(), config_.fewest);
+    misses_[i] = is_of_use ? 0 : misses_[i] + 1;
+    watcher_.seen(sight_);
+    if (!result_.before[i]) result_.before[i] = sight_;
+    result_.after[i] = sight_;
+    if (is_of_use) add(i);
+    return std::nullopt;
+  }
+
+  void add(std::size_t i) {
+    if (!stance_[i]) {
+      RigStance stance = sight_.stance;
+      if (!is_turned_[i]) stance.turned_as = last_stance_[i];
+      seen_.stances.push_back(stance);
+      stance_[i] = last_stance_[i] = seen_.stances.size() - 1;
+      is_turned_[i] = false;
+    }
+    seen_.images.push_back({.stance = *stance_[i],
+                            .pose = seen_.poses.size() - 1,
+                            .markers = sight_.seen.markers,
+                            .points = sight_.seen.points});
+    result_.markers += sight_.seen.markers.size(), result_.points += sight_.seen.points.size();
+  }
+
+  // Turns the head about until enough of the arm is seen.
+  Trouble search(std::size_t i) {
+    for (const Eigen::Vector2d& way : plan_.search_ways()) {
+      RigStance stance = start_[i];
+      stance.head.pan += way.x(), stance.head.tilt += way.y();
+      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
+      if (auto trouble = send(stance)) return trouble;
+      if (auto trouble = hands_.settle()) return trouble;
+      if (auto trouble = picture(i, true)) return trouble;
+      if (misses_[i] == 0) return std::nullopt;
+    }
+    return fmt::format("the arm is out of view of camera {}, also {:.3g} rad to all sides: {}", name(i),
+                       config_.search, sight_.seen.reason);
+  }
+
+  Trouble calibrate() {
+    problem_.emplace(believed_, prior_, seen_);
+    RigCalibration found = calibrate_rig(*problem_);
+    RigStep& step = result_.steps.emplace_back();
+    step.time = hands_.now(), step.looks = result_.looks;
+    step.is_found = found.is_found, step.reason = found.reason, step.rms = found.rms;
+    step.doubts = found.doubts.size();
+    found_.reset();
+    if (!found.is_found) {
+      step.next = "another pose from where the heads stand: nothing is known yet";
+      watcher_.known(step);
+      return std::nullopt;
+    }
+    found_ = std::move(found);
+    wanted_ = plan_.wanted(found_->model, stands_);
+    plan_.know(problem_->variables(), *found_, wanted_, step);
+    choose(step);
+    watcher_.known(step);
+    return plan_.trouble_with(found_->model, wanted_, step, home_);
+  }
+
+  // What to look at next, if the session goes on.
+  void choose(RigStep& step) {
+    next_.reset();
+    if (result_.looks + 1 >= config_.images || is_enough()) {
+      step.next =
+          result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
+      return;
+    }
+    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_);
+    next_ = candidate, step.next = why;
+  }
+  [[nodiscard]] ViewCandidate next() const {
+    if (next_) return *next_;
+    return {pose(result_.looks), {stands_[0], stands_[1]}};
+  }
+  [[nodiscard]] bool is_enough() const {
+    const RigSigmas &is = result_.steps.back().sigmas, &wanted = config_.wanted;
+    return result_.looks >= config_.first && is.angle <= wanted.angle && is.focal[0] <= wanted.focal[0] &&
+           is.focal[1] <= wanted.focal[1] && is.zoom_ratio <= wanted.zoom_ratio;
+  }
+
+  // Sends the cameras to the wanted configuration and verifies it on fresh pictures.
+  Trouble move() {
+    has_moved_ = true;
+    result_.wanted = wanted_;
+    const std::size_t known = seen_.images.size();
+    if (auto trouble = look({pose(0), {wanted_.stances[0], wanted_.stances[1]}})) return trouble;
+    if (seen_.images.size() < known + 2)
+      return fmt::format("the arm is not seen by both cameras after the move: {}", sight_.seen.reason);
+    for (std::size_t i = 0; i < 2; ++i) result_.verified[i] = off_foretold(seen_.images[known + i]);
+    return std::nullopt;
+  }
+
+  [[nodiscard]] double off_foretold(const RigImage& image) const {
+    const View view = view_of(model(), seen_.stances[image.stance]);
+    double squares = 0;
+    for (const SeenMarker& marker : image.markers) {
+      const MarkerScene foretold = expected_markers(model().arm, model().bent(seen_.poses[image.pose]),
+                                                    {KnownMarker{.s = marker.s}}, view);
+      if (foretold.markers[0]) squares += (foretold.markers[0]->pixel - marker.pixel).squaredNorm();
+    }
+    return std::sqrt(squares / static_cast<double>(image.markers.size()));
+  }
+
+  // Sends everything back to where it began, as far as it goes; says how it went.
+  std::string retreat() {
+    if (!has_begun_) return "; nothing was moved";
+    Trouble trouble;
+    const auto keep = [&trouble](Trouble another) {
+      if (!trouble) trouble = std::move(another);
+    };
+    for (const RigStance& stance : start_) {
+      watcher_.camera_sent(hands_.now(), stance);
+      keep(hands_.go(stance));
+    }
+    watcher_.arm_sent(hands_.now(), home_, config_.move_duration);
+    keep(hands_.bend(home_, config_.move_duration));
+    keep(hands_.settle());
+    if (trouble) return "; on the way back: " + *trouble;
+    return "; heads, stages and arm are back where they began";
+  }
+
+  void finish() {
+    if (!found_ || !problem_) return;
+    result_.observability = observability(problem_->variables(), found_->covariance);
+    const Eigen::Vector3d target = plan_.target(found_->model);
+    result_.target = target, result_.start = start_;
+    result_.start_remainder = remainder(found_->model, start_, target);
+    result_.believed_remainder = remainder(found_->model, plan_.wanted(believed_, start_).stances, target);
+    for (RigStep& step : result_.steps)
+      if (step.is_found) step.remainder = remainder(found_->model, step.wanted, target);
+    // Where the cameras truly stand, as far as the pictures tell.
+    if (stance_[0] && stance_[1] && result_.is_done)
+      result_.remainder =
+          remainder(found_->model, {found_->stances[*stance_[0]], found_->stances[*stance_[1]]}, target);
+    result_.found = std::move(*found_);
+  }
+
+  const RigModel& believed_;
+  const RigPrior& prior_;
+  const RigSessionConfig& config_;
+  RigSessionWatcher& watcher_;
+  RigHands hands_;
+  RigSessionPlan plan_;
+  std::vector<ArmPicture> eyes_;
+  RigSessionResult result_;
+
+  ArmState home_, shown_;
+  std::array<RigStance, 2> start_, stands_;  // As they were, and as they were last sent.
+  bool has_begun_ = false, has_moved_ = false;
+  std::array<bool, 2> is_turned_ = {true, true};  // Since the last stance.
+  std::array<std::optional<std::size_t>, 2> stance_, last_stance_;
+  std::array<int, 2> misses_ = {0, 0};
+  RigSight sight_;  // The last one.
+  RigObservations seen_;
+  std::optional<RigProblem> problem_;
+  std::optional<RigCalibration> found_;
+  WantedRig wanted_;
+  std::optional<ViewCandidate> next_;
+};
+
+}  // namespace
+
+RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
+                                          const RigPrior& prior, const RigSessionConfig& config,
+                                          RigSessionWatcher& watcher) {
+  return Session(ports, believed, prior, config, watcher).run();
+}
+
+}  // namespace flexura

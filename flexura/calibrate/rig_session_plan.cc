@@ -1,0 +1,167 @@
+#include "flexura/calibrate/rig_session_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flexura/camera/camera.h"
+#include "flexura/math/arrays.h"
+
+namespace flexura {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+// The lens's position at which the ratio is this, or comes nearest to it; ratios rise or fall all the way.
+double position_of(const Camera& camera, double ratio) {
+  auto [low, high] = camera.head_axes()[2].limits;
+  const ZoomTable& lens = camera.lens();
+  low = std::max(low, lens.first()), high = std::min(high, lens.last());
+  if (lens.ratio(low) > lens.ratio(high)) std::swap(low, high);
+  if (!(ratio > lens.ratio(low))) return low;
+  if (!(ratio < lens.ratio(high))) return high;
+  constexpr int halvings = 60;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (lens.ratio(middle) < ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+Eigen::Vector3d RigSessionPlan::target(const RigModel& model) const {
+  return config_.target ? *config_.target : arm_middle(model, config_.poses.front());
+}
+
+WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const {
+  RigWish wish;
+  wish.target = target(model), wish.now = stands, wish.may_use_stages = config_.may_use_stages;
+  for (RigStance& stance : wish.now) {
+    // From the stages' and the zooms' beginnings: looks in between went elsewhere.
+    const Camera camera(believed_.cameras[stance.camera].config);
+    stance.stage = camera.initial_stage(), stance.head.zoom = camera.initial_head().zoom;
+  }
+  return wanted_rig(model, wish);
+}
+
+std::vector<ViewGoal> RigSessionPlan::goals(const RigVariables& variables, const RigCalibration& found,
+                                            const WantedRig& wanted) const {
+  const OpticalAxis a = optical_axis(variables, found.x, {wanted.stances[0], {}}),
+                    b = optical_axis(variables, found.x, {wanted.stances[1], {}});
+  return {{axes_angle(a, b), config_.wanted.angle},
+          {log_focal(a), config_.wanted.focal[0]},
+          {log_focal(b), config_.wanted.focal[1]},
+          {log_zoom_ratio(a, b, target(found.model)), config_.wanted.zoom_ratio}};
+}
+
+void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
+                          RigStep& step) const {
+  const std::vector<ViewGoal> known = goals(variables, found, wanted);
+  step.wanted = wanted.stances;
+  step.angle = known[0].quantity.value;
+  const auto sigma = [&](std::size_t i) { return known[i].quantity.sigma(found.covariance); };
+  step.sigmas = {sigma(0), {sigma(1), sigma(2)}, sigma(3)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const LensConfig& lens = found.model.cameras[config_.cameras[i]].config.lens;
+    step.focal[i] = std::sqrt(lens.fx * lens.fy.value_or(lens.fx));
+  }
+}
+
+ViewGrid RigSessionPlan::grid() const {
+  ViewGrid grid;
+  grid.poses = config_.poses, grid.spread = 0.6;
+  const RigCamera& first = believed_.cameras[config_.cameras[0]];
+  const Camera camera(first.config);
+  grid.zooms.clear();
+  const double start = camera.lens().ratio(camera.initial_head().zoom);
+  for (const double ratio : config_.zooms) {
+    const double position = position_of(camera, start * ratio);
+    if (std::ranges::find(grid.zooms, position) == grid.zooms.end()) grid.zooms.push_back(position);
+  }
+  double travel = 0;
+  for (const std::size_t i : config_.cameras) {
+    const auto& [least, most] = believed_.cameras[i].config.mount.stage.x.limits;
+    const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
+    travel = std::max(travel, std::min(config_.slide * distance, std::max(most, -least)));
+  }
+  if (travel > 0) grid.slides = {{0, 0, 0}, {travel, 0, 0}, {-travel, 0, 0}};
+  return grid;
+}
+
+std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(const RigProblem& problem,
+                                                                          const RigCalibration& found,
+                                                                          const WantedRig& wanted) const {
+  std::vector<ViewCandidate> candidates = view_candidates(found.model, grid());
+  for (ViewCandidate& candidate : candidates) {
+    std::erase_if(candidate.stances, [&](const RigStance& stance) {
+      return std::ranges::find(config_.cameras, stance.camera) == config_.cameras.end();
+    });
+  }
+  ViewConfig view;
+  view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
+  const auto choice =
+      next_best_view(problem, found, candidates, goals(problem.variables(), found, wanted), view);
+  if (!choice) return {std::nullopt, "another pose: no view is known to show the arm"};
+  const ViewCandidate& best = candidates[choice->candidate];
+  const auto pose =
+      std::ranges::find_if(config_.poses, [&](const ArmState& one) { return one.bends == best.pose.bends; });
+  const HeadState &a = best.stances[0].head, &b = best.stances[1].head;
+  return {best,
+          fmt::format("pose {}, of {} views the one that tells most: pan, tilt and zoom {:.2f} deg, {:.2f} "
+                      "deg, {:.3g} and {:.2f} deg, {:.2f} deg, {:.3g}; the angle's sigma will be {:.4f} deg",
+                      pose - config_.poses.begin() + 1, candidates.size(), a.pan / degree, a.tilt / degree,
+                      a.zoom, b.pan / degree, b.tilt / degree, b.zoom, choice->sigmas[0] / degree)};
+}
+
+RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const WantedRig& wanted,
+                                               const RigStep& step, const ArmState& home) const {
+  constexpr double known = 3 * degree, steepest = 50 * degree;
+  if (step.sigmas.angle > known) return std::nullopt;
+  std::array<Eigen::Vector3d, 2> sights;
+  std::array<std::size_t, 2> inside = {0, 0};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const RigStance& stance = wanted.stances[i];
+    const RigCamera& camera = model.cameras[stance.camera];
+    const View view = Camera(camera.config)
+                          .view(stance.stage, {stance.head.pan + camera.pan_zero,
+                                               stance.head.tilt + camera.tilt_zero, stance.head.zoom});
+    sights[i] = (target(model) - view.X_WC.position).normalized();
+    const ArmState& shown = config_.poses.empty() ? home : config_.poses.front();
+    for (const auto& marker :
+         expected_markers(model.arm, model.bent(shown), config_.picture.markers, view).markers)
+      inside[i] += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
+                           marker->pixel.y() <= view.height - 1
+                       ? 1
+                       : 0;
+  }
+  const double angle = std::acos(std::clamp(sights[0].dot(sights[1]), -1.0, 1.0));
+  if (std::min(angle, std::numbers::pi - angle) < steepest)
+    return fmt::format(
+        "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, and heads "
+        "alone "
+        "cannot make orthogonal axes of that",
+        angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (inside[i] >= config_.fewest) continue;
+    std::string why;
+    for (const std::string& note : wanted.notes) why += "; " + note;
+    return fmt::format("camera {} would not see the arm in the wanted configuration{}",
+                       model.cameras[wanted.stances[i].camera].config.name, why);
+  }
+  return std::nullopt;
+}
+
+std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {
+  std::vector<Eigen::Vector2d> ways;
+  for (const double size : {0.5, 1.0}) {
+    for (const auto& [pan, tilt] :
+         {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
+      ways.emplace_back(size * config_.search * Eigen::Vector2d(pan, tilt));
+  }
+  return ways;
+}
+
+}  // namespace flexura

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/calibrate/rig_session.h"
+#include "flexura/calibrate/rig_views.h"
+
+namespace flexura {
+
+/// What a session decides by what it knows; it moves nothing.
+class RigSessionPlan {
+ public:
+  RigSessionPlan(const RigModel& believed, const RigSessionConfig& config)
+      : believed_(believed), config_(config) {}
+
+  /// What the cameras shall look at: the middle of the first pose, if nothing else was asked for. In W, m.
+  [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
+  /// Where to send the cameras from where they stand.
+  [[nodiscard]] WantedRig wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const;
+  /// Fills in what is known of the wanted configuration.
+  void know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
+            RigStep& step) const;
+  /// The next look, and what is hoped from it, in words.
+  [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(const RigProblem& problem,
+                                                                          const RigCalibration& found,
+                                                                          const WantedRig& wanted) const;
+  /// Why the wanted configuration is none: both cameras look from one side, or would not see the arm. Nothing
+  /// is said before the angle is known.
+  [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
+                                               const RigStep& step, const ArmState& home) const;
+  /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
+  [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
+
+ private:
+  [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
+                                            const WantedRig& wanted) const;
+  [[nodiscard]] ViewGrid grid() const;
+
+  const RigModel& believed_;
+  const RigSessionConfig& config_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,182 @@
+#include "flexura/calibrate/rig_views.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "flexura/calibrate/rig_aim.h"
+#include "flexura/kinematics/spatial.h"
+
+namespace flexura {
+namespace {
+
+// What a candidate would show, as if the rig were what was found: only where things lie along the arm
+// matters, not what noise does to them. None where the arm is not in view.
+class Forecast {
+ public:
+  Forecast(const RigProblem& problem, const RigCalibration& found, const ViewConfig& config)
+      : problem_(problem), found_(found), config_(config) {}
+
+  // What is known of the rig's own numbers after the candidate.
+  [[nodiscard]] std::optional<Eigen::MatrixXd> information(const Eigen::MatrixXd& before,
+                                                           const ViewCandidate& candidate) const {
+    RigObservations next;
+    next.poses = {candidate.pose}, next.stances = candidate.stances;
+    const RigModel& guess = problem_.variables().guess();
+    const RigVariables bare(guess, problem_.prior(), next);
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(bare.count());
+    x.head(bare.globals()) = found_.x.head(bare.globals());
+    for (std::size_t i = 0; i < next.stances.size(); ++i) {
+      const auto image = picture(bare, x, i);
+      if (!image) return std::nullopt;
+      next.images.push_back(*image);
+    }
+    RigProblem ahead(guess, problem_.prior(), std::move(next));
+    if (!ahead.linearise(x)) return std::nullopt;
+    return marginal(before, ahead, x);
+  }
+
+ private:
+  [[nodiscard]] std::optional<RigImage> picture(const RigVariables& bare, const Eigen::VectorXd& x,
+                                                std::size_t stance) const {
+    RigProjector projector(bare, x);
+    const RigStance& where = bare.read()[stance];
+    const ZoomTable lens = Camera(bare.guess().cameras[where.camera].config).lens();
+    if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
+    const View view = projector.view(stance);
+    RigImage image{.stance = stance};
+    const auto look = [&](double share) -> std::optional<Eigen::Vector2d> {
+      const auto shown =
+          projector.show(0, stance, material_point(bare.guess().arm, share * bare.guess().arm.length()));
+      if (!shown) return std::nullopt;
+      const Eigen::Vector2d& pixel = shown->pixel;
+      const double margin = config_.margin;
+      const bool is_inside = pixel.minCoeff() >= margin && pixel.x() <= view.width - 1 - margin &&
+                             pixel.y() <= view.height - 1 - margin;
+      return is_inside ? std::optional(pixel) : std::nullopt;
+    };
+    for (std::size_t i = 0; i < config_.markers; ++i) {
+      const double share =
+          static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(config_.markers, 2) - 1);
+      if (const auto pixel = look(share))
+        image.markers.push_back({*pixel, share * bare.guess().arm.length(), config_.sigma});
+    }
+    for (std::size_t i = 0; i < config_.points; ++i) {
+      const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(config_.points);
+      if (const auto pixel = look(share)) image.points.push_back({*pixel, config_.sigma});
+    }
+    if (image.markers.size() < config_.fewest) return std::nullopt;
+    return image;
+  }
+
+  // The rig's own numbers keep what was known of them; what belongs to the candidate's pictures alone is
+  // eliminated. The prior of the rig's own numbers, which the new problem brings again, is taken out.
+  [[nodiscard]] static Eigen::MatrixXd marginal(const Eigen::MatrixXd& before, const RigProblem& ahead,
+                                                const Eigen::VectorXd& x) {
+    constexpr double all = 1e300;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd normal;
+    ahead.normal(all, gradient, normal);
+    const Eigen::Index own = before.rows(), rest = x.size() - own;
+    for (Eigen::Index i = 0; i < own; ++i) {
+      const double sigma = ahead.variables().variable(i).sigma;
+      normal(i, i) -= 1 / (sigma * sigma);
+    }
+    Eigen::MatrixXd sum = before;
+    sum += normal.topLeftCorner(own, own).selfadjointView<Eigen::Lower>().toDenseMatrix();
+    if (rest == 0) return sum;
+    const Eigen::MatrixXd coupling = normal.bottomLeftCorner(rest, own);
+    const Eigen::LLT<Eigen::MatrixXd> factors(
+        normal.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().toDenseMatrix());
+    const Eigen::MatrixXd solved = factors.matrixL().solve(coupling);
+    return sum - solved.transpose() * solved;
+  }
+
+  const RigProblem& problem_;
+  const RigCalibration& found_;
+  const ViewConfig& config_;
+};
+
+// Rows: the goals' gradients by the rig's own numbers, in units of what is wanted.
+Eigen::MatrixXd goal_rows(std::span<const ViewGoal> goals, Eigen::Index own) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(goals.size()), own);
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) =
+        goals[i].quantity.gradient.head(own).transpose() / goals[i].wanted;
+  return rows;
+}
+
+double score(const Eigen::MatrixXd& variances, ViewCriterion criterion) {
+  if (criterion == ViewCriterion::sum) return variances.trace();
+  return variances.llt().matrixLLT().diagonal().array().log().sum() * 2;
+}
+
+}  // namespace
+
+std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
+                                         std::span<const ViewCandidate> candidates,
+                                         std::span<const ViewGoal> goals, const ViewConfig& config,
+                                         ViewCriterion criterion) {
+  const Eigen::Index own = problem.variables().globals();
+  const Eigen::MatrixXd rows = goal_rows(goals, own);
+  const Eigen::MatrixXd known = found.covariance.topLeftCorner(own, own);
+  const Eigen::MatrixXd before = known.llt().solve(Eigen::MatrixXd::Identity(own, own));
+  const Forecast forecast(problem, found, config);
+  std::optional<ViewChoice> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto after = forecast.information(before, candidates[i]);
+    if (!after) continue;
+    const Eigen::MatrixXd variances = rows * after->llt().solve(rows.transpose());
+    const double value = score(variances, criterion);
+    if (!std::isfinite(value) || (best && !(value < best->after))) continue;
+    best = ViewChoice{i, score(rows * known * rows.transpose(), criterion), value, {}};
+    for (std::size_t j = 0; j < goals.size(); ++j)
+      best->sigmas.push_back(goals[j].wanted * std::sqrt(variances.diagonal()[static_cast<Eigen::Index>(j)]));
+  }
+  return best;
+}
+
+namespace {
+
+// A stance from which the target is seen at this place of the image, in shares of half its width and height.
+RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double zoom,
+                  const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
+  const RigCamera& camera = model.cameras[number];
+  const Camera optics(camera.config);
+  RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom)}, {}};
+  for (Eigen::Index i = 0; i < 3; ++i)
+    stance.stage.offset[i] = commandable(optics.stage_axes()[static_cast<std::size_t>(i)], slide[i]);
+  stance.head = aimed(camera, stance, target);
+  // What lies to the right and below of the middle is brought there by turning left and up.
+  const Intrinsics lens = optics.lens().at(stance.head.zoom);
+  stance.head.pan += std::atan(0.5 * place.x() * static_cast<double>(camera.config.sensor.width) / lens.fx);
+  stance.head.tilt += std::atan(0.5 * place.y() * static_cast<double>(camera.config.sensor.height) / lens.fy);
+  stance.head = commanded_head(camera, stance.head);
+  return stance;
+}
+
+}  // namespace
+
+std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid) {
+  const double far = grid.spread;
+  const std::array<Eigen::Vector2d, 5> places = {
+      {{0, 0}, {-far, -far}, {far, -far}, {-far, far}, {far, far}}};
+  std::vector<ViewCandidate> candidates;
+  for (const ArmState& pose : grid.poses) {
+    const Eigen::Vector3d middle = arm_middle(model, pose);
+    for (const double zoom : grid.zooms) {
+      for (const Eigen::Vector3d& slide : grid.slides) {
+        for (const Eigen::Vector2d& place : places) {
+          ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{pose, {}});
+          for (std::size_t i = 0; i < model.cameras.size(); ++i)
+            candidate.stances.push_back(looking(model, i, slide, zoom, middle, place));
+        }
+      }
+    }
+  }
+  return candidates;
+}
+
+}  // namespace flexura

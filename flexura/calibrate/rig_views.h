@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/calibrate/rig_calibration.h"
+#include "flexura/calibrate/rig_quantities.h"
+
+namespace flexura {
+
+/// What could be looked at next: the arm commanded into a pose, and one picture from each of these stances.
+struct ViewCandidate {
+  ArmState pose;
+  std::vector<RigStance> stances;
+};
+
+/// What a picture shows of an arm that is in view.
+struct ViewConfig {
+  std::size_t markers = 9;  ///< Evenly along the arm, from base to tip.
+  std::size_t points = 20;  ///< Of the axis, between them.
+  double sigma = 0.2;       ///< Of each, px.
+  double margin = 20;       ///< What is nearer to the border than this may be outside, px.
+  std::size_t fewest = 5;   ///< Markers in view; a picture with fewer is no candidate.
+};
+
+/// What is to be known well: numbers that follow from a rig's variables, and how well.
+struct ViewGoal {
+  RigQuantity quantity;
+  double wanted = 1;  ///< Standard deviation that would do, in the quantity's unit; > 0.
+};
+
+/// A: the sum of the goals' variances, each in units of its wanted one. D: the product.
+enum class ViewCriterion { sum, product };
+
+struct ViewChoice {
+  std::size_t candidate = 0;
+  double before = 0, after = 0;  ///< Sum, or logarithm of the product, without and with it.
+  std::vector<double> sigmas;    ///< Of the goals, with it.
+};
+
+/// The candidate whose pictures will make the goals most certain, of equals the first; none when the arm is
+/// in view of none. The goals' quantities are of the calibrated problem's variables.
+[[nodiscard]] std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
+                                                       std::span<const ViewCandidate> candidates,
+                                                       std::span<const ViewGoal> goals,
+                                                       const ViewConfig& config = {},
+                                                       ViewCriterion criterion = ViewCriterion::sum);
+
+/// Where to look for candidates.
+struct ViewGrid {
+  std::vector<ArmState> poses;
+  std::vector<double> zooms = {1};
+  std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
+  /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
+  /// of half the image.
+  double spread = 0.4;
+};
+
+/// All of a grid's, every camera doing the same: within the limits of heads and stages, in positions that can
+/// be commanded.
+[[nodiscard]] std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid);
+
+}  // namespace flexura

@@ -1,0 +1,115 @@
+#include "flexura/camera/measured_camera.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <variant>
+
+namespace flexura {
+namespace {
+
+using Rows = std::array<std::array<double, 3>, 3>;
+using Quaternion = std::array<double, 4>;
+
+// A rotation written with four digits is still one.
+constexpr double largest_error = 2e-3;
+
+Eigen::Matrix3d matrix_of(const Rows& rows) {
+  Eigen::Matrix3d matrix;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) matrix(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  return matrix;
+}
+
+void check_camera(const MeasuredCamera& camera, Reader& reader) {
+  if (camera.rotation.error() > largest_error) {
+    reader.problem_at("rotation",
+                      fmt::format("rotation is {:.2g} off a rotation: expected the rows of a rotation "
+                                  "matrix or a quaternion [w, x, y, z] of norm 1",
+                                  camera.rotation.error()));
+  }
+}
+
+}  // namespace
+
+double RotationConfig::error() const {
+  if (const auto* rows = std::get_if<Rows>(&value)) {
+    const Eigen::Matrix3d R = matrix_of(*rows);
+    return (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() +
+           std::abs(R.determinant() - 1);
+  }
+  const auto& q = std::get<Quaternion>(value);
+  return std::abs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1);
+}
+
+Eigen::Matrix3d RotationConfig::matrix() const {
+  if (const auto* rows = std::get_if<Rows>(&value)) {
+    // The nearest rotation, by way of the quaternion.
+    return Eigen::Quaterniond(matrix_of(*rows)).normalized().toRotationMatrix();
+  }
+  const auto& q = std::get<Quaternion>(value);
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+}
+
+Type Codec<RotationConfig>::type() {
+  return {.kind = Type::Kind::array, .item = std::make_shared<const Type>(Codec<double>::type())};
+}
+
+bool Codec<RotationConfig>::read(const Node& node, const Spec& spec, Reader& reader, RotationConfig& value) {
+  const auto* entries = node.as<Node::Array>();
+  if (entries != nullptr && entries->size() == 4)
+    return Codec<Quaternion>::read(node, spec, reader, value.value.emplace<Quaternion>());
+  if (entries != nullptr && entries->size() == 3)
+    return Codec<Rows>::read(node, spec, reader, value.value.emplace<Rows>());
+  reader.unexpected(node, "three rows of three numbers, or a quaternion [w, x, y, z]");
+  return false;
+}
+
+Node Codec<RotationConfig>::write(const RotationConfig& value) {
+  return std::visit(
+      [](const auto& written) { return Codec<std::decay_t<decltype(written)>>::write(written); },
+      value.value);
+}
+
+Lens MeasuredCamera::lens() const {
+  return Lens({.fx = fx, .fy = fy.value_or(fx), .cx = cx, .cy = cy, .distortion = distortion});
+}
+
+Pose MeasuredCamera::pose() const { return {rotation.matrix(), {position[0], position[1], position[2]}}; }
+
+const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
+  using C = MeasuredCamera;
+  static const Table<C> table =
+      Table<C>("camera", "A camera that stands still, as it was measured.")
+          .field("name", &C::name, {.meaning = "Its name, for messages."})
+          .field("fx", &C::fx, {.meaning = "Focal length, px.", .range = above(0), .required = true})
+          .field("fy", &C::fy, {.meaning = "The same along v, px.", .range = above(0), .default_text = "fx"})
+          .field("cx", &C::cx,
+                 {.meaning = "Principal point, px; (0, 0) is the middle of the top left pixel.",
+                  .required = true})
+          .field("cy", &C::cy, {.meaning = "The same along v, px.", .required = true})
+          .field("distortion", &C::distortion, {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order."})
+          .field("position", &C::position,
+                 {.meaning = "Of the entrance pupil in the world.", .unit = Unit::metre})
+          .field(
+              "rotation", &C::rotation,
+              {.meaning = "Of the camera's frame (x right, y down, z forward) in the world: three rows of a "
+                          "matrix, or [w, x, y, z]."})
+          .check(check_camera);
+  return table;
+}
+
+const Table<MeasuredCameras>& fields_of(const MeasuredCameras*) {
+  static const Table<MeasuredCameras> table =
+      Table<MeasuredCameras>("cameras", "Cameras as they were measured, one for each picture.")
+          .field("camera", &MeasuredCameras::camera,
+                 {.meaning = "In the pictures' order.", .count = {1, 64}, .required = true});
+  return table;
+}
+
+}  // namespace flexura

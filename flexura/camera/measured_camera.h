@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/camera/intrinsics.h"
+#include "flexura/math/pose.h"
+
+namespace flexura {
+
+/// A rotation as one writes it: the rows of its matrix, or the quaternion (w, x, y, z).
+struct RotationConfig {
+  std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
+      std::array<double, 4>{1, 0, 0, 0};
+
+  /// How far the matrix is from a rotation, or the quaternion from one of norm 1.
+  [[nodiscard]] double error() const;
+  /// The matrix, or that of the quaternion brought to norm 1.
+  [[nodiscard]] Eigen::Matrix3d matrix() const;
+};
+
+template <>
+struct Codec<RotationConfig> {
+  static Type type();
+  static bool read(const Node& node, const Spec& spec, Reader& reader, RotationConfig& value);
+  static Node write(const RotationConfig& value);
+};
+
+/// One `[[camera]]` of a file of cameras as they were measured: a lens that stands still, and where it
+/// stands.
+struct MeasuredCamera {
+  std::string name;
+  double fx = 800;                                     ///< px
+  std::optional<double> fy;                            ///< px; fx when left out.
+  double cx = 319.5, cy = 239.5;                       ///< px
+  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
+  std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
+  RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
+
+  [[nodiscard]] Lens lens() const;
+  /// X_WC.
+  [[nodiscard]] Pose pose() const;
+};
+
+/// Such a file.
+struct MeasuredCameras {
+  std::vector<MeasuredCamera> camera;
+};
+
+const Table<MeasuredCamera>& fields_of(const MeasuredCamera*);
+const Table<MeasuredCameras>& fields_of(const MeasuredCameras*);
+
+}  // namespace flexura

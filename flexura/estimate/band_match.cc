@@ -1,0 +1,186 @@
+#include "flexura/estimate/band_match.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+
+#include "flexura/estimate/curve_image.h"
+#include "flexura/estimate/space_curve.h"
+
+namespace flexura {
+namespace {
+
+// A place along the arm where something is seen, or known to be.
+struct Place {
+  double s = 0;                          // m along the unstretched arm.
+  std::optional<Eigen::Vector3d> color;  // Of what is seen.
+  std::size_t index = 0;                 // The band's in its sighting; the marker's.
+};
+using Places = std::vector<Place>;
+
+void sort(Places& places) { std::ranges::stable_sort(places, {}, &Place::s); }
+
+Places places_of(const Sighting& seen, const SpaceCurve& curve, const Arm& arm) {
+  CurveImage image;
+  Places places;
+  if (!image.set(seen.view, curve)) return places;
+  for (std::size_t i = 0; i < seen.bands.size(); ++i) {
+    const SeenBand& band = seen.bands[i];
+    const CurveImage::Point near = image.nearest(band.pixel, band.heading, image.everywhere());
+    places.push_back({curve.s_of(arm, near.place), band.color, i});
+  }
+  sort(places);
+  return places;
+}
+
+// How far apart neighbours usually are; of one alone nothing is known but the arm's length.
+double spacing(const Places& places, double length) {
+  constexpr double of_one = 0.2;
+  if (places.size() < 2) return of_one * length;
+  std::vector<double> gaps;
+  gaps.reserve(places.size());
+  for (std::size_t i = 1; i < places.size(); ++i) gaps.push_back(places[i].s - places[i - 1].s);
+  std::ranges::nth_element(gaps, gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2));
+  return gaps[gaps.size() / 2];
+}
+
+// What it costs to take two for the same: leaving both out costs 1.
+double strangeness(const Place& a, const Place& b, double gate) {
+  constexpr double other_color = 120;
+  const double off = (a.s - b.s) / gate;
+  const double color = a.color && b.color ? (*a.color - *b.color).norm() / other_color : 0;
+  return off * off + color * color;
+}
+
+using Pairs = std::vector<std::array<std::size_t, 2>>;
+
+// The cheapest pairing of two rising series that keeps their order.
+Pairs paired(const Places& a, const Places& b, double gate) {
+  const std::size_t rows = a.size() + 1, columns = b.size() + 1;
+  constexpr double alone = 0.5;
+  std::vector<double> costs(rows * columns, 0.0);
+  const auto cost = [&](std::size_t i, std::size_t j) -> double& { return costs[i * columns + j]; };
+  const auto together = [&](std::size_t i, std::size_t j) {
+    return cost(i - 1, j - 1) + strangeness(a[i - 1], b[j - 1], gate);
+  };
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      if (i == 0 || j == 0)
+        cost(i, j) = alone * static_cast<double>(i + j);
+      else
+        cost(i, j) = std::min({cost(i - 1, j) + alone, cost(i, j - 1) + alone, together(i, j)});
+    }
+  Pairs pairs;
+  for (std::size_t i = a.size(), j = b.size(); i > 0 && j > 0;) {
+    const bool is_pair = cost(i, j) == together(i, j);
+    if (is_pair) pairs.push_back({i - 1, j - 1});
+    const bool is_row = is_pair || cost(i, j) == cost(i - 1, j) + alone;
+    i -= is_row ? 1 : 0, j -= is_pair || !is_row ? 1 : 0;
+  }
+  std::ranges::reverse(pairs);
+  return pairs;
+}
+
+Pairs counted(std::size_t count) {
+  Pairs pairs;
+  for (std::size_t i = 0; i < count; ++i) pairs.push_back({i, i});
+  return pairs;
+}
+
+// All sections of an arm whose length is not known stretch alike.
+double stretch_of(const Shape& shape) {
+  return shape.state.stretches.empty() ? 1.0 : shape.state.stretches.front();
+}
+
+// Markers as they become known, from sighting to sighting.
+class Matching {
+ public:
+  Matching(const ShapePrior& prior, double sigma)
+      : is_known_(!prior.markers.empty()), length_(prior.arm.length()), sigma_(sigma) {
+    for (const double s : prior.markers) markers_.push_back({s, std::nullopt, markers_.size()});
+    sort(markers_);
+    count_ = markers_.size();
+  }
+
+  void add(std::size_t sighting, const Places& seen) {
+    const bool is_first = !is_known_ && markers_.empty();
+    std::vector<bool> is_placed(seen.size(), false);
+    Pairs pairs;
+    if (!is_first) pairs = pairs_with(seen);
+    for (const auto& [i, j] : pairs) {
+      const Place& marker = markers_[i];
+      looks_.push_back({sighting, seen[j].index, marker.index,
+                        is_known_ ? std::optional<double>(marker.s) : std::nullopt});
+      is_placed[j] = true;
+    }
+    if (is_known_) return;
+    for (std::size_t j = 0; j < seen.size(); ++j) {
+      if (is_placed[j]) continue;
+      looks_.push_back({sighting, seen[j].index, count_, std::nullopt});
+      markers_.push_back({seen[j].s, seen[j].color, count_++});
+    }
+    sort(markers_);
+  }
+
+  std::vector<BandLook> take() {
+    std::vector<std::size_t> looks(count_, 0);
+    for (const BandLook& look : looks_) ++looks[look.marker];
+    std::erase_if(looks_, [&](const BandLook& look) { return !look.s && looks[look.marker] < 2; });
+    return looks_;
+  }
+
+ private:
+  [[nodiscard]] Pairs pairs_with(const Places& seen) const {
+    // Of the way from one marker to the next: a shape that is farther off does not tell them apart.
+    constexpr double share = 0.4, surely = 0.25;
+    const double gate = share * spacing(markers_, length_);
+    if (sigma_ < surely * gate) return paired(markers_, seen, gate);
+    return markers_.size() == seen.size() && seen.size() > 1 ? counted(seen.size()) : Pairs{};
+  }
+
+  bool is_known_;
+  double length_, sigma_;
+  Places markers_;
+  std::size_t count_ = 0;
+  std::vector<BandLook> looks_;
+};
+
+}  // namespace
+
+std::vector<BandLook> match_bands(const ShapePrior& prior, const Shape& shape, double sigma,
+                                  std::span<const Sighting> sightings) {
+  SpaceCurve curve(ShapeVariables(prior), intervals_a_section(prior));
+  curve.set(shape);
+  Matching matching(prior, sigma / stretch_of(shape));
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    matching.add(i, places_of(sightings[i], curve, shape.arm));
+  return matching.take();
+}
+
+std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
+                                         std::span<const BandLook> looks,
+                                         std::span<const Sighting> sightings) {
+  SpaceCurve curve(ShapeVariables(prior), intervals_a_section(prior));
+  curve.set(shape);
+  std::map<std::size_t, PlacedMarker> markers;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    for (const Place& place : places_of(sightings[i], curve, shape.arm)) {
+      const auto look = std::ranges::find_if(
+          looks, [&](const BandLook& one) { return one.sighting == i && one.band == place.index; });
+      if (look == looks.end()) continue;
+      PlacedMarker& marker = markers[look->marker];
+      marker.s += stretch_of(shape) * place.s, ++marker.looks;
+    }
+  }
+  std::vector<PlacedMarker> result;
+  result.reserve(markers.size());
+  for (const auto& [number, marker] : markers)
+    result.push_back({marker.s / static_cast<double>(marker.looks), marker.looks});
+  std::ranges::stable_sort(result, {}, &PlacedMarker::s);
+  return result;
+}
+
+}  // namespace flexura

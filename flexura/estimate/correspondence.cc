@@ -1,0 +1,141 @@
+#include "flexura/estimate/correspondence.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace flexura {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct SeenRay {
+  SpaceRay ray;
+  std::size_t point = 0;  // Of the sighting's.
+};
+
+std::vector<SeenRay> rays_of(const Sighting& seen) {
+  std::vector<SeenRay> rays;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const auto ab = seen.view.lens.unproject(seen.points[i].pixel);
+    if (!ab) continue;
+    rays.push_back(
+        {{seen.view.X_WC.position, seen.view.X_WC.rotation * Eigen::Vector3d(ab->x(), ab->y(), 1)}, i});
+  }
+  return rays;
+}
+
+double focal_length(const Sighting& seen) {
+  return 0.5 * (seen.view.lens.intrinsics().fx + seen.view.lens.intrinsics().fy);
+}
+
+// The cheapest way through a table of costs from its first row and column to its last; a curve that is cut
+// may be entered, or left, anywhere on the other one's.
+class Alignment {
+ public:
+  Alignment(std::size_t rows, std::size_t columns)
+      : rows_(rows),
+        columns_(columns),
+        costs_(rows * columns),
+        totals_(rows * columns, infinity),
+        from_(rows * columns, none) {}
+
+  double& cost(std::size_t i, std::size_t j) { return costs_[i * columns_ + j]; }
+
+  // Fills `pairs`, from the start on. `is_free`: whether the way may start, end, away from the corner.
+  void solve(std::array<bool, 2> is_free, std::vector<std::array<std::size_t, 2>>& pairs) {
+    for (std::size_t i = 0; i < rows_; ++i)
+      for (std::size_t j = 0; j < columns_; ++j) enter(i, j, is_free[0]);
+    std::array<std::size_t, 2> at{rows_ - 1, columns_ - 1};
+    if (is_free[1]) at = cheapest_end();
+    for (;;) {
+      pairs.push_back(at);
+      const std::uint8_t step = from_[at[0] * columns_ + at[1]];
+      if (step == none) break;
+      at[0] -= step & 1u, at[1] -= step >> 1u;
+    }
+    std::ranges::reverse(pairs);
+  }
+
+ private:
+  static constexpr std::uint8_t none = 0;  // Otherwise 1 a row, 2 a column, 3 both back.
+
+  void enter(std::size_t i, std::size_t j, bool is_free_start) {
+    const std::size_t here = i * columns_ + j;
+    double least = (i == 0 && j == 0) || (is_free_start && (i == 0 || j == 0)) ? 0 : infinity;
+    const auto consider = [&](std::size_t before, std::uint8_t step) {
+      if (totals_[before] < least) least = totals_[before], from_[here] = step;
+    };
+    if (i > 0 && j > 0) consider(here - columns_ - 1, 3);
+    if (i > 0) consider(here - columns_, 1);
+    if (j > 0) consider(here - 1, 2);
+    totals_[here] = least + costs_[here];
+  }
+
+  // In the last row or column, by the mean cost of the way there: a short one is not cheaper for that.
+  [[nodiscard]] std::array<std::size_t, 2> cheapest_end() const {
+    std::array<std::size_t, 2> best{rows_ - 1, columns_ - 1};
+    double least = infinity;
+    const auto consider = [&](std::size_t i, std::size_t j) {
+      const double mean = totals_[i * columns_ + j] / static_cast<double>(i + j + 1);
+      if (mean < least) least = mean, best = {i, j};
+    };
+    for (std::size_t i = rows_ / 2; i < rows_; ++i) consider(i, columns_ - 1);
+    for (std::size_t j = columns_ / 2; j < columns_; ++j) consider(rows_ - 1, j);
+    return best;
+  }
+
+  std::size_t rows_, columns_;
+  std::vector<double> costs_, totals_;
+  std::vector<std::uint8_t> from_;
+};
+
+}  // namespace
+
+std::optional<SpacePoint> meeting(const SpaceRay& a, const SpaceRay& b) {
+  const double aa = a.direction.squaredNorm(), bb = b.direction.squaredNorm(),
+               ab = a.direction.dot(b.direction);
+  const double determinant = aa * bb - ab * ab;
+  constexpr double parallel = 1e-12;
+  if (!(determinant > parallel * aa * bb)) return std::nullopt;
+  const Eigen::Vector3d between = b.eye - a.eye;
+  const double da = between.dot(a.direction), db = between.dot(b.direction);
+  const Eigen::Vector3d on_a = a.eye + (bb * da - ab * db) / determinant * a.direction;
+  const Eigen::Vector3d on_b = b.eye + (ab * da - aa * db) / determinant * b.direction;
+  return SpacePoint{0.5 * (on_a + on_b), (on_a - on_b).norm(), {0, 0}};
+}
+
+Correspondence correspondence(const Sighting& a, const Sighting& b) {
+  const std::vector<SeenRay> left = rays_of(a), right = rays_of(b);
+  Correspondence result;
+  if (left.empty() || right.empty()) return result;
+  const Eigen::Vector3d baseline = b.view.X_WC.position - a.view.X_WC.position;
+  const double scale = 0.5 * (focal_length(a) + focal_length(b));
+  Alignment alignment(left.size(), right.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    // The epipolar plane of the left ray; the sine of the right ray's angle with it.
+    const Eigen::Vector3d normal = baseline.cross(left[i].ray.direction).normalized();
+    for (std::size_t j = 0; j < right.size(); ++j) {
+      const double off = scale * normal.dot(right[j].ray.direction) / right[j].ray.direction.norm();
+      alignment.cost(i, j) = off * off;
+    }
+  }
+  const auto is_cut = [&](std::size_t end) { return !a.ends[end] || !b.ends[end]; };
+  std::vector<std::array<std::size_t, 2>> pairs;
+  alignment.solve({is_cut(0), is_cut(1)}, pairs);
+  for (const auto& [i, j] : pairs) {
+    result.cost += alignment.cost(i, j) / static_cast<double>(pairs.size());
+    auto point = meeting(left[i].ray, right[j].ray);
+    if (!point) continue;
+    point->seen = {left[i].point, right[j].point};
+    result.points.push_back(*point);
+  }
+  return result;
+}
+
+}  // namespace flexura

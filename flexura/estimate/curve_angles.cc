@@ -1,0 +1,83 @@
+#include "flexura/estimate/curve_angles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "flexura/estimate/correspondence.h"
+
+namespace flexura {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// The azimuth's sine and cosine above which the planes' reading is singular: 80 degrees.
+constexpr double singular_cosine = 0.17364817766693033;
+
+// An angle moved by whole turns to within half a turn of another one.
+double near(double angle, double other) { return angle - 2 * pi * std::round((angle - other) / (2 * pi)); }
+
+// The direction in which a curve's image goes on at point i, in W, as a parallel projection shows it.
+Eigen::Vector3d image_direction(const Sighting& seen, std::size_t i) {
+  constexpr std::size_t reach = 3;
+  const std::size_t first = i - std::min(i, reach), last = std::min(i + reach, seen.points.size() - 1);
+  const Eigen::Vector2d way = seen.points[last].pixel - seen.points[first].pixel;
+  const Intrinsics& lens = seen.view.lens.intrinsics();
+  return seen.view.X_WC.rotation * Eigen::Vector3d(way.x() / lens.fx, way.y() / lens.fy, 0);
+}
+
+}  // namespace
+
+std::vector<DirectionAngles> direction_angles(const Backbone& backbone, std::size_t count) {
+  std::vector<DirectionAngles> angles(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    const Eigen::Vector3d e = backbone.pose(share * backbone.length()).rotation.col(2);
+    const double across = std::hypot(e.x(), e.y());
+    const double before = i > 0 ? angles[i - 1].azimuth : 0;
+    // Along Z the azimuth is whatever it was.
+    angles[i].azimuth = across > 1e-12 ? near(std::atan2(e.x(), e.y()), before) : before;
+    angles[i].elevation = std::atan2(e.z(), across);
+    angles[i].is_singular = std::abs(std::cos(angles[i].azimuth)) < singular_cosine;
+  }
+  return angles;
+}
+
+DirectionAngles angles_of_planes(double alpha_1, double alpha_2) {
+  DirectionAngles angles;
+  angles.azimuth = alpha_1;
+  angles.elevation = std::atan(std::tan(alpha_2) * std::cos(alpha_1));
+  angles.is_singular = std::abs(std::cos(alpha_1)) < singular_cosine;
+  return angles;
+}
+
+std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting& side, std::size_t count) {
+  constexpr std::size_t fewest = 8;
+  const Correspondence common = correspondence(front, side);
+  if (common.points.size() < fewest) return {};
+  std::vector<double> way(common.points.size(), 0);
+  std::vector<DirectionAngles> seen(common.points.size());
+  for (std::size_t i = 0; i < common.points.size(); ++i) {
+    const SpacePoint& point = common.points[i];
+    if (i > 0) way[i] = way[i - 1] + (point.position - common.points[i - 1].position).norm();
+    const Eigen::Vector3d d1 = image_direction(front, point.seen[0]),
+                          d2 = image_direction(side, point.seen[1]);
+    seen[i] = angles_of_planes(std::atan2(d1.x(), d1.y()), std::atan2(d2.z(), d2.y()));
+    if (i > 0) seen[i].azimuth = near(seen[i].azimuth, seen[i - 1].azimuth);
+  }
+  std::vector<DirectionAngles> angles(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double there = way.back() * static_cast<double>(i) / static_cast<double>(count - 1);
+    const auto after = std::ranges::lower_bound(way, there);
+    const auto next =
+        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - way.begin(), 1, std::ssize(way) - 1));
+    const DirectionAngles &a = seen[next - 1], &b = seen[next];
+    const double piece = way[next] - way[next - 1], share = piece > 0 ? (there - way[next - 1]) / piece : 0;
+    angles[i] = {a.azimuth + share * (b.azimuth - a.azimuth),
+                 a.elevation + share * (b.elevation - a.elevation), a.is_singular || b.is_singular};
+  }
+  return angles;
+}
+
+}  // namespace flexura

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "flexura/camera/view.h"
+#include "flexura/estimate/space_curve.h"
+
+namespace flexura {
+
+/// The image of a backbone: through the images of its knots with their tangents, cubic between them (for arcs
+/// of an eighth of a radian: to 1e-6 of their radius).
+class CurveImage {
+ public:
+  /// False when a knot is not seen by the lens.
+  bool set(const View& view, const SpaceCurve& curve);
+
+  [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
+
+  struct Point {
+    double place = 0;         ///< Counted in knots.
+    Eigen::Vector2d pixel;    ///< Of the curve there.
+    Eigen::Vector2d tangent;  ///< Unit.
+    double speed = 0;         ///< px a knot.
+  };
+  [[nodiscard]] Point at(double place) const;
+  /// Where to look: from one knot to another, and first in the interval after a third.
+  struct Window {
+    std::size_t first = 0, last = 0, likely = 0;
+  };
+  [[nodiscard]] Window everywhere() const { return {0, pieces_.size(), 0}; }
+  /// The curve's point nearest to a pixel, within a window, that runs about as `heading` does (unit): of a
+  /// hairpin's branches the one that is meant.
+  [[nodiscard]] Point nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
+                              const Window& window) const;
+  /// direction . d pixel/d unknowns at a place, as a row.
+  void along(const Eigen::Vector2d& direction, double place, Eigen::Ref<Eigen::RowVectorXd> row) const;
+
+ private:
+  // From one knot to the next: a + f (da + f (c2 + f c3)) for f from 0 to 1, all of it in a disc.
+  struct Piece {
+    Eigen::Vector2d a, da, c2, c3, middle;
+    double radius = 0;
+    [[nodiscard]] Eigen::Vector2d at(double f) const { return a + f * (da + f * (c2 + f * c3)); }
+    [[nodiscard]] Eigen::Vector2d slope(double f) const { return da + f * (2 * c2 + 3 * f * c3); }
+    [[nodiscard]] Eigen::Vector2d bend(double f) const { return 2 * c2 + 6 * f * c3; }
+  };
+  [[nodiscard]] static Piece piece(const Eigen::Vector2d& a, const Eigen::Vector2d& da,
+                                   const Eigen::Vector2d& b, const Eigen::Vector2d& db);
+  [[nodiscard]] static double foot(const Piece& piece, const Eigen::Vector2d& pixel);
+
+  using Unknowns = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
+  std::vector<Piece> pieces_;
+  std::vector<Unknowns> unknowns_;  // Of the knots' pixels.
+  std::size_t in_section_ = 2;      // Pieces in each section.
+};
+
+}  // namespace flexura

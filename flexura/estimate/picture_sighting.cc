@@ -1,0 +1,57 @@
+#include "flexura/estimate/picture_sighting.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "flexura/vision/backbone_image.h"
+#include "flexura/vision/markers.h"
+
+namespace flexura {
+namespace {
+
+// No axis is known better, px: lenses are not.
+constexpr double least_sigma = 0.01;
+// Of the silhouette: what explains less may end at a fold.
+constexpr double whole = 0.95;
+// Of a band's middle, px: what skin and shading do to it.
+constexpr double band_sigma = 0.2;
+
+// The way in which the axis goes on where it is nearest to a pixel.
+Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vector2d& pixel) {
+  const auto nearest = std::ranges::min_element(
+      axis, {}, [&](const AxisSample& sample) { return (sample.pixel - pixel).squaredNorm(); });
+  return {nearest->normal.y(), -nearest->normal.x()};
+}
+
+}  // namespace
+
+Sighting sighting_of(const ArmSighting& arm, const View& view) {
+  Sighting seen;
+  seen.view = view;
+  std::vector<AxisSample> axis = arm.axis;
+  to_backbone_image(view.lens, axis);
+  for (const AxisSample& sample : axis)
+    if (sample.is_seen) seen.points.push_back({sample.pixel, std::max(sample.sigma, least_sigma)});
+  if (arm.covered < whole) return seen;
+  for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+    if (arm.ends[end].kind == AxisEndKind::free)
+      seen.ends[end] = SeenEnd{arm.ends[end].pixel, arm.ends[end].sigma};
+  return seen;
+}
+
+Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::uint8_t>& picture) {
+  Sighting seen = sighting_of(arm, view);
+  ArmSighting corrected = arm;
+  to_backbone_image(view.lens, corrected.axis);
+  for (const MarkerSighting& marker : find_markers(picture, corrected).markers) {
+    if (!marker.is_band || marker.may_be_merged) continue;
+    seen.bands.push_back({marker.pixel, heading_at(corrected.axis, marker.pixel),
+                          std::hypot(marker.sigma, band_sigma), marker.color});
+  }
+  return seen;
+}
+
+}  // namespace flexura

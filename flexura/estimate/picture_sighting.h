@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "flexura/base/image.h"
+#include "flexura/camera/view.h"
+#include "flexura/estimate/sighting.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// What a picture by `view` shows of the backbone: the median axis where both borders are seen, corrected for
+/// the lens, and the arm's ends. Where the axis explains less than nearly all of the silhouette its ends may
+/// be a fold's, not the arm's: then there are none.
+[[nodiscard]] Sighting sighting_of(const ArmSighting& arm, const View& view);
+
+/// The same with the coloured bands around the arm in `picture`, in which it was found; bands that may be two
+/// in one are left out.
+[[nodiscard]] Sighting sighting_of(const ArmSighting& arm, const View& view,
+                                   const Image<std::uint8_t>& picture);
+
+}  // namespace flexura

@@ -1,0 +1,199 @@
+#include "flexura/estimate/shape_estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "flexura/estimate/band_match.h"
+#include "flexura/estimate/correspondence.h"
+#include "flexura/estimate/shape_start.h"
+
+namespace flexura {
+namespace {
+
+// In sigmas, and px: a fit whose points lie farther from the shape is no fit.
+constexpr double most_scale = 8, most_rms = 1.0;
+
+bool is_good(const ShapeFit& fit) {
+  return fit.is_settled && fit.doubted < 0.1 && (fit.scale < most_scale || fit.rms < 0.5 * most_rms);
+}
+
+// The end nearer to where the base is seen comes first.
+Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
+  const auto base = seen.view.project(p_WB);
+  if (!base || seen.points.empty()) return seen;
+  const bool is_reversed =
+      (seen.points.back().pixel - *base).norm() < (seen.points.front().pixel - *base).norm();
+  return is_reversed ? reversed(seen) : seen;
+}
+
+// Fills the places of the knots and their standard deviations; returns the arm's length.
+double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance, ShapeEstimate& result) {
+  double s = 0;
+  const auto& knots = problem.curve().knots();
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    const double variance = (knots[i].unknowns * covariance * knots[i].unknowns.transpose()).trace();
+    result.s.push_back(s);
+    result.sigma.push_back(variance >= 0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity());
+    if (i + 1 < knots.size()) s += problem.curve().interval(i);
+  }
+  return s;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value / static_cast<double>(values.size());
+  return std::sqrt(squares);
+}
+
+Shape scaled(Shape shape, double factor) {
+  for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
+  return shape;
+}
+
+}  // namespace
+
+ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
+    : prior_(std::move(prior)), config_(config) {}
+
+std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
+  std::vector<Sighting> result;
+  for (const Sighting& seen : sightings) {
+    const Sighting thin = thinned(seen, config_.most_points);
+    result.push_back(prior_.is_base_position_known ? from_base(thin, prior_.arm.X_WB.position) : thin);
+  }
+  return result;
+}
+
+std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) const {
+  std::vector<Shape> shapes;
+  if (sightings.size() >= 2) {
+    const Correspondence pairs = correspondence(sightings[0], sightings[1]);
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(pairs.points.size());
+    for (const SpacePoint& point : pairs.points) points.push_back(point.position);
+    if (prior_.is_base_position_known && !points.empty()) points.front() = prior_.arm.X_WB.position;
+    const auto is_other = [&](const Eigen::Vector3d& p) { return p != points.front(); };
+    if (std::ranges::any_of(points, is_other)) {
+      shapes.push_back(shape_along(prior_, points));
+      shapes.push_back(scaled(shapes.front(), 0.5));
+    }
+  }
+  shapes.push_back(straight_shape(prior_));
+  return shapes;
+}
+
+ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
+  std::vector<Sighting> seen = prepared(sightings);
+  if (seen.empty() || std::ranges::any_of(seen, [](const Sighting& one) { return one.points.size() < 4; })) {
+    ShapeEstimate none;
+    none.shape = straight_shape(prior_);
+    none.reason = "the arm is not seen in every image";
+    return none;
+  }
+  std::optional<ShapeFit> best;
+  std::vector<Sighting> best_seen;
+  const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
+  for (std::size_t way = 0; way < ways; ++way) {
+    if (way == 1) seen[1] = reversed(seen[1]);
+    ShapeProblem problem(prior_, seen);
+    for (const Shape& start : starts(seen)) {
+      ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
+      const bool is_last = is_good(fit);
+      if (!best || fit.cost < best->cost) best = std::move(fit), best_seen = seen;
+      if (is_last) break;
+    }
+  }
+  ShapeProblem problem(prior_, best_seen);
+  if (!problem.linearise(best->shape)) best->cost = std::numeric_limits<double>::infinity();
+  const double cost = best->cost;
+  return with_bands(best_seen, answer(problem, std::move(*best)), cost);
+}
+
+ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const Shape& before) {
+  const std::vector<Sighting> seen = prepared(sightings);
+  ShapeProblem problem(prior_, seen);
+  ShapeFit fit = descent_.descend(problem, before, config_.most_iterations, StartKind::near);
+  if (!is_good(fit)) {
+    ShapeFit other = descent_.descend(problem, before, config_.most_iterations);
+    if (is_good(other) || other.cost < fit.cost) fit = std::move(other);
+    if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
+  }
+  const double cost = fit.cost;
+  return with_bands(seen, answer(problem, std::move(fit)), cost);
+}
+
+ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
+                                         double cost) {
+  const auto is_plain = [](const Sighting& seen) { return seen.bands.empty(); };
+  if (!std::isfinite(cost) || first.sigma.empty() || std::ranges::all_of(sightings, is_plain)) return first;
+  const std::vector<BandLook> looks =
+      match_bands(prior_, first.shape, root_mean_square(first.sigma), sightings);
+  if (looks.empty()) return first;
+  ShapeProblem problem(prior_, sightings, looks);
+  ShapeFit fit = descent_.descend(problem, first.shape, config_.most_iterations, StartKind::near);
+  // Of the axes: markers move the shape along where they lie on them, not away.
+  constexpr double worse = 1.5, little = 1e-4;
+  const bool is_worse = !(fit.cost < worse * cost + little);
+  ShapeEstimate result = answer(problem, std::move(fit));
+  if (is_worse || (first.is_found && !result.is_found)) {
+    first.notes.emplace_back("the markers speak against the axes: they are not used");
+    return first;
+  }
+  result.markers = placed_markers(prior_, result.shape, looks, sightings);
+  return result;
+}
+
+ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) const {
+  ShapeEstimate result;
+  result.shape = fit.shape, result.covariance = fit.covariance, result.iterations = fit.iterations;
+  result.rms = fit.rms, result.doubted = fit.doubted;
+  if (!std::isfinite(fit.cost)) {
+    result.reason = "no shape of the arm is seen by these cameras";
+    return result;
+  }
+  const double length = add_sigmas(problem, fit.covariance, result);
+  const double sigma = root_mean_square(result.sigma);
+  if (!(sigma < config_.hopeless * length)) {
+    result.reason = "the images do not tell the shape";
+    return result;
+  }
+  result.is_found = fit.doubted < 0.5 && (fit.rms < most_rms || fit.scale < most_scale);
+  if (!result.is_found) {
+    result.reason = fmt::format(
+        "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {:.2f} px off",
+        100 * fit.doubted, fit.rms);
+  }
+  constexpr double poor = 3;
+  if (fit.scale > poor)
+    result.notes.push_back(
+        fmt::format("the images are {:.0f} times farther off than their noise explains", fit.scale));
+  if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
+  if (fit.doubted > 0.1)
+    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.doubted));
+  if (fit.contradicted > 0)
+    result.notes.push_back(fmt::format(
+        "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
+  if (sigma > config_.uncertain * length) result.notes.push_back(fmt::format("uncertain to {:.2g} m", sigma));
+  return result;
+}
+
+ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double> length,
+                       std::size_t sections) {
+  ShapePrior prior;
+  prior.arm.kind = ArmKind::spatial;
+  prior.is_base_direction_known = false;
+  prior.is_base_position_known = base.has_value();
+  prior.is_length_known = length.has_value();
+  if (base) prior.arm.X_WB.position = *base;
+  const double whole = length.value_or(1.0);
+  prior.arm.sections.resize(sections, {.length = whole / static_cast<double>(sections)});
+  // Of a turn a length, from one section to the next.
+  prior.curvature_step = 1.0 / whole;
+  return prior;
+}
+
+}  // namespace flexura

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/estimate/band_match.h"
+#include "flexura/estimate/shape_fit.h"
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/sighting.h"
+
+namespace flexura {
+
+/// How an estimate is made.
+struct EstimatorConfig {
+  std::size_t most_points = 100;  ///< Of each sighting; more are thinned out.
+  int most_iterations = 60;
+  /// Estimates whose standard deviation, root mean square along the arm, is larger are marked; share of its
+  /// length.
+  double uncertain = 1.2e-4;
+  /// Beyond this share the sightings tell no shape.
+  double hopeless = 0.1;
+};
+
+/// The arm's shape from what cameras see of it.
+struct ShapeEstimate {
+  Shape shape;
+  bool is_found = false;
+  std::string reason;              ///< Why it is not.
+  std::vector<std::string> notes;  ///< Why it is to be doubted; empty when nothing speaks against it.
+  double rms = 0;                  ///< Of the points' distances from the shape's images, px.
+  double doubted = 0;              ///< The share of the points that are taken for something else's.
+  /// Of the position at the knots `s` (m of arc length), standard deviation, m: the root of the trace.
+  std::vector<double> s, sigma;
+  Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables).
+  int iterations = 0;
+  std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
+};
+
+/// Fits shapes to sightings by one or more cameras: least squares of the distances in all images at once,
+/// under the full camera model (docs/estimation.md). The same sightings give the same answer, but for
+/// `follow`, which starts from the shape that it is given. Bands count where a fit without them tells which
+/// is which (band_match.h), as long as the axes do not speak against them.
+class ShapeEstimator {
+ public:
+  explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
+
+  /// From nothing: of two sightings points are paired by epipolar geometry and their order, and triangulated.
+  /// Where the base's position is known, each sighting is followed from the end nearer to it; otherwise the
+  /// order of the first one's points holds, and the second is tried both ways.
+  [[nodiscard]] ShapeEstimate estimate(std::span<const Sighting> sightings);
+
+  /// From the shape a moment ago.
+  [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
+
+ private:
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
+  // `problem` is that at the fit's shape.
+  [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;
+  // `first` without the bands, again with those that it can tell apart; their words on it where they cannot
+  // be.
+  [[nodiscard]] ShapeEstimate with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
+                                         double cost);
+  [[nodiscard]] std::vector<Sighting> prepared(std::span<const Sighting> sightings) const;
+
+  ShapePrior prior_;
+  EstimatorConfig config_;
+  ShapeDescent descent_;
+};
+
+/// What is known of an arm of which nothing is: `sections` equal, short, smooth ones.
+[[nodiscard]] ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double> length,
+                                     std::size_t sections = 30);
+
+}  // namespace flexura

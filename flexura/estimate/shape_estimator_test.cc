@@ -1,0 +1,138 @@
+#include "flexura/estimate/shape_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tests/support/random_cases.h"
+#include "tests/support/sightings.h"
+
+namespace flexura {
+namespace {
+
+TEST(ShapeEstimator, FindsAKnownArmExactlyWithoutNoise) {
+  for_random_cases(60, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const ArmState state = random_bends(random, prior.arm, 1.8);
+    const Backbone truth(prior.arm, state);
+    ShapeEstimator estimator(prior);
+    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0));
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 1e-5);
+    EXPECT_LT(found.doubted, 0.01);
+  });
+}
+
+TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
+  int count = 0, within = 0;
+  double worst = 0;
+  for_random_cases(100, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.5));
+    ShapeEstimator estimator(prior);
+    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0.05));
+    ASSERT_TRUE(found.is_found) << found.reason;
+    worst = std::max(worst, shape_error(found.shape, truth));
+    const Backbone backbone(found.shape.arm, found.shape.state);
+    for (const std::size_t i : {found.s.size() / 2, found.s.size() - 1}) {
+      const double off =
+          (backbone.pose(found.s[i]).position - truth.pose(std::min(found.s[i], truth.length())).position)
+              .norm();
+      ++count, within += off < 2 * found.sigma[i];
+    }
+  });
+  // Two sigmas of three coordinates hold 85 to 97 % as the errors lie in space.
+  EXPECT_GT(within, 0.8 * count);
+  EXPECT_LT(worst, 3e-4);
+}
+
+TEST(ShapeEstimator, FindsAnArmOfUnknownMake) {
+  for_random_cases(30, [](TestRandom& random) {
+    const Arm arm = three_section_arm();
+    const Backbone truth(arm, random_bends(random, arm, 1.2));
+    ShapeEstimator estimator(unknown_arm(std::nullopt, std::nullopt));
+    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0.02));
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 2e-3);
+    EXPECT_NEAR(Backbone(found.shape.arm, found.shape.state).length(), 1, 3e-3);
+  });
+}
+
+TEST(ShapeEstimator, FollowsFromTheShapeBefore) {
+  for_random_cases(30, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    ArmState state = random_bends(random, prior.arm, 1.5);
+    ShapeEstimator estimator(prior);
+    const Shape before{prior.arm, state};
+    for (Eigen::Vector2d& bend : state.bends) bend += random.vector<2>(-0.05, 0.05);
+    const Backbone truth(prior.arm, state);
+    const ShapeEstimate found = estimator.follow(sightings_of(truth, random, 0.02), before);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 1e-4);
+    EXPECT_LE(found.iterations, 12);
+  });
+}
+
+TEST(ShapeEstimator, HoldsAgainstPointsOfSomethingElse) {
+  for_random_cases(30, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.2));
+    std::vector<Sighting> seen = sightings_of(truth, random, 0.03);
+    for (Sighting& one : seen)
+      for (std::size_t i = 40; i < 50; ++i) one.points[i].pixel += Eigen::Vector2d(6, -5);
+    ShapeEstimator estimator(prior);
+    const ShapeEstimate found = estimator.estimate(seen);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 3e-4);
+    EXPECT_GT(found.doubted, 0.03);
+  });
+}
+
+TEST(ShapeEstimator, KnowsLessWhereTheArmIsCut) {
+  for_random_cases(20, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.0));
+    std::vector<Sighting> seen = sightings_of(truth, random, 0.05);
+    ShapeEstimator estimator(prior);
+    const ShapeEstimate whole = estimator.estimate(seen);
+    seen[1] = sighting_of(truth, seen[1].view, random, 0.05, {0, 0.6});
+    const ShapeEstimate cut = estimator.estimate(seen);
+    ASSERT_TRUE(cut.is_found) << cut.reason;
+    EXPECT_GT(cut.sigma.back(), 2 * whole.sigma.back());
+    // What only one camera sees may bend towards it or away from it.
+    EXPECT_FALSE(cut.notes.empty());
+    EXPECT_LT(cut.rms, 0.1);
+  });
+}
+
+TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
+  for_random_cases(6, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone one(prior.arm, random_bends(random, prior.arm, 1.0));
+    std::vector<Sighting> seen = sightings_of(one, random, 0.02);
+    // Doubts for uncertainty alone are left aside.
+    ShapeEstimator estimator(prior, {.uncertain = 1e-2});
+    const ShapeEstimate right = estimator.estimate(seen);
+    EXPECT_TRUE(right.is_found) << right.reason;
+    EXPECT_TRUE(right.notes.empty()) << right.notes.front();
+    // The second camera stands elsewhere than is believed: no shape has both images.
+    std::vector<Sighting> moved = seen;
+    for (CurvePoint& point : moved[1].points) point.pixel.y() += 60;
+    for (auto& end : moved[1].ends) end->pixel.y() += 60;
+    const ShapeEstimate wrong = estimator.estimate(moved);
+    if (wrong.is_found) {
+      EXPECT_FALSE(wrong.notes.empty()) << wrong.rms << " px, doubted " << wrong.doubted;
+    } else {
+      EXPECT_NE(wrong.reason, "");
+    }
+    // Nothing is seen.
+    seen[1].points.clear();
+    const ShapeEstimate none = estimator.estimate(seen);
+    EXPECT_FALSE(none.is_found);
+    EXPECT_EQ(none.reason, "the arm is not seen in every image");
+  });
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,160 @@
+#include "flexura/estimate/shape_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace flexura {
+namespace {
+
+using RowKind = ShapeProblem::RowKind;
+
+// The median of |x| of a normal deviate.
+constexpr double median_size = 0.6745;
+// In standard deviations: from there on a residual counts less with every step away.
+constexpr double doubtful = 4;
+// px; the cost of a point that is farther from the shape than that is no larger.
+constexpr double far_away = 3;
+
+double bounded_square(double r, double cutoff) {
+  const double ratio = r / cutoff;
+  return r * r / (1 + ratio * ratio);
+}
+
+// How much more the mean of a series varies than that of independent values: 1 + 2 sum of its correlations,
+// as far as these are positive (C. J. Geyer, 1992).
+double correlation_factor(std::span<const double> series) {
+  const std::size_t count = series.size();
+  double square = 0;
+  for (const double r : series) square += r * r;
+  if (!(square > 0)) return 1;
+  double factor = 1;
+  for (std::size_t lag = 1; lag < count / 4; ++lag) {
+    double product = 0;
+    for (std::size_t i = lag; i < count; ++i) product += series[i] * series[i - lag];
+    if (product <= 0.05 * square) break;
+    factor += 2 * product / square;
+  }
+  return factor;
+}
+
+}  // namespace
+
+double ShapeDescent::cutoff(const ShapeProblem& problem) {
+  sizes_.clear();
+  for (Eigen::Index i = 0; i < problem.rows(); ++i)
+    if (problem.kind(i) == RowKind::point || problem.kind(i) == RowKind::marker)
+      sizes_.push_back(std::abs(problem.residuals()[i]));
+  if (sizes_.empty()) return doubtful;
+  const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+  std::ranges::nth_element(sizes_, middle);
+  return doubtful * std::max(1.0, *middle / median_size);
+}
+
+double ShapeDescent::cost(const ShapeProblem& problem, double cutoff) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    const double r = problem.residuals()[i];
+    sum += problem.kind(i) == RowKind::prior ? r * r : bounded_square(r, cutoff);
+  }
+  return sum;
+}
+
+void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
+  weights_.resize(problem.rows());
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    const double ratio = problem.residuals()[i] / cutoff, one = 1 / (1 + ratio * ratio);
+    weights_[i] = problem.kind(i) == RowKind::prior ? 1.0 : one * one;
+  }
+  weighted_.noalias() = problem.derivatives().transpose() * weights_.cwiseSqrt().asDiagonal();
+  normal_.setZero(weighted_.rows(), weighted_.rows());
+  normal_.selfadjointView<Eigen::Lower>().rankUpdate(weighted_);
+  gradient_.noalias() = weighted_ * weights_.cwiseSqrt().cwiseProduct(problem.residuals());
+}
+
+// Moves the shape one step down, or leaves it; what that gained.
+double ShapeDescent::step(ShapeProblem& problem, double cutoff, double before, double& damping,
+                          Shape& shape) {
+  constexpr double hopeless = 1e12, least = 1e-9;
+  for (; damping < hopeless; damping *= 8) {
+    damped_ = normal_;
+    damped_.diagonal() += damping * (normal_.diagonal().array() + 1e-12).matrix();
+    solver_.compute(damped_);
+    step_ = -solver_.solve(gradient_);
+    const Shape there = problem.variables().moved(shape, step_);
+    if (!step_.allFinite() || !problem.linearise(there)) continue;
+    const double gain = before - cost(problem, cutoff);
+    if (gain < 0) continue;
+    // What the linear model promised.
+    const double promised = -step_.dot(2 * gradient_ + normal_.selfadjointView<Eigen::Lower>() * step_);
+    shape = there;
+    if (gain > 0.75 * promised) damping = std::max(least, 0.05 * damping);
+    if (gain < 0.25 * promised) damping *= 8;
+    return gain;
+  }
+  damping = 1;
+  (void)problem.linearise(shape);
+  return 0;
+}
+
+ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int most_iterations,
+                               StartKind kind) {
+  const bool is_near = kind == StartKind::near;
+  ShapeFit fit;
+  fit.shape = start;
+  fit.cost = std::numeric_limits<double>::infinity();
+  if (!problem.linearise(fit.shape)) return fit;
+  double limit = cutoff(problem), damping = is_near ? 1e-6 : 1e-3;
+  // At first all points are believed, however far off the start is; then fewer and fewer that are far.
+  if (!is_near) limit = std::max(limit, 2 * problem.residuals().lpNorm<Eigen::Infinity>());
+  for (; fit.iterations < most_iterations && !fit.is_settled; ++fit.iterations) {
+    const double before = cost(problem, limit);
+    weigh(problem, limit);
+    const double gain = step(problem, limit, before, damping, fit.shape);
+    constexpr double slow = 0.3, narrowing = 0.25;
+    const double least = cutoff(problem);
+    double next = is_near ? least : std::max(narrowing * limit, least);
+    if (!is_near && gain > slow * before) next = limit;
+    // The step just made was a tenth of a standard deviation: the next one would be a thirtieth.
+    const double scale = limit / doubtful;
+    fit.is_settled = gain <= 1e-2 * scale * scale && least >= 0.99 * limit;
+    limit = std::min(limit, next);
+  }
+  weigh(problem, limit);
+  finish(problem, limit, fit);
+  return fit;
+}
+
+void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit) {
+  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0;
+  sizes_.clear();
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    const double r = problem.residuals()[i], px = r * problem.sigma(i);
+    if (problem.kind(i) == RowKind::prior) continue;
+    square += weights_[i] * r * r, weight += weights_[i];
+    if (problem.kind(i) != RowKind::point) {
+      if (std::abs(r) > cutoff) ++fit.contradicted;
+      continue;
+    }
+    ++points, far += bounded_square(px, far_away);
+    if (std::abs(r) < cutoff) ++believed, square_px += px * px, sizes_.push_back(r);
+  }
+  fit.scale = cutoff / doubtful;
+  fit.cost = far / std::max(points, 1.0);
+  fit.rms = believed > 0 ? std::sqrt(square_px / believed) : 0.0;
+  fit.doubted = points > 0 ? 1 - believed / points : 0.0;
+  const double correlated = correlation_factor(sizes_);
+  const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));
+  const double variance = std::max(1.0, square / freedom) * correlated;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(normal_);
+  const auto identity = Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols());
+  const bool is_regular = factor.info() == Eigen::Success && factor.rcond() > 1e-15;
+  if (is_regular) fit.covariance = variance * factor.solve(identity);
+  if (!is_regular)
+    fit.covariance =
+        Eigen::MatrixXd::Constant(normal_.rows(), normal_.cols(), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace flexura

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "flexura/estimate/shape_problem.h"
+
+namespace flexura {
+
+/// Where a descent came to.
+struct ShapeFit {
+  Shape shape;
+  bool is_settled = false;  ///< No step leads further down.
+  int iterations = 0;
+  double scale = 1;            ///< Of the residuals, in units of their sigmas: robust, at least 1.
+  double cost = 0;             ///< Mean over the points of their distances squared, bounded for each, px^2.
+  double rms = 0;              ///< Of the believed points' distances, px.
+  double doubted = 0;          ///< The share of the points that are taken for something else's.
+  int contradicted = 0;        ///< Ends and markers that are seen elsewhere than the shape has them.
+  Eigen::MatrixXd covariance;  ///< Of the unknowns; of infinite entries where the sightings tell nothing.
+};
+
+/// Whether all that is seen is believed at first, however far off the start is, or what lies beyond the
+/// residuals' spread is doubted at once.
+enum class StartKind { far, near };
+
+/// The Levenberg-Marquardt method from `start` down, with residuals beyond what their spread allows weighted
+/// down (S. Geman and D. McClure, 1985). Reused, it allocates no more.
+class ShapeDescent {
+ public:
+  [[nodiscard]] ShapeFit descend(ShapeProblem& problem, const Shape& start, int most_iterations,
+                                 StartKind kind = StartKind::far);
+
+ private:
+  [[nodiscard]] double cutoff(const ShapeProblem& problem);
+  [[nodiscard]] static double cost(const ShapeProblem& problem, double cutoff);
+  void weigh(const ShapeProblem& problem, double cutoff);
+  double step(ShapeProblem& problem, double cutoff, double before, double& damping, Shape& shape);
+  void finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit);
+
+  std::vector<double> sizes_;
+  Eigen::VectorXd weights_, gradient_, step_;
+  Eigen::MatrixXd weighted_, normal_, damped_;  // Of symmetric ones the lower half.
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+};
+
+}  // namespace flexura

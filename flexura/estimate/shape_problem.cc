@@ -1,0 +1,144 @@
+#include "flexura/estimate/shape_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+// The way in which the points go on at point i, unit.
+Eigen::Vector2d heading(const Sighting& seen, std::size_t i) {
+  const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, seen.points.size() - 1);
+  return (seen.points[after].pixel - seen.points[before].pixel).normalized();
+}
+
+}  // namespace
+
+ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
+                           std::vector<BandLook> looks)
+    : prior_(prior),
+      variables_(prior),
+      sightings_(sightings),
+      looks_(std::move(looks)),
+      curve_(variables_, intervals_a_section(prior)) {
+  std::size_t rows = 2 * prior.arm.sections.size() + looks_.size();
+  for (const BandLook& look : looks_)
+    if (look.marker >= first_looks_.size()) first_looks_.resize(look.marker + 1);
+  for (const Sighting& seen : sightings) rows += seen.points.size() + 2 + 2 * seen.markers.size();
+  residuals_.resize(static_cast<Eigen::Index>(rows));
+  derivatives_.resize(static_cast<Eigen::Index>(rows), variables_.count());
+  kinds_.resize(rows);
+  sigmas_.resize(rows);
+  row_.resize(variables_.count());
+}
+
+bool ShapeProblem::linearise(const Shape& shape) {
+  count_ = 0;
+  curve_.set(shape);
+  for (FirstLook& look : first_looks_) look.is_there = false;
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const Sighting& seen = sightings_[i];
+    if (!image_.set(seen.view, curve_)) return false;
+    add_points(seen);
+    add_ends(seen);
+    add_markers(seen, shape.arm);
+    add_bands(i, shape.arm);
+  }
+  if (std::isfinite(prior_.curvature_step)) add_prior(shape);
+  return residuals_.head(count_).allFinite() && derivatives_.topRows(count_).allFinite();
+}
+
+void ShapeProblem::add_row(RowKind kind, const Eigen::Vector2d& direction, const Eigen::Vector2d& off,
+                           double place, double sigma) {
+  image_.along(direction / -sigma, place, derivatives_.row(count_));
+  residuals_[count_] = direction.dot(off) / sigma;
+  kinds_[static_cast<std::size_t>(count_)] = kind;
+  sigmas_[static_cast<std::size_t>(count_)] = sigma;
+  ++count_;
+}
+
+// Points follow each other along the curve, so that each is looked for a little way on from the one before:
+// where the curve's image crosses itself the nearest point may be on the wrong branch.
+void ShapeProblem::add_points(const Sighting& seen) {
+  const auto knots = static_cast<std::size_t>(image_.last());
+  const std::size_t back = 1 + knots / 16, ahead = 2 + knots / 6;
+  CurveImage::Window window{0, seen.ends[0] ? ahead : knots, 0};
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const CurvePoint& point = seen.points[i];
+    const CurveImage::Point near = image_.nearest(point.pixel, heading(seen, i), window);
+    const auto at = static_cast<std::size_t>(near.place);
+    window = {at > back ? at - back : 0, at + ahead, at};
+    const Eigen::Vector2d off = point.pixel - near.pixel;
+    Eigen::Vector2d direction(-near.tangent.y(), near.tangent.x());
+    // Beyond the curve's end: towards that.
+    const bool is_beyond = near.place <= 0 || near.place >= image_.last();
+    if (is_beyond && off.squaredNorm() > 0) direction = off.normalized();
+    add_row(RowKind::point, direction, off, near.place, point.sigma);
+  }
+}
+
+void ShapeProblem::add_ends(const Sighting& seen) {
+  for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+    if (!seen.ends[end]) continue;
+    const CurveImage::Point there = image_.at(end == 0 ? 0 : image_.last());
+    add_row(RowKind::end, there.tangent, seen.ends[end]->pixel - there.pixel, there.place,
+            seen.ends[end]->sigma);
+  }
+}
+
+void ShapeProblem::add_markers(const Sighting& seen, const Arm& arm) {
+  for (const SeenMarker& marker : seen.markers) {
+    const CurveImage::Point there = image_.at(curve_.place_of(arm, marker.s));
+    for (const Eigen::Vector2d& axis : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1)})
+      add_row(RowKind::marker, axis, marker.pixel - there.pixel, there.place, marker.sigma);
+  }
+}
+
+void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
+  for (const BandLook& look : looks_) {
+    if (look.sighting != sighting) continue;
+    const SeenBand& band = sightings_[sighting].bands[look.band];
+    if (look.s) {
+      const CurveImage::Point there = image_.at(curve_.place_of(arm, *look.s));
+      add_row(RowKind::marker, there.tangent, band.pixel - there.pixel, there.place, band.sigma);
+      continue;
+    }
+    const CurveImage::Point near = image_.nearest(band.pixel, band.heading, image_.everywhere());
+    const double place = near.place + near.tangent.dot(band.pixel - near.pixel) / near.speed,
+                 sigma = band.sigma / near.speed;
+    // With the curve's point the place of what is seen moves the other way.
+    image_.along(near.tangent / -near.speed, near.place, row_);
+    FirstLook& first = first_looks_[look.marker];
+    if (!first.is_there) {
+      first.is_there = true, first.place = place, first.sigma = sigma, first.unknowns = row_;
+      continue;
+    }
+    const double both = std::hypot(sigma, first.sigma);
+    residuals_[count_] = (place - first.place) / both;
+    derivatives_.row(count_) = (row_ - first.unknowns) / both;
+    kinds_[static_cast<std::size_t>(count_)] = RowKind::marker;
+    sigmas_[static_cast<std::size_t>(count_)] = both;
+    ++count_;
+  }
+}
+
+// Neighbouring sections bend alike.
+void ShapeProblem::add_prior(const Shape& shape) {
+  const Eigen::Index bends = variables_.bends_a_section();
+  for (std::size_t i = 0; i + 1 < shape.arm.sections.size(); ++i) {
+    const double here = 1 / (shape.arm.sections[i].length * prior_.curvature_step),
+                 next = 1 / (shape.arm.sections[i + 1].length * prior_.curvature_step);
+    for (Eigen::Index k = 0; k < bends; ++k) {
+      residuals_[count_] = next * shape.state.bends[i + 1][k] - here * shape.state.bends[i][k];
+      derivatives_.row(count_).setZero();
+      derivatives_(count_, static_cast<Eigen::Index>(i) * bends + k) = -here;
+      derivatives_(count_, static_cast<Eigen::Index>(i + 1) * bends + k) = next;
+      kinds_[static_cast<std::size_t>(count_)] = RowKind::prior;
+      sigmas_[static_cast<std::size_t>(count_)] = 1;
+      ++count_;
+    }
+  }
+}
+
+}  // namespace flexura

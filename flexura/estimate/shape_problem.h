@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/estimate/curve_image.h"
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/space_curve.h"
+
+namespace flexura {
+
+/// A band that is one of the arm's markers.
+struct BandLook {
+  std::size_t sighting = 0, band = 0;  ///< Which band it is.
+  std::size_t marker = 0;              ///< Counted from 0; of all looks at one marker the same.
+  std::optional<double> s;             ///< Where that is, m along the unstretched arm, when it is known.
+};
+
+/// How far a shape is from what was seen: distances of the seen points from the shape's images, of ends and
+/// markers from theirs, and the prior's own, each in units of its standard deviation.
+class ShapeProblem {
+ public:
+  /// `sightings` outlive the problem. Of the bands those of `looks` count: where a marker is known they are
+  /// compared with that place along the curve, otherwise with each other's.
+  ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
+               std::vector<BandLook> looks = {});
+
+  /// What a row compares.
+  enum class RowKind { point, end, marker, prior };
+
+  /// False when part of the shape is out of a lens's sight.
+  bool linearise(const Shape& shape);
+
+  [[nodiscard]] const ShapeVariables& variables() const { return variables_; }
+  [[nodiscard]] Eigen::Index rows() const { return count_; }
+  [[nodiscard]] auto residuals() const { return residuals_.head(count_); }
+  [[nodiscard]] auto derivatives() const { return derivatives_.topRows(count_); }
+  [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
+  /// Standard deviation that a row was divided by: px, but for the prior's.
+  [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
+
+ private:
+  void add_points(const Sighting& seen);
+  void add_ends(const Sighting& seen);
+  void add_markers(const Sighting& seen, const Arm& arm);
+  void add_bands(std::size_t sighting, const Arm& arm);
+  void add_prior(const Shape& shape);
+  // residual = direction . (pixel - curve).
+  void add_row(RowKind kind, const Eigen::Vector2d& direction, const Eigen::Vector2d& off, double place,
+               double sigma);
+
+  ShapePrior prior_;
+  ShapeVariables variables_;
+  std::span<const Sighting> sightings_;
+  std::vector<BandLook> looks_;
+  SpaceCurve curve_;
+  CurveImage image_;
+  Eigen::Index count_ = 0;
+  Eigen::VectorXd residuals_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> derivatives_;
+  std::vector<RowKind> kinds_;
+  std::vector<double> sigmas_;
+  Eigen::RowVectorXd row_;
+  // Where along the curve a marker was seen first.
+  struct FirstLook {
+    bool is_there = false;
+    double place = 0, sigma = 0;  // Knots.
+    Eigen::RowVectorXd unknowns;  // Of the place.
+  };
+  std::vector<FirstLook> first_looks_;
+};
+
+}  // namespace flexura

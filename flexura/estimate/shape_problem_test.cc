@@ -1,0 +1,44 @@
+#include "flexura/estimate/shape_problem.h"
+
+#include <gtest/gtest.h>
+
+#include "flexura/math/derivative_check.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/sightings.h"
+
+namespace flexura {
+namespace {
+
+TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
+  for_random_cases(20, [](TestRandom& random) {
+    ShapePrior prior{.arm = three_section_arm()};
+    prior.is_base_position_known = random.integer(0, 1) == 1;
+    prior.is_base_direction_known = random.integer(0, 1) == 1;
+    prior.is_length_known = random.integer(0, 1) == 1;
+    if (random.integer(0, 1) == 1) prior.curvature_step = 3;
+    const Shape shape{prior.arm, random_bends(random, prior.arm, 1.5)};
+    const Backbone backbone(shape.arm, shape.state);
+    std::vector<Sighting> seen;
+    for (const View& view : two_views()) {
+      seen.push_back(sighting_of(backbone, view, random, 0.2, {0.05, 0.95}, 15));
+      seen.back().markers.push_back({view.project(backbone.pose(0.4).position).value(), 0.37, 0.1});
+    }
+    ShapeProblem problem(prior, seen);
+    const auto residuals = [&](const Eigen::VectorXd& step) -> Eigen::VectorXd {
+      EXPECT_TRUE(problem.linearise(problem.variables().moved(shape, step)));
+      return problem.residuals();
+    };
+    const NumericalJacobian expected =
+        numerical_jacobian(residuals, Eigen::VectorXd::Zero(problem.variables().count()), 1e-3);
+    ASSERT_TRUE(problem.linearise(shape));
+    for (Eigen::Index row = 0; row < problem.rows(); ++row) {
+      const Eigen::RowVectorXd there = problem.derivatives().row(row);
+      EXPECT_LT((there - expected.value.row(row)).norm(), 2e-3 * (1 + there.norm()))
+          << row << ": " << there << "\n"
+          << expected.value.row(row);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace flexura

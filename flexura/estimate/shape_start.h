@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "flexura/estimate/shape_variables.h"
+
+namespace flexura {
+
+/// A shape that lies roughly along points in space, base first: each section bends from the curve's tangent
+/// at its start to that at its end. What the prior knows of the base stays. At least two points, not all the
+/// same, else std::invalid_argument.
+[[nodiscard]] Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> points);
+
+/// The prior's arm, straight.
+[[nodiscard]] Shape straight_shape(const ShapePrior& prior);
+
+}  // namespace flexura

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "flexura/camera/view.h"
+
+namespace flexura {
+
+/// A point where the backbone is seen.
+struct CurvePoint {
+  Eigen::Vector2d pixel = {0, 0};
+  double sigma = 0.1;  ///< Standard deviation across the curve, px; > 0.
+};
+
+/// A marker whose place on the arm is known.
+struct SeenMarker {
+  Eigen::Vector2d pixel = {0, 0};  ///< Where the backbone is seen at its middle.
+  double s = 0;                    ///< Of its middle, m along the unstretched arm.
+  double sigma = 0.1;              ///< px, in each direction; > 0.
+};
+
+/// A coloured band around the arm, wherever on it that is.
+struct SeenBand {
+  Eigen::Vector2d pixel = {0, 0};     ///< Where the backbone is seen in its middle.
+  Eigen::Vector2d heading = {1, 0};   ///< Unit: the way in which the curve goes on there.
+  double sigma = 0.2;                 ///< Standard deviation along the curve, px; > 0.
+  Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, of 0 to 255.
+};
+
+/// Where an end of the arm is seen.
+struct SeenEnd {
+  Eigen::Vector2d pixel = {0, 0};
+  double sigma = 0.3;  ///< Standard deviation along the curve, px; > 0.
+};
+
+/// What one camera sees of an arm's backbone.
+struct Sighting {
+  View view;                       ///< As the camera is believed to stand.
+  std::vector<CurvePoint> points;  ///< Along the arm, in the order from base to tip where that is known.
+  /// The base and the tip; none where the arm goes on unseen (out of the picture, behind something).
+  std::array<std::optional<SeenEnd>, 2> ends;
+  std::vector<SeenMarker> markers;
+  std::vector<SeenBand> bands = {};  ///< In any order; which is which the estimator finds out.
+};
+
+/// The same, followed from the other end.
+[[nodiscard]] Sighting reversed(Sighting sighting);
+
+/// The same with at most `most` points, evenly taken, the first and the last among them.
+[[nodiscard]] Sighting thinned(const Sighting& sighting, std::size_t most);
+
+}  // namespace flexura

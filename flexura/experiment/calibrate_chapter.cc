@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <variant>
+
+#include "flexura/base/bytes.h"
+#include "flexura/camera/camera.h"
+#include "flexura/experiment/calibrate_results.h"
+#include "flexura/report/chart.h"
+#include "flexura/report/image_picture.h"
+#include "flexura/store/image_file.h"
+
+namespace flexura {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// What a chart shows of a value that falls over orders of magnitude.
+double power_of_ten(double value) {
+  constexpr double least = 1e-9;
+  return std::isfinite(value) ? std::log10(std::max(std::abs(value), least)) : nothing;
+}
+
+class StepChart {
+ public:
+  StepChart(const CalibrationRun& run, LineChart chart) : run_(run), chart_(std::move(chart)) {
+    chart_.x_label = "looks of both cameras";
+  }
+
+  // `first`: at no looks, by the rig as believed.
+  template <class Value>
+  StepChart& add(const std::string& name, double first, const Value& value) {
+    ChartSeries& series = chart_.series.emplace_back(
+        ChartSeries{name, fmt::format("s{}", chart_.series.size()), {power_of_ten(first)}, {}});
+    for (const RigStep& step : run_.result.steps)
+      series.values.push_back(step.is_found ? power_of_ten(value(step)) : nothing);
+    return *this;
+  }
+  [[nodiscard]] NamedDrawing drawing(std::size_t number) const {
+    std::vector<double> looks = {0};
+    for (const RigStep& step : run_.result.steps) looks.push_back(static_cast<double>(step.looks));
+    // The last look is calibrated by itself, so that no number of looks comes twice.
+    return {fmt::format("calibration-{}-{}", number + 1, chart_.name), chart_picture(chart_, looks, {})};
+  }
+
+ private:
+  const CalibrationRun& run_;
+  LineChart chart_;
+};
+
+NamedDrawing offsets(const CalibrationRun& run, std::size_t number) {
+  const RigRemainder first = run.result.believed_remainder.value_or(RigRemainder{});
+  const double unknown = run.result.believed_remainder ? 1 : nothing;
+  const auto of = [](const RigStep& step, const auto& value) {
+    return step.remainder ? value(*step.remainder) : nothing;
+  };
+  const auto angle = [](const RigRemainder& left) { return left.angle / degree; };
+  const auto aim = [](const RigRemainder& left) { return std::max(left.aim[0].norm(), left.aim[1].norm()); };
+  const auto zoom = [](const RigRemainder& left) { return 100 * (left.zoom_ratio - 1); };
+  return StepChart(run,
+                   {"offsets", "what would have remained, if sent then", "size, power of ten", "", 1, {}, {}})
+      .add("angle (deg)", unknown * angle(first), [&](const RigStep& step) { return of(step, angle); })
+      .add("aim (m)", unknown * aim(first), [&](const RigStep& step) { return of(step, aim); })
+      .add("zoom ratio (%)", unknown * zoom(first), [&](const RigStep& step) { return of(step, zoom); })
+      .drawing(number);
+}
+
+NamedDrawing sigmas(const CalibrationRun& run, std::size_t number) {
+  const auto share = [](double value) { return 100 * value; };
+  return StepChart(
+             run,
+             {"sigmas", "how well it was known: standard deviations", "size, power of ten", "", 1, {}, {}})
+      .add("angle (deg)", nothing, [](const RigStep& step) { return step.sigmas.angle / degree; })
+      .add(run.cameras[0] + " focal (%)", nothing,
+           [&](const RigStep& step) { return share(step.sigmas.focal[0]); })
+      .add(run.cameras[1] + " focal (%)", nothing,
+           [&](const RigStep& step) { return share(step.sigmas.focal[1]); })
+      .add("zoom ratio (%)", nothing, [&](const RigStep& step) { return share(step.sigmas.zoom_ratio); })
+      .drawing(number);
+}
+
+Image<std::uint8_t> bytes_of(const Picture& picture, std::int64_t bits) {
+  if (const auto* bytes = std::get_if<Image<std::uint8_t>>(&picture)) return *bytes;
+  const auto& words = std::get<Image<std::uint16_t>>(picture);
+  Image<std::uint8_t> bytes(words.width(), words.height(), words.channels());
+  for (std::size_t i = 0; i < bytes.values().size(); ++i)
+    bytes.values()[i] = static_cast<std::uint8_t>(words.values()[i] >> (bits - 8));
+  return bytes;
+}
+
+ImageOutline::Line cross(const Eigen::Vector2d& at, double size) {
+  const Eigen::Vector2d x(size, 0), y(0, size);
+  return {{at - x, at + x, at, at - y, at + y}, ""};
+}
+
+// A picture with what was seen in it, and the optical axis as it was found.
+NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_after, std::size_t number) {
+  const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
+  const CameraConfig& believed = run.believed.cameras[sight.stance.camera].config;
+  const Image<std::uint8_t> picture = bytes_of(*sight.frame.picture, believed.sensor.bits);
+  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"),
+                 .legend = "",
+                 .width = picture.width(),
+                 .height = picture.height(),
+                 .outlines = {},
+                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
+  const double size = 0.012 * picture.width();
+  ImageOutline backbone{"backbone", "s2", {}}, markers{"markers", "s1", {}}, axis{"optical axis", "s5", {}};
+  auto& line = backbone.lines.emplace_back();
+  for (const CurvePoint& point : sight.seen.points) line.points.push_back(point.pixel);
+  for (const SeenMarker& marker : sight.seen.markers) markers.lines.push_back(cross(marker.pixel, size));
+  plot.outlines = {backbone, markers};
+  if (run.result.is_done) {
+    const Intrinsics lens =
+        Camera(run.result.found.model.cameras[sight.stance.camera].config).lens().at(sight.stance.head.zoom);
+    axis.lines.push_back(cross({lens.cx, lens.cy}, 3 * size));
+    plot.outlines.push_back(axis);
+  }
+  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[camera], is_after ? "after" : "before"),
+          image_picture(plot)};
+}
+
+std::string text_of(const CalibrationRun& run) {
+  const RigSessionResult& result = run.result;
+  if (!result.is_done)
+    return fmt::format("Not calibrated: {}. ({} looks at the arm, {} pictures.)", result.reason, result.looks,
+                       result.pictures[0] + result.pictures[1]);
+  return fmt::format(
+      "{} looks of both cameras at the arm, {} pictures, in which {} markers and {} points of the median "
+      "axis were "
+      "measured. The rig that explains them best leaves {:.2f} standard deviations root mean square. Heads, "
+      "stages "
+      "and zooms were then sent to where both cameras look at the arm along orthogonal axes with equal zoom, "
+      "in one "
+      "move. In fresh pictures after it, markers were {:.2f} px and {:.2f} px from where they were foretold.",
+      result.looks, result.pictures[0] + result.pictures[1], result.markers, result.points, result.found.rms,
+      result.verified[0], result.verified[1]);
+}
+
+std::string remainder_text(const std::string& when, const RigRemainder& left) {
+  return fmt::format(
+      "{}: the axes are {:.3f} deg apart, pass the target by {:.2f} mm and {:.2f} mm, zoom ratio {:.4f}; "
+      "roll about "
+      "the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
+      when, 90 + left.angle / degree, 1e3 * left.aim[0].norm(), 1e3 * left.aim[1].norm(), left.zoom_ratio,
+      left.roll[0] / degree, left.roll[1] / degree);
+}
+
+std::vector<std::string> points_of(const CalibrationRun& run) {
+  const RigSessionResult& result = run.result;
+  std::vector<std::string> points;
+  if (!result.is_done) return points;
+  points.push_back(remainder_text("At the start, as found", *result.start_remainder));
+  points.push_back(remainder_text("After the move, as found", result.remainder));
+  if (run.truth) points.push_back(remainder_text("After the move, in the simulated truth", *run.truth));
+  const RigSigmas& sigmas = result.steps.back().sigmas;
+  points.push_back(fmt::format(
+      "Known (standard deviations): the angle between the axes within {:.4f} deg, focal "
+      "lengths within {:.2f} % and {:.2f} %, zoom ratio within {:.2f} %.",
+      sigmas.angle / degree, 100 * sigmas.focal[0], 100 * sigmas.focal[1], 100 * sigmas.zoom_ratio));
+  for (const std::string& note : result.wanted.notes) points.push_back(note);
+  const auto& blind = result.observability.blindness;
+  constexpr std::size_t most = 6;
+  for (std::size_t i = 0; i < std::min(most, blind.size()); ++i)
+    points.push_back(fmt::format("Not told by these pictures ({:.0f} % of what was not known is left): {}",
+                                 100 * blind[i].share, blind[i].words));
+  if (blind.size() > most)
+    points.push_back(fmt::format("and {} more combinations, in summary.json", blind.size() - most));
+  return points;
+}
+
+}  // namespace
+
+Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
+  Chapter chapter{"Calibration: " + run.name, text_of(run), {}, points_of(run), false};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (run.result.before[i]) chapter.drawings.push_back(photograph(run, i, false, number));
+    if (run.result.is_done) chapter.drawings.push_back(photograph(run, i, true, number));
+  }
+  const bool is_known = std::ranges::any_of(run.result.steps, &RigStep::is_found);
+  if (is_known) {
+    chapter.drawings.push_back(offsets(run, number));
+    chapter.drawings.push_back(sigmas(run, number));
+  }
+  return chapter;
+}
+
+}  // namespace flexura

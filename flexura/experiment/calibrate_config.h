@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/calibrate/rig_session.h"
+#include "flexura/camera/camera_config.h"
+#include "flexura/model/arm_config.h"
+
+namespace flexura {
+
+/// How a task calibrates.
+enum class CalibrateMethod {
+  bundle,  ///< All poses, lenses and the arm's own errors at once, by least squares
+           ///< (calibrate/rig_session.h).
+};
+
+/// How well the rig shall be known: standard deviations.
+struct CalibrateWantedConfig {
+  double angle = 0.00034906585039886592;  ///< Between the axes, rad: 0.02 degrees.
+  double focal = 0.003;                   ///< Share.
+  double zoom_ratio = 0.003;              ///< Share.
+};
+
+/// How wrong the file's description of the cameras may be: standard deviations.
+struct CalibrateGuessConfig {
+  double rotation = 0.17453292519943295;  ///< Of a mount, rad: 10 degrees.
+  double distance = 0.2;                  ///< Of a mount's place, in each direction, of its distance.
+  double focal = 0.1;                     ///< Share.
+  double principal_point = 10;            ///< px
+  bool exact_heads = false;               ///< Heads stand where they count, not within half a step of it.
+};
+
+/// `kind = "calibrate"`: the arm is shown to two cameras, which are then sent to the wanted configuration.
+struct CalibrateTask {
+  std::string name;
+  CalibrateMethod method = CalibrateMethod::bundle;
+  std::vector<std::string> cameras;  ///< Two names; empty: the first two.
+  std::vector<ShapeConfig> pose;     ///< What the arm shows; empty: default_poses.
+  std::int64_t images = 12;          ///< A camera, at most.
+  CalibrateWantedConfig wanted;
+  CalibrateGuessConfig guess;
+  std::optional<std::array<double, 3>> target;  ///< What the cameras shall look at, m.
+  bool stages = true;
+  std::vector<double> zooms = {1, 2.5};
+  double move_duration = 2;    ///< s
+  double settle_timeout = 20;  ///< s
+  double frame_timeout = 3;    ///< s
+  std::string save;            ///< A file beside the experiment for the rig as found; "": none.
+};
+
+const std::vector<std::string>& names_of(const CalibrateMethod*);
+const Table<CalibrateWantedConfig>& fields_of(const CalibrateWantedConfig*);
+const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*);
+const Table<CalibrateTask>& fields_of(const CalibrateTask*);
+
+/// The poses of a task, as states of the arm.
+[[nodiscard]] std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm);
+
+/// The two cameras of a task that was checked: places among `cameras`.
+[[nodiscard]] std::array<std::size_t, 2> calibrated_cameras(const CalibrateTask& task,
+                                                            const std::vector<CameraConfig>& cameras);
+
+/// What the task asks of a session, and how wrong the rig may be.
+[[nodiscard]] RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
+                                              const std::vector<CameraConfig>& cameras);
+[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed);
+
+/// Reports what keeps the calibration at `path` ("task[2]") from being made with this arm and these cameras.
+void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
+                       const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader);
+
+}  // namespace flexura

@@ -1,0 +1,183 @@
+#include "flexura/experiment/calibrate_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/store/text_file.h"
+#include "flexura/store/toml.h"
+
+namespace flexura {
+namespace {
+
+Node number(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
+Node whole(std::size_t value) { return {static_cast<std::int64_t>(value), {}}; }
+
+Node remainder_node(const RigRemainder& left) {
+  const auto pair = [](double a, double b) { return Node{Node::Array{number(a), number(b)}, {}}; };
+  return {Node::Table{{"angle_from_square", {}, number(left.angle)},
+                      {"aim", {}, pair(left.aim[0].norm(), left.aim[1].norm())},
+                      {"zoom_ratio", {}, number(left.zoom_ratio)},
+                      {"roll", {}, pair(left.roll[0], left.roll[1])}},
+          {}};
+}
+
+Node sigma_node(const RigSigmas& sigmas) {
+  return {Node::Table{{"angle", {}, number(sigmas.angle)},
+                      {"focal", {}, {Node::Array{number(sigmas.focal[0]), number(sigmas.focal[1])}, {}}},
+                      {"zoom_ratio", {}, number(sigmas.zoom_ratio)}},
+          {}};
+}
+
+Node step_nodes(const std::vector<RigStep>& steps) {
+  Node::Array list;
+  for (const RigStep& step : steps) {
+    Node::Table entry{{"time", {}, number(step.time)},
+                      {"looks", {}, whole(step.looks)},
+                      {"found", {}, {step.is_found, {}}},
+                      {"rms", {}, number(step.rms)}};
+    if (!step.is_found) entry.push_back({"reason", {}, {step.reason, {}}});
+    if (step.is_found) entry.push_back({"sigma", {}, sigma_node(step.sigmas)});
+    if (step.remainder) entry.push_back({"would_remain", {}, remainder_node(*step.remainder)});
+    list.push_back({std::move(entry), {}});
+  }
+  return {std::move(list), {}};
+}
+
+Node untold_nodes(const RigObservability& seen) {
+  Node::Array list;
+  for (const RigBlindness& blind : seen.blindness)
+    list.push_back(
+        {Node::Table{{"share_left", {}, number(blind.share)}, {"what", {}, {blind.words, {}}}}, {}});
+  return {std::move(list), {}};
+}
+
+Node stance_node(const std::string& name, const RigStance& stance) {
+  return {Node::Table{{"camera", {}, {name, {}}},
+                      {"pan", {}, number(stance.head.pan)},
+                      {"tilt", {}, number(stance.head.tilt)},
+                      {"zoom", {}, number(stance.head.zoom)},
+                      {"stage", {}, point_node(stance.stage.offset)}},
+          {}};
+}
+
+Node::Table run_members(const CalibrationRun& run) {
+  const RigSessionResult& result = run.result;
+  Node::Table members{
+      {"name", {}, {run.name, {}}},
+      {"done", {}, {result.is_done, {}}},
+      {"looks", {}, whole(result.looks)},
+      {"pictures", {}, {Node::Array{whole(result.pictures[0]), whole(result.pictures[1])}, {}}},
+      {"markers", {}, whole(result.markers)},
+      {"points", {}, whole(result.points)}};
+  if (!result.is_done) members.push_back({"reason", {}, {result.reason, {}}});
+  const auto add = [&](const char* key, Node node) { members.push_back({key, {}, std::move(node)}); };
+  add("steps", step_nodes(result.steps));
+  if (!result.is_done) return members;
+  add("rms", number(result.found.rms));
+  add("sigma", sigma_node(result.steps.back().sigmas));
+  add("target", point_node(result.target));
+  add("at_start", remainder_node(*result.start_remainder));
+  add("remainder", remainder_node(result.remainder));
+  if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
+  add("verified_px", {Node::Array{number(result.verified[0]), number(result.verified[1])}, {}});
+  add("commanded", {Node::Array{stance_node(run.cameras[0], result.wanted.stances[0]),
+                                stance_node(run.cameras[1], result.wanted.stances[1])},
+                    {}});
+  Node::Array notes, gains;
+  for (const std::string& note : result.wanted.notes) notes.push_back({note, {}});
+  for (const double gain : result.found.model.bend_gains) gains.push_back(number(gain));
+  add("notes", {std::move(notes), {}});
+  add("bend_gains", {std::move(gains), {}});
+  add("untold", untold_nodes(result.observability));
+  return members;
+}
+
+// Where a name is free: rig.toml, rig-2.toml, ...
+std::filesystem::path numbered(const std::filesystem::path& file, int number) {
+  std::filesystem::path result = file;
+  result.replace_filename(fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()));
+  return result;
+}
+
+void save(const std::filesystem::path& file, const std::string& text) {
+  if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
+    std::filesystem::path kept;
+    for (int number = 1; kept.empty() || std::filesystem::exists(std::filesystem::symlink_status(kept));
+         ++number)
+      kept = numbered(file, number);
+    std::filesystem::rename(file, kept);
+  }
+  write_new_file(file, text);
+}
+
+}  // namespace
+
+const Table<FoundRigFile>& fields_of(const FoundRigFile*) {
+  static const auto table =
+      Table<FoundRigFile>("rig", "A rig as it was found, for experiments to include.")
+          .field("arm", &FoundRigFile::arm, {.meaning = "The arm.", .required = true})
+          .field("camera", &FoundRigFile::camera, {.meaning = "The cameras.", .required = true});
+  return table;
+}
+
+std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& run) {
+  FoundRigFile file;
+  file.arm = experiment.arm;
+  const RigModel& found = run.result.found.model;
+  // Markers stay where they are on each section, as these are longer or shorter than believed.
+  const Arm believed = experiment.arm.arm();
+  const auto moved = [&](double s) {
+    const MaterialPoint point = material_point(believed, s);
+    double from = 0;
+    for (std::size_t i = 0; i < point.section; ++i) from += found.arm.sections[i].length;
+    return from + point.fraction * found.arm.sections[point.section].length;
+  };
+  for (Marker& marker : file.arm.look.marker) marker.at = moved(marker.at);
+  for (Disk& disk : file.arm.look.disk) disk.at = moved(disk.at);
+  for (std::size_t i = 0; i < file.arm.section.size(); ++i)
+    file.arm.section[i].length = found.arm.sections[i].length;
+  for (const RigCamera& camera : found.cameras) file.camera.push_back(camera.config);
+  for (const RigStance& stance : run.result.wanted.stances) {
+    CameraStartConfig& start = file.camera[stance.camera].initial;
+    start.pan = stance.head.pan, start.tilt = stance.head.tilt, start.zoom = stance.head.zoom;
+    const Eigen::Vector3d& offset = stance.stage.offset;
+    start.stage = {offset.x(), offset.y(), offset.z()};
+  }
+  const RigSigmas& sigmas = run.result.steps.back().sigmas;
+  return fmt::format(
+             "# Found by a calibration with {} pictures: angle between the axes known within {:.3g} deg, "
+             "focal lengths within {:.2g} %\n# and {:.2g} % (standard deviations).\n",
+             run.result.pictures[0] + run.result.pictures[1], sigmas.angle * 180 / std::numbers::pi,
+             100 * sigmas.focal[0], 100 * sigmas.focal[1]) +
+         write_toml(Codec<FoundRigFile>::write(file), fields_of(&file).info());
+}
+
+void write_rig_files(const Experiment& experiment, const std::vector<CalibrationRun>& runs,
+                     const std::filesystem::path& folder) {
+  int written = 0;
+  for (const CalibrationRun& run : runs) {
+    if (!run.result.is_done) continue;
+    const std::string text = found_rig_toml(experiment, run);
+    ++written;
+    const std::filesystem::path file = folder / rig_file_name;
+    write_new_file(written == 1 ? file : numbered(file, written), text);
+    const auto& task = std::get<CalibrateTask>(experiment.task.at(run.task));
+    if (!task.save.empty()) save(experiment.folder / task.save, text);
+  }
+}
+
+Node calibration_nodes(const std::vector<CalibrationRun>& runs) {
+  Node::Array list;
+  for (const CalibrationRun& run : runs) list.push_back({run_members(run), {}});
+  return {std::move(list), {}};
+}
+
+}  // namespace flexura

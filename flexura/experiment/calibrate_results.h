@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "flexura/base/node.h"
+#include "flexura/base/table.h"
+#include "flexura/experiment/calibrate_task.h"
+#include "flexura/report/report.h"
+
+namespace flexura {
+
+/// A rig as it was found, for experiments to include: the arm and the cameras, which start where they were
+/// sent.
+struct FoundRigFile {
+  ArmConfig arm;
+  std::vector<CameraConfig> camera;
+};
+const Table<FoundRigFile>& fields_of(const FoundRigFile*);
+
+/// The file's text: TOML.
+[[nodiscard]] std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& run);
+
+/// Writes rig.toml (rig-2.toml, ...) of each calibration that is done into the results, and where its task
+/// says so beside the experiment: a file that is there already is kept as NAME-1.toml, NAME-2.toml, ...
+/// std::runtime_error with the path when the system refuses.
+void write_rig_files(const Experiment& experiment, const std::vector<CalibrationRun>& runs,
+                     const std::filesystem::path& folder);
+
+/// The list `calibrations` of a summary.
+[[nodiscard]] Node calibration_nodes(const std::vector<CalibrationRun>& runs);
+
+/// A calibration in a report: how far off the rig was and became, how well it is known, what the cameras saw
+/// before and after. `number` from 0, for the names of figures.
+[[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
+
+}  // namespace flexura

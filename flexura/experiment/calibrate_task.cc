@@ -1,0 +1,188 @@
+#include "flexura/experiment/calibrate_task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "flexura/port/rig_ports.h"
+
+namespace flexura {
+namespace {
+
+std::array<double, 3> array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+std::vector<std::array<double, 2>> bends_of(const ArmState& state) {
+  std::vector<std::array<double, 2>> bends;
+  bends.reserve(state.bends.size());
+  for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
+  return bends;
+}
+
+// The arm as it was commanded since a time: from shape to shape in straight lines.
+class CommandedMotion {
+ public:
+  CommandedMotion(double start, ArmState state) : start_(start) { states_.push_back(std::move(state)); }
+
+  void send(double time, const ArmState& state, double duration) {
+    const ArmState from = at(time);
+    while (times_.size() > 1 && times_.back() > time - start_) times_.pop_back(), states_.pop_back();
+    if (time - start_ > times_.back()) times_.push_back(time - start_), states_.push_back(from);
+    times_.push_back(times_.back() + duration), states_.push_back(state);
+  }
+  [[nodiscard]] ArmState at(double time) const {
+    const double t = time - start_;
+    const auto after = std::ranges::upper_bound(times_, t);
+    if (after == times_.end()) return states_.back();
+    if (after == times_.begin()) return states_.front();
+    const auto i = static_cast<std::size_t>(after - times_.begin());
+    const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
+    ArmState state = states_[i - 1];
+    for (std::size_t j = 0; j < state.bends.size(); ++j) {
+      state.bends[j] += share * (states_[i].bends[j] - state.bends[j]);
+      state.stretches[j] += share * (states_[i].stretches[j] - state.stretches[j]);
+    }
+    return state;
+  }
+  // All of it up to `time`.
+  [[nodiscard]] MotionPtr motion(double time) const {
+    std::vector<double> times = times_;
+    std::vector<ArmState> states = states_;
+    while (times.size() > 1 && times.back() >= time - start_) times.pop_back(), states.pop_back();
+    if (!(time > start_)) return hold_motion(states.back(), 0);
+    times.push_back(time - start_), states.push_back(at(time));
+    return keyframe_motion(std::move(times), states, Interpolation::linear);
+  }
+
+ private:
+  double start_;
+  std::vector<double> times_ = {0};  // since the start
+  std::vector<ArmState> states_;
+};
+
+// The rig's clock; the run's steps are recorded as its time passes.
+class RecordedClock : public ClockPort {
+ public:
+  RecordedClock(ClockPort& clock, const RecordSteps& record, const CommandedMotion& motion)
+      : clock_(clock), record_(record), motion_(motion) {}
+  [[nodiscard]] double now() const override { return clock_.now(); }
+  void wait_until(double time) override {
+    clock_.wait_until(time);
+    record_(now(), [this](double at) { return motion_.at(at); });
+  }
+
+ private:
+  ClockPort& clock_;
+  const RecordSteps& record_;
+  const CommandedMotion& motion_;
+};
+
+// Tells the log of everything.
+class LoggedSession : public RigSessionWatcher {
+ public:
+  LoggedSession(const Experiment& experiment, std::string name, const RigModel& believed, std::size_t images,
+                Witness& witness, Progress& progress, CommandedMotion& motion)
+      : keeps_images_(experiment.record.cameras),
+        name_(std::move(name)),
+        believed_(believed),
+        images_(images),
+        witness_(witness),
+        progress_(progress),
+        motion_(motion) {}
+
+  void arm_sent(double time, const ArmState& state, double duration) override {
+    motion_.send(time, state, duration);
+    CalibrationMoveMessage message;
+    message.time = time, message.device = "arm", message.bends = bends_of(state), message.duration = duration;
+    witness_.recorder().calibration(message);
+  }
+  void camera_sent(double time, const RigStance& stance) override {
+    CalibrationMoveMessage message;
+    message.time = time, message.device = name_of(stance.camera);
+    message.pan = stance.head.pan, message.tilt = stance.head.tilt, message.zoom = stance.head.zoom;
+    message.stage = array_of(stance.stage.offset);
+    witness_.recorder().calibration(message);
+  }
+  void seen(const RigSight& sight) override {
+    if (keeps_images_) witness_.image(name_of(sight.stance.camera), sight.frame);
+    CalibrationSightingMessage message;
+    message.time = sight.frame.time, message.look = static_cast<std::int64_t>(sight.look);
+    message.camera = name_of(sight.stance.camera), message.frame = sight.frame.number;
+    message.pan = sight.stance.head.pan, message.tilt = sight.stance.head.tilt;
+    message.zoom = sight.stance.head.zoom, message.stage = array_of(sight.stance.stage.offset);
+    message.bends = bends_of(sight.pose);
+    for (const SeenMarker& marker : sight.seen.markers)
+      message.markers.push_back({marker.s, marker.pixel.x(), marker.pixel.y(), marker.sigma});
+    for (const CurvePoint& point : sight.seen.points)
+      message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
+    message.unknown = static_cast<std::int64_t>(sight.seen.unknown);
+    if (!sight.seen.reason.empty()) message.reason = sight.seen.reason;
+    witness_.recorder().calibration(message, sight.frame.received);
+    progress_.update(std::min(1.0, static_cast<double>(sight.look) / static_cast<double>(images_)), name_);
+  }
+  void known(const RigStep& step) override {
+    CalibrationDecisionMessage message;
+    message.time = step.time, message.looks = static_cast<std::int64_t>(step.looks);
+    message.found = step.is_found, message.rms = step.rms, message.next = step.next;
+    if (!step.is_found) message.reason = step.reason;
+    message.doubts = static_cast<std::int64_t>(step.doubts);
+    message.angle = step.angle, message.angle_sigma = step.sigmas.angle;
+    message.focal = step.focal, message.focal_sigma = step.sigmas.focal;
+    message.zoom_ratio_sigma = step.sigmas.zoom_ratio;
+    witness_.recorder().calibration(message);
+    const std::string what = step.is_found ? fmt::format("angle between the axes known within {:.4f} deg",
+                                                         step.sigmas.angle * 180 / std::numbers::pi)
+                                           : step.reason;
+    witness_.event(step.time, Recorder::Level::info, name_,
+                   fmt::format("after {} looks: {}", step.looks, what));
+  }
+  bool is_cancelled() override { return progress_.cancelled(); }
+
+ private:
+  [[nodiscard]] const std::string& name_of(std::size_t camera) const {
+    return believed_.cameras.at(camera).config.name;
+  }
+  bool keeps_images_;
+  std::string name_;
+  const RigModel& believed_;
+  std::size_t images_;
+  Witness& witness_;
+  Progress& progress_;
+  CommandedMotion& motion_;
+};
+
+}  // namespace
+
+CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, Filming& filming,
+                               Witness& witness, Progress& progress, const RecordSteps& record_steps) {
+  const auto& config = std::get<CalibrateTask>(experiment.task.at(task));
+  const std::vector<CameraConfig> cameras = experiment.cameras();
+  const RigSessionConfig session = session_config(config, experiment.arm, cameras);
+  CalibrationRun run;
+  run.name = task_name(experiment.task[task]), run.task = task;
+  run.believed = rig_model(experiment.arm.arm(), cameras);
+  for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
+  RigPorts ports = filming.ports();
+  CommandedMotion motion(ports.clock->now(), ports.arm->read().value().state);
+  RecordedClock clock(*ports.clock, record_steps, motion);
+  ports.clock = &clock;
+  LoggedSession log(experiment, run.name, run.believed, session.images, witness, progress, motion);
+  run.result =
+      calibrate_rig_in_session(ports, run.believed, session_prior(config, run.believed), session, log);
+  // Time passes in a camera that is waited for as well, unseen by the clock.
+  const double end = clock.now();
+  record_steps(end, [&motion](double at) { return motion.at(at); });
+  run.motion = motion.motion(end);
+  witness.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
+                run.result.is_done ? "calibrated" : run.result.reason);
+  if (!run.result.is_done) return run;
+  const RigConfig truth = experiment.true_rig();
+  run.truth = remainder(rig_model(truth.arm.arm(), truth.cameras),
+                        {filming.true_stance(session.cameras[0]), filming.true_stance(session.cameras[1])},
+                        run.result.target);
+  return run;
+}
+
+}  // namespace flexura

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "flexura/base/progress.h"
+#include "flexura/calibrate/rig_session.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/filming.h"
+#include "flexura/experiment/witness.h"
+#include "flexura/kinematics/motion.h"
+
+namespace flexura {
+
+/// What a task of kind "calibrate" did.
+struct CalibrationRun {
+  std::string name;
+  std::size_t task = 0;                ///< Its number.
+  std::array<std::string, 2> cameras;  ///< Their names.
+  RigModel believed;                   ///< Before.
+  RigSessionResult result;
+  MotionPtr motion;  ///< Of the arm, as commanded, from the task's start.
+  /// What truly remains where the cameras stand, of which the session knows nothing: simulated rigs tell.
+  std::optional<RigRemainder> truth;
+};
+
+/// Records the clock's steps before a time, given the arm's state at every time since the task's start.
+using RecordSteps = std::function<void(double until, const std::function<ArmState(double time)>& state_at)>;
+
+/// Does task number `task`, a calibration, on the rig that plays; what it does, sees and decides goes to the
+/// witness.
+[[nodiscard]] CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, Filming& filming,
+                                             Witness& witness, Progress& progress,
+                                             const RecordSteps& record_steps);
+
+}  // namespace flexura

@@ -1,0 +1,81 @@
+#include "flexura/experiment/messages.h"
+
+namespace flexura {
+
+const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*) {
+  using M = CalibrationMoveMessage;
+  static const auto table =
+      Table<M>("flexura.CalibrationMove", "A command of a calibration.")
+          .field("time", &M::time, {.meaning = "When it was given, since the experiment's start, s."})
+          .field("device", &M::device, {.meaning = "\"arm\", or a camera's name."})
+          .field("bends", &M::bends, {.meaning = "The arm: each section's bend, rad, base first."})
+          .field("duration", &M::duration, {.meaning = "The arm: time of its way there, s."})
+          .field("pan", &M::pan, {.meaning = "A camera: rad, to its left."})
+          .field("tilt", &M::tilt, {.meaning = "A camera: rad, upwards."})
+          .field("zoom", &M::zoom, {.meaning = "A camera: a ratio or a motor count."})
+          .field("stage", &M::stage, {.meaning = "A camera: its stage's offset, m."});
+  return table;
+}
+
+const Table<MarkerMessage>& fields_of(const MarkerMessage*) {
+  using M = MarkerMessage;
+  static const auto table = Table<M>("flexura.Marker", "A marker where it was seen.")
+                                .field("s", &M::s, {.meaning = "Its place along the unstretched arm, m."})
+                                .field("u", &M::u, {.meaning = "Column, px."})
+                                .field("v", &M::v, {.meaning = "Row, px."})
+                                .field("sigma", &M::sigma, {.meaning = "Standard deviation, px."});
+  return table;
+}
+
+const Table<AxisPointMessage>& fields_of(const AxisPointMessage*) {
+  using M = AxisPointMessage;
+  static const auto table =
+      Table<M>("flexura.AxisPoint", "A point where the backbone was seen.")
+          .field("u", &M::u, {.meaning = "Column, px."})
+          .field("v", &M::v, {.meaning = "Row, px."})
+          .field("sigma", &M::sigma, {.meaning = "Standard deviation across the axis, px."});
+  return table;
+}
+
+const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*) {
+  using M = CalibrationSightingMessage;
+  static const auto table =
+      Table<M>("flexura.CalibrationSighting", "What a calibration measured in one picture.")
+          .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
+          .field("look", &M::look, {.meaning = "Number of the look, from 1; 0: the arm is looked for."})
+          .field("camera", &M::camera, {.meaning = "The camera's name."})
+          .field("frame", &M::frame, {.meaning = "The frame's number."})
+          .field("pan", &M::pan, {.meaning = "As the head says, rad."})
+          .field("tilt", &M::tilt, {.meaning = "Likewise, rad."})
+          .field("zoom", &M::zoom, {.meaning = "Likewise."})
+          .field("stage", &M::stage, {.meaning = "As the stage says, m."})
+          .field("bends", &M::bends, {.meaning = "Each section's bend as the drives say, rad."})
+          .field("markers", &M::markers, {.meaning = "The markers that were recognised."})
+          .field("points", &M::points, {.meaning = "Independent points of the median axis, base to tip."})
+          .field("unknown", &M::unknown, {.meaning = "How many markers were not recognised."})
+          .field("reason", &M::reason, {.meaning = "Why the picture is of no use."});
+  return table;
+}
+
+const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*) {
+  using M = CalibrationDecisionMessage;
+  static const auto table =
+      Table<M>("flexura.CalibrationDecision", "What a calibration knows after a look, and does next.")
+          .field("time", &M::time, {.meaning = "Time since the experiment's start, s."})
+          .field("looks", &M::looks, {.meaning = "Looks up to now."})
+          .field("found", &M::found, {.meaning = "Whether a rig explains what was seen."})
+          .field("reason", &M::reason, {.meaning = "Why none does."})
+          .field("rms", &M::rms, {.meaning = "Root mean square of the residuals, in standard deviations."})
+          .field("doubts", &M::doubts, {.meaning = "Things seen that were left out."})
+          .field("angle", &M::angle,
+                 {.meaning = "Between the optical axes where the cameras would be sent now, rad."})
+          .field("angle_sigma", &M::angle_sigma, {.meaning = "Its standard deviation, rad."})
+          .field("focal", &M::focal, {.meaning = "Both focal lengths at ratio 1, px."})
+          .field("focal_sigma", &M::focal_sigma, {.meaning = "Their standard deviations, shares."})
+          .field("zoom_ratio_sigma", &M::zoom_ratio_sigma,
+                 {.meaning = "Of how much larger one camera shows the arm than the other, a share."})
+          .field("next", &M::next, {.meaning = "What is done next, and why."});
+  return table;
+}
+
+}  // namespace flexura

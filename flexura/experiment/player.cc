@@ -1,0 +1,156 @@
+#include "flexura/experiment/player.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+namespace {
+
+bool has_calibrations(const Experiment& experiment) {
+  return std::ranges::any_of(
+      experiment.task, [](const TaskConfig& task) { return std::holds_alternative<CalibrateTask>(task); });
+}
+
+// What is told of a check before the run: how far that is, in words, for nothing is played yet.
+class Checking : public Progress {
+ public:
+  explicit Checking(Progress& run) : run_(run) {}
+  void update(double fraction, std::string_view what) override {
+    run_.update(0, fmt::format("checking {}, {:.0f} %", what, 100 * fraction));
+  }
+  [[nodiscard]] bool cancelled() const override { return run_.cancelled(); }
+
+ private:
+  Progress& run_;
+};
+
+SafetyReport checked(const Schedule& schedule, Progress& run) {
+  Checking progress(run);
+  return schedule.check(&progress);
+}
+
+}  // namespace
+
+Player::Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher)
+    : experiment_(experiment),
+      witness_(witness),
+      progress_(progress),
+      watcher_(watcher),
+      schedule_(experiment),
+      safety_(checked(schedule_, progress)),
+      played_{0, 0, schedule_.initial(), false, ""} {
+  if (experiment.record.cameras || has_calibrations(experiment)) filming_.emplace(experiment);
+  plan(0);
+}
+
+// What is to be told from that time on; violations and the starts of tasks at one time in this order of
+// tasks.
+void Player::plan(double from) {
+  witness_.expect(schedule_.steps());
+  events_.clear();
+  for (const Leg& leg : schedule_.legs())
+    events_.push_back({leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind)});
+  for (const Violation& violation : safety_.violations)
+    events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
+  std::erase_if(events_, [from](const Event& event) { return event.time < from; });
+  std::ranges::stable_sort(events_, {}, &Event::time);
+}
+
+void Player::tell_up_to(double time) {
+  const auto end = std::ranges::upper_bound(events_, time, {}, &Event::time);
+  std::for_each(events_.begin(), end, [this](const Event& event) {
+    witness_.event(event.time, event.level, event.name, event.text);
+  });
+  events_.erase(events_.begin(), end);
+}
+
+Played Player::play() {
+  while (step_ <= schedule_.steps()) {
+    played_.is_cancelled = progress_.cancelled();
+    if (played_.is_cancelled) break;
+    const double time = schedule_.time_of_step(step_);
+    if (const auto task = calibration_due(time)) {
+      if (!calibrate(*task)) break;
+      continue;
+    }
+    tell_up_to(time);
+    const ArmState state = schedule_.state_at(time);
+    if (!is_possible(state)) break;
+    film_to(time, state);
+    step(time, state);
+    progress_.update(schedule_.duration() > 0 ? time / schedule_.duration() : 1.0,
+                     schedule_.legs()[schedule_.leg_at(time)].name);
+  }
+  if (played_.states == 0) witness_.state(0, 0, played_.last);
+  return played_;
+}
+
+void Player::film_to(double time, const ArmState& state) {
+  if (!filming_) return;
+  if (experiment_.record.cameras) {
+    filming_->play_to(time, state, [this](const std::string& camera, const Frame& frame) {
+      witness_.image(camera, frame);
+    });
+  } else {
+    filming_->pass_to(time, state);
+  }
+}
+
+void Player::step(double time, const ArmState& state) {
+  if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
+    witness_.state(step_, time, state);
+    if (filming_ && experiment_.record.cameras) witness_.readings(filming_->ports());
+  }
+  witness_.command(time, state);
+  if (watcher_ != nullptr) watcher_->state(time, state);
+  ++step_;
+  played_ = {step_, time, state, false, ""};
+}
+
+// The calibration that begins at `time` or before, if it was not done yet and may be done.
+std::optional<std::size_t> Player::calibration_due(double time) const {
+  if (!filming_ || !safety_.is_safe()) return std::nullopt;
+  for (std::size_t i = 0; i < experiment_.task.size(); ++i) {
+    if (!std::holds_alternative<CalibrateTask>(experiment_.task[i]) || performed_.contains(i)) continue;
+    return schedule_.legs()[i].start <= time ? std::optional(i) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Whether the run goes on after it.
+bool Player::calibrate(std::size_t task) {
+  const Leg leg = schedule_.legs()[task];
+  tell_up_to(leg.start);
+  film_to(leg.start, leg.motion->at(0));
+  const auto record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
+    // A step at the end is the next task's.
+    constexpr double rounding = 1e-9;
+    for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - rounding;
+         time = experiment_.clock.step * static_cast<double>(step_))
+      step(time, state_at(time));
+  };
+  CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_step);
+  performed_[task] = run.motion;
+  schedule_ = Schedule(experiment_, performed_);
+  safety_ = schedule_.check();
+  const double end = schedule_.legs()[task].end();
+  plan(end);
+  filming_->skip_to_now();
+  const bool is_done = run.result.is_done;
+  if (!is_done) {
+    // The run ends here: with the state at the end, which belongs to no step.
+    played_ = {step_, end, run.motion->at(run.motion->duration()), progress_.cancelled(),
+               fmt::format("{}: {}", run.name, run.result.reason)};
+    witness_.expect(step_);
+    witness_.state(step_, end, played_.last);
+  }
+  calibrations_.push_back(std::move(run));
+  return is_done;
+}
+
+}  // namespace flexura

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/progress.h"
+#include "flexura/experiment/calibrate_task.h"
+#include "flexura/experiment/filming.h"
+#include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/experiment/witness.h"
+#include "flexura/safety/violation.h"
+
+namespace flexura {
+
+/// How far a run came.
+struct Played {
+  std::size_t states = 0;  ///< Of the clock's steps, from time 0.
+  double time = 0;         ///< Of the last one, s.
+  ArmState last;
+  bool is_cancelled = false;
+  std::string failure;  ///< Why a calibration stopped and the run with it; "": none did.
+};
+
+/// Plays an experiment's schedule, step by step, before the eyes of a witness.
+class Player {
+ public:
+  /// Nothing that is unsafe is done to cameras: then calibrations are only gone through.
+  Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher);
+
+  [[nodiscard]] const Schedule& schedule() const { return schedule_; }
+  [[nodiscard]] const SafetyReport& safety() const { return safety_; }
+  [[nodiscard]] const std::vector<CalibrationRun>& calibrations() const { return calibrations_; }
+
+  /// Plays every step, or those before the first state that no arm can take, or until a calibration fails or
+  /// it is cancelled.
+  Played play();
+
+ private:
+  struct Event {
+    double time;
+    Recorder::Level level;
+    std::string name, text;
+  };
+  void plan(double from);
+  void tell_up_to(double time);
+  void step(double time, const ArmState& state);
+  void film_to(double time, const ArmState& state);
+  [[nodiscard]] std::optional<std::size_t> calibration_due(double time) const;
+  [[nodiscard]] bool calibrate(std::size_t task);
+
+  const Experiment& experiment_;
+  Witness& witness_;
+  Progress& progress_;
+  RunWatcher* watcher_;
+  std::map<std::size_t, MotionPtr> performed_;  // By task: what calibrations did.
+  Schedule schedule_;
+  SafetyReport safety_;
+  std::optional<Filming> filming_;
+  std::vector<Event> events_;  // Still to be told, in the order of time.
+  std::vector<CalibrationRun> calibrations_;
+  std::size_t step_ = 0;  // The next one.
+  Played played_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,155 @@
+#include "flexura/experiment/scene_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "flexura/camera/camera.h"
+#include "flexura/math/arrays.h"
+#include "flexura/render/scene_maker.h"
+
+namespace flexura {
+namespace {
+
+constexpr double flat = 0.001;  // m: how thick what is flat is drawn
+
+// To the micrometre: texts of numbers as short as a drawing needs.
+double rounded(double metres) { return std::round(metres * 1e6) / 1e6 + 0.0; }
+
+VectorMessage point_message(const Eigen::Vector3d& p) {
+  return {rounded(p.x()), rounded(p.y()), rounded(p.z())};
+}
+
+ColorMessage color_message(const Color& color) { return {color.x(), color.y(), color.z(), 1}; }
+
+// A pose in `p` whose z has this direction.
+Pose along(const Eigen::Vector3d& p, const Eigen::Vector3d& z) {
+  return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix(), p};
+}
+
+EntityMessage entity(const std::string& id, double time) {
+  EntityMessage message;
+  message.timestamp = time_message(nanoseconds(time));
+  message.id = id;
+  return message;
+}
+
+void draw(const Screen& screen, EntityMessage& out) {
+  out.cubes.push_back(
+      {pose_message(screen.X_WS), {screen.size[0], screen.size[1], flat}, color_message(screen.brightness)});
+}
+
+void draw(const Etalon& etalon, EntityMessage& out) {
+  CylinderMessage cylinder;
+  cylinder.pose = pose_message(along(etalon.X_WE.position, etalon.X_WE.rotation.col(1)));
+  cylinder.size = {2 * etalon.radius, 2 * etalon.radius, etalon.height};
+  cylinder.color = color_message(etalon.albedo);
+  out.cylinders.push_back(cylinder);
+}
+
+void draw_ball(const Eigen::Vector3d& center, double radius, const ColorMessage& color, EntityMessage& out) {
+  const double size = 2 * radius;
+  out.spheres.push_back({pose_message({Eigen::Matrix3d::Identity(), center}), {size, size, size}, color});
+}
+
+// A plane is drawn `reach` m to every side.
+void draw(const VisibleObstacle& obstacle, double reach, EntityMessage& out) {
+  const ColorMessage color = color_message(obstacle.albedo);
+  std::visit(
+      [&]<class Shape>(const Shape& shape) {
+        if constexpr (std::is_same_v<Shape, PlaneConfig>) {
+          out.cubes.push_back({pose_message(along(vector(shape.point), vector(shape.normal).normalized())),
+                               {2 * reach, 2 * reach, flat},
+                               color});
+        } else if constexpr (std::is_same_v<Shape, SphereConfig>) {
+          draw_ball(vector(shape.center), shape.radius, color, out);
+        } else if constexpr (std::is_same_v<Shape, CapsuleConfig>) {
+          const Eigen::Vector3d from = vector(shape.from), to = vector(shape.to);
+          draw_ball(from, shape.radius, color, out);
+          draw_ball(to, shape.radius, color, out);
+          if (from == to) return;
+          CylinderMessage cylinder;
+          cylinder.pose = pose_message(along((from + to) / 2, (to - from).normalized()));
+          cylinder.size = {2 * shape.radius, 2 * shape.radius, (to - from).norm()};
+          cylinder.color = color;
+          out.cylinders.push_back(cylinder);
+        } else {
+          const Eigen::Vector3d size = 2 * vector(shape.half_sizes);
+          out.cubes.push_back({pose_message({rotation_of(shape.rotation), vector(shape.center)}),
+                               {size.x(), size.y(), size.z()},
+                               color});
+        }
+      },
+      obstacle.shape);
+}
+
+FrameMessage frame(const std::string& name, const Pose& X_WF) {
+  const PoseMessage pose = pose_message(X_WF);
+  FrameMessage message;
+  message.child_frame_id = name;
+  message.translation = pose.position;
+  message.rotation = pose.orientation;
+  return message;
+}
+
+// Points along an arc after its start, so near to each other that a strip through them looks like it.
+void add_points(const Arc& arc, std::vector<VectorMessage>& points) {
+  constexpr double largest_turn = 0.2, most = 64;  // rad
+  const auto pieces = static_cast<int>(std::clamp(std::ceil(arc.bend.norm() / largest_turn), 1.0, most));
+  for (int i = 1; i <= pieces; ++i)
+    points.push_back(point_message(arc.pose(arc.length * i / pieces).position));
+}
+
+}  // namespace
+
+SceneMessage stand_message(const Experiment& experiment) {
+  const RigConfig rig = experiment.true_rig();
+  const Arm arm = rig.arm.arm();
+  const SceneMaker maker(arm, rig.arm.look, experiment.true_stand(), experiment.obstacle);
+  EntityMessage stand = entity("stand", 0);
+  for (const Screen& screen : maker.stand().screens) draw(screen, stand);
+  if (maker.stand().etalon) draw(*maker.stand().etalon, stand);
+  EntityMessage obstacles = entity("obstacles", 0);
+  for (const VisibleObstacle& obstacle : maker.stand().obstacles) draw(obstacle, arm.length(), obstacles);
+  return {{std::move(stand), std::move(obstacles)}};
+}
+
+FramesMessage frames_message(const Experiment& experiment) {
+  const RigConfig rig = experiment.true_rig();
+  FramesMessage frames;
+  frames.transforms.push_back(frame("base", rig.arm.arm().X_WB));
+  for (const CameraConfig& config : rig.cameras) {
+    const Camera camera(config);
+    frames.transforms.push_back(frame(image_topic(config.name).substr(1),
+                                      camera.pose(camera.initial_stage(), camera.initial_head())));
+  }
+  return frames;
+}
+
+SceneMessage arm_message(const Arm& arm, const ColorConfig& color, double time, const Backbone& backbone) {
+  EntityMessage drawn = entity("arm", time);
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const auto& radius = arm.sections[i].radius;
+    const Arc& arc = backbone.arcs()[i];
+    if (i == 0 || radius != arm.sections[i - 1].radius) {
+      LineMessage line;
+      line.thickness = radius[0] + radius[1];
+      line.color = {color[0], color[1], color[2], 1};
+      line.points.push_back(point_message(arc.X_WS.position));
+      drawn.lines.push_back(std::move(line));
+    }
+    add_points(arc, drawn.lines.back().points);
+  }
+  return {{std::move(drawn)}};
+}
+
+bool SceneTimes::is_next(double time) {
+  constexpr double interval = 0.1, rounding = 1e-9;  // s
+  if (last_ && time < *last_ + interval - rounding) return false;
+  last_ = time;
+  return true;
+}
+
+}  // namespace flexura

@@ -1,0 +1,136 @@
+#include "flexura/experiment/scene_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+const std::string furnished = R"(
+[arm]
+kind = "spatial"
+[[arm.section]]
+length = 0.5
+radius = 0.03
+[[arm.section]]
+length = 0.5
+radius = [0.03, 0.01]
+[stand.etalon]
+position = [0.5, 0, 0]
+rotation = [0.7071067811865476, 0, 0, 0.7071067811865476]
+[[obstacle]]
+kind = "plane"
+normal = [0, 1, 0]
+point = [0, -1, 0]
+[[obstacle]]
+kind = "capsule"
+from = [1, 0, 0]
+to = [1, 2, 0]
+radius = 0.1
+[[obstacle]]
+kind = "box"
+center = [-1, 0, 0]
+half_sizes = [0.1, 0.2, 0.3]
+[[obstacle]]
+kind = "sphere"
+center = [-1, 1, 0]
+radius = 0.1
+[[task]]
+kind = "move"
+duration = 1
+to = { bends = [[1, 0], [0, 0]] }
+)";
+
+class Quiet : public Progress {
+ public:
+  void update(double, std::string_view) override {}
+};
+
+Experiment experiment_of(const std::string& text) { return parse_experiment(text, "x.toml"); }
+
+TEST(SceneLog, DrawsWhatStandsThere) {
+  const SceneMessage scene = stand_message(experiment_of(furnished));
+  ASSERT_EQ(scene.entities.size(), 2);
+  const EntityMessage& stand = scene.entities[0];
+  EXPECT_EQ(stand.cubes.size(), 2) << "the screens";
+  ASSERT_EQ(stand.cylinders.size(), 1);
+  // The etalon's axis is E's +Y, here W's -X; a cylinder's is its z.
+  const QuaternionMessage& q = stand.cylinders[0].pose.orientation;
+  const Eigen::Vector3d axis = Eigen::Quaterniond(q.w, q.x, q.y, q.z) * Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(axis.isApprox(Eigen::Vector3d(-1, 0, 0), 1e-9)) << axis.transpose();
+  EXPECT_NEAR(stand.cylinders[0].pose.position.x, 0.3, 1e-9) << "in its middle";
+  const EntityMessage& obstacles = scene.entities[1];
+  EXPECT_EQ(obstacles.cubes.size(), 2) << "the plane and the box";
+  EXPECT_EQ(obstacles.spheres.size(), 3) << "the ball and the capsule's ends";
+  ASSERT_EQ(obstacles.cylinders.size(), 1);
+  EXPECT_NEAR(obstacles.cylinders[0].size.z, 2, 1e-12);
+  EXPECT_NEAR(obstacles.cylinders[0].pose.position.y, 1, 1e-12);
+}
+
+TEST(SceneLog, DrawsTheArmNearItsBackbone) {
+  const Experiment experiment = experiment_of(furnished);
+  const Arm arm = experiment.arm.arm();
+  const Backbone backbone(arm, {{{1.5, 0.5}, {-2, 0}}, {1, 1}});
+  const SceneMessage scene = arm_message(arm, {0, 0, 0}, 1.25, backbone);
+  const EntityMessage& drawn = scene.entities.at(0);
+  EXPECT_EQ(drawn.id, "arm");
+  EXPECT_EQ(drawn.timestamp.nsec, 250'000'000);
+  ASSERT_EQ(drawn.lines.size(), 2) << "as thick as each section";
+  EXPECT_NEAR(drawn.lines[0].thickness, 0.06, 1e-12);
+  EXPECT_NEAR(drawn.lines[1].thickness, 0.04, 1e-12);
+  const VectorMessage& tip = drawn.lines[1].points.back();
+  EXPECT_LT((Eigen::Vector3d(tip.x, tip.y, tip.z) - backbone.tip().position).norm(), 1e-6);
+  EXPECT_EQ(drawn.lines[1].points.front().x, drawn.lines[0].points.back().x);
+}
+
+TEST(SceneLog, SaysWhereTheFramesStand) {
+  const FramesMessage frames = frames_message(experiment_of(furnished));
+  ASSERT_EQ(frames.transforms.size(), 3);
+  EXPECT_EQ(frames.transforms[0].child_frame_id, "base");
+  EXPECT_EQ(frames.transforms[1].child_frame_id, "camera/front");
+  EXPECT_GT(frames.transforms[1].translation.z, 1);
+}
+
+struct Counted {
+  std::map<std::string, int> messages;
+  std::map<std::string, std::string> schemas;
+  std::map<std::string, std::size_t> bytes;
+};
+
+Counted count(const std::string& text) {
+  const TemporaryFolder folder;
+  Quiet quiet;
+  (void)run_experiment(experiment_of(text), folder.path(), quiet);
+  Counted counted;
+  const McapReader log(folder.path() / log_file_name);
+  for (const McapMessage& message : log.messages()) {
+    ++counted.messages[message.channel->topic];
+    counted.bytes[message.channel->topic] += message.data.size();
+    counted.schemas[message.channel->topic] = message.channel->schema.name;
+  }
+  return counted;
+}
+
+TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {
+  const Counted kept = count(furnished);
+  EXPECT_EQ(kept.messages.at("/arm/state"), 51);
+  EXPECT_EQ(kept.messages.at("/scene"), 1 + 11);
+  EXPECT_EQ(kept.messages.at("/frames"), 1);
+  EXPECT_EQ(kept.schemas.at("/scene"), "foxglove.SceneUpdate");
+  EXPECT_EQ(kept.schemas.at("/frames"), "foxglove.FrameTransforms");
+  EXPECT_EQ(kept.schemas.at("/arm/poses"), "foxglove.PosesInFrame");
+  EXPECT_EQ(kept.schemas.at("/events"), "foxglove.Log");
+  const Counted left_out = count("record.scene = false\n" + furnished);
+  EXPECT_FALSE(left_out.messages.contains("/scene"));
+  EXPECT_FALSE(left_out.messages.contains("/frames"));
+}
+
+}  // namespace
+}  // namespace flexura

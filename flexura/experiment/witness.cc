@@ -1,0 +1,93 @@
+#include "flexura/experiment/witness.h"
+
+#include <utility>
+
+#include "flexura/experiment/report_safety.h"
+#include "flexura/experiment/results.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+// The log has every state; the report draws no more than this, and a long run should not fill the memory.
+constexpr std::size_t max_kept_states = 10000;
+
+const char* name_of(Recorder::Level level) {
+  if (level == Recorder::Level::info) return "info";
+  return level == Recorder::Level::warning ? "warning" : "error";
+}
+
+}  // namespace
+
+Witness::Witness(const std::filesystem::path& folder, const Arm& arm)
+    : recorder_(folder / log_file_name, arm), arm_(arm) {}
+
+void Witness::expect(std::size_t last_step) {
+  last_step_ = last_step, kept_every_ = last_step / max_kept_states + 1;
+}
+
+void Witness::event(double time, Recorder::Level level, const std::string& name, const std::string& text) {
+  recorder_.event(time, level, name, text);
+  marks_.push_back({time, name_of(level), name + ": " + text});
+}
+
+void Witness::draw_scene(const Experiment& experiment) {
+  recorder_.frames(0, frames_message(experiment));
+  recorder_.scene(0, stand_message(experiment));
+  drawn_color_ = experiment.arm.look.color;
+}
+
+void Witness::state(std::size_t step, double time, const ArmState& state) {
+  const Backbone backbone(arm_, state);
+  recorder_.state(time, state, backbone);
+  if (drawn_color_ && (scene_times_.is_next(time) || step == last_step_))
+    recorder_.scene(time, arm_message(arm_, *drawn_color_, time, backbone));
+  ++recorded_;
+  if (step % kept_every_ != 0 && step != last_step_) return;
+  times_.push_back(time);
+  states_.push_back(state);
+}
+
+void Witness::image(const std::string& camera, const Frame& frame) {
+  recorder_.image(camera, frame);
+  ++frames_[camera];
+}
+
+void Witness::readings(const RigPorts& rig) {
+  recorder_.reading(rig.arm->read().value());
+  for (const CameraPorts& camera : rig.cameras) recorder_.reading(camera.name, camera.head->read().value());
+}
+
+void Witness::write_commands(const Drive& drive, const std::filesystem::path& file) {
+  commands_.emplace(arm_, drive, file);
+}
+
+void Witness::command(double time, const ArmState& state) {
+  if (commands_) commands_->step(time, state, recorder_);
+}
+
+void Witness::close() {
+  recorder_.close();
+  if (commands_) commands_->close();
+}
+
+ReportData Witness::report_data(const Experiment& experiment, const Schedule& schedule,
+                                const SafetyReport& safety) && {
+  ReportData data{.title = experiment.title,
+                  .version = experiment.flexura,
+                  .experiment_text = experiment_toml(experiment),
+                  .arm = std::move(arm_),
+                  .times = std::move(times_),
+                  .states = std::move(states_),
+                  .events = std::move(marks_),
+                  .recorded = recorded_,
+                  .safety = {},
+                  .obstacles = experiment.obstacle,
+                  .curve = experiment.record.curve,
+                  .tension = experiment.record.tension,
+                  .chapters = {}};
+  add_safety(safety, schedule, data);
+  return data;
+}
+
+}  // namespace flexura

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/drive_commands.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/recorder.h"
+#include "flexura/experiment/scene_log.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/port/rig_ports.h"
+#include "flexura/report/report.h"
+
+namespace flexura {
+
+/// Everything that a run leaves behind while it plays: the log, and what the report will show.
+class Witness {
+ public:
+  Witness(const std::filesystem::path& folder, const Arm& arm);
+
+  /// Which step of the clock is the last one, as far as it is known: a task may take its own time.
+  void expect(std::size_t last_step);
+  void event(double time, Recorder::Level level, const std::string& name, const std::string& text);
+  /// What programs that draw logs are to draw.
+  void draw_scene(const Experiment& experiment);
+  void state(std::size_t step, double time, const ArmState& state);
+  void image(const std::string& camera, const Frame& frame);
+  /// What the devices of the rig say of themselves.
+  void readings(const RigPorts& rig);
+  /// Of each camera that gave any.
+  [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
+  void write_commands(const Drive& drive, const std::filesystem::path& file);
+  /// Takes every step, logged or not: a command list has no gaps.
+  void command(double time, const ArmState& state);
+  [[nodiscard]] Recorder& recorder() { return recorder_; }
+  void close();
+
+  [[nodiscard]] ReportData report_data(const Experiment& experiment, const Schedule& schedule,
+                                       const SafetyReport& safety) &&;
+
+ private:
+  Recorder recorder_;
+  std::optional<DriveCommands> commands_;
+  std::optional<ColorConfig> drawn_color_;  // none: the scene is not kept
+  SceneTimes scene_times_;
+  std::map<std::string, std::int64_t> frames_;  // by camera
+  Arm arm_;
+  std::size_t last_step_ = 0;
+  std::size_t kept_every_ = 1;
+  std::size_t recorded_ = 0;
+  std::vector<double> times_;
+  std::vector<ArmState> states_;
+  std::vector<ReportData::Mark> marks_;
+};
+
+}  // namespace flexura

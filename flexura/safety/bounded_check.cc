@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/safety/checked_motion.h"
+#include "flexura/safety/jumps.h"
+
+namespace flexura {
+namespace {
+
+constexpr double time_resolution = 1e-7;     // s, of limits
+constexpr double contact_resolution = 1e-4;  // s
+// How many intervals are looked into for one limit, and for one section or pair and what it may touch, which
+// takes longer; for every step of the clock; and for all that may touch, together.
+constexpr std::size_t limit_intervals = 200'000;
+constexpr std::size_t contact_intervals = 5'000;
+constexpr std::size_t intervals_of_step = 4;
+constexpr std::size_t all_contact_intervals = 20'000'000;
+// To which part of itself a worst value is found, and to how many metres a depth; and what else it may be
+// short of without a word, where there is too much to look into.
+constexpr double worst_part = 1e-6;
+constexpr double doubtful_part = 1e-4;
+constexpr double worst_depth = 1e-5;
+constexpr double doubtful_depth = 1e-4;
+// Intervals for the worst values of one limit in all its spans, and for all worst depths; and at least in one
+// span.
+constexpr std::size_t worst_intervals = 200'000;
+constexpr std::size_t least_worst_intervals = 100;
+constexpr std::size_t worst_depth_intervals = 50'000;
+constexpr std::size_t least_worst_depth_intervals = 10;
+// Which share of a check its limits take, and what comes up to the contacts' worst values.
+constexpr double limits_share = 0.3;
+constexpr double contacts_share = 0.9;
+
+WorstSearch worst_search(std::size_t spans) {
+  const std::size_t each = worst_intervals / std::max<std::size_t>(spans, 1);
+  return {.part = worst_part, .most_intervals = std::max(least_worst_intervals, each)};
+}
+
+WorstSearch worst_depth_search(std::size_t spans) {
+  const std::size_t each = worst_depth_intervals / std::max<std::size_t>(spans, 1);
+  return {.tolerance = worst_depth, .most_intervals = std::max(least_worst_depth_intervals, each)};
+}
+
+class BoundedCheck {
+ public:
+  explicit BoundedCheck(const CheckedMotion& checked) : checked_(checked) {}
+
+  void run() {
+    check_limits();
+    if (checked_.report.is_complete) check_contacts();
+  }
+
+ private:
+  void check_limits() {
+    const Arm& arm = checked_.arm;
+    const std::vector<LimitWatch> watches = limit_watches(arm);
+    const auto jobs = static_cast<double>(watches.size() + arm.sections.size());
+    double done = 0;
+    for (const LimitWatch& watch : watches) {
+      const auto value = [&](double t) { return watch.sign * watch.value(motion_.at(t)); };
+      const auto rate = [&](double a, double b) { return watch.rate(motion_, a, b); };
+      check_limit({.hazard = watch.hazard, .section = watch.section, .limit = watch.limit}, watch.sign,
+                  watch.threshold(), with_rate(value, rate));
+      if (!checked_.go_on(limits_share * ++done / jobs)) return;
+    }
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const double limit = arm.sections[i].max_bend_rate;
+      if (std::isfinite(limit))
+        check_limit({.hazard = Hazard::bend_rate, .section = i, .limit = limit}, 1, threshold_of_rate(limit),
+                    bend_rate(motion_, i));
+      check_jumps(i, bend_rate(motion_, i));
+      check_jumps(i, stretch_rate(motion_, i));
+      if (!checked_.go_on(limits_share * ++done / jobs)) return;
+    }
+  }
+
+  void check_limit(const Violation& violation, double sign, double threshold,
+                   const WatchedQuantity& quantity) {
+    const FoundSpans found = spans_above(threshold, quantity, checked_.whole(),
+                                         limit_search(std::abs(violation.limit) * limit_tolerance));
+    const std::string what = fmt::format("section {}: {}", *violation.section + 1, name_of(violation.hazard));
+    if (found.undecided) say_undecided(what, *found.undecided, found.sampled_every, limit_intervals);
+    const WorstSearch search = worst_search(found.spans.size());
+    double doubt = 0;
+    for (const Span& span : found.spans) {
+      const WorstValue worst = worst_in(quantity, span, search);
+      if (worst.doubt > doubtful_part * std::abs(worst.value)) doubt = std::max(doubt, worst.doubt);
+      checked_.add(violation, span, worst, sign);
+    }
+    if (doubt > 0) say_doubtful(what, violation.hazard, doubt);
+  }
+
+  // Where a law that knows its rates is faster than anything that moves: keyframes a moment apart.
+  void check_jumps(std::size_t section, const WatchedQuantity& rate) {
+    const FoundSpans found =
+        spans_above(jump_rate, rate, checked_.whole(), limit_search(jump_rate * limit_tolerance));
+    const WorstSearch search = worst_search(found.spans.size());
+    for (const Span& span : found.spans) {
+      const ArmState before = motion_.at(span.start);
+      const auto change = [&](double t) { return largest_change(before, motion_.at(t)); };
+      const auto change_rate = [&](double a, double b) { return largest_rate(a, b); };
+      const WorstValue size = worst_in(with_rate(change, change_rate), span, search);
+      if (size.value > smallest_jump) checked_.add_jump(span, section, size);
+    }
+  }
+
+  [[nodiscard]] double largest_rate(double start, double end) const {
+    double most = 0;
+    for (std::size_t i = 0; i < checked_.arm.sections.size(); ++i) {
+      const SectionRates rates = rates_of(motion_, i, start, end);
+      most = std::max({most, rates.bend, rates.stretch});
+    }
+    return most;
+  }
+
+  void check_contacts() {
+    const ContactDepths depths(checked_.arm, checked_.contacts, motion_);
+    const auto searched = [&](double decided) {
+      return checked_.go_on(limits_share + (contacts_share - limits_share) * decided);
+    };
+    const std::vector<FoundSpans> found = spans_above(contact_tolerance, depths, checked_.whole(),
+                                                      {.time = contact_resolution,
+                                                       .value = contact_motion,
+                                                       .most_intervals = most_intervals(contact_intervals),
+                                                       .most_together = all_contact_intervals,
+                                                       .go_on = searched});
+    if (!checked_.report.is_complete) return;
+    say_undecided_contacts(depths, found);
+    add_contacts(depths, found);
+  }
+
+  void add_contacts(const ContactDepths& depths, const std::vector<FoundSpans>& found) {
+    std::size_t all = 0;
+    for (const FoundSpans& one : found) all += one.spans.size();
+    const WorstSearch search = worst_depth_search(all);
+    std::vector<double> doubts(checked_.contacts.size());  // of each watch
+    double done = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto& [watch, first, last] = depths.part(i);
+      const ContactWatch& contact = checked_.contacts[watch];
+      for (const Span& span : found[i].spans) {
+        const WorstValue worst = worst_in(depths.depth(i), span, search);
+        doubts[watch] = std::max(doubts[watch], worst.doubt);
+        checked_.add(contact_violation(contact, contact.place_of(first, last)), span, worst);
+        const double share = ++done / static_cast<double>(all);
+        if (!checked_.go_on(contacts_share + (1 - contacts_share) * share)) return;
+      }
+    }
+    for (std::size_t watch = 0; watch < doubts.size(); ++watch) {
+      const ContactWatch& contact = checked_.contacts[watch];
+      if (doubts[watch] > doubtful_depth) say_doubtful(what_of(contact), contact.hazard(), doubts[watch]);
+    }
+  }
+
+  static std::string what_of(const ContactWatch& contact) {
+    return "contact with " + (contact.hazard() == Hazard::obstacle ? contact.obstacle_name() : "itself");
+  }
+
+  // One line for everything of the arm that may touch the same thing.
+  void say_undecided_contacts(const ContactDepths& depths, const std::vector<FoundSpans>& found) {
+    std::vector<FoundSpans> of_watch(checked_.contacts.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!found[i].undecided) continue;
+      FoundSpans& one = of_watch[depths.part(i).watch];
+      if (!one.undecided) one.undecided = found[i].undecided;
+      one.undecided->start = std::min(one.undecided->start, found[i].undecided->start);
+      one.undecided->end = std::max(one.undecided->end, found[i].undecided->end);
+      one.sampled_every = std::max(one.sampled_every, found[i].sampled_every);
+    }
+    for (std::size_t watch = 0; watch < of_watch.size(); ++watch) {
+      const auto& [spans, undecided, sampled_every] = of_watch[watch];
+      if (undecided)
+        say_undecided(what_of(checked_.contacts[watch]), *undecided, sampled_every, contact_intervals);
+    }
+  }
+
+  void say_undecided(const std::string& what, const Span& span, double sampled_every, std::size_t intervals) {
+    checked_.report.caveats.push_back(
+        fmt::format("{} undecided, {}: more than {} intervals to look into, sampled every {:.3g} s", what,
+                    span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
+  }
+
+  void say_doubtful(const std::string& what, Hazard hazard, double doubt) {
+    checked_.report.caveats.push_back(fmt::format("{}, {}: the worst values may be {} more", what,
+                                                  span_text(checked_.whole(), checked_.timed.start),
+                                                  amount_text(hazard, doubt)));
+  }
+
+  [[nodiscard]] SpanSearch limit_search(double value) const {
+    return {.time = time_resolution, .value = value, .most_intervals = most_intervals(limit_intervals)};
+  }
+  [[nodiscard]] std::size_t most_intervals(std::size_t at_least) const {
+    return at_least + intervals_of_step * checked_.last_step();
+  }
+
+  const CheckedMotion& checked_;
+  const Motion& motion_ = checked_.motion();
+};
+
+}  // namespace
+
+void check_bounded(const CheckedMotion& checked) { BoundedCheck(checked).run(); }
+
+}  // namespace flexura

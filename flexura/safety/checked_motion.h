@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "flexura/safety/contact_watch.h"
+#include "flexura/safety/limits.h"
+#include "flexura/safety/motion_check.h"
+#include "flexura/safety/worst.h"
+
+namespace flexura {
+
+/// One motion under check, and where what is found goes. What it refers to must outlive it.
+struct CheckedMotion {
+  const Arm& arm;
+  const std::vector<ContactWatch>& contacts;
+  const TimedMotion& timed;
+  double step = 0;  ///< Of the clock, s.
+  SafetyReport& report;
+  /// Told which share of this motion's check is done; false: the check is to end.
+  std::function<bool(double done)> go_on;
+
+  [[nodiscard]] const Motion& motion() const { return *timed.motion; }
+  [[nodiscard]] Span whole() const { return {0, motion().duration()}; }
+  [[nodiscard]] std::size_t last_step() const {
+    return static_cast<std::size_t>(std::ceil(motion().duration() / step));
+  }
+  [[nodiscard]] double time_of(std::size_t k) const {
+    return std::min(static_cast<double>(k) * step, motion().duration());
+  }
+
+  /// Adds a violation that says what and where; its times are the motion's own.
+  void add(Violation violation, const Span& span, const WorstValue& worst, double sign = 1) const {
+    violation.start = timed.start + span.start;
+    violation.end = timed.start + span.end;
+    violation.worst_time = timed.start + worst.time;
+    violation.value = sign * worst.value;
+    report.violations.push_back(std::move(violation));
+  }
+  void add_jump(const Span& span, std::size_t section, const WorstValue& size) const {
+    add({.hazard = Hazard::jump, .section = section, .name = timed.name}, span, size);
+  }
+  /// The law has no value, or no length, at `time`.
+  void add_impossible(double time) const {
+    add({.hazard = Hazard::not_finite, .section = impossible_section(motion().at(time)), .name = timed.name},
+        {time, time}, {time, 0});
+  }
+};
+
+/// A bend rate above this breaks its limit.
+[[nodiscard]] inline double threshold_of_rate(double limit) { return limit * (1 + limit_tolerance); }
+
+/// A contact's violation, but for its times and depth.
+[[nodiscard]] inline Violation contact_violation(const ContactWatch& watch, const Contact& place) {
+  return {.hazard = watch.hazard(),
+          .section = place.section,
+          .other_section = place.other_section,
+          .name = watch.obstacle_name()};
+}
+
+/// Checks a law that knows its rates, in a state that is possible at its start (docs/safety.md).
+void check_bounded(const CheckedMotion& checked);
+
+/// Checks any law at every step of the clock.
+void check_sampled(const CheckedMotion& checked);
+
+}  // namespace flexura

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "flexura/safety/checked_motion.h"
+#include "flexura/safety/jumps.h"
+#include "flexura/safety/sampled_spans.h"
+
+namespace flexura {
+namespace {
+
+// Which share of a check the search for jumps leaves to the samples.
+constexpr double samples_share = 0.9;
+
+class SampledCheck {
+ public:
+  explicit SampledCheck(const CheckedMotion& checked)
+      : checked_(checked),
+        watches_(limit_watches(checked.arm)),
+        limits_(watches_.size()),
+        rates_(checked.arm.sections.size()),
+        contacts_(checked.contacts.size()) {}
+
+  void run() {
+    checked_.report.caveats.push_back(
+        fmt::format("{}: sampled every {:.6g} s: the law has no bound on its rates",
+                    span_text(checked_.whole(), checked_.timed.start), checked_.step));
+    const std::size_t last = checked_.last_step();
+    std::optional<double> last_possible;
+    std::optional<ArmState> before;
+    for (std::size_t k = 0; k <= last; ++k) {
+      const double time = checked_.time_of(k);
+      ArmState state = checked_.motion().at(time);
+      if (!is_possible(state)) {
+        checked_.add_impossible(time);
+        break;
+      }
+      if (!checked_.go_on(samples_share * time / (checked_.motion().duration() + checked_.step))) break;
+      look_at(k, state);
+      if (before) look_at_rates(k, *before, state);
+      last_possible = time;
+      before = std::move(state);
+    }
+    add_found();
+    if (!last_possible || !checked_.report.is_complete) return;
+    for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible))
+      checked_.add_jump({jump.time, jump.time}, jump.section, {jump.time, jump.size});
+  }
+
+ private:
+  void look_at(std::size_t k, const ArmState& state) {
+    const double time = checked_.time_of(k);
+    for (std::size_t w = 0; w < watches_.size(); ++w) {
+      const double value = watches_[w].sign * watches_[w].value(state);
+      if (value > watches_[w].threshold()) limits_[w].add(k, {time, time}, value);
+    }
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      for (const Contact& contact : checked_.contacts[c].contacts(state))
+        contacts_[c][{contact.section, contact.other_section}].add(k, {time, time}, -contact.clearance);
+    }
+  }
+
+  // The mean rate since the step before.
+  void look_at_rates(std::size_t k, const ArmState& before, const ArmState& state) {
+    const Span span{checked_.time_of(k - 1), checked_.time_of(k)};
+    for (std::size_t i = 0; i < rates_.size(); ++i) {
+      const double rate = (state.bends[i] - before.bends[i]).norm() / (span.end - span.start);
+      if (rate > threshold_of_rate(checked_.arm.sections[i].max_bend_rate)) rates_[i].add(k, span, rate);
+    }
+  }
+
+  void add_found() const {
+    for (std::size_t w = 0; w < watches_.size(); ++w) {
+      const LimitWatch& watch = watches_[w];
+      add({.hazard = watch.hazard, .section = watch.section, .limit = watch.limit}, limits_[w], watch.sign);
+    }
+    for (std::size_t i = 0; i < rates_.size(); ++i) {
+      const double limit = checked_.arm.sections[i].max_bend_rate;
+      add({.hazard = Hazard::bend_rate, .section = i, .limit = limit}, rates_[i]);
+    }
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      for (const auto& [place, found] : contacts_[c]) {
+        const Contact where{.section = place.first, .other_section = place.second};
+        add(contact_violation(checked_.contacts[c], where), found);
+      }
+    }
+  }
+
+  void add(const Violation& violation, const SampledSpans& spans, double sign = 1) const {
+    for (const auto& [span, worst] : spans.spans()) checked_.add(violation, span, worst, sign);
+  }
+
+  using Place = std::pair<std::size_t, std::optional<std::size_t>>;
+
+  const CheckedMotion& checked_;
+  std::vector<LimitWatch> watches_;
+  std::vector<SampledSpans> limits_;
+  std::vector<SampledSpans> rates_;
+  std::vector<std::map<Place, SampledSpans>> contacts_;
+};
+
+}  // namespace
+
+void check_sampled(const CheckedMotion& checked) { SampledCheck(checked).run(); }
+
+}  // namespace flexura

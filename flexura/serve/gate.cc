@@ -1,0 +1,79 @@
+#include "flexura/serve/gate.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "flexura/serve/token.h"
+
+namespace flexura {
+
+namespace {
+
+/// "name:port" in lower case, with `port` where the text has none.
+std::string with_port(std::string_view host, std::uint16_t port) {
+  const std::size_t colon = host.rfind(':');
+  const std::size_t bracket = host.rfind(']');
+  const bool has_port =
+      colon != std::string_view::npos && (bracket == std::string_view::npos || bracket < colon);
+  std::string text = in_lower_case(host);
+  if (!has_port) text += ':' + std::to_string(port);
+  return text;
+}
+
+constexpr std::uint16_t http_port = 80;
+
+bool is_loopback(std::string_view address) { return address.starts_with("127.") || address == "::1"; }
+
+}  // namespace
+
+Gate::Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token, std::string ticket)
+    : port_(port),
+      token_(std::move(token)),
+      ticket_(std::move(ticket)),
+      cookie_name_("flexura_" + std::to_string(port)) {
+  for (const std::string& name : names) hosts_.push_back(with_port(name, port));
+}
+
+bool Gate::knows_host(std::string_view host, std::string_view local) const {
+  const std::string called = with_port(host, http_port);
+  if (is_loopback(local) && called == with_port("localhost", port_)) return true;
+  return called == with_port(url_host(local), port_) || std::ranges::find(hosts_, called) != hosts_.end();
+}
+
+bool Gate::knows_origin(std::string_view origin, std::string_view local) const {
+  constexpr std::string_view scheme = "http://";
+  return origin.starts_with(scheme) && knows_host(origin.substr(scheme.size()), local);
+}
+
+bool Gate::has_bearer(const RequestHead& head) const {
+  const std::string* value = head.find("authorization");
+  constexpr std::string_view scheme = "bearer ";
+  if (value == nullptr || in_lower_case(value->substr(0, scheme.size())) != scheme) return false;
+  return equal_in_constant_time(trimmed(std::string_view(*value).substr(scheme.size())), token_);
+}
+
+bool Gate::has_token(const RequestHead& head) const {
+  bool found = has_bearer(head);
+  const std::string* value = head.find("cookie");
+  for (std::string_view rest = value == nullptr ? std::string_view() : *value; !rest.empty();) {
+    const std::string_view pair = trimmed(rest.substr(0, rest.find(';')));
+    rest.remove_prefix(std::min(rest.size(), rest.find(';')));
+    if (!rest.empty()) rest.remove_prefix(1);
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string_view::npos || pair.substr(0, equals) != cookie_name_) continue;
+    found = equal_in_constant_time(pair.substr(equals + 1), ticket_) || found;
+  }
+  return found;
+}
+
+std::string Gate::cookie() const {
+  return cookie_name_ + '=' + ticket_ + "; Path=/; HttpOnly; SameSite=Strict";
+}
+
+std::string url_host(std::string_view address) {
+  const bool v6 = address.find(':') != std::string_view::npos;
+  return v6 ? '[' + std::string(address) + ']' : std::string(address);
+}
+
+}  // namespace flexura

@@ -1,0 +1,119 @@
+#include "flexura/serve/gate.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/serve/token.h"
+
+namespace flexura {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+const std::string token = "00112233445566778899aabbccddeeff";
+const std::string ticket = "ffeeddccbbaa99887766554433221100";
+
+Gate gate() { return {8421, {"Lab.example", "tunnel:9000", "[::1]"}, token, ticket}; }
+
+RequestHead head(const std::string& lines) {
+  return std::get<RequestHead>(parse_request_head("GET / HTTP/1.1\r\nHost: a\r\n" + lines));
+}
+
+TEST(Gate, KnowsItsOwnNamesWithTheirPorts) {
+  for (const std::string& host : Texts{"127.0.0.1:8421", "localhost:8421", "LOCALHOST:8421",
+                                       "lab.example:8421", "tunnel:9000", "[::1]:8421"}) {
+    EXPECT_TRUE(gate().knows_host(host, "127.0.0.1")) << host;
+  }
+  EXPECT_TRUE(gate().knows_host("[fe80::1]:8421", "fe80::1"));
+  EXPECT_TRUE(Gate(80, {"lab"}, token, ticket).knows_host("lab", "127.0.0.1"));
+}
+
+TEST(Gate, IsCalledLocalhostByThoseOnThisMachineOnly) {
+  EXPECT_TRUE(gate().knows_host("localhost:8421", "127.0.0.5"));
+  EXPECT_TRUE(gate().knows_host("localhost:8421", "::1"));
+  EXPECT_TRUE(gate().knows_origin("http://localhost:8421", "::1"));
+  EXPECT_FALSE(gate().knows_host("localhost:8421", "192.168.1.5"));
+  EXPECT_FALSE(gate().knows_host("localhost:8421", "fe80::1"));
+}
+
+TEST(Gate, KnowsNoOtherHost) {
+  for (const std::string& host :
+       Texts{"", "evil.example", "evil.example:8421", "localhost", "localhost:80", "localhost:84210",
+             "localhost:8421.evil.example", "localhost.:8421", "localhost:8421 ", "127.0.0.1", "127.1:8421",
+             "2130706433:8421", "10.0.0.1:8421", "tunnel:8421", "user@localhost:8421",
+             "localhost:8421,evil.example", "::1:8421", "[::1]", "xlocalhost:8421"}) {
+    EXPECT_FALSE(gate().knows_host(host, "127.0.0.1")) << host;
+  }
+}
+
+TEST(Gate, KnowsItsOwnPagesOnly) {
+  EXPECT_TRUE(gate().knows_origin("http://localhost:8421", "127.0.0.1"));
+  EXPECT_TRUE(gate().knows_origin("http://127.0.0.1:8421", "127.0.0.1"));
+  for (const std::string& origin :
+       Texts{"", "null", "http://", "http://evil.example", "http://localhost", "http://localhost:8422",
+             "https://localhost:8421", "localhost:8421", "http://localhost:8421/",
+             "http://localhost:8421.evil.example", "HTTP://localhost:8421",
+             "http://localhost:8421 http://evil.example", "file://"}) {
+    EXPECT_FALSE(gate().knows_origin(origin, "127.0.0.1")) << origin;
+  }
+}
+
+TEST(Gate, TakesTheTokenFromTheHeader) {
+  EXPECT_TRUE(gate().has_bearer(head("Authorization: Bearer " + token)));
+  EXPECT_TRUE(gate().has_bearer(head("Authorization: bearer   " + token)));
+  for (const std::string& value : Texts{
+           "Bearer", "Bearer ", token, "Basic " + token, "Bearer " + token + "0", "Bearer " + token.substr(1),
+           "Bearer 00112233445566778899AABBCCDDEEFF", "Bearer  x" + token, "Bearer, " + token}) {
+    EXPECT_FALSE(gate().has_bearer(head("Authorization: " + value))) << value;
+  }
+  EXPECT_FALSE(gate().has_bearer(head("Cookie: flexura_8421=" + token)));
+}
+
+TEST(Gate, TakesTheTicketFromTheCookieOfItsPort) {
+  EXPECT_TRUE(gate().has_token(head("Authorization: Bearer " + token)));
+  for (const std::string& value :
+       Texts{"flexura_8421=" + ticket, "a=b; flexura_8421=" + ticket + "; c",
+             "flexura_8421=wrong;flexura_8421=" + ticket, ";;flexura_8421=" + ticket + ";"}) {
+    EXPECT_TRUE(gate().has_token(head("Cookie: " + value))) << value;
+  }
+  for (const std::string& value :
+       Texts{"", ";", "=", "flexura_8421", "flexura_8421=", "flexura_8422=" + ticket,
+             "xflexura_8421=" + ticket, "Flexura_8421=" + ticket, "flexura_8421=\"" + ticket + "\"",
+             "flexura_8421=" + ticket + "x", ticket, "flexura_8421=" + token}) {
+    EXPECT_FALSE(gate().has_token(head("Cookie: " + value))) << value;
+  }
+  EXPECT_FALSE(gate().has_token(head("X: y")));
+}
+
+TEST(Gate, GivesACookieThatScriptsAndForeignPagesDoNotHave) {
+  EXPECT_EQ(gate().cookie(), "flexura_8421=" + ticket + "; Path=/; HttpOnly; SameSite=Strict");
+}
+
+TEST(Token, HasNewBitsEachTime) {
+  std::set<std::string> tokens;
+  for (int i = 0; i < 100; ++i) {
+    const std::string fresh = new_token();
+    EXPECT_EQ(fresh.size(), 32U);
+    EXPECT_EQ(fresh.find_first_not_of("0123456789abcdef"), std::string::npos);
+    tokens.insert(fresh);
+  }
+  EXPECT_EQ(tokens.size(), 100U);
+}
+
+TEST(Token, IsEqualToItselfOnly) {
+  EXPECT_TRUE(equal_in_constant_time(token, token));
+  EXPECT_TRUE(equal_in_constant_time("", ""));
+  EXPECT_FALSE(equal_in_constant_time(token, token.substr(1)));
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    std::string other = token;
+    other[i] = static_cast<char>(other[i] ^ 1);
+    EXPECT_FALSE(equal_in_constant_time(token, other)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace flexura

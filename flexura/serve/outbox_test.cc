@@ -1,0 +1,91 @@
+#include "flexura/serve/outbox.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+namespace flexura {
+namespace {
+
+std::shared_ptr<const std::string> bytes(const std::string& text) {
+  return std::make_shared<const std::string>(text);
+}
+
+/// All messages, texts in quotes.
+std::string drained(Outbox& outbox) {
+  std::string all;
+  while (const auto message = outbox.next()) {
+    outbox.done();
+    all += message->text ? '"' + *message->bytes + '"' : *message->bytes;
+    all += ' ';
+  }
+  return all;
+}
+
+TEST(Outbox, KeepsAllTextsInTheirOrder) {
+  Outbox outbox(10, 100);
+  for (const char* text : {"a", "b", "c"}) EXPECT_TRUE(outbox.push(text));
+  EXPECT_EQ(drained(outbox), "\"a\" \"b\" \"c\" ");
+}
+
+TEST(Outbox, KeepsTheNewestOfEachStream) {
+  Outbox outbox(10, 100);
+  outbox.post(1, bytes("old"));
+  outbox.post(2, bytes("image"));
+  outbox.post(1, bytes("new"));
+  EXPECT_EQ(outbox.bytes(), 8U);
+  EXPECT_EQ(drained(outbox), "new image ");
+  EXPECT_EQ(outbox.bytes(), 0U);
+}
+
+TEST(Outbox, LetsStreamsTakeTurns) {
+  Outbox outbox(10, 100);
+  std::string sent;
+  for (int i = 0; i < 4; ++i) {
+    outbox.post(1, bytes("s"));
+    outbox.post(2, bytes("i"));
+    sent += *outbox.next()->bytes;
+    outbox.done();
+  }
+  EXPECT_EQ(sent, "sisi");
+}
+
+TEST(Outbox, LetsTextsAndStreamsTakeTurns) {
+  Outbox outbox(10, 100);
+  for (const char* text : {"a", "b", "c"}) EXPECT_TRUE(outbox.push(text));
+  outbox.post(1, bytes("s"));
+  outbox.post(2, bytes("i"));
+  EXPECT_EQ(drained(outbox), "\"a\" s \"b\" i \"c\" ");
+}
+
+TEST(Outbox, BoundsHowManyTextsWait) {
+  Outbox outbox(2, 100);
+  EXPECT_TRUE(outbox.push("a"));
+  EXPECT_TRUE(outbox.push("b"));
+  EXPECT_FALSE(outbox.push("c"));
+  EXPECT_EQ(drained(outbox), "\"a\" \"b\" ");
+  EXPECT_TRUE(outbox.push("d"));
+}
+
+TEST(Outbox, BoundsHowMuchTextWaits) {
+  Outbox outbox(10, 5);
+  EXPECT_TRUE(outbox.push("abc"));
+  EXPECT_FALSE(outbox.push("def"));
+  EXPECT_TRUE(outbox.push("de"));
+  EXPECT_FALSE(outbox.push("f"));
+  EXPECT_EQ(outbox.bytes(), 5U);
+}
+
+TEST(Outbox, CountsWhatIsBeingSent) {
+  Outbox outbox(10, 100);
+  EXPECT_TRUE(outbox.push("abc"));
+  const auto message = outbox.next();
+  EXPECT_EQ(outbox.bytes(), 3U);
+  outbox.done();
+  EXPECT_EQ(outbox.bytes(), 0U);
+  EXPECT_FALSE(outbox.next());
+}
+
+}  // namespace
+}  // namespace flexura

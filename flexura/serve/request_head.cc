@@ -1,0 +1,130 @@
+#include "flexura/serve/request_head.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+namespace flexura {
+
+namespace {
+
+// A second one of these could be read by another than the first.
+constexpr std::array<std::string_view, 12> single_fields = {
+    "host",           "origin",       "authorization",     "cookie",
+    "content-length", "expect",       "transfer-encoding", "sec-websocket-key",
+    "sec-fetch-site", "content-type", "content-encoding",  "sec-websocket-version"};
+
+bool is_letter_or_digit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+bool is_token(std::string_view text) {
+  constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
+  return !text.empty() && std::ranges::all_of(text, [&](char c) {
+    return is_letter_or_digit(c) || marks.find(c) != std::string_view::npos;
+  });
+}
+
+/// Printable ASCII without the blank.
+bool is_visible(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c > ' ' && c < '\x7f'; });
+}
+
+/// What may stand in a value: no control characters but the tab.
+bool is_value(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == '\t' || (byte >= ' ' && byte != 0x7f);
+  });
+}
+
+/// Takes the text up to `end` off the front; all of it where there is no `end`.
+std::string_view take(std::string_view& text, std::string_view end) {
+  const std::size_t at = text.find(end);
+  const std::string_view piece = text.substr(0, at);
+  text = at == std::string_view::npos ? std::string_view() : text.substr(at + end.size());
+  return piece;
+}
+
+int parse_request_line(std::string_view line, RequestHead& head) {
+  const std::string_view method = take(line, " ");
+  const std::string_view target = take(line, " ");
+  constexpr std::string_view protocol = "HTTP/";
+  if (!is_token(method) || !is_visible(target) || !line.starts_with(protocol)) return 400;
+  if (line.find_first_not_of("0123456789.", protocol.size()) != std::string_view::npos) return 400;
+  if (line != "HTTP/1.1" && line != "HTTP/1.0") return 505;
+  head.method = method;
+  head.target = target;
+  head.minor = line.back() - '0';
+  return 0;
+}
+
+int parse_field(std::string_view line, RequestHead& head) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) return 400;
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  if (!is_value(value)) return 400;
+  std::string name = in_lower_case(line.substr(0, colon));
+  if (std::ranges::find(single_fields, name) != single_fields.end() && head.find(name) != nullptr) return 400;
+  head.fields.push_back({std::move(name), std::string(value)});
+  return 0;
+}
+
+/// How long the body is; 0 or the status that refuses it.
+int parse_framing(RequestHead& head) {
+  const std::string* length = head.find("content-length");
+  if (const std::string* encoding = head.find("transfer-encoding")) {
+    if (length != nullptr || head.minor == 0) return 400;
+    return in_lower_case(*encoding) == "chunked" ? 411 : 501;
+  }
+  if (head.find("expect") != nullptr) return 417;
+  if (length == nullptr) return 0;
+  if (length->empty() || length->find_first_not_of("0123456789") != std::string::npos) return 400;
+  const auto [end, error] = std::from_chars(length->data(), length->data() + length->size(), head.body);
+  return error == std::errc() ? 0 : 413;
+}
+
+}  // namespace
+
+const std::string* RequestHead::find(std::string_view name) const {
+  const auto field = std::ranges::find(fields, name, &Field::name);
+  return field == fields.end() ? nullptr : &field->value;
+}
+
+bool RequestHead::lists(std::string_view name, std::string_view token) const {
+  return std::ranges::any_of(fields, [&](const Field& field) {
+    if (field.name != name) return false;
+    for (std::string_view rest = field.value; !rest.empty();) {
+      if (in_lower_case(trimmed(take(rest, ","))) == token) return true;
+    }
+    return false;
+  });
+}
+
+std::variant<RequestHead, Refusal> parse_request_head(std::string_view text) {
+  RequestHead head;
+  int status = parse_request_line(take(text, "\r\n"), head);
+  while (status == 0 && !text.empty()) status = parse_field(take(text, "\r\n"), head);
+  if (status == 0 && head.minor == 1 && head.find("host") == nullptr) status = 400;
+  if (status == 0) status = parse_framing(head);
+  if (status != 0) return Refusal{status};
+  head.keep_alive = head.minor == 1 && !head.lists("connection", "close");
+  return head;
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+}  // namespace flexura

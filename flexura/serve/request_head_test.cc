@@ -1,0 +1,99 @@
+#include "flexura/serve/request_head.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace flexura {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+/// The status that refuses a request of this host with these lines; 0 when it is taken.
+int refusal_of(const std::string& lines, const std::string& first = "GET / HTTP/1.1") {
+  const auto parsed = parse_request_head(first + "\r\nHost: a\r\n" + lines);
+  const auto* refused = std::get_if<Refusal>(&parsed);
+  return refused == nullptr ? 0 : refused->status;
+}
+
+TEST(RequestHead, HoldsMethodTargetAndFields) {
+  const auto parsed =
+      parse_request_head("POST /a%20b?c HTTP/1.1\r\nHOST:\t a:1 \r\nX-Y: 1,2\r\nContent-Length: 12");
+  const auto& head = std::get<RequestHead>(parsed);
+  EXPECT_EQ(head.method, "POST");
+  EXPECT_EQ(head.target, "/a%20b?c");
+  EXPECT_EQ(*head.find("host"), "a:1");
+  EXPECT_EQ(*head.find("x-y"), "1,2");
+  EXPECT_EQ(head.find("x"), nullptr);
+  EXPECT_EQ(head.body, 12U);
+  EXPECT_TRUE(head.keep_alive);
+}
+
+TEST(RequestHead, EndsTheConnectionWhereTheClientWantsItOrIsOld) {
+  EXPECT_FALSE(std::get<RequestHead>(parse_request_head("GET / HTTP/1.1\r\nHost: a\r\nConnection: x, Close"))
+                   .keep_alive);
+  EXPECT_FALSE(
+      std::get<RequestHead>(parse_request_head("GET / HTTP/1.0\r\nConnection: keep-alive")).keep_alive);
+}
+
+TEST(RequestHead, FindsATokenInAListOverSeveralFields) {
+  const auto parsed =
+      parse_request_head("GET / HTTP/1.1\r\nHost: a\r\nConnection: a , ,UPGRADE\r\nConnection: b");
+  const auto& head = std::get<RequestHead>(parsed);
+  EXPECT_TRUE(head.lists("connection", "upgrade"));
+  EXPECT_TRUE(head.lists("connection", "b"));
+  EXPECT_FALSE(head.lists("connection", "upgrad"));
+  EXPECT_FALSE(head.lists("upgrade", "upgrade"));
+}
+
+TEST(RequestHead, RefusesRequestLinesThatCouldBeReadInTwoWays) {
+  for (const std::string& line :
+       Texts{"GET  / HTTP/1.1", "GET / HTTP/1.1 ", "GET / HTTP/1.1 x", " GET / HTTP/1.1", "GET /", "GET", "",
+             "GET\t/\tHTTP/1.1", "GET / http/1.1", "G(T / HTTP/1.1", "GET /a\x7f HTTP/1.1",
+             "GET /\xc3\xa4 HTTP/1.1", "GET / HTTP/1.1\rX", "GET /\nX HTTP/1.1"}) {
+    EXPECT_EQ(refusal_of("", line), 400) << line;
+  }
+  for (const std::string& line :
+       Texts{"GET / HTTP/2.0", "GET / HTTP/1.2", "GET / HTTP/1.01", "GET / HTTP/"}) {
+    EXPECT_EQ(refusal_of("", line), 505) << line;
+  }
+  EXPECT_EQ(refusal_of("", "GET / HTTP/1.0"), 0);
+}
+
+TEST(RequestHead, RefusesFieldsThatCouldBeReadInTwoWays) {
+  for (const std::string& lines : Texts{"X : 1", " folded", "X: 1\r\n\tfolded", ": 1", "X", "X: a\rb",
+                                        "X: a\nY: b", "X: \x7f", "Host: b", "Origin: a\r\norigin: a",
+                                        "Authorization: a\r\nAuthorization: a", "Cookie: a\r\nCookie: b"}) {
+    EXPECT_EQ(refusal_of(lines), 400) << lines;
+  }
+  EXPECT_EQ(refusal_of(std::string("X: a\0b", 6)), 400);
+  EXPECT_EQ(refusal_of("X: \xc3\xa4\r\nX: again"), 0);
+}
+
+TEST(RequestHead, NeedsAHostUnlessItIsOld) {
+  EXPECT_EQ(std::get<Refusal>(parse_request_head("GET / HTTP/1.1\r\nX: y")).status, 400);
+  EXPECT_TRUE(std::holds_alternative<RequestHead>(parse_request_head("GET / HTTP/1.0")));
+}
+
+TEST(RequestHead, RefusesBodiesOfADoubtfulLength) {
+  EXPECT_EQ(refusal_of("Content-Length: 5\r\nTransfer-Encoding: chunked"), 400);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked\r\nContent-Length: 5"), 400);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked", "POST / HTTP/1.0"), 400);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"), 400);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: Chunked"), 411);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: gzip, chunked"), 501);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: xchunked"), 501);
+  EXPECT_EQ(refusal_of("Content-Length: 5\r\nContent-Length: 5"), 400);
+  for (const std::string& length : Texts{"", "+5", "-5", "5,5", "5 5", "0x5", "5.0", "five"}) {
+    EXPECT_EQ(refusal_of("Content-Length: " + length), 400) << length;
+  }
+  EXPECT_EQ(refusal_of("Content-Length: 99999999999999999999999"), 413);
+  EXPECT_EQ(refusal_of("Content-Length: 18446744073709551615"), 0);
+  EXPECT_EQ(refusal_of("Expect: 100-continue\r\nContent-Length: 5"), 417);
+}
+
+}  // namespace
+}  // namespace flexura

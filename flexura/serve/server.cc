@@ -1,0 +1,144 @@
+#include "flexura/serve/server.h"
+
+#include <boost/asio/post.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "flexura/serve/server_client.h"
+#include "flexura/serve/server_loop.h"
+#include "flexura/serve/server_visit.h"
+#include "flexura/serve/token.h"
+
+namespace flexura {
+
+namespace {
+
+// Connections that are no clients (yet): a browser has six; the others wait in the system's queue.
+constexpr std::size_t most_visits = 64;
+// What the system may hold for a client that does not read: little, so that what it reads is not old.
+constexpr int send_buffer_bytes = 128 * 1024;
+constexpr std::chrono::milliseconds accept_again{100};
+
+}  // namespace
+
+Server::Loop::Loop(ServerConfig config, std::span<const Asset> assets, Host& host)
+    : config_(std::move(config)),
+      host_(&host),
+      acceptor_(listen(*context_, config_)),
+      port_(acceptor_.local_endpoint().port()),
+      site_(make_site(assets)),
+      url_(make_url()) {
+  accept();
+  thread_ = std::thread([this] { context_->run(); });
+}
+
+Server::Loop::~Loop() {
+  context_->stop();
+  thread_.join();
+  // A host that still owes an answer keeps the context, and with it what waits there.
+  for (const auto& visit : visits_) visit->close();
+  for (const auto& [id, client] : clients_) client->cut_off();
+}
+
+tcp::acceptor Server::Loop::listen(net::io_context& context, const ServerConfig& config) {
+  try {
+    return {context, tcp::endpoint(net::ip::make_address(config.address), config.port)};
+  } catch (const boost::system::system_error& error) {
+    throw std::system_error(
+        error.code().value(), std::system_category(),
+        "cannot listen on " + url_host(config.address) + ':' + std::to_string(config.port));
+  }
+}
+
+Site Server::Loop::make_site(std::span<const Asset> assets) const {
+  std::string token = config_.token ? config_.token(port_) : new_token();
+  return {Gate(port_, config_.names, std::move(token), new_token()), assets, config_.longest_header,
+          config_.longest_body};
+}
+
+std::string Server::Loop::make_url() const {
+  const auto address = acceptor_.local_endpoint().address();
+  const std::string shown = address.is_unspecified() ? "127.0.0.1" : address.to_string();
+  return "http://" + url_host(shown) + ':' + std::to_string(port_) + "/#token=" + gate().token();
+}
+
+void Server::Loop::accept() {
+  acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
+    if (error) {  // Too many open files, most likely.
+      accept_timer_.expires_after(accept_again);
+      accept_timer_.async_wait([this](ErrorCode) { accept(); });
+    } else {
+      if (visits_.size() < most_visits) welcome(std::move(socket));
+      accept();
+    }
+  });
+}
+
+void Server::Loop::welcome(tcp::socket socket) {
+  ErrorCode error;
+  disregard(socket.set_option(tcp::no_delay(true), error));
+  disregard(socket.set_option(net::socket_base::send_buffer_size(send_buffer_bytes), error));
+  const auto visit = std::make_shared<Visit>(*this, std::move(socket));
+  visits_.insert(visit);
+  visit->start();
+}
+
+void Server::Loop::send(ClientId client, std::string text) {
+  const std::lock_guard lock(mutex_);
+  const auto place = clients_.find(client);
+  if (place == clients_.end()) return;
+  Client& there = *place->second;
+  there.overflowed = there.overflowed || !there.outbox.push(std::move(text));
+  wake();
+}
+
+void Server::Loop::post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) {
+  const std::lock_guard lock(mutex_);
+  const auto place = clients_.find(client);
+  if (place == clients_.end()) return;
+  place->second->outbox.post(stream, std::move(message));
+  wake();
+}
+
+std::size_t Server::Loop::waiting_bytes() {
+  const std::lock_guard lock(mutex_);
+  std::size_t bytes = 0;
+  for (const auto& [id, client] : clients_) bytes += client->outbox.bytes();
+  return bytes;
+}
+
+/// Called with the mutex held. However often it is called, one flush() waits: the loop's own queue is
+/// short.
+void Server::Loop::wake() {
+  if (std::exchange(woken_, true)) return;
+  net::post(*context_, [this] { flush(); });
+}
+
+void Server::Loop::flush() {
+  std::vector<std::shared_ptr<Client>> clients;
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = false;
+    for (const auto& [id, client] : clients_) clients.push_back(client);
+  }
+  for (const auto& client : clients) client->write();
+}
+
+// --- The server
+// -----------------------------------------------------------------------------------------------
+
+Server::Server(ServerConfig config, std::span<const Asset> assets, Host& host)
+    : loop_(std::make_unique<Loop>(std::move(config), assets, host)) {}
+Server::~Server() = default;
+
+std::uint16_t Server::port() const { return loop_->port(); }
+const std::string& Server::token() const { return loop_->gate().token(); }
+std::string Server::url() const { return loop_->url(); }
+void Server::send(ClientId client, std::string text) { loop_->send(client, std::move(text)); }
+void Server::post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) {
+  loop_->post(client, stream, std::move(message));
+}
+std::size_t Server::waiting_bytes() const { return loop_->waiting_bytes(); }
+
+}  // namespace flexura

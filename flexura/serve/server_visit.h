@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "flexura/serve/server_loop.h"
+
+namespace flexura {
+
+/// A connection that speaks HTTP: HttpSession says what, this does it, within the time there is.
+class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
+ public:
+  Visit(Loop& loop, tcp::socket socket);
+
+  void start() {
+    deadline(loop_->config_.handshake);
+    advance();
+  }
+  void close();
+  void answer(Answer answer);
+  /// The host's, to what it was asked.
+  void answer(HttpAnswer host) { answer(session_.format(std::move(host))); }
+
+ private:
+  void advance();
+  void read();
+  void came(std::size_t count);
+  void rest();
+  void linger();
+  void read_over();
+  void ask(std::string target);
+  void upgrade(const Upgrade& how);
+  void deadline(std::chrono::milliseconds limit);
+  void end();
+
+  Loop* loop_;
+  HttpSession session_;
+  tcp::socket socket_;
+  net::steady_timer timer_;
+  std::array<char, 16384> bytes_{};
+  Answer answer_;
+  bool begun_ = true;  // The deadline is that of a request; else that of a pause.
+};
+
+}  // namespace flexura

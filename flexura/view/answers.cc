@@ -1,0 +1,62 @@
+#include "flexura/view/answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/model/backbone.h"
+#include "flexura/view/describe.h"
+#include "flexura/view/session.h"
+#include "flexura/view/state_message.h"
+
+namespace flexura {
+Node nothing() { return {Node::Table{}, {}}; }
+
+Node bends_node(const ArmState& state) {
+  Node::Array bends;
+  for (const Eigen::Vector2d& bend : state.bends)
+    bends.push_back({Node::Array{{bend.x() + 0.0, {}}, {bend.y() + 0.0, {}}}, {}});
+  return {std::move(bends), {}};
+}
+
+Node point_answer(const Arm& arm, const ArmState& state, double s) {
+  const double length = arm.length();
+  // A page that knows the arm in single precision means its end.
+  const bool is_on_arm = s >= -1e-6 * length && s <= (1 + 1e-6) * length;
+  if (!is_on_arm) throw ViewRefusal(fmt::format("s = {}: expected 0 to {:.6g} m", s, length));
+  const MaterialPoint at = material_point(arm, std::clamp(s, 0.0, length));
+  const Backbone backbone(arm, state);
+  const Arc& arc = backbone.arcs()[at.section];
+  const Pose X_WS = arc.pose(at.fraction * arc.length);
+  return {Node::Table{{"s", {}, {std::clamp(s, 0.0, length), {}}},
+                      {"position", {}, point_node(X_WS.position)},
+                      {"tangent", {}, point_node(X_WS.rotation.col(2))},
+                      {"curvature", {}, {arc.bend.norm() / arc.length, {}}},
+                      {"bending_plane", {}, {std::atan2(arc.bend.y(), arc.bend.x()), {}}},
+                      {"section", {}, {static_cast<std::int64_t>(at.section), {}}}},
+          {}};
+}
+
+Node backbone_answer(const Arm& arm, const ArmState& state) {
+  Node::Array poses;
+  for (const ArmSample& sample : arm_samples(arm, state)) poses.push_back(flat_pose_node(sample.X_WS));
+  return {Node::Table{{"poses", {}, {std::move(poses), {}}}}, {}};
+}
+
+Node tip_answer(const InverseResult& found, const std::string& danger) {
+  return {Node::Table{{"converged", {}, {found.converged(), {}}},
+                      {"reason", {}, {std::string(name_of(found.outcome)), {}}},
+                      {"bends", {}, bends_node(found.state)},
+                      {"position_error", {}, {found.position_error, {}}},
+                      {"moved", {}, {danger.empty(), {}}},
+                      {"danger", {}, {danger, {}}}},
+          {}};
+}
+
+}  // namespace flexura

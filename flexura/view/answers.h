@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "flexura/base/node.h"
+#include "flexura/kinematics/inverse.h"
+#include "flexura/model/arm.h"
+
+// What replies hold (docs/viewer-protocol.md).
+namespace flexura {
+
+/// {}.
+[[nodiscard]] Node nothing();
+/// The answer to `point`: the backbone at `s` m along the unstretched arm; a ViewRefusal beyond its ends.
+[[nodiscard]] Node point_answer(const Arm& arm, const ArmState& state, double s);
+/// The answer to `backbone`.
+[[nodiscard]] Node backbone_answer(const Arm& arm, const ArmState& state);
+/// The answer to `tip`: what was found, and why the arm does not go there, "" when it does.
+[[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
+/// [[bend_x, bend_y], ...].
+[[nodiscard]] Node bends_node(const ArmState& state);
+
+}  // namespace flexura

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace flexura {
+
+/// What is done beside a session's thread, each kind one thing after another.
+enum class Lane : std::uint8_t { pictures, checks, tasks };
+inline constexpr std::size_t lane_count = 3;
+
+/// Work away from a session's thread.
+class Background {
+ public:
+  using After = std::function<void()>;  ///< Called on the session's thread; may be empty.
+  using Job = std::function<After()>;   ///< Must not throw.
+
+  virtual ~Background() = default;
+  Background() = default;
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  virtual void run(Lane lane, Job job) = 0;
+};
+
+}  // namespace flexura

@@ -1,0 +1,141 @@
+// Threads: what is said and asked from several at once, while time goes on.
+#include "flexura/view/front_door.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/view_fakes.h"
+
+namespace flexura {
+namespace {
+
+double wall_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Counts what comes, from whatever thread.
+class CountingMessenger : public Messenger {
+ public:
+  void send(ClientId client, std::string text) override {
+    const std::lock_guard lock(mutex_);
+    ++texts_[client];
+    last_ = std::move(text);
+  }
+  void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string>) override {
+    const std::lock_guard lock(mutex_);
+    ++posts_[{client, stream}];
+  }
+  [[nodiscard]] int texts(ClientId client) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = texts_.find(client);
+    return found == texts_.end() ? 0 : found->second;
+  }
+  [[nodiscard]] int posts(ClientId client, std::uint32_t stream) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = posts_.find({client, stream});
+    return found == posts_.end() ? 0 : found->second;
+  }
+  [[nodiscard]] std::string last() const {
+    const std::lock_guard lock(mutex_);
+    return last_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<ClientId, int> texts_;
+  std::map<std::pair<ClientId, std::uint32_t>, int> posts_;
+  std::string last_;
+};
+
+// Waits for something that comes soon on any machine that is not stuck.
+template <class Done>
+bool soon(Done&& done) {
+  for (int i = 0; i < 3000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+class FrontDoorTest : public ::testing::Test {
+ protected:
+  void start(FrontDoor& door) {
+    door.start({.session = "1", .rig = viewed_rig(), .results = folder_.path() / "run"}, messenger_);
+  }
+  TemporaryFolder folder_;
+  CountingMessenger messenger_;
+};
+
+TEST_F(FrontDoorTest, LetsTimeGoOnWhileSomeoneLooks) {
+  FrontDoor door({.clock = wall_clock});
+  start(door);
+  door.opened(1);
+  EXPECT_TRUE(soon([&] { return messenger_.posts(1, 0) >= 30; }));
+  door.closed(1);
+  door.opened(2);
+  EXPECT_TRUE(soon([&] { return messenger_.posts(2, 0) >= 5; }));
+}
+
+TEST_F(FrontDoorTest, TakesEverythingAtOnceFromSeveralThreads) {
+  FrontDoor door({.clock = wall_clock});
+  start(door);
+  std::atomic<int> documents = 0;
+  std::vector<std::thread> threads;
+  for (ClientId client = 1; client <= 3; ++client) {
+    threads.emplace_back([&, client] {
+      door.opened(client);
+      door.said(client, R"({"id":1,"do":"images","camera":"front","rate":30})");
+      for (int i = 0; i < 20; ++i) {
+        door.said(client, R"({"id":2,"do":"tip","position":[-0.2,0.8,0.1]})");
+        door.said(client, R"({"id":3,"do":"pixel","camera":"front","u":3,"v":4})");
+        door.asked("/image/side.png", [&](const HttpAnswer&) { ++documents; });
+      }
+      door.said(client, R"({"id":4,"do":"run"})");
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_TRUE(soon([&] { return documents == 60; }));
+  for (ClientId client = 1; client <= 3; ++client) {
+    EXPECT_TRUE(soon([&] { return messenger_.texts(client) >= 43; })) << messenger_.texts(client);
+    EXPECT_TRUE(soon([&] { return messenger_.posts(client, 1) == 1; }));
+  }
+  door.stop();
+}
+
+TEST_F(FrontDoorTest, RefusesWhatOneClientHeapsUp) {
+  FrontDoor door({.clock = wall_clock, .waiting_of_a_client = 2, .waiting_documents = 2});
+  int refused = 0;
+  // Nobody works yet.
+  for (int i = 0; i < 5; ++i) {
+    door.said(1, R"({"id":1,"do":"ping"})");
+    door.asked("/report", [&](const HttpAnswer& answer) { refused += answer.status == 503 ? 1 : 0; });
+  }
+  EXPECT_EQ(refused, 3);
+  start(door);
+  door.opened(1);
+  EXPECT_TRUE(soon([&] { return messenger_.posts(1, 0) > 0; }));
+}
+
+TEST_F(FrontDoorTest, EndsInTheMiddleOfARun) {
+  FrontDoor door({.clock = wall_clock});
+  door.start({.session = "1",
+              .rig = viewed_rig(viewed_text + "[[task]]\nkind = 'hold'\nduration = 19000\n"),
+              .results = folder_.path() / "run"},
+             messenger_);
+  door.opened(1);
+  door.said(1, R"({"id":1,"do":"run"})");
+  EXPECT_TRUE(soon([&] { return messenger_.last().find("progress") != std::string::npos; }));
+  door.stop();
+  const int posts = messenger_.posts(1, 0);
+  door.said(1, R"({"id":2,"do":"ping"})");
+  EXPECT_EQ(messenger_.posts(1, 0), posts);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "flexura/port/rig_ports.h"
+#include "flexura/sim/simulated_rig.h"
+#include "flexura/view/state_message.h"
+#include "flexura/view/viewed_rig.h"
+
+namespace flexura {
+
+/// A simulated rig that goes with a clock of others. Commands go through its ports; what is shown is the
+/// truth of the simulated world.
+class LiveRig {
+ public:
+  /// Everything stands as the experiment starts, at `now` s.
+  LiveRig(ViewedRigPtr rig, double now);
+
+  /// Puts everything back to how the experiment starts.
+  void restart(double now);
+
+  [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
+  [[nodiscard]] double now() { return simulated_->clock().now(); }
+  /// Goes on to a time, not before the last one.
+  void go_to(double now) { simulated_->clock().wait_until(now); }
+
+  /// The shape that the arm is believed to be in.
+  [[nodiscard]] ArmState believed();
+  /// Its true shape, now or in what is to come as far as it was commanded, s.
+  [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(time); }
+  [[nodiscard]] bool is_arm_moving();
+
+  /// All that moves, as it stands now; its flags but for the arm's motion, and its sequence, are others' to
+  /// fill.
+  [[nodiscard]] StateMessage state();
+
+  /// The newest frame of a camera whose exposure is over now, and its number.
+  [[nodiscard]] std::int64_t newest_frame(std::size_t camera);
+  [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t frame);
+
+ private:
+  ViewedRigPtr rig_;
+  std::unique_ptr<SimulatedRig> simulated_;
+};
+
+/// The state message of the arm as tasks command it: in `state` at `time` s, with all cameras as the
+/// experiment starts.
+[[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state);
+
+}  // namespace flexura

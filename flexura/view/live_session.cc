@@ -1,0 +1,351 @@
+#include "flexura/view/live_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "flexura/experiment/results.h"
+#include "flexura/store/json.h"
+#include "flexura/view/answers.h"
+
+namespace flexura {
+
+// What is done with each request.
+struct LiveSession::Taker : PictureSession::Taker {
+  LiveSession& session;
+  using PictureSession::Taker::operator();
+
+  void operator()(const ArmRequest& arm) const {
+    session.require_free();
+    const ViewedRig& rig = *session.viewed();
+    session.move({shape_wanted(rig.model, rig.drive, arm), arm.duration, std::move(reply)});
+  }
+  void operator()(const TipRequest& tip) const {
+    session.require_free();
+    session.move({tip, 0, std::move(reply)});
+  }
+  void operator()(const HeadRequest& head) const {
+    session.require_free();
+    HeadPort& port = *session.rig_.ports().cameras.at(session.place_of(head.camera)).head;
+    HeadState target = session.head_targets_.at(session.place_of(head.camera));
+    target = {head.pan.value_or(target.pan), head.tilt.value_or(target.tilt),
+              head.zoom.value_or(target.zoom)};
+    if (const auto fault = port.command(target).fault()) throw ViewRefusal(text(*fault));
+    session.head_targets_.at(session.place_of(head.camera)) = target;
+    done();
+  }
+  void operator()(const StageRequest& stage) const {
+    session.require_free();
+    const std::size_t place = session.place_of(stage.camera);
+    StageState target = session.stage_targets_.at(place);
+    target.offset = {stage.x.value_or(target.offset.x()), stage.y.value_or(target.offset.y()),
+                     stage.z.value_or(target.offset.z())};
+    if (const auto fault = session.rig_.ports().cameras.at(place).stage->command(target).fault())
+      throw ViewRefusal(text(*fault));
+    session.stage_targets_.at(place) = target;
+    done();
+  }
+  void operator()(const HaltRequest&) const {
+    if (session.is_watched_run())
+      throw ViewRefusal("cannot halt: the run belongs to the terminal that started it, which alone stops it");
+    session.halt();
+    done();
+  }
+  void operator()(const ResetRequest&) const {
+    session.require_free();
+    session.reset();
+    done();
+  }
+  void operator()(const RunRequest&) const {
+    session.require_free();
+    session.start_run(reply);
+  }
+  void operator()(const CancelRequest&) const {
+    if (session.is_watched_run()) throw ViewRefusal("the run belongs to the terminal that started it");
+    if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
+    session.run_->cancel();
+    done();
+  }
+  void operator()(const OpenRequest&) const { throw ViewRefusal("there is no recording yet"); }
+  void operator()(const LiveRequest&) const { done(); }
+  void operator()(const AtRequest&) const { throw ViewRefusal("this is no recording: it cannot go back"); }
+  void operator()(const PixelRequest& pixel) const {
+    const std::size_t camera = session.place_of(pixel.camera);
+    session.room().pixel({client, camera}, session.newest_shot(camera), static_cast<int>(pixel.u),
+                         static_cast<int>(pixel.v), std::move(reply));
+  }
+  void operator()(const PointRequest& point) const {
+    done(point_answer(session.viewed()->truth, session.shown_state(), point.s));
+  }
+  void operator()(const BackboneRequest& backbone) const {
+    done(backbone_answer(session.viewed()->truth, shape_wanted(session.viewed()->truth, backbone)));
+  }
+};
+
+LiveSession::LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config)
+    : PictureSession(rig, messenger, background),
+      config_(std::move(config)),
+      clock_(config_.start),
+      rig_(rig, 0),
+      run_(config_.run) {
+  reset();
+}
+
+void LiveSession::cancel() {
+  if (run_ != nullptr && !is_watched_run()) run_->cancel();
+}
+
+Hello LiveSession::hello() const {
+  Hello hello;
+  hello.mode = "live";
+  hello.title = viewed()->experiment.title;
+  hello.scene = scene_node(*viewed());
+  hello.controls = controls_node(*viewed());
+  hello.readonly = is_watched_run();
+  return hello;
+}
+
+void LiveSession::opened(ClientId client) { clients_.insert(client); }
+
+void LiveSession::closed(ClientId client) {
+  clients_.erase(client);
+  PictureSession::closed(client);
+}
+
+void LiveSession::take(ClientId client, const Ask& ask, Reply reply) {
+  std::visit(Taker{{*this, client, reply}, *this}, ask);
+}
+
+void LiveSession::take(const Document& document, std::function<void(HttpAnswer)> answer) {
+  const auto* image = std::get_if<ImageAsk>(&document);
+  if (image == nullptr) throw ViewRefusal("this is no recording: it has no series and no report");
+  if (image->time) throw ViewRefusal("this is no recording: its pictures are of now");
+  if (!room().file(newest_shot(place_of(image->camera)), std::move(answer)))
+    throw ViewRefusal("too many pictures are asked for at once");
+}
+
+void LiveSession::require_free() const {
+  if (is_watched_run()) throw ViewRefusal("this rig can only be looked at");
+  if (run_ != nullptr) throw ViewRefusal("a run of tasks is going on");
+}
+
+// Looks at one wish at a time; of those that come meanwhile the newest counts.
+void LiveSession::move(Move move) {
+  if (!is_looking_) {
+    look_at(std::move(move));
+    return;
+  }
+  std::optional<Move> overtaken = std::exchange(waiting_, std::move(move));
+  if (!overtaken) return;
+  InverseResult unknown;
+  const bool is_tip = std::holds_alternative<TipRequest>(overtaken->target);
+  overtaken->reply({is_tip ? tip_answer(unknown, "overtaken by a newer one") : nothing(), ""});
+}
+
+LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& from, const Move& move) {
+  Judged judged;
+  if (const auto* tip = std::get_if<TipRequest>(&move.target)) {
+    judged.found = shape_for_tip(rig.model, from, *tip);
+    judged.state = judged.found->state;
+  } else {
+    judged.state = std::get<ArmState>(move.target);
+  }
+  judged.danger = danger_on_way(rig.model, rig.obstacles, from, judged.state);
+  return judged;
+}
+
+void LiveSession::look_at(Move move) {
+  is_looking_ = true;
+  background().run(Lane::checks,
+                   [this, rig = viewed(), from = rig_.believed(), move = std::move(move),
+                    generation = generation_, alive = this->alive()]() -> Background::After {
+                     Judged judged;
+                     try {
+                       judged = judge(*rig, from, move);
+                     } catch (const std::exception& error) {
+                       judged.danger = error.what();
+                     }
+                     return [this, move, judged, generation, alive] {
+                       if (alive.expired()) return;
+                       is_looking_ = false;
+                       if (generation == generation_) {
+                         finish(move, judged);
+                       } else {
+                         move.reply({nothing(), "something else has stopped it"});
+                       }
+                       if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
+                     };
+                   });
+}
+
+void LiveSession::finish(const Move& move, const Judged& judged) {
+  if (!judged.danger.empty()) {
+    warn("does not go there: " + judged.danger);
+    move.reply(judged.found ? ViewAnswer{tip_answer(*judged.found, judged.danger), ""}
+                            : ViewAnswer{nothing(), "unsafe: " + judged.danger});
+    return;
+  }
+  double duration = move.duration;
+  if (judged.found) {
+    // Follows a hand at once, and swings over where it has to go far.
+    constexpr double shortest = 0.05, rate = 4;  // s, rad/s
+    const ArmState from = rig_.believed();
+    duration = shortest;
+    for (std::size_t i = 0; i < from.bends.size(); ++i)
+      duration = std::max(duration, (judged.state.bends[i] - from.bends[i]).norm() / rate);
+  }
+  const auto fault = rig_.ports().arm->command(judged.state, duration).fault();
+  move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
+}
+
+// A hand that drags against something is told twice a second at most.
+void LiveSession::warn(const std::string& text) {
+  constexpr double between = 0.5;  // s
+  if (rig_.now() - warned_ < between) return;
+  warned_ = rig_.now();
+  event("warning", "safety", text);
+}
+
+void LiveSession::halt() {
+  cancel();
+  ++generation_;
+  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  const RigPorts ports = rig_.ports();
+  // The simulated rig has no links that are lost: a fault here is a fault of the program.
+  (void)ports.arm->halt().value();
+  for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
+    (void)ports.cameras[i].head->halt().value();
+    (void)ports.cameras[i].stage->halt().value();
+    head_targets_[i] = ports.cameras[i].head->read().value().state;
+    stage_targets_[i] = ports.cameras[i].stage->read().value().state;
+  }
+}
+
+void LiveSession::reset() {
+  ++generation_;
+  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  rig_.restart(clock_ - config_.start);
+  head_targets_.clear();
+  stage_targets_.clear();
+  for (const Camera& camera : viewed()->cameras) {
+    head_targets_.push_back(camera.initial_head());
+    stage_targets_.push_back(camera.initial_stage());
+  }
+  is_touching_ = !touched(viewed()->truth, viewed()->obstacles, rig_.truth(rig_.now())).empty();
+}
+
+// Stops the arm before a step that would bring it to touch something.
+void LiveSession::keep_clear(double next) {
+  if (!rig_.is_arm_moving()) return;
+  const std::string text = touched(viewed()->truth, viewed()->obstacles, rig_.truth(next));
+  const bool was_touching = std::exchange(is_touching_, !text.empty());
+  if (text.empty() || was_touching) return;
+  ++generation_;
+  (void)rig_.ports().arm->halt().value();
+  is_touching_ = false;
+  event("error", "safety", "stopped before " + text);
+}
+
+void LiveSession::start_run(const Reply& reply) {
+  if (viewed()->experiment.task.empty()) throw ViewRefusal("the experiment has no tasks");
+  std::filesystem::path folder;
+  try {
+    folder = make_new_folder(config_.results);
+  } catch (const std::exception& error) {
+    throw ViewRefusal(error.what());
+  }
+  run_ = std::make_shared<RunLink>();
+  news_ = {};
+  told_fraction_ = -1;
+  background().run(Lane::tasks, [rig = viewed(), folder, run = run_]() -> Background::After {
+    run_linked(rig->experiment, folder, *run);
+    return {};
+  });
+  reply({{Node::Table{{"folder", {}, {folder.string(), {}}}}, {}}, ""});
+}
+
+void LiveSession::follow_run() {
+  if (run_ == nullptr) return;
+  news_ = run_->news();
+  if (!news_.end) {
+    constexpr double to_be_seen = 0.002;
+    if (std::abs(news_.fraction - told_fraction_) < to_be_seen) return;
+    told_fraction_ = news_.fraction;
+    tell_all({Node::Table{{"type", {}, {std::string("progress"), {}}},
+                          {"what", {}, {news_.what, {}}},
+                          {"fraction", {}, {news_.fraction, {}}}},
+              {}});
+    return;
+  }
+  tell_all({Node::Table{{"type", {}, {std::string("progress"), {}}},
+                        {"done", {}, {true, {}}},
+                        {"outcome", {}, {news_.end->outcome, {}}},
+                        {"text", {}, {news_.end->text, {}}}},
+            {}});
+  if (news_.end->outcome != "failed") results_ = news_.end->folder;
+  run_.reset();
+}
+
+void LiveSession::advance(double now) {
+  clock_ = std::max(clock_, now);
+  const double next = clock_ - config_.start;
+  keep_clear(next);
+  rig_.go_to(next);
+  follow_run();
+  if (clients_.empty()) return;
+  send_states();
+  send_images();
+}
+
+ArmState LiveSession::shown_state() {
+  return run_ != nullptr && news_.time ? news_.state : rig_.truth(rig_.now());
+}
+
+void LiveSession::send_states() {
+  const bool is_running = run_ != nullptr;
+  StateMessage state =
+      is_running && news_.time ? still_state(*viewed(), *news_.time, news_.state) : rig_.state();
+  // A page's time goes on; that of a run which it watches from the start to the end is the run's.
+  if (!is_watched_run()) state.time = rig_.now();
+  state.is_running = is_running;
+  state.is_moving = state.is_moving || is_running;
+  state.is_unsafe = !is_running && is_touching_;
+  state.sequence = sequence_++;
+  const auto message = std::make_shared<const std::string>(state_message(state));
+  for (const ClientId client : clients_) messenger().post(client, state_stream, message);
+}
+
+ValueShot LiveSession::newest_shot(std::size_t camera) {
+  const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
+  if (run_ == nullptr || !news_.time) return rig_.shot(camera, number);
+  const Camera& shown = viewed()->cameras[camera];
+  const double start = frame_times(viewed()->sensors[camera], number).start;
+  return value_shot(viewed(), camera, number, start,
+                    {{start, news_.state, shown.initial_head(), shown.initial_stage()}});
+}
+
+void LiveSession::send_images() {
+  for (std::size_t camera = 0; camera < viewed()->cameras.size(); ++camera) {
+    const std::int64_t number = rig_.newest_frame(camera);
+    if (number < 0 || room().is_busy(camera)) continue;
+    const auto due = streams().due(camera, number, clock_);
+    if (!due.empty()) room().show(newest_shot(camera), due, clock_);
+  }
+}
+
+void LiveSession::event(const char* level, const std::string& name, const std::string& text) {
+  tell_all({Node::Table{{"type", {}, {std::string("event"), {}}},
+                        {"time", {}, {rig_.now(), {}}},
+                        {"level", {}, {std::string(level), {}}},
+                        {"name", {}, {name, {}}},
+                        {"text", {}, {text, {}}}},
+            {}});
+}
+
+void LiveSession::tell_all(const Node& message) {
+  const std::string text = write_json(message);
+  for (const ClientId client : clients_) messenger().send(client, text);
+}
+
+}  // namespace flexura

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "flexura/view/background.h"
+#include "flexura/view/live_rig.h"
+#include "flexura/view/messenger.h"
+#include "flexura/view/moves.h"
+#include "flexura/view/picture_session.h"
+#include "flexura/view/run_link.h"
+#include "flexura/view/session.h"
+
+namespace flexura {
+
+/// A simulated rig that clients move and see. It shows the newest state of a run while one goes on.
+class LiveSession : public PictureSession {
+ public:
+  struct Config {
+    double start = 0;               ///< Of its time, s by the clock of advance().
+    std::filesystem::path results;  ///< Where `run` puts its results, with -2, ... when that exists.
+    /// A run that somebody else has started: nobody can move anything meanwhile, or cancel or halt it.
+    std::shared_ptr<RunLink> run = {};
+  };
+
+  LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config);
+
+  /// Ends a run that it has started early, and waits for nothing.
+  void cancel();
+
+  [[nodiscard]] Hello hello() const override;
+  void opened(ClientId client) override;
+  void closed(ClientId client) override;
+  void take(ClientId client, const Ask& ask, Reply reply) override;
+  void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
+  void advance(double now) override;
+
+  /// The results of the last run that has ended and left some.
+  [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
+  /// Whether a run that somebody else started has ended.
+  [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }
+
+ private:
+  struct Taker;
+  // A wish that is being looked at, or waits for that.
+  struct Move {
+    std::variant<ArmState, TipRequest> target;
+    double duration = 0;
+    Reply reply;
+  };
+  // What came of it.
+  struct Judged {
+    ArmState state;
+    std::optional<InverseResult> found;
+    std::string danger;
+  };
+  static Judged judge(const ViewedRig& rig, const ArmState& from, const Move& move);
+
+  [[nodiscard]] bool is_watched_run() const { return config_.run != nullptr; }
+  void require_free() const;
+  void move(Move move);
+  void look_at(Move move);
+  void finish(const Move& move, const Judged& judged);
+  void start_run(const Reply& reply);
+  void follow_run();
+  void halt();
+  void reset();
+  void keep_clear(double next);
+  void send_states();
+  void send_images();
+  [[nodiscard]] ArmState shown_state();
+  [[nodiscard]] ValueShot newest_shot(std::size_t camera);
+  void event(const char* level, const std::string& name, const std::string& text);
+  void warn(const std::string& text);
+  void tell_all(const Node& message);
+
+  Config config_;
+  double clock_ = 0;  // of advance(), s
+  LiveRig rig_;
+  std::vector<HeadState> head_targets_;  // what they were told last, by camera
+  std::vector<StageState> stage_targets_;
+  std::uint32_t sequence_ = 0;
+  std::set<ClientId> clients_;
+  bool is_looking_ = false;
+  std::optional<Move> waiting_;
+  std::uint64_t generation_ = 0;  // Moves of an older one are forgotten.
+  bool is_touching_ = false;
+  double warned_ = -1;  // s
+  std::shared_ptr<RunLink> run_;
+  RunLink::News news_;  // of the run
+  double told_fraction_ = -1;
+  std::optional<std::filesystem::path> results_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,378 @@
+#include "flexura/view/live_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "flexura/kinematics/spatial.h"
+#include "flexura/math/arrays.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/view_fakes.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr ClientId me = 1, other = 2;
+
+// A session with a client, whose clock the test moves on.
+class LiveSessionTest : public ::testing::Test {
+ protected:
+  explicit LiveSessionTest(const std::string& text = viewed_text)
+      : rig_(viewed_rig(text)),
+        session_(rig_, messenger_, background_, {.start = 100, .results = folder_.path() / "run"}) {
+    session_.opened(me);
+  }
+
+  // What comes of a request; its error, if there is one.
+  ViewAnswer ask(const Ask& ask, ClientId client = me) {
+    answer_.reset();
+    try {
+      session_.take(client, ask, [this](const ViewAnswer& answer) { answer_ = answer; });
+    } catch (const ViewRefusal& refusal) {
+      return {{}, refusal.what()};
+    }
+    return answer_.value_or(ViewAnswer{{}, "no answer yet"});
+  }
+  // Goes on by so many s, 60 times a second.
+  StateMessage pass(double seconds) {
+    for (const double end = clock_ + seconds; clock_ < end - 1e-9;) session_.advance(clock_ += 1.0 / 60);
+    return messenger_.state(me);
+  }
+  [[nodiscard]] std::string last_image(ClientId client, std::uint32_t stream) {
+    return *messenger_.posts[{client, stream}].back();
+  }
+  [[nodiscard]] std::string last_event() {
+    const Node event = messenger_.last(me, "event");
+    return event.empty() ? "" : *event.find("text")->as<std::string>();
+  }
+  static ArmRequest bends(const std::vector<std::array<double, 2>>& bends, double duration = 0) {
+    ArmRequest request;
+    request.bends = bends;
+    request.duration = duration;
+    return request;
+  }
+
+  TemporaryFolder folder_;
+  ViewedRigPtr rig_;
+  FakeMessenger messenger_;
+  FakeBackground background_;
+  LiveSession session_;
+  double clock_ = 100;
+  std::optional<ViewAnswer> answer_;
+};
+
+TEST_F(LiveSessionTest, SendsStatesAtTheRateOfItsClock) {
+  const StateMessage state = pass(1);
+  EXPECT_EQ(messenger_.count(me, 0), 60);
+  EXPECT_EQ(state.sequence, 59);
+  EXPECT_NEAR(state.time, 1, 1e-6);
+  EXPECT_FALSE(state.is_moving);
+  EXPECT_EQ(state.samples.size(), 3);
+  EXPECT_EQ(state.cameras.size(), 2);
+  EXPECT_EQ(messenger_.count(other, 0), 0);
+}
+
+TEST_F(LiveSessionTest, MovesTheArmAsAskedWithinItsLimits) {
+  EXPECT_EQ(ask(bends({{0.5, 0.25}, {0, 0}}, 1)).error, "");
+  const StateMessage half = pass(0.5);
+  EXPECT_TRUE(half.is_moving);
+  EXPECT_NEAR(half.arm.bends[0].x(), 0.25, 0.02);
+  const StateMessage there = pass(0.6);
+  EXPECT_FALSE(there.is_moving);
+  EXPECT_NEAR(there.arm.bends[0].x(), 0.5, 1e-6);
+  // Drawn to the limit of 2 rad; the second section takes its time.
+  EXPECT_EQ(ask(bends({{-3, 0}, {1, 0}})).error, "");
+  const StateMessage limited = pass(0.5);
+  EXPECT_NEAR(limited.arm.bends[0].x(), -2, 1e-6);
+  EXPECT_NEAR(limited.arm.bends[1].x(), 0.5, 0.03);
+}
+
+TEST_F(LiveSessionTest, RefusesAWayIntoAnObstacle) {
+  const ViewAnswer answer = ask(bends({{2, 0}, {0, 0}}));
+  EXPECT_THAT(answer.error, HasSubstr("unsafe: section 2: contact with ball"));
+  EXPECT_THAT(last_event(), HasSubstr("does not go there: section 2: contact with ball"));
+  EXPECT_EQ(pass(0.5).arm.bends[0].norm(), 0);
+}
+
+TEST_F(LiveSessionTest, BringsTheTipToAPlace) {
+  const ArmState wanted{{{0.3, 0.6}, {-0.8, 0.1}}, {1, 1}};
+  const Eigen::Vector3d place = tip_pose(rig_->truth, wanted).position;
+  const ViewAnswer answer = ask(TipRequest{{place.x(), place.y(), place.z()}, {}});
+  ASSERT_EQ(answer.error, "");
+  EXPECT_TRUE(*answer.result.find("converged")->as<bool>());
+  EXPECT_TRUE(*answer.result.find("moved")->as<bool>());
+  const StateMessage state = pass(3);
+  EXPECT_LT((state.samples.back().X_WS.position - place).norm(), 1e-5);
+}
+
+TEST_F(LiveSessionTest, LeavesTheTipWhereItsWayWouldTouch) {
+  const ViewAnswer answer = ask(TipRequest{{0.5, 0.5, 0}, {}});
+  EXPECT_FALSE(*answer.result.find("moved")->as<bool>());
+  EXPECT_THAT(*answer.result.find("danger")->as<std::string>(), HasSubstr("contact with ball"));
+  EXPECT_EQ(pass(0.5).arm.bends[0].norm(), 0);
+}
+
+TEST_F(LiveSessionTest, SaysThatATipIsOutOfReach) {
+  const ViewAnswer answer = ask(TipRequest{{0, 5, 0}, {}});
+  EXPECT_FALSE(*answer.result.find("converged")->as<bool>());
+  EXPECT_EQ(*answer.result.find("reason")->as<std::string>(), "not_reachable");
+  EXPECT_NEAR(*answer.result.find("position_error")->as<double>(), 4, 1e-6);
+}
+
+TEST_F(LiveSessionTest, LooksAtTheNewestOfManyMoves) {
+  background_.is_prompt = false;
+  std::vector<std::string> ends;
+  for (const char* name : {"first", "second", "third"}) {
+    session_.take(me, TipRequest{{0, 0.9, 0.1}, {}}, [&ends, name](const ViewAnswer& answer) {
+      ends.push_back(std::string(name) + *answer.result.find("danger")->as<std::string>());
+    });
+  }
+  EXPECT_THAT(ends, ::testing::ElementsAre("secondovertaken by a newer one"));
+  background_.work();
+  EXPECT_EQ(ends.size(), 3);
+  EXPECT_EQ(ends[1], "first");
+  EXPECT_EQ(ends[2], "third");
+}
+
+TEST_F(LiveSessionTest, HaltsEverythingAndWhatIsStillBeingJudged) {
+  ask(bends({{-1, 0}, {0, 0}}, 2));
+  ask(HeadRequest{"front", 0.4, {}, {}});
+  pass(0.5);
+  background_.is_prompt = false;
+  std::string late;
+  session_.take(me, bends({{1, 0}, {0, 0}}), [&](const ViewAnswer& answer) { late = answer.error; });
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  background_.work();
+  EXPECT_EQ(late, "something else has stopped it");
+  const StateMessage stopped = pass(0.5);
+  EXPECT_FALSE(stopped.is_moving);
+  EXPECT_NEAR(stopped.arm.bends[0].x(), -0.25, 0.02);
+}
+
+TEST_F(LiveSessionTest, PutsEverythingBack) {
+  ask(bends({{-1, 0}, {0, 0}}));
+  ask(HeadRequest{"front", 0.4, {}, {}});
+  pass(2);
+  EXPECT_EQ(ask(ResetRequest{}).error, "");
+  const StateMessage state = pass(0.1);
+  EXPECT_EQ(state.arm.bends[0].norm(), 0);
+  EXPECT_EQ(state.cameras[0].head.pan, 0);
+  EXPECT_GT(state.time, 2) << "time goes on";
+}
+
+TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
+  EXPECT_EQ(ask(HeadRequest{"front", 0.2, {}, {}}).error, "");
+  EXPECT_EQ(ask(HeadRequest{"front", {}, 0.1, {}}).error, "");
+  EXPECT_EQ(ask(HeadRequest{"front", {}, {}, 2.0}).error, "");
+  const StateMessage state = pass(5);
+  EXPECT_NEAR(state.cameras[0].head.pan, 0.2, 1e-6);
+  EXPECT_NEAR(state.cameras[0].head.tilt, 0.1, 1e-6);
+  EXPECT_NEAR(state.cameras[0].fx, 160, 1e-3);
+  EXPECT_EQ(state.cameras[1].head.pan, 0);
+  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error, HasSubstr("there is no camera \"back\""));
+  EXPECT_EQ(ask(StageRequest{"front", 1.0, {}, {}}).error, "") << "drawn to its limits: it has no travel";
+}
+
+TEST_F(LiveSessionTest, RendersNothingThatNobodyAskedFor) {
+  pass(1);
+  EXPECT_THAT(background_.jobs, IsEmpty());
+}
+
+TEST_F(LiveSessionTest, SendsTheNextImageWhenTheLastHasCome) {
+  EXPECT_EQ(ask(ImagesRequest{"front", 30, 80}).error, "");
+  pass(1);
+  ASSERT_EQ(messenger_.count(me, 1), 1) << "no acknowledgement, no more";
+  const std::string first = last_image(me, 1);
+  EXPECT_EQ(first.substr(0, 4), std::string("\x02\0\0\0", 4));
+  EXPECT_EQ(first.substr(16, 3), "\xff\xd8\xff");
+  for (int i = 0; i < 60; ++i) {
+    const std::string image = last_image(me, 1);
+    const auto number = static_cast<unsigned char>(image[4]);
+    ask(AckRequest{"front", number});
+    pass(1.0 / 60);
+  }
+  EXPECT_NEAR(static_cast<double>(messenger_.count(me, 1)), 30, 2) << "a second at 30 Hz";
+  EXPECT_EQ(messenger_.count(me, 2), 0);
+  const std::size_t count = messenger_.count(me, 1);
+  ask(ImagesRequest{"front", 0, 80});
+  pass(1);
+  EXPECT_EQ(messenger_.count(me, 1), count);
+}
+
+TEST_F(LiveSessionTest, TakesOnePictureForAllWhoLook) {
+  session_.opened(other);
+  ask(ImagesRequest{"front", 30, 80});
+  ask(ImagesRequest{"front", 30, 80}, other);
+  pass(0.1);
+  EXPECT_EQ(background_.jobs[Lane::pictures], 1);
+  EXPECT_EQ(messenger_.count(other, 1), 1);
+  EXPECT_EQ(last_image(me, 1), last_image(other, 1));
+  session_.closed(other);
+  pass(0.1);
+  EXPECT_EQ(messenger_.count(other, 0), 6) << "no states for one who has left";
+}
+
+// The first camera has no noise: what stands still looks the same.
+TEST_F(LiveSessionTest, SendsWhatStandsStillAgainUnderItsNewNumber) {
+  ask(ImagesRequest{"front", 30, 80});
+  pass(0.1);
+  const std::string first = last_image(me, 1);
+  ask(AckRequest{"front", static_cast<unsigned char>(first[4])});
+  pass(0.1);
+  const std::string second = last_image(me, 1);
+  EXPECT_NE(first[4], second[4]);
+  EXPECT_EQ(first.substr(16), second.substr(16));
+  ask(bends({{-1, 0}, {0, 0}}));
+  ask(AckRequest{"front", static_cast<unsigned char>(second[4])});
+  pass(0.1);
+  ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
+  pass(0.1);
+  EXPECT_NE(last_image(me, 1).substr(16), second.substr(16));
+}
+
+TEST_F(LiveSessionTest, TellsAPixelOfThePictureThatWasSent) {
+  ask(ImagesRequest{"side", 30, 80});
+  pass(0.5);
+  const ViewAnswer answer = ask(PixelRequest{"side", 31, 24});
+  ASSERT_EQ(answer.error, "");
+  EXPECT_EQ(answer.result.find("value")->as<Node::Array>()->size(), 3);
+  EXPECT_EQ(*answer.result.find("bits")->as<std::int64_t>(), 12);
+  EXPECT_THAT(*answer.result.find("label")->as<std::string>(), HasSubstr("section"));
+  EXPECT_NEAR(*answer.result.find("depth")->as<double>(), 2, 0.05);
+  EXPECT_NEAR(*answer.result.find("s")->as<double>(), 0.5, 0.02);
+  const auto number = static_cast<unsigned char>(last_image(me, 2)[4]);
+  EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(), number);
+  EXPECT_THAT(ask(PixelRequest{"side", 64, 0}).error, HasSubstr("outside the image"));
+  const ViewAnswer beyond = ask(PixelRequest{"front", 0, 0});
+  EXPECT_TRUE(beyond.result.find("s")->empty());
+}
+
+TEST_F(LiveSessionTest, TellsAPointOfTheBackbone) {
+  ask(bends({{-1, 0}, {0, 0}}));
+  pass(0.5);
+  const ViewAnswer answer = ask(PointRequest{0.25});
+  EXPECT_EQ(*answer.result.find("section")->as<std::int64_t>(), 0);
+  EXPECT_NEAR(*answer.result.find("curvature")->as<double>(), 2, 1e-9);
+  EXPECT_NEAR(*answer.result.find("bending_plane")->as<double>(), std::numbers::pi, 1e-9);
+  EXPECT_THAT(ask(PointRequest{1.2}).error, HasSubstr("expected 0 to 1 m"));
+  EXPECT_EQ(ask(PointRequest{1 + 1e-7}).error, "");
+}
+
+TEST_F(LiveSessionTest, TellsWhereAnotherShapeWouldLie) {
+  BackboneRequest request;
+  request.bends = {{{0.5, 0}, {0, 0.5}}};
+  EXPECT_EQ(ask(request).result.find("poses")->as<Node::Array>()->size(), 3);
+  request.bends->pop_back();
+  EXPECT_NE(ask(request).error, "");
+}
+
+TEST_F(LiveSessionTest, GivesTheNewestPictureAsAFile) {
+  pass(0.1);
+  HttpAnswer got;
+  session_.take(ImageAsk{"front", {}}, [&](const HttpAnswer& answer) { got = answer; });
+  EXPECT_EQ(got.status, 200);
+  EXPECT_EQ(got.content_type, "image/png");
+  EXPECT_EQ(got.body.substr(1, 3), "PNG");
+  EXPECT_THROW(session_.take(ImageAsk{"front", 1.0}, [](const HttpAnswer&) {}), ViewRefusal);
+  EXPECT_THROW(session_.take(ReportAsk{}, [](const HttpAnswer&) {}), ViewRefusal);
+}
+
+TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
+  background_.is_prompt = false;
+  const ViewAnswer answer = ask(RunRequest{});
+  ASSERT_EQ(answer.error, "");
+  const std::filesystem::path results = *answer.result.find("folder")->as<std::string>();
+  EXPECT_TRUE(pass(0.1).is_running);
+  EXPECT_THAT(ask(bends({{0, 0}, {0, 0}})).error, HasSubstr("a run of tasks is going on"));
+  background_.work();
+  EXPECT_FALSE(session_.results());
+  EXPECT_FALSE(pass(0.1).is_running);
+  EXPECT_EQ(session_.results(), results);
+  EXPECT_TRUE(std::filesystem::exists(results / "summary.json"));
+  const Node progress = messenger_.last(me, "progress");
+  EXPECT_TRUE(*progress.find("done")->as<bool>());
+  EXPECT_EQ(*progress.find("outcome")->as<std::string>(), "done");
+}
+
+TEST_F(LiveSessionTest, CancelsARun) {
+  EXPECT_THAT(ask(CancelRequest{}).error, HasSubstr("no run is going on"));
+  background_.is_prompt = false;
+  ask(RunRequest{});
+  EXPECT_EQ(ask(CancelRequest{}).error, "");
+  background_.work();
+  pass(0.1);
+  EXPECT_EQ(*messenger_.last(me, "progress").find("outcome")->as<std::string>(), "cancelled");
+}
+
+TEST_F(LiveSessionTest, HaltsARunTogetherWithEverythingElse) {
+  background_.is_prompt = false;
+  ask(RunRequest{});
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  background_.work();
+  EXPECT_FALSE(pass(0.1).is_running);
+  EXPECT_EQ(*messenger_.last(me, "progress").find("outcome")->as<std::string>(), "cancelled");
+}
+
+TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
+  auto run = std::make_shared<RunLink>();
+  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
+  watched.opened(other);
+  EXPECT_TRUE(watched.hello().readonly);
+  run->update(0.5, "bend");
+  run->state(7.25, {{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}});
+  watched.advance(100.1);
+  EXPECT_EQ(messenger_.state(other).time, 7.25);
+  EXPECT_NEAR(messenger_.state(other).arm.bends[1].y(), 0.4, 1e-6);
+  EXPECT_EQ(*messenger_.last(other, "progress").find("fraction")->as<double>(), 0.5);
+  EXPECT_THROW(watched.take(other, bends({{0, 0}, {0, 0}}), [](const ViewAnswer&) {}), ViewRefusal);
+  EXPECT_THROW(watched.take(other, CancelRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
+  EXPECT_THROW(watched.take(other, HaltRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
+  EXPECT_FALSE(run->cancelled()) << "what is seen changes nothing of a run";
+  run->finish({"unsafe", "section 1: bend", folder_.path()});
+  watched.advance(100.2);
+  EXPECT_TRUE(watched.is_over());
+  EXPECT_EQ(*messenger_.last(other, "progress").find("text")->as<std::string>(), "section 1: bend");
+}
+
+// The arm is believed to stand where its way is free.
+class MisplacedArm : public LiveSessionTest {
+ protected:
+  MisplacedArm() : LiveSessionTest(viewed_text + "[truth.arm.base]\nposition = [0.3, 0, 0]\n") {}
+};
+
+TEST_F(MisplacedArm, StopsBeforeItTouches) {
+  EXPECT_EQ(ask(bends({{0.4, 0}, {0, 0}}, 2)).error, "");
+  const StateMessage state = pass(3);
+  EXPECT_THAT(last_event(), HasSubstr("stopped before section 2: contact with ball"));
+  EXPECT_FALSE(state.is_moving);
+  EXPECT_FALSE(state.is_unsafe);
+  EXPECT_GT(state.arm.bends[0].x(), 0.1);
+  EXPECT_LT(state.arm.bends[0].x(), 0.39);
+  EXPECT_EQ(ask(bends({{0, 0}, {0, 0}}, 0)).error, "") << "the way back is free";
+  EXPECT_EQ(pass(0.1).arm.bends[0].norm(), 0);
+}
+
+class LaboratoryArm : public LiveSessionTest {
+ protected:
+  LaboratoryArm()
+      : LiveSessionTest(
+            read_text_file(FLEXURA_SOURCE_DIR "/examples/02_laboratory_arm/experiment.toml", 1 << 20)) {}
+};
+
+TEST_F(LaboratoryArm, IsMovedByItsTendonsToo) {
+  const std::size_t tendons = rig_->drive->tendons.size();
+  ArmRequest request;
+  request.tendons = std::vector<double>(tendons, 0.0);
+  EXPECT_EQ(ask(request).error, "");
+  EXPECT_EQ(pass(0.1).displacements.size(), tendons);
+  request.tendons->pop_back();
+  EXPECT_THAT(ask(request).error, HasSubstr("displacements"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "flexura/serve/server.h"
+
+namespace flexura {
+
+/// Where messages to clients go: a server, or what stands for one in a test. Its methods can be called from
+/// any thread.
+class Messenger {
+ public:
+  virtual ~Messenger() = default;
+  Messenger() = default;
+  Messenger(const Messenger&) = delete;
+  Messenger& operator=(const Messenger&) = delete;
+
+  /// As Server::send and Server::post.
+  virtual void send(ClientId client, std::string text) = 0;
+  virtual void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) = 0;
+};
+
+}  // namespace flexura

@@ -1,0 +1,119 @@
+#include "flexura/view/moves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "flexura/base/problems.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/kinematics/tendons.h"
+#include "flexura/math/arrays.h"
+#include "flexura/model/arm_config.h"
+#include "flexura/safety/contact_watch.h"
+#include "flexura/safety/motion_check.h"
+#include "flexura/view/session.h"
+
+namespace flexura {
+namespace {
+
+// How much deeper than at the start something may get, m or rad: none of it is to be seen.
+constexpr double no_worse = 1e-5;
+
+// Whether it was so at the start, and is nowhere much worse.
+bool was_there(const Violation& violation, const std::vector<Violation>& at_start) {
+  return std::ranges::any_of(at_start, [&](const Violation& before) {
+    return before.hazard == violation.hazard && before.section == violation.section &&
+           before.other_section == violation.other_section && before.name == violation.name &&
+           std::abs(violation.value - violation.limit) <= std::abs(before.value - before.limit) + no_worse;
+  });
+}
+
+SafetyReport check_way(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+                       const MotionPtr& motion) {
+  constexpr double step = 0.02;
+  return check_motions(arm, obstacles, from, {{motion, 0, ""}}, step);
+}
+
+std::string contact_text(const ContactWatch& watch, const Contact& contact) {
+  Violation violation;
+  violation.hazard = watch.hazard();
+  violation.section = contact.section;
+  violation.other_section = contact.other_section;
+  violation.name = watch.obstacle_name();
+  violation.value = -contact.clearance;
+  return violation.what();
+}
+
+}  // namespace
+
+ArmState within_limits(const Arm& arm, ArmState state) {
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const Section& section = arm.sections[i];
+    const double bend = state.bends[i].norm();
+    if (bend > section.max_bend) state.bends[i] *= section.max_bend / bend;
+    state.stretches[i] = std::clamp(state.stretches[i], section.stretch_limits[0], section.stretch_limits[1]);
+  }
+  return state;
+}
+
+ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape) {
+  Reader reader;
+  check_shape(shape, arm.kind, arm.sections.size(), "", reader);
+  if (!reader.problems().empty()) throw ViewRefusal(joined(reader.problems()));
+  return arm_state(arm, shape);
+}
+
+ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive, const ArmRequest& request) {
+  if (!request.tendons)
+    return within_limits(arm, shape_wanted(arm, static_cast<const ShapeConfig&>(request)));
+  if (!drive) throw ViewRefusal("tendons: the arm has no drive");
+  if (request.tendons->size() != drive->tendons.size())
+    throw ViewRefusal(fmt::format("tendons: expected {} displacements", drive->tendons.size()));
+  return within_limits(arm, fit_state(arm, *drive, {*request.tendons}).state);
+}
+
+InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipRequest& request) {
+  TipTarget target;
+  target.position = vector(request.position);
+  if (request.direction) target.direction = vector(*request.direction);
+  InverseOptions options;
+  options.start = within_limits(arm, from);
+  // From where it is, for a hand that drags wants no leaps; from elsewhere only where that does not do.
+  options.max_starts = 1;
+  InverseResult near = solve_inverse(arm, target, options);
+  if (near.converged() || near.is_proven) return near;
+  options.max_starts = 40;
+  InverseResult far = solve_inverse(arm, target, options);
+  return far.converged() ? far : near;
+}
+
+std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+                          const ArmState& to) {
+  const std::vector<Profile> profiles(arm.sections.size(), Profile::linear(1));
+  const SafetyReport way = check_way(arm, obstacles, from, point_to_point_motion(from, to, profiles));
+  if (way.is_safe()) return {};
+  const SafetyReport start = check_way(arm, obstacles, from, hold_motion(from, 0));
+  for (const Violation& violation : way.violations) {
+    // How fast it goes is the rig's own affair.
+    if (violation.hazard == Hazard::bend_rate || violation.hazard == Hazard::jump) continue;
+    if (!was_there(violation, start.violations)) return violation.what();
+  }
+  return {};
+}
+
+std::string touched(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& state) {
+  const auto touching = [&](const ContactWatch& watch) -> std::string {
+    const Contact contact = watch.contact(state, 0);
+    return contact.clearance < -contact_tolerance ? contact_text(watch, contact) : std::string();
+  };
+  std::string text = touching(ContactWatch(arm));
+  for (std::size_t i = 0; i < obstacles.size() && text.empty(); ++i)
+    text = touching(ContactWatch(arm, obstacles[i]));
+  return text;
+}
+
+}  // namespace flexura

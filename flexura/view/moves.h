@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flexura/kinematics/inverse.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/model/obstacle.h"
+#include "flexura/view/request.h"
+
+// What becomes of wishes where the arm shall go: pure functions, which other threads call.
+namespace flexura {
+
+/// The shape that a client asks for, drawn to the arm's limits. Throws a ViewRefusal when it is none of this
+/// arm, with the reason.
+[[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
+                                    const ArmRequest& request);
+[[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
+
+/// The shape nearest to `state` within the sections' limits.
+[[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);
+
+/// A shape for the tip, near the one from which it is sought: quick enough to follow a hand.
+[[nodiscard]] InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipRequest& request);
+
+/// Why the arm must not go straight from one shape to another, one line; "" when nothing is in the way. What
+/// is wrong already at the start, and gets no worse, is no reason to stay.
+[[nodiscard]] std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles,
+                                        const ArmState& from, const ArmState& to);
+
+/// What the arm touches in a shape, one line; "" when nothing.
+[[nodiscard]] std::string touched(const Arm& arm, const std::vector<Obstacle>& obstacles,
+                                  const ArmState& state);
+
+}  // namespace flexura

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "flexura/view/background.h"
+#include "flexura/view/image_streams.h"
+#include "flexura/view/messenger.h"
+#include "flexura/view/picture_room.h"
+#include "flexura/view/session.h"
+
+namespace flexura {
+
+/// What rigs and recordings have in common: cameras, whose pictures go to the clients.
+class PictureSession : public Session {
+ public:
+  void closed(ClientId client) override;
+
+ protected:
+  PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
+
+  /// What is done with the requests that both take alike. The takers of both are made of it.
+  struct Taker {
+    PictureSession& pictures;
+    ClientId client;
+    Reply& reply;
+
+    void done(Node result = {Node::Table{}, {}}) const;
+    void operator()(const ImagesRequest& images) const;
+    void operator()(const AckRequest& ack) const;
+    void operator()(const PingRequest& ping) const;
+  };
+
+  [[nodiscard]] const ViewedRigPtr& viewed() const { return viewed_; }
+  [[nodiscard]] Messenger& messenger() { return messenger_; }
+  [[nodiscard]] Background& background() { return background_; }
+  [[nodiscard]] ImageStreams& streams() { return streams_; }
+  [[nodiscard]] PictureRoom& room() { return room_; }
+  /// Expires with this session: for jobs that come back later.
+  [[nodiscard]] std::weak_ptr<const bool> alive() const { return alive_; }
+  /// The place of the camera of this name; a ViewRefusal where there is none.
+  [[nodiscard]] std::size_t place_of(const std::string& camera) const;
+
+ private:
+  ViewedRigPtr viewed_;
+  Messenger& messenger_;
+  Background& background_;
+  ImageStreams streams_;
+  PictureRoom room_;
+  std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
+};
+
+}  // namespace flexura

@@ -1,0 +1,112 @@
+#include "flexura/view/pixel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "flexura/render/truth.h"
+
+namespace flexura {
+namespace {
+
+Node optional_number(const std::optional<double>& value) { return value ? Node{*value, {}} : Node{}; }
+
+// Where on the unstretched arm lies what is `s` m from the base along the arm as it stands.
+double unstretched(const Arm& arm, const Backbone& backbone, double s) {
+  double start = 0;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const Arc& arc = backbone.arcs()[i];
+    const double length = arm.sections[i].length;
+    if (s <= arc.s + arc.length || i + 1 == arm.sections.size())
+      return start + std::min(1.0, (s - arc.s) / arc.length) * length;
+    start += length;
+  }
+  return start;
+}
+
+}  // namespace
+
+PixelEye::PixelEye(ViewedRigPtr rig)
+    : rig_(std::move(rig)),
+      maker_(rig_->truth, rig_->experiment.true_rig().arm.look, rig_->experiment.true_stand(),
+             rig_->experiment.obstacle) {}
+
+SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
+  const double time = times_of_frame_at(*shot.sensor, shot.start).middle;
+  const Backbone backbone = shot.backbone(time);
+  const Scene scene = maker_.scene(backbone);
+  renderer_.prepare(scene, shot.view(time));
+  const PixelTruth truth = pixel_truth(renderer_, u, v);
+  SeenPixel seen{label(truth.label), {}, {}};
+  if (std::isfinite(truth.depth)) seen.depth = truth.depth;
+  if (std::isfinite(truth.s)) seen.s = unstretched(rig_->truth, backbone, truth.s);
+  return seen;
+}
+
+// Things are counted from 1, as people count them.
+std::string PixelEye::label(const SurfaceLabel& label) const {
+  const int number = label.index + 1;
+  switch (label.kind) {
+    case SurfaceKind::background:
+      return "background";
+    case SurfaceKind::section:
+      return fmt::format("section {}", number);
+    case SurfaceKind::cap:
+      return label.index == 0 ? "base" : "tip";
+    case SurfaceKind::marker:
+      return fmt::format("marker {}", number);
+    case SurfaceKind::disk:
+      return fmt::format("disk {}", number);
+    case SurfaceKind::screen:
+      return fmt::format("screen {}", number);
+    case SurfaceKind::etalon:
+      return "etalon";
+    case SurfaceKind::etalon_line:
+      return fmt::format("etalon line {}", number);
+    case SurfaceKind::obstacle:
+      break;
+  }
+  return label.index < rig_->obstacles.size() ? rig_->obstacles[label.index].name : "obstacle";
+}
+
+Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::int64_t number,
+                const std::optional<SeenPixel>& seen) {
+  Node::Array value;
+  std::visit(
+      [&](const auto& image) {
+        if (u < 0 || v < 0 || u >= image.width() || v >= image.height())
+          throw std::out_of_range(fmt::format("({}, {}) is outside the image: expected less than {} x {}", u,
+                                              v, image.width(), image.height()));
+        for (int channel = 0; channel < image.channels(); ++channel)
+          value.push_back({static_cast<std::int64_t>(image.at(u, v, channel)), {}});
+      },
+      picture);
+  return {Node::Table{{"value", {}, {std::move(value), {}}},
+                      {"bits", {}, {bits, {}}},
+                      {"label", {}, {seen ? seen->label : std::string(), {}}},
+                      {"depth", {}, optional_number(seen ? seen->depth : std::nullopt)},
+                      {"s", {}, optional_number(seen ? seen->s : std::nullopt)},
+                      {"number", {}, {number, {}}}},
+          {}};
+}
+
+Image<std::uint8_t> for_eyes(const Picture& picture, std::int64_t bits) {
+  const auto* bytes = std::get_if<Image<std::uint8_t>>(&picture);
+  if (bytes != nullptr && bits == 8) return *bytes;
+  return std::visit(
+      [&](const auto& image) {
+        Image<std::uint8_t> shown(image.width(), image.height(), image.channels());
+        const double scale = 255.0 / static_cast<double>((std::int64_t{1} << bits) - 1);
+        for (std::size_t i = 0; i < shown.values().size(); ++i)
+          shown.values()[i] =
+              static_cast<std::uint8_t>(std::min(255.0, std::round(scale * image.values()[i])));
+        return shown;
+      },
+      picture);
+}
+
+}  // namespace flexura

@@ -1,0 +1,160 @@
+#include "flexura/view/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "flexura/base/source.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/results_log.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+
+namespace flexura {
+namespace {
+
+// A summary is a list of what was found; more is no summary.
+constexpr std::size_t largest_summary = std::size_t{64} << 20;
+
+template <class M>
+M message_of(const McapMessage& message) {
+  return read_as<M>(parse_json(message.text(), "the log's " + message.channel->topic));
+}
+
+ViewedRigPtr rig_of(const std::filesystem::path& folder) {
+  return std::make_shared<const ViewedRig>(load_experiment(file_of_results(folder, experiment_file_name)));
+}
+
+std::string level_name(std::int64_t level) {
+  if (level <= 2) return "info";
+  return level == 3 ? "warning" : "error";
+}
+
+double number_of(const Node& node, std::string_view key, double otherwise) {
+  const Node* found = node.find(key);
+  const double* value = found == nullptr ? nullptr : found->as<double>();
+  return value == nullptr ? otherwise : *value;
+}
+
+}  // namespace
+
+Recording::Recording(const std::filesystem::path& folder)
+    : folder_(folder), rig_(rig_of(folder)), log_(open_log(folder)) {
+  index();
+  if (states_.empty()) throw input_error(folder.string(), "its log holds no state of the arm");
+  (void)state(0);
+  read_marks();
+}
+
+void Recording::index() {
+  images_.resize(rig_->cameras.size());
+  heads_.resize(rig_->cameras.size());
+  for (const McapMessage& message : log_.messages()) {
+    const std::string& topic = message.channel->topic;
+    const Entry entry{message.log_time, &message};
+    if (topic == arm_state_topic) states_.push_back(entry);
+    for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
+      const std::string& name = rig_->cameras[i].config().name;
+      if (topic == image_topic(name)) images_[i].push_back(entry);
+      if (topic == head_topic(name)) heads_[i].push_back(entry);
+    }
+  }
+  const auto sort = [](Entries& entries) { std::ranges::stable_sort(entries, {}, &Entry::time); };
+  sort(states_);
+  std::ranges::for_each(images_, sort);
+  std::ranges::for_each(heads_, sort);
+}
+
+void Recording::read_marks() {
+  for (const McapMessage& message : log_.messages()) {
+    if (message.channel->topic != events_topic) continue;
+    const auto event = message_of<EventMessage>(message);
+    const double time = seconds(message.log_time);
+    marks_.push_back({time, time, level_name(event.level), event.name, event.message});
+  }
+  mark_violations();
+  if (log_.truncated())
+    marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
+}
+
+// The log says when something begins to be unsafe, the summary how long it lasts.
+void Recording::mark_violations() {
+  if (!std::filesystem::exists(folder_ / summary_file_name)) return;
+  const auto file = file_of_results(folder_, summary_file_name);
+  const Node summary = parse_json(read_text_file(file, largest_summary), file.string());
+  const Node* list = summary.find("violations");
+  const auto* violations = list == nullptr ? nullptr : list->as<Node::Array>();
+  if (violations == nullptr) return;
+  for (const Node& violation : *violations) {
+    const Node* text = violation.find("text");
+    const auto* written = text == nullptr ? nullptr : text->as<std::string>();
+    if (written == nullptr) continue;
+    for (Mark& mark : marks_) {
+      if (mark.name == "unsafe" && mark.text == *written)
+        mark.end = std::max(mark.time, number_of(violation, "end", mark.time));
+    }
+  }
+}
+
+double Recording::seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
+
+std::size_t Recording::place_at(const Entries& entries, double time) {
+  constexpr double latest = 1e9;  // s; what is asked for may be anything
+  const std::uint64_t wanted = nanoseconds(std::clamp(time, 0.0, latest));
+  const auto after = std::ranges::upper_bound(entries, wanted, {}, &Entry::time);
+  return after == entries.begin() ? 0 : static_cast<std::size_t>(after - entries.begin()) - 1;
+}
+
+std::size_t Recording::state_at(double time) const { return place_at(states_, time); }
+
+ArmState Recording::state(std::size_t place) const {
+  const auto message = message_of<ArmStateMessage>(*states_.at(place).message);
+  ArmState state;
+  for (const auto& bend : message.bends) state.bends.emplace_back(bend[0], bend[1]);
+  state.stretches = message.stretches;
+  constexpr double largest = 1e6;  // more is no arm's, whoever wrote the log
+  const std::size_t sections = rig_->model.sections.size();
+  const auto is_shape = [](const Eigen::Vector2d& bend) { return bend.norm() < largest; };
+  const auto is_stretch = [](double stretch) { return stretch > 1 / largest && stretch < largest; };
+  if (state.bends.size() != sections || state.stretches.size() != sections ||
+      !std::ranges::all_of(state.bends, is_shape) || !std::ranges::all_of(state.stretches, is_stretch)) {
+    throw input_error(folder_.string(),
+                      fmt::format("the log's state at {} s does not fit its arm", message.time));
+  }
+  return state;
+}
+
+bool Recording::is_unsafe(double time) const {
+  return std::ranges::any_of(marks_, [&](const Mark& mark) {
+    return mark.name == "unsafe" && mark.level == "error" && time >= mark.time && time <= mark.end;
+  });
+}
+
+std::size_t Recording::image_at(std::size_t camera, double time) const {
+  return place_at(images_.at(camera), time);
+}
+
+Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) const {
+  auto message = message_of<ImageMessage>(*images_.at(camera).at(place).message);
+  if (message.format != "png") throw input_error(folder_.string(), "an image of the log is no PNG");
+  return {static_cast<double>(message.timestamp.sec) + 1e-9 * static_cast<double>(message.timestamp.nsec),
+          std::move(message.data.data)};
+}
+
+HeadState Recording::head(std::size_t camera, double time) const {
+  const Entries& entries = heads_.at(camera);
+  const Camera& described = rig_->cameras.at(camera);
+  if (entries.empty()) return described.initial_head();
+  try {
+    const auto message = message_of<HeadReadingMessage>(*entries[place_at(entries, time)].message);
+    const auto [least, most] = described.head_axes()[2].limits;
+    return {message.pan, message.tilt, std::clamp(message.zoom, least, most)};
+  } catch (const InputError&) {
+    return described.initial_head();
+  }
+}
+
+}  // namespace flexura

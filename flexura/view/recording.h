@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flexura/camera/head.h"
+#include "flexura/store/mcap_reader.h"
+#include "flexura/view/describe.h"
+#include "flexura/view/viewed_rig.h"
+
+namespace flexura {
+
+/// A run's results, ready to be looked at: its log by time. A value that does not change; threads share it.
+/// Of a run that was killed, what its log holds up to the last complete chunk.
+class Recording {
+ public:
+  /// Of a folder made by `flexura run`. InputError when it is none, or its log is damaged or without a
+  /// state.
+  explicit Recording(const std::filesystem::path& folder);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
+  [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
+  [[nodiscard]] double duration() const { return seconds(states_.back().time); }  ///< s
+
+  /// How many states there are, never 0; the place of the one at or just before `time` s, or the first.
+  [[nodiscard]] std::size_t states() const { return states_.size(); }
+  [[nodiscard]] std::size_t state_at(double time) const;
+  /// When it was, s; and the arm's shape. InputError where the log holds none that fits the arm.
+  [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
+  [[nodiscard]] ArmState state(std::size_t place) const;
+  /// Whether a limit was broken at a time, s.
+  [[nodiscard]] bool is_unsafe(double time) const;
+
+  /// How many images the log has of a camera; the place of the one at or just before `time` s, or the first.
+  [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
+  [[nodiscard]] std::size_t image_at(std::size_t camera, double time) const;
+  struct LoggedImage {
+    double time = 0;  ///< Middle of its exposure, s.
+    std::string png;
+  };
+  /// InputError where the log holds none.
+  [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
+  /// How a camera's head stood at a time, s, as the log has it, or else (a damaged message, too) as the
+  /// experiment starts.
+  [[nodiscard]] HeadState head(std::size_t camera, double time) const;
+
+ private:
+  struct Entry {
+    std::uint64_t time = 0;  // ns
+    const McapMessage* message = nullptr;
+  };
+  using Entries = std::vector<Entry>;  // by time
+  [[nodiscard]] static double seconds(std::uint64_t nanoseconds);
+  [[nodiscard]] static std::size_t place_at(const Entries& entries, double time);
+  void index();
+  void read_marks();
+  void mark_violations();
+
+  std::filesystem::path folder_;
+  ViewedRigPtr rig_;
+  McapReader log_;
+  Entries states_;
+  std::vector<Entries> images_, heads_;  // by camera
+  std::vector<Mark> marks_;
+};
+
+using RecordingPtr = std::shared_ptr<const Recording>;
+
+}  // namespace flexura

@@ -1,0 +1,264 @@
+#include "flexura/view/recording_session.h"
+
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "flexura/base/source.h"
+#include "flexura/experiment/results.h"
+#include "flexura/store/image_file.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "flexura/view/answers.h"
+#include "flexura/view/live_rig.h"
+#include "flexura/view/moves.h"
+#include "flexura/view/pixel.h"
+#include "flexura/view/series.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t largest_report = std::size_t{256} << 20;
+
+// A report is a page of its own, which may be another's: it runs its script, and is a stranger to this
+// server.
+constexpr const char* report_policy =
+    "sandbox allow-scripts; default-src 'none'; img-src data:; script-src 'unsafe-inline'; style-src "
+    "'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+HttpAnswer failure(int status, const std::string& why) {
+  return {status, "application/json", write_json({Node::Table{{"error", {}, {why, {}}}}, {}}), ""};
+}
+
+}  // namespace
+
+struct RecordingSession::Table {
+  std::optional<SeriesTable> made;
+};
+
+struct RecordingSession::Taker : PictureSession::Taker {
+  RecordingSession& session;
+  using PictureSession::Taker::operator();
+
+  void operator()(const AtRequest& at) const {
+    double& time = session.times_[client];
+    time = at.time;
+    session.send_state(client);
+    const Recording& recording = *session.recording_;
+    const double shown = recording.time_of_state(recording.state_at(time));
+    done({Node::Table{{"time", {}, {shown, {}}}}, {}});
+  }
+  void operator()(const PixelRequest& pixel) const {
+    session.tell_pixel({client, session.place_of(pixel.camera)}, static_cast<int>(pixel.u),
+                       static_cast<int>(pixel.v), std::move(reply));
+  }
+  void operator()(const PointRequest& point) const {
+    const Recording& recording = *session.recording_;
+    const ArmState state = recording.state(recording.state_at(session.times_[client]));
+    done(point_answer(session.viewed()->model, state, point.s));
+  }
+  void operator()(const BackboneRequest& backbone) const {
+    done(backbone_answer(session.viewed()->model, shape_wanted(session.viewed()->model, backbone)));
+  }
+  void operator()(const CancelRequest&) const { throw ViewRefusal("no run is going on"); }
+  void operator()(const OpenRequest&) const { throw ViewRefusal("this is the recording"); }
+  template <class Other>
+  void operator()(const Other&) const {
+    throw ViewRefusal("this is a recording: nothing moves in it");
+  }
+};
+
+RecordingSession::RecordingSession(RecordingPtr recording, Messenger& messenger, Background& background)
+    : PictureSession(recording->rig(), messenger, background),
+      recording_(std::move(recording)),
+      table_(std::make_shared<Table>()) {}
+
+Hello RecordingSession::hello() const {
+  Hello hello;
+  hello.mode = "recording";
+  hello.title = viewed()->experiment.title;
+  hello.scene = scene_node(*viewed());
+  hello.controls = controls_node(*viewed());
+  hello.duration = recording_->duration();
+  hello.marks = recording_->marks();
+  hello.quantities = SeriesTable::quantities(viewed()->model);
+  hello.report = std::filesystem::exists(recording_->folder() / report_file_name);
+  hello.readonly = true;
+  return hello;
+}
+
+void RecordingSession::opened(ClientId client) {
+  times_[client] = 0;
+  send_state(client);
+}
+
+void RecordingSession::closed(ClientId client) {
+  times_.erase(client);
+  PictureSession::closed(client);
+}
+
+void RecordingSession::take(ClientId client, const Ask& ask, Reply reply) {
+  std::visit(Taker{{*this, client, reply}, *this}, ask);
+}
+
+void RecordingSession::take(const Document& document, std::function<void(HttpAnswer)> answer) {
+  if (const auto* image = std::get_if<ImageAsk>(&document)) {
+    give_image(*image, std::move(answer));
+  } else if (const auto* series = std::get_if<SeriesAsk>(&document)) {
+    give_series(*series, std::move(answer));
+  } else {
+    give_report(std::move(answer));
+  }
+}
+
+void RecordingSession::send_state(ClientId client) {
+  const std::size_t place = recording_->state_at(times_.at(client));
+  const double time = recording_->time_of_state(place);
+  StateMessage state = still_state(*viewed(), time, recording_->state(place));
+  for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) {
+    const Camera& camera = viewed()->cameras[i];
+    state.cameras[i] = camera_sample(camera, camera.initial_stage(), recording_->head(i, time));
+  }
+  state.is_recording = true;
+  state.is_unsafe = recording_->is_unsafe(time);
+  state.sequence = sequence_++;
+  messenger().post(client, state_stream, std::make_shared<const std::string>(state_message(state)));
+}
+
+std::int64_t RecordingSession::image_place(std::size_t camera, double time) const {
+  return static_cast<std::int64_t>(is_filmed(camera) ? recording_->image_at(camera, time)
+                                                     : recording_->state_at(time));
+}
+
+ValueShot RecordingSession::shot(std::size_t camera, std::int64_t number) const {
+  const auto place = static_cast<std::size_t>(number);
+  const double time = recording_->time_of_state(place);
+  return value_shot(viewed(), camera, number, time,
+                    {{time, recording_->state(place), recording_->head(camera, time),
+                      viewed()->cameras[camera].initial_stage()}});
+}
+
+void RecordingSession::advance(double now) {
+  clock_ = now;
+  for (const auto& [client, time] : times_) {
+    for (std::size_t camera = 0; camera < viewed()->cameras.size(); ++camera) {
+      const ImageStreams::Key key{client, camera};
+      const std::int64_t place = image_place(camera, time);
+      if (!streams().is_due(key, place, now)) continue;
+      if (is_filmed(camera)) {
+        send_image(key, place);
+      } else if (!room().is_busy(camera)) {
+        show_state(key, place);
+      }
+    }
+  }
+}
+
+// Where the run was not filmed, its cameras show the arm as it was commanded.
+void RecordingSession::show_state(const ImageStreams::Key& key, std::int64_t place) {
+  try {
+    room().show(shot(key.camera, place), {key}, clock_);
+  } catch (const InputError&) {
+    streams().sent(key, place, clock_);  // a damaged state is not looked at again and again
+  }
+}
+
+// A logged image goes as it is.
+void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t place) {
+  streams().sent(key, place, clock_);
+  background().run(Lane::pictures,
+                   [this, key, place, recording = recording_, alive = this->alive()]() -> Background::After {
+                     std::shared_ptr<const std::string> message;
+                     try {
+                       const Recording::LoggedImage image =
+                           recording->image(key.camera, static_cast<std::size_t>(place));
+                       message = std::make_shared<const std::string>(
+                           image_message(static_cast<std::uint8_t>(key.camera), ImageFormat::png,
+                                         static_cast<std::uint32_t>(place), image.time, image.png));
+                     } catch (const std::exception&) {
+                       return {};  // It stays unacknowledged: a damaged image is not sent again and again.
+                     }
+                     return [this, key, message, alive] {
+                       if (!alive.expired() && streams().contains(key))
+                         messenger().post(key.client, image_stream(key.camera), message);
+                     };
+                   });
+}
+
+void RecordingSession::tell_pixel(const ImageStreams::Key& key, int u, int v, Reply reply) {
+  const double time = times_.at(key.client);
+  const std::int64_t place = image_place(key.camera, time);
+  if (!is_filmed(key.camera)) {
+    room().pixel(key, shot(key.camera, place), u, v, std::move(reply));
+    return;
+  }
+  background().run(Lane::pictures,
+                   [key, place, u, v, reply = std::move(reply), recording = recording_,
+                    alive = this->alive()]() -> Background::After {
+                     ViewAnswer answer;
+                     try {
+                       const auto image = recording->image(key.camera, static_cast<std::size_t>(place));
+                       const std::int64_t bits = recording->rig()->sensors[key.camera].bits;
+                       answer.result = pixel_node(read_png(image.png), bits, u, v, place, std::nullopt);
+                     } catch (const std::exception& error) {
+                       answer.error = error.what();
+                     }
+                     return [answer, reply, alive] {
+                       if (!alive.expired()) reply(answer);
+                     };
+                   });
+}
+
+void RecordingSession::give_image(const ImageAsk& ask, std::function<void(HttpAnswer)> answer) {
+  const std::size_t camera = place_of(ask.camera);
+  const std::int64_t place = image_place(camera, ask.time.value_or(recording_->duration()));
+  if (!is_filmed(camera)) {
+    if (!room().file(shot(camera, place), std::move(answer)))
+      throw ViewRefusal("too many pictures are asked for at once");
+    return;
+  }
+  background().run(
+      Lane::pictures,
+      [camera, place, recording = recording_, answer = std::move(answer)]() -> Background::After {
+        try {
+          answer({200, "image/png", recording->image(camera, static_cast<std::size_t>(place)).png, ""});
+        } catch (const std::exception& error) {
+          answer(failure(500, error.what()));
+        }
+        return {};
+      });
+}
+
+void RecordingSession::give_series(const SeriesAsk& ask, std::function<void(HttpAnswer)> answer) {
+  background().run(
+      Lane::checks,
+      [ask, recording = recording_, table = table_, answer = std::move(answer)]() -> Background::After {
+        try {
+          if (!table->made) table->made.emplace(*recording);
+          answer({200, "application/json",
+                  write_json(table->made->answer(ask.names, static_cast<std::size_t>(ask.points))), ""});
+        } catch (const ViewRefusal& refusal) {
+          answer(failure(404, refusal.what()));
+        } catch (const std::exception& error) {
+          answer(failure(500, error.what()));
+        }
+        return {};
+      });
+}
+
+void RecordingSession::give_report(std::function<void(HttpAnswer)> answer) {
+  background().run(Lane::checks, [recording = recording_, answer = std::move(answer)]() -> Background::After {
+    try {
+      // A link that leads out of the folder is none of the results.
+      const auto file = file_inside(recording->folder(), report_file_name);
+      answer({200, "text/html; charset=utf-8", read_text_file(file, largest_report), report_policy});
+    } catch (const std::exception&) {
+      answer(failure(404, "the run has no report"));
+    }
+    return {};
+  });
+}
+
+}  // namespace flexura

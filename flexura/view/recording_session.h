@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "flexura/view/background.h"
+#include "flexura/view/messenger.h"
+#include "flexura/view/picture_session.h"
+#include "flexura/view/recording.h"
+#include "flexura/view/session.h"
+
+namespace flexura {
+
+/// A run that is over. Every client goes through it at times of its own.
+class RecordingSession : public PictureSession {
+ public:
+  RecordingSession(RecordingPtr recording, Messenger& messenger, Background& background);
+
+  [[nodiscard]] Hello hello() const override;
+  void opened(ClientId client) override;
+  void closed(ClientId client) override;
+  void take(ClientId client, const Ask& ask, Reply reply) override;
+  void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
+  void advance(double now) override;
+
+ private:
+  struct Taker;
+  struct Table;  // of series; used on the lane of checks alone
+
+  void send_state(ClientId client);
+  void show_state(const ImageStreams::Key& key, std::int64_t place);
+  void send_image(const ImageStreams::Key& key, std::int64_t place);
+  void tell_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
+  /// The place of the image to be shown at a time, s: among the logged ones, or where there are none of this
+  /// camera among the states.
+  [[nodiscard]] std::int64_t image_place(std::size_t camera, double time) const;
+  [[nodiscard]] bool is_filmed(std::size_t camera) const { return recording_->images(camera) > 0; }
+  [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t number) const;
+  void give_image(const ImageAsk& ask, std::function<void(HttpAnswer)> answer);
+  void give_series(const SeriesAsk& ask, std::function<void(HttpAnswer)> answer);
+  void give_report(std::function<void(HttpAnswer)> answer);
+
+  RecordingPtr recording_;
+  std::shared_ptr<Table> table_;
+  std::map<ClientId, double> times_;  // at which clients are, s
+  std::uint32_t sequence_ = 0;
+  double clock_ = 0;  // of advance(), s
+};
+
+}  // namespace flexura

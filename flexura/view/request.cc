@@ -1,0 +1,216 @@
+#include "flexura/view/request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "flexura/base/problems.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+// Wider than the largest arm and the longest run; keeps sums of squares finite.
+constexpr double farthest = 1e9;
+constexpr std::size_t most_sections = 10000;
+const NumberRange any_place = between(-farthest, farthest);
+
+template <class S>
+Table<S> with_shape(const char* name, const char* meaning) {
+  return Table<S>(name, meaning)
+      .field("bends", static_cast<decltype(ShapeConfig::bends) S::*>(&S::bends),
+             {.meaning = "bend vectors", .range = angle_range, .count = {0, most_sections}})
+      .field("cord_angles", static_cast<decltype(ShapeConfig::cord_angles) S::*>(&S::cord_angles),
+             {.meaning = "cords' angles from +X", .range = angle_range, .count = {0, most_sections}})
+      .field("archings", static_cast<decltype(ShapeConfig::archings) S::*>(&S::archings),
+             {.meaning = "archings", .range = angle_range, .count = {0, most_sections}})
+      .field("stretches", static_cast<decltype(ShapeConfig::stretches) S::*>(&S::stretches),
+             {.meaning = "factors on the sections' lengths",
+              .range = above_up_to(0, 100),
+              .count = {0, most_sections}});
+}
+
+// A request without fields.
+template <class S>
+const Table<S>& bare(const char* name) {
+  static const Table<S> table(name, "");
+  return table;
+}
+
+bool is_text(std::string_view text, std::size_t most) { return !text.empty() && text.size() <= most; }
+
+void check_camera(const std::string& camera, Reader& reader) {
+  if (!is_text(camera, 1000)) reader.problem_at("camera", "expected a camera's name");
+}
+
+// Fills `request.ask` when its `do` is S's name.
+template <class S>
+bool read_if(std::string_view name, const Node& document, Reader& reader, Ask& ask) {
+  const Table<S>& table = fields_of(static_cast<const S*>(nullptr));
+  if (table.info().name != name) return false;
+  S value;
+  table.read(document, reader, value);
+  ask = std::move(value);
+  return true;
+}
+
+template <class... S>
+bool read_ask(std::string_view name, const Node& document, Reader& reader, std::variant<S...>& ask) {
+  return (read_if<S>(name, document, reader, ask) || ...);
+}
+
+template <class... S>
+std::vector<std::string> all_names(const std::variant<S...>*) {
+  return {fields_of(static_cast<const S*>(nullptr)).info().name...};
+}
+
+// Takes a member out of a table.
+Node taken(Node::Table& table, std::string_view key) {
+  const auto found = std::ranges::find(table, key, &Node::Member::key);
+  if (found == table.end()) return {};
+  Node node = std::move(found->node);
+  table.erase(found);
+  return node;
+}
+
+std::string read(Node document, Request& request) {
+  auto* table = document.as<Node::Table>();
+  if (table == nullptr) return "expected a JSON object";
+  const Node id = taken(*table, "id");
+  constexpr std::int64_t largest = std::int64_t{1} << 53;
+  if (const auto* number = id.as<std::int64_t>(); number != nullptr && std::abs(*number) <= largest)
+    request.id = *number;
+  const Node name = taken(*table, "do");
+  const auto* text = name.as<std::string>();
+  if (text == nullptr) return "do is missing: expected what to do";
+  if (!request.id && (*text != "ack" || !id.empty())) return "id is missing: expected a whole number";
+  Reader reader;
+  if (!read_ask(*text, document, reader, request.ask)) {
+    const auto names = all_names(static_cast<const Ask*>(nullptr));
+    return fmt::format("do = {}: expected one of {}", name.brief(), fmt::join(names, ", "));
+  }
+  return joined(reader.problems());
+}
+
+}  // namespace
+
+const Table<ArmRequest>& fields_of(const ArmRequest*) {
+  static const auto table =
+      with_shape<ArmRequest>("arm", "The arm goes to a shape.")
+          .field("tendons", &ArmRequest::tendons,
+                 {.meaning = "displacements", .range = any_place, .count = {0, most_sections}})
+          .field("duration", &ArmRequest::duration, {.meaning = "s", .range = between(0, 1e6)})
+          .check([](const ArmRequest& arm, Reader& reader) {
+            if (arm.tendons && (arm.bends || arm.cord_angles || arm.archings || arm.stretches))
+              reader.problem_at("tendons", "stand alone: expected no other shape beside them");
+            if (!arm.tendons && !arm.bends && !arm.cord_angles && !arm.archings && !arm.stretches)
+              reader.problem("says no shape: expected bends, cord_angles, archings, tendons or stretches");
+          });
+  return table;
+}
+
+const Table<TipRequest>& fields_of(const TipRequest*) {
+  static const auto table =
+      Table<TipRequest>("tip", "The tip goes to a place.")
+          .field("position", &TipRequest::position,
+                 {.meaning = "of the tip", .range = any_place, .required = true})
+          .field("direction", &TipRequest::direction, {.meaning = "of its z axis", .range = any_place})
+          .check([](const TipRequest& tip, Reader& reader) {
+            if (tip.direction && *tip.direction == std::array<double, 3>{})
+              reader.problem_at("direction", "is zero: expected a direction");
+          });
+  return table;
+}
+
+const Table<HeadRequest>& fields_of(const HeadRequest*) {
+  static const auto table =
+      Table<HeadRequest>("head", "A camera turns and zooms.")
+          .field("camera", &HeadRequest::camera, {.required = true})
+          .field("pan", &HeadRequest::pan, {.range = angle_range})
+          .field("tilt", &HeadRequest::tilt, {.range = angle_range})
+          .field("zoom", &HeadRequest::zoom, {.range = any_place})
+          .check([](const HeadRequest& head, Reader& reader) { check_camera(head.camera, reader); });
+  return table;
+}
+
+const Table<StageRequest>& fields_of(const StageRequest*) {
+  static const auto table =
+      Table<StageRequest>("stage", "A camera's stage goes to a place.")
+          .field("camera", &StageRequest::camera, {.required = true})
+          .field("x", &StageRequest::x, {.range = any_place})
+          .field("y", &StageRequest::y, {.range = any_place})
+          .field("z", &StageRequest::z, {.range = any_place})
+          .check([](const StageRequest& stage, Reader& reader) { check_camera(stage.camera, reader); });
+  return table;
+}
+
+const Table<HaltRequest>& fields_of(const HaltRequest*) { return bare<HaltRequest>("halt"); }
+const Table<ResetRequest>& fields_of(const ResetRequest*) { return bare<ResetRequest>("reset"); }
+const Table<RunRequest>& fields_of(const RunRequest*) { return bare<RunRequest>("run"); }
+const Table<CancelRequest>& fields_of(const CancelRequest*) { return bare<CancelRequest>("cancel"); }
+const Table<OpenRequest>& fields_of(const OpenRequest*) { return bare<OpenRequest>("open"); }
+const Table<LiveRequest>& fields_of(const LiveRequest*) { return bare<LiveRequest>("live"); }
+const Table<PingRequest>& fields_of(const PingRequest*) { return bare<PingRequest>("ping"); }
+
+const Table<AtRequest>& fields_of(const AtRequest*) {
+  static const auto table =
+      Table<AtRequest>("at", "The state of a recording at a time.")
+          .field("time", &AtRequest::time, {.meaning = "s", .range = any_place, .required = true});
+  return table;
+}
+
+const Table<ImagesRequest>& fields_of(const ImagesRequest*) {
+  static const auto table =
+      Table<ImagesRequest>("images", "Images of a camera.")
+          .field("camera", &ImagesRequest::camera, {.required = true})
+          .field("rate", &ImagesRequest::rate, {.range = between(0, 1000), .required = true})
+          .field("quality", &ImagesRequest::quality, {.range = between(1, 100)})
+          .check([](const ImagesRequest& images, Reader& reader) { check_camera(images.camera, reader); });
+  return table;
+}
+
+const Table<AckRequest>& fields_of(const AckRequest*) {
+  static const auto table =
+      Table<AckRequest>("ack", "An image has come.")
+          .field("camera", &AckRequest::camera, {.required = true})
+          .field("number", &AckRequest::number, {.range = between(0, 4294967295.0), .required = true})
+          .check([](const AckRequest& ack, Reader& reader) { check_camera(ack.camera, reader); });
+  return table;
+}
+
+const Table<PixelRequest>& fields_of(const PixelRequest*) {
+  static const auto table =
+      Table<PixelRequest>("pixel", "What a pixel shows.")
+          .field("camera", &PixelRequest::camera, {.required = true})
+          .field("u", &PixelRequest::u, {.range = between(0, 65535), .required = true})
+          .field("v", &PixelRequest::v, {.range = between(0, 65535), .required = true})
+          .check([](const PixelRequest& pixel, Reader& reader) { check_camera(pixel.camera, reader); });
+  return table;
+}
+
+const Table<PointRequest>& fields_of(const PointRequest*) {
+  static const auto table =
+      Table<PointRequest>("point", "A point of the backbone.")
+          .field("s", &PointRequest::s, {.meaning = "m", .range = any_place, .required = true});
+  return table;
+}
+
+const Table<BackboneRequest>& fields_of(const BackboneRequest*) {
+  static const auto table = with_shape<BackboneRequest>("backbone", "Where the arm would lie.");
+  return table;
+}
+
+Request read_request(std::string_view text) {
+  Request request;
+  try {
+    request.error = read(parse_json(text, ""), request);
+  } catch (const InputError& error) {
+    request.error = joined(error.problems());
+  }
+  std::ranges::replace_if(request.error, [](char c) { return c >= 0 && c < ' '; }, ' ');
+  return request;
+}
+
+}  // namespace flexura

@@ -1,0 +1,117 @@
+#include "flexura/view/request.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flexura/view/document.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class S>
+S read_as_ask(const std::string& text) {
+  const Request request = read_request(text);
+  EXPECT_EQ(request.error, "") << text;
+  EXPECT_EQ(request.id, 7) << text;
+  const auto* ask = std::get_if<S>(&request.ask);
+  return ask == nullptr ? (ADD_FAILURE() << text, S{}) : *ask;
+}
+
+TEST(Request, ReadsEverythingThatAPageCanAsk) {
+  const auto arm =
+      read_as_ask<ArmRequest>(R"({"id":7,"do":"arm","bends":[[1,2]],"stretches":[1],"duration":2})");
+  EXPECT_EQ(arm.bends->at(0), (std::array{1.0, 2.0}));
+  EXPECT_EQ(arm.duration, 2);
+  EXPECT_EQ(read_as_ask<ArmRequest>(R"({"id":7,"do":"arm","tendons":[0.1]})").tendons->at(0), 0.1);
+  EXPECT_EQ(read_as_ask<ArmRequest>(R"({"do":"arm","cord_angles":[1.5],"id":7})").cord_angles->at(0), 1.5);
+  EXPECT_EQ(read_as_ask<ArmRequest>(R"({"do":"arm","archings":[2],"id":7})").archings->at(0), 2);
+  const auto tip = read_as_ask<TipRequest>(R"({"id":7,"do":"tip","position":[1,2,3],"direction":[0,0,1]})");
+  EXPECT_EQ(tip.position[2], 3);
+  EXPECT_TRUE(tip.direction);
+  EXPECT_EQ(read_as_ask<HeadRequest>(R"({"id":7,"do":"head","camera":"front","pan":0.1})").pan, 0.1);
+  EXPECT_EQ(read_as_ask<StageRequest>(R"({"id":7,"do":"stage","camera":"front","y":0.1})").y, 0.1);
+  (void)read_as_ask<HaltRequest>(R"({"id":7,"do":"halt"})");
+  (void)read_as_ask<ResetRequest>(R"({"id":7,"do":"reset"})");
+  (void)read_as_ask<RunRequest>(R"({"id":7,"do":"run"})");
+  (void)read_as_ask<CancelRequest>(R"({"id":7,"do":"cancel"})");
+  (void)read_as_ask<OpenRequest>(R"({"id":7,"do":"open"})");
+  (void)read_as_ask<LiveRequest>(R"({"id":7,"do":"live"})");
+  EXPECT_EQ(read_as_ask<AtRequest>(R"({"id":7,"do":"at","time":2.5})").time, 2.5);
+  const auto images =
+      read_as_ask<ImagesRequest>(R"({"id":7,"do":"images","camera":"a","rate":30,"quality":60})");
+  EXPECT_EQ(images.rate, 30);
+  EXPECT_EQ(images.quality, 60);
+  EXPECT_EQ(read_as_ask<AckRequest>(R"({"id":7,"do":"ack","camera":"a","number":9})").number, 9);
+  EXPECT_EQ(read_as_ask<PixelRequest>(R"({"id":7,"do":"pixel","camera":"a","u":3,"v":4})").v, 4);
+  EXPECT_EQ(read_as_ask<PointRequest>(R"({"id":7,"do":"point","s":0.5})").s, 0.5);
+  EXPECT_TRUE(read_as_ask<BackboneRequest>(R"({"id":7,"do":"backbone","bends":[[0,1]]})").bends);
+  (void)read_as_ask<PingRequest>(R"({"id":7,"do":"ping"})");
+}
+
+TEST(Request, SaysThatNoMoreIsExpectedWhereNothingIs) {
+  EXPECT_THAT(read_request(R"({"id":7,"do":"ping","x":1})").error,
+              HasSubstr("x: unknown key; no more is expected here"));
+}
+
+TEST(Request, NeedsNoIdForAnAcknowledgement) {
+  const Request ack = read_request(R"({"do":"ack","camera":"a","number":0})");
+  EXPECT_EQ(ack.error, "");
+  EXPECT_FALSE(ack.id);
+}
+
+TEST(Request, SaysInOneLineWhatIsWrong) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"", "JSON"},
+      {"{", "JSON"},
+      {"[1]", "expected a JSON object"},
+      {R"({"do":"ping"})", "id is missing"},
+      {R"({"id":1.5,"do":"ping"})", "id is missing"},
+      {R"({"id":99999999999999999,"do":"ping"})", "id is missing"},
+      {R"({"id":7})", "do is missing"},
+      {R"({"id":7,"do":"fly"})", "expected one of arm, tip"},
+      {R"({"id":7,"do":"fly\nhigh"})", "expected one of arm, tip"},
+      {R"({"id":7,"do":"ping","x":1})", "x"},
+      {R"({"id":7,"do":"arm"})", "says no shape"},
+      {R"({"id":7,"do":"arm","tendons":[0],"bends":[[0,0]]})", "stand alone"},
+      {R"({"id":7,"do":"arm","bends":[[0,0,0]]})", "bends[0]"},
+      {R"({"id":7,"do":"arm","bends":[[0,1e9]]})", "bends[0][1]"},
+      {R"({"id":7,"do":"arm","bends":[[0,0]],"duration":-1})", "duration"},
+      {R"({"id":7,"do":"tip"})", "position: missing"},
+      {R"({"id":7,"do":"tip","position":[0,0,0],"direction":[0,0,0]})", "direction: is zero"},
+      {R"({"id":7,"do":"head","camera":""})", "camera"},
+      {R"({"id":7,"do":"images","camera":"a","rate":1,"quality":0})", "quality"},
+      {R"({"id":7,"do":"pixel","camera":"a","u":-1,"v":0})", "u"},
+      {R"({"id":7,"do":"at","time":"now"})", "time"},
+      {R"({"id":"7","do":"ack","camera":"a","number":0})", "id is missing"}};
+  for (const auto& [text, error] : cases) {
+    const Request request = read_request(text);
+    EXPECT_THAT(request.error, HasSubstr(error)) << text;
+    EXPECT_EQ(request.error.find('\n'), std::string::npos) << text;
+  }
+  EXPECT_EQ(read_request(R"({"id":7,"do":"fly"})").id, 7) << "for the reply";
+}
+
+TEST(Document, IsFoundByItsAddress) {
+  const auto image = std::get<ImageAsk>(read_document("/image/front%20left.png?time=1.5"));
+  EXPECT_EQ(image.camera, "front left");
+  EXPECT_EQ(image.time, 1.5);
+  EXPECT_FALSE(std::get<ImageAsk>(read_document("/image/front.png")).time);
+  const auto series = std::get<SeriesAsk>(read_document("/series?names=tip_x,tip_y&points=20"));
+  EXPECT_EQ(series.names, (std::vector<std::string>{"tip_x", "tip_y"}));
+  EXPECT_EQ(series.points, 20);
+  EXPECT_TRUE(std::holds_alternative<ReportAsk>(read_document("/report")));
+}
+
+TEST(Document, IsRefusedAtAnyOtherAddress) {
+  for (const char* target :
+       {"", "/", "/reports", "/report?x=1", "/image/front", "/image/front.png?time=nan",
+        "/image/front.png?time=", "/image/front.png?time=1&time=2", "/image/front.png?size=1",
+        "/image/fr%zz.png", "/series", "/series?names=", "/series?names=a,a", "/series?names=a&points=1",
+        "/series?names=a&points=1e3", "/../experiment.toml", "/image/%"})
+    EXPECT_THROW((void)read_document(target), ViewRefusal) << target;
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexura/camera/head.h"
+#include "flexura/math/pose.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
+
+// The binary messages of docs/viewer-protocol.md.
+namespace flexura {
+
+/// A point of the backbone.
+struct ArmSample {
+  double s = 0;  ///< Along the unstretched arm, m.
+  Pose X_WS;
+};
+
+/// How a camera stands.
+struct CameraSample {
+  Pose X_WC;
+  HeadState head;
+  Eigen::Vector3d stage = Eigen::Vector3d::Zero();  ///< m
+  double fx = 0, fy = 0, cx = 0, cy = 0;            ///< px
+};
+
+/// What moves, at one time.
+struct StateMessage {
+  bool is_moving = false;
+  bool is_running = false;  ///< A run of tasks is going on.
+  bool is_recording = false;
+  bool is_unsafe = false;
+  std::uint32_t sequence = 0;
+  double time = 0;  ///< s
+  ArmState arm;
+  std::vector<ArmSample> samples;  ///< Base first, the tip last.
+  std::vector<CameraSample> cameras;
+  std::vector<double> displacements;  ///< m, of the tendons.
+};
+
+/// The samples of a state message: every section's ends, and so many points between that from one to the next
+/// the backbone is one arc that turns by a right angle at most.
+[[nodiscard]] std::vector<ArmSample> arm_samples(const Arm& arm, const ArmState& state);
+
+/// std::length_error for more than 65535 of anything.
+[[nodiscard]] std::string state_message(const StateMessage& state);
+/// The message that these bytes are, in single precision; none when they are none.
+[[nodiscard]] std::optional<StateMessage> read_state_message(std::string_view bytes);
+
+/// The formats of images.
+enum class ImageFormat : std::uint16_t { jpeg = 0, png = 1 };
+
+/// An image for a client: the message's head and the file.
+[[nodiscard]] std::string image_message(std::uint8_t camera, ImageFormat format, std::uint32_t number,
+                                        double time, std::string_view file);
+
+}  // namespace flexura

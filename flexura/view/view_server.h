@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "flexura/serve/server.h"
+#include "flexura/view/front_door.h"
+#include "flexura/view/messenger.h"
+
+namespace flexura {
+
+/// A viewer behind a server, as long as this object lives.
+class ViewServer {
+ public:
+  /// std::system_error when it cannot listen there.
+  ViewServer(ViewStart start, ServerConfig config, std::span<const Asset> assets);
+  ~ViewServer();
+  ViewServer(const ViewServer&) = delete;
+  ViewServer& operator=(const ViewServer&) = delete;
+
+  [[nodiscard]] std::string url() const { return server_.url(); }
+  [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+  [[nodiscard]] const std::string& token() const { return server_.token(); }
+
+ private:
+  class ServerMessenger : public Messenger {
+   public:
+    explicit ServerMessenger(Server& server) : server_(server) {}
+    void send(ClientId client, std::string text) override { server_.send(client, std::move(text)); }
+    void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) override {
+      server_.post(client, stream, std::move(message));
+    }
+
+   private:
+    Server& server_;
+  };
+
+  FrontDoor door_;
+  Server server_;
+  ServerMessenger messenger_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "flexura/camera/camera.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/model/obstacle.h"
+#include "flexura/sim/simulated_camera.h"
+#include "flexura/view/state_message.h"
+
+namespace flexura {
+
+/// What is seen at one instant.
+struct Instant {
+  double time = 0;  ///< s
+  ArmState arm;
+  HeadState head;
+  StageState stage;
+};
+
+/// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
+class ViewedRig {
+ public:
+  explicit ViewedRig(Experiment read);
+
+  Experiment experiment;
+  Arm model, truth;  ///< The arm as it is believed to be, and as it is.
+  ArmState initial;  ///< As it is.
+  std::vector<Obstacle> obstacles;
+  std::optional<Drive> drive;   ///< As it is believed to be.
+  std::vector<Camera> cameras;  ///< As they are.
+  std::vector<SensorConfig> sensors;
+
+  /// The place of the camera of this name; none when there is none.
+  [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
+};
+
+using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
+
+/// How a camera of the rig stands.
+[[nodiscard]] CameraSample camera_sample(const Camera& camera, const StageState& stage,
+                                         const HeadState& head);
+
+/// A frame that can be taken without anything else that stays.
+struct ValueShot {
+  Shot shot;
+  std::shared_ptr<const std::vector<Instant>> instants;  ///< What it shows.
+};
+
+/// The frame that shows `instants` (one or more, by rising time), and between two of them what lies between.
+/// It starts at `start` s.
+[[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
+                                   double start, std::vector<Instant> instants);
+
+/// Whether two frames are sure to be the same picture: everything stands still, in the same way, and no noise
+/// tells them apart.
+[[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
+
+/// When `value_shot` should know of a frame that starts at `start` s: once, where it is exposed in an
+/// instant, else so often that motion in between is as good as straight.
+[[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
+
+}  // namespace flexura

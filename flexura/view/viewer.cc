@@ -1,0 +1,183 @@
+#include "flexura/view/viewer.h"
+
+#include <exception>
+#include <utility>
+
+#include "flexura/base/version.h"
+#include "flexura/store/json.h"
+#include "flexura/view/answers.h"
+#include "flexura/view/document.h"
+#include "flexura/view/request.h"
+
+namespace flexura {
+namespace {
+
+Node text(std::string value) { return {std::move(value), {}}; }
+
+std::string hello_text(const Hello& hello, const std::string& session, bool has_rig, bool has_recording) {
+  return write_json({Node::Table{{"type", {}, text("hello")},
+                                 {"version", {}, text(std::string(version()))},
+                                 {"session", {}, text(session)},
+                                 {"mode", {}, text(hello.mode)},
+                                 {"title", {}, text(hello.title)},
+                                 {"scene", {}, hello.scene},
+                                 {"controls", {}, hello.controls},
+                                 {"duration", {}, {hello.duration, {}}},
+                                 {"marks", {}, Codec<std::vector<Mark>>::write(hello.marks)},
+                                 {"quantities", {}, Codec<std::vector<Quantity>>::write(hello.quantities)},
+                                 {"report", {}, {hello.report, {}}},
+                                 {"rig", {}, {has_rig, {}}},
+                                 {"recording", {}, {has_recording, {}}},
+                                 {"readonly", {}, {hello.readonly, {}}}},
+                     {}});
+}
+
+std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& answer) {
+  Node::Table table{{"type", {}, text("reply")}, {"id", {}, id ? Node{*id, {}} : Node{}}};
+  if (answer.error.empty()) {
+    table.push_back({"result", {}, answer.result});
+  } else {
+    table.push_back({"error", {}, text(answer.error)});
+  }
+  return write_json({std::move(table), {}});
+}
+
+}  // namespace
+
+Viewer::Viewer(ViewStart start, Messenger& messenger, Background& background, double now)
+    : start_(std::move(start)), messenger_(messenger), background_(background), clock_(now) {
+  if (start_.recording != nullptr) {
+    recording_ = std::make_unique<RecordingSession>(start_.recording, messenger_, background_);
+    start_.rig = start_.recording->rig();
+    shown_ = recording_.get();
+  } else {
+    go_live([](const ViewAnswer&) {});
+  }
+}
+
+void Viewer::opened(ClientId client) {
+  clients_.insert(client);
+  greet(client);
+}
+
+void Viewer::greet(ClientId client) {
+  messenger_.send(client, hello_text(shown_->hello(), start_.session, has_rig(), has_recording()));
+  shown_->opened(client);
+}
+
+void Viewer::closed(ClientId client) {
+  clients_.erase(client);
+  shown_->closed(client);
+}
+
+Reply Viewer::reply_to(ClientId client, std::int64_t id) {
+  return [this, client, id](const ViewAnswer& answer) {
+    if (clients_.contains(client)) messenger_.send(client, reply_text(id, answer));
+  };
+}
+
+void Viewer::said(ClientId client, const std::string& said_text) {
+  if (!clients_.contains(client)) return;
+  const Request request = read_request(said_text);
+  std::string error = request.error;
+  try {
+    if (error.empty()) take(client, request);
+  } catch (const std::exception& refusal) {
+    error = refusal.what();
+  }
+  // An `ack` has no reply, but when it is wrong.
+  if (!error.empty()) messenger_.send(client, reply_text(request.id, {{}, error}));
+}
+
+void Viewer::take(ClientId client, const Request& request) {
+  Reply reply = request.id ? reply_to(client, *request.id) : [](const ViewAnswer&) {};
+  if (std::holds_alternative<OpenRequest>(request.ask)) {
+    open_last(std::move(reply));
+  } else if (std::holds_alternative<LiveRequest>(request.ask)) {
+    go_live(reply);
+  } else {
+    if (std::holds_alternative<AckRequest>(request.ask)) reply = [](const ViewAnswer&) {};
+    shown_->take(client, request.ask, std::move(reply));
+  }
+}
+
+bool Viewer::has_rig() const { return start_.run == nullptr || live_ == nullptr || !live_->is_over(); }
+
+bool Viewer::has_recording() const { return recording_ != nullptr || (live_ != nullptr && live_->results()); }
+
+void Viewer::open_last(Reply reply) {
+  if (!has_recording()) throw ViewRefusal("there is no recording yet: expected a run before");
+  if (live_ != nullptr && live_->results()) {
+    open(*live_->results(), std::move(reply));
+  } else {
+    reply({nothing(), ""});
+    show(*recording_);
+  }
+}
+
+// A long log takes its time to be read.
+void Viewer::open(const std::filesystem::path& folder, Reply reply) {
+  if (is_opening_) throw ViewRefusal("a recording is being opened");
+  is_opening_ = true;
+  background_.run(
+      Lane::checks,
+      [this, folder, reply = std::move(reply), alive = std::weak_ptr(alive_)]() -> Background::After {
+        RecordingPtr recording;
+        std::string error;
+        try {
+          recording = std::make_shared<const Recording>(folder);
+        } catch (const std::exception& problem) {
+          error = problem.what();
+        }
+        return [this, recording, error, reply, alive] {
+          if (alive.expired()) return;
+          is_opening_ = false;
+          reply({nothing(), error});
+          if (recording == nullptr) return;
+          auto opened = std::make_unique<RecordingSession>(recording, messenger_, background_);
+          show(*opened);
+          recording_ = std::move(opened);
+        };
+      });
+}
+
+void Viewer::go_live(const Reply& reply) {
+  if (live_ == nullptr) {
+    live_ = std::make_unique<LiveSession>(start_.rig, messenger_, background_,
+                                          LiveSession::Config{clock_, start_.results, start_.run});
+  } else if (!has_rig()) {
+    throw ViewRefusal("the run is over, and its rig with it");
+  }
+  reply({nothing(), ""});
+  show(*live_);
+}
+
+void Viewer::show(Session& session) {
+  if (shown_ == &session) return;
+  for (const ClientId client : clients_) {
+    if (shown_ != nullptr) shown_->closed(client);
+  }
+  shown_ = &session;
+  for (const ClientId client : clients_) greet(client);
+}
+
+void Viewer::asked(const std::string& target, const std::function<void(HttpAnswer)>& answer) {
+  try {
+    shown_->take(read_document(target), answer);
+  } catch (const std::exception& error) {
+    answer({404, "application/json", write_json({Node::Table{{"error", {}, text(error.what())}}, {}}), ""});
+  }
+}
+
+void Viewer::advance(double now) {
+  clock_ = now;
+  shown_->advance(now);
+  if (shown_ != live_.get() || !live_->is_over() || is_opening_ || !live_->results()) return;
+  open(*live_->results(), [](const ViewAnswer&) {});
+}
+
+void Viewer::cancel() {
+  if (live_ != nullptr) live_->cancel();
+}
+
+}  // namespace flexura

@@ -1,0 +1,224 @@
+#include "flexura/view/viewer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flexura/view/describe.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/view_fakes.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr ClientId me = 1, other = 2;
+
+// In what the zoom of a rig's last camera is said.
+std::string zoom_unit(const std::string& rig) {
+  const Node controls = controls_node(*viewed_rig(rig));
+  return *controls.find("heads")->as<Node::Array>()->back().find("zoom_unit")->as<std::string>();
+}
+
+class ViewerTest : public ::testing::Test {
+ protected:
+  ViewerTest()
+      : viewer_({.session = "0815", .rig = viewed_rig(), .results = folder_.path() / "run"}, messenger_,
+                background_, 0) {
+    viewer_.opened(me);
+  }
+  // The reply to a message.
+  Node say(const std::string& text) {
+    viewer_.said(me, text);
+    return messenger_.last(me, "reply");
+  }
+  [[nodiscard]] std::string mode() { return *messenger_.last(me, "hello").find("mode")->as<std::string>(); }
+  // Whether the last hello says so.
+  [[nodiscard]] bool says(const char* key) { return *messenger_.last(me, "hello").find(key)->as<bool>(); }
+  static std::string error_of(const Node& reply) {
+    const Node* error = reply.find("error");
+    return error == nullptr ? "" : *error->as<std::string>();
+  }
+
+  TemporaryFolder folder_;
+  FakeMessenger messenger_;
+  FakeBackground background_;
+  Viewer viewer_;
+};
+
+TEST_F(ViewerTest, GreetsFirstAndSaysAllThatThereIs) {
+  const Node hello = parse_json(messenger_.texts[me].front(), "hello");
+  EXPECT_EQ(*hello.find("type")->as<std::string>(), "hello");
+  EXPECT_EQ(*hello.find("session")->as<std::string>(), "0815");
+  EXPECT_EQ(*hello.find("title")->as<std::string>(), "Two sections");
+  const Node& scene = *hello.find("scene");
+  EXPECT_EQ(scene.find("arm")->find("sections")->as<Node::Array>()->size(), 2);
+  EXPECT_EQ(*scene.find("arm")->find("kind")->as<std::string>(), "spatial");
+  EXPECT_EQ(scene.find("screens")->as<Node::Array>()->size(), 2);
+  EXPECT_TRUE(scene.find("etalon")->empty());
+  const Node& ball = scene.find("obstacles")->as<Node::Array>()->front();
+  EXPECT_EQ(*ball.find("name")->as<std::string>(), "ball");
+  EXPECT_EQ(*ball.find("kind")->as<std::string>(), "sphere");
+  EXPECT_EQ(*scene.find("cameras")->as<Node::Array>()->back().find("channels")->as<std::int64_t>(), 3);
+  const Node& controls = *hello.find("controls");
+  EXPECT_EQ(*controls.find("sections")->as<Node::Array>()->front().find("bend")->as<double>(), 2);
+  EXPECT_TRUE(controls.find("sections")->as<Node::Array>()->front().find("bend_rate")->empty());
+  EXPECT_TRUE(controls.find("tendons")->empty());
+  EXPECT_EQ(*controls.find("heads")
+                 ->as<Node::Array>()
+                 ->front()
+                 .find("pan")
+                 ->as<Node::Array>()
+                 ->front()
+                 .as<double>(),
+            -0.5);
+  EXPECT_EQ(zoom_unit(viewed_text), "ratio");
+  EXPECT_EQ(zoom_unit(viewed_text + R"([[camera]]
+name = "measured"
+mount = { position = [2, 0.5, 0], look_at = [0, 0.5, 0] }
+lens = { zoom = [{ ratio = 1, count = 12 }, { ratio = 2, count = 300 }] }
+)"),
+            "count");
+  EXPECT_EQ(*controls.find("tasks")->as<Node::Array>()->front().find("name")->as<std::string>(), "bend");
+}
+
+TEST_F(ViewerTest, RepliesToEverythingUnderItsNumber) {
+  const Node pong = say(R"({"id":3,"do":"ping"})");
+  EXPECT_EQ(*pong.find("id")->as<std::int64_t>(), 3);
+  EXPECT_NE(pong.find("result"), nullptr);
+  const Node bad = say(R"({"id":4,"do":"fly"})");
+  EXPECT_EQ(*bad.find("id")->as<std::int64_t>(), 4);
+  EXPECT_THAT(error_of(bad), HasSubstr("expected one of"));
+  EXPECT_TRUE(say("nonsense").find("id")->empty());
+  EXPECT_THAT(error_of(say(R"({"id":5,"do":"head","camera":"back","pan":0})")),
+              HasSubstr("there is no camera"));
+  EXPECT_THAT(error_of(say("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
+}
+
+TEST_F(ViewerTest, DoesNotReplyToAnAcknowledgement) {
+  const std::size_t texts = messenger_.texts[me].size();
+  viewer_.said(me, R"({"do":"ack","camera":"front","number":0})");
+  viewer_.said(me, R"({"id":1,"do":"ack","camera":"front","number":0})");
+  EXPECT_EQ(messenger_.texts[me].size(), texts);
+  EXPECT_THAT(error_of(say(R"({"do":"ack","camera":"back","number":0})")), HasSubstr("there is no camera"));
+}
+
+TEST_F(ViewerTest, SaysNothingToOneWhoHasLeft) {
+  viewer_.opened(other);
+  background_.is_prompt = false;
+  viewer_.said(other, R"({"id":1,"do":"tip","position":[0,0.9,0.1]})");
+  viewer_.closed(other);
+  const std::size_t texts = messenger_.texts[other].size();
+  background_.work();
+  viewer_.said(other, R"({"id":1,"do":"ping"})");
+  viewer_.advance(1);
+  EXPECT_EQ(messenger_.texts[other].size(), texts);
+  EXPECT_EQ(messenger_.count(other, 0), 0);
+}
+
+TEST_F(ViewerTest, GoesFromTheRigToTheLastRunAndBack) {
+  EXPECT_THAT(error_of(say(R"({"id":1,"do":"open"})")), HasSubstr("there is no recording yet"));
+  viewer_.said(me, R"({"id":2,"do":"arm","bends":[[-0.5,0],[0,0]]})");
+  viewer_.said(me, R"({"id":3,"do":"run"})");
+  viewer_.advance(1);
+  EXPECT_EQ(mode(), "live");
+  EXPECT_EQ(error_of(say(R"({"id":4,"do":"open"})")), "");
+  EXPECT_EQ(mode(), "recording");
+  EXPECT_TRUE(messenger_.state(me).is_recording);
+  EXPECT_EQ(*messenger_.last(me, "hello").find("duration")->as<double>(), 1);
+  say(R"({"id":5,"do":"live"})");
+  EXPECT_EQ(mode(), "live");
+  viewer_.advance(2);
+  EXPECT_NEAR(messenger_.state(me).arm.bends[0].x(), -0.5, 1e-6) << "as it was left";
+}
+
+TEST_F(ViewerTest, SaysWhetherThereIsARecordingToOpen) {
+  EXPECT_FALSE(says("recording"));
+  viewer_.said(me, R"({"id":1,"do":"run"})");
+  viewer_.advance(1);
+  viewer_.closed(me);
+  viewer_.opened(me);
+  EXPECT_EQ(mode(), "live");
+  EXPECT_TRUE(says("recording"));
+  EXPECT_TRUE(says("rig"));
+}
+
+TEST_F(ViewerTest, AnswersDocuments) {
+  HttpAnswer got;
+  const auto keep = [&](const HttpAnswer& answer) { got = answer; };
+  viewer_.asked("/image/front.png", keep);
+  EXPECT_EQ(got.status, 200);
+  viewer_.asked("/series?names=tip_x", keep);
+  EXPECT_EQ(got.status, 404);
+  viewer_.asked("/secret", keep);
+  EXPECT_EQ(got.status, 404);
+  EXPECT_EQ(*parse_json(got.body, "body").find("error")->as<std::string>(),
+            "there is nothing at this address");
+}
+
+TEST(ViewerOfARig, StaysAsItIsWhateverIsGot) {
+  const TemporaryFolder folder;
+  const auto last_state = [&](bool is_asked) {
+    FakeMessenger messenger;
+    FakeBackground background;
+    Viewer viewer({.session = "0815", .rig = viewed_rig(), .results = folder.path() / "run"}, messenger,
+                  background, 0);
+    viewer.opened(me);
+    viewer.said(me, R"({"id":1,"do":"arm","bends":[[0.5,0.2],[0,0]],"duration":1})");
+    for (int i = 1; i < 50; ++i) {
+      for (const char* target :
+           {"/image/front.png", "/image/side.png?time=3", "/series?names=tip_x", "/report", "/reset", "/halt",
+            "/arm?bends=[[1,0],[0,0]]", "/run", "/recording"}) {
+        if (is_asked && i % 10 == 0) viewer.asked(target, [](const HttpAnswer&) {});
+      }
+      viewer.advance(i / 60.0);
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "run"));
+    return *messenger.posts[{me, 0}].back();
+  };
+  const std::string untouched = last_state(false);
+  EXPECT_EQ(last_state(true), untouched);
+  EXPECT_TRUE(read_state_message(untouched).value().is_moving);
+}
+
+TEST(ViewerOfARun, OpensItsRecordingAtItsEnd) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto run = std::make_shared<RunLink>();
+  const auto rig = viewed_rig();
+  Viewer viewer({.session = "1", .rig = rig, .run = run}, messenger, background, 0);
+  viewer.opened(me);
+  viewer.advance(0.1);
+  EXPECT_TRUE(*messenger.last(me, "hello").find("rig")->as<bool>());
+  viewer.said(me, R"({"id":1,"do":"halt"})");
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("cannot halt"));
+  run_linked(rig->experiment, folder.path(), *run);
+  viewer.advance(0.2);
+  const Node hello = messenger.last(me, "hello");
+  EXPECT_EQ(*hello.find("mode")->as<std::string>(), "recording");
+  EXPECT_FALSE(*hello.find("rig")->as<bool>());
+  viewer.said(me, R"({"id":1,"do":"live"})");
+  EXPECT_NE(messenger.last(me, "reply").find("error"), nullptr);
+}
+
+TEST(ViewerOfARecording, HasItsRigToGoTo) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  RunLink run;
+  run_linked(viewed_rig()->experiment, folder.path(), run);
+  Viewer viewer({.session = "1", .recording = std::make_shared<const Recording>(folder.path())}, messenger,
+                background, 0);
+  viewer.opened(me);
+  EXPECT_TRUE(messenger.state(me).is_recording);
+  EXPECT_TRUE(*messenger.last(me, "hello").find("rig")->as<bool>());
+  viewer.said(me, R"({"id":1,"do":"live"})");
+  viewer.advance(1);
+  EXPECT_FALSE(messenger.state(me).is_recording);
+  viewer.said(me, R"({"id":1,"do":"open"})");
+  EXPECT_TRUE(messenger.state(me).is_recording);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "flexura/view/background.h"
+
+namespace flexura {
+
+/// A thread for each lane.
+class Workers : public Background {
+ public:
+  /// `back` gets what is to be called on the session's thread; from any thread.
+  explicit Workers(std::function<void(After)> back);
+  /// Ends the jobs under way, and drops those that wait.
+  ~Workers() override;
+
+  void run(Lane lane, Job job) override;
+
+ private:
+  struct Queue {
+    std::mutex mutex;
+    std::condition_variable filled;
+    std::deque<Job> jobs;
+    bool is_over = false;
+  };
+  void work(Queue& queue);
+
+  std::function<void(After)> back_;
+  std::array<Queue, lane_count> queues_;
+  std::array<std::thread, lane_count> threads_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,281 @@
+#include "flexura/vision/arm_finder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/vision/axis_curve.h"
+#include "flexura/vision/runs.h"
+#include "flexura/vision/tube_seeds.h"
+#include "flexura/vision/tube_tracker.h"
+
+namespace flexura {
+namespace {
+
+// As many pixels tell a histogram's two classes apart well enough: the borders are measured on their own.
+constexpr std::size_t histogram_samples = 12288;
+
+// Figures smaller than this are dust.
+constexpr std::int64_t least_area = 24;
+
+// A tube is at least this many times as long as wide.
+constexpr double least_slenderness = 2.5;
+
+// What explains less of its figure is some edge of it, no arm.
+constexpr double least_covered = 0.3;
+
+constexpr std::size_t most_tries = 4, most_seeds = 4;
+
+// How much of the figure an axis explains, and how many of its ends it knows.
+double merit(const ArmSighting& seen) {
+  const auto is_known = [](const AxisEnd& end) { return end.kind != AxisEndKind::lost; };
+  return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
+}
+
+// No other seed would show more.
+bool is_whole(const ArmSighting& seen) {
+  constexpr double whole = 0.85;
+  const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
+  return seen.covered > whole && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
+}
+
+double scale_of(const Image<std::uint8_t>&, int) { return 1; }
+double scale_of(const Image<std::uint16_t>&, int white) { return white / 255.0; }
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const AxisEndKind*) {
+  static const std::vector<std::string> names = {"free", "border", "lost"};
+  return names;
+}
+
+struct ArmFinder::Work {
+  ArmFinderConfig config;
+  ArmSighting seen, best;
+  Components components;
+  BlockThresholds blocks;
+  Image<std::uint8_t> bytes;  // Of a picture with more bits.
+  std::vector<std::uint32_t> order;
+  std::vector<TubeSeed> seeds;
+  std::vector<CrossSection> ahead, sections;
+  BlurredSteps steps;
+  AxisCurve curve;
+
+  void segment(const Image<std::uint8_t>& gray);
+  template <typename Value>
+  void find_axis(const Image<Value>& picture, double scale);
+  template <typename Value>
+  bool follow(const Image<Value>& picture, double scale, const Component& component);
+  template <typename Value>
+  bool follow_from(const Image<Value>& picture, double scale, const Component& component,
+                   const TubeSeed& rough);
+  void order_ends();
+  void note_others();
+};
+
+ArmFinder::ArmFinder(ArmFinderConfig config) : work_(std::make_unique<Work>()) {
+  work_->config = std::move(config);
+}
+ArmFinder::~ArmFinder() = default;
+ArmFinder::ArmFinder(ArmFinder&&) noexcept = default;
+ArmFinder& ArmFinder::operator=(ArmFinder&&) noexcept = default;
+
+void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
+  if (gray.channels() != 1)
+    throw std::invalid_argument(
+        fmt::format("a picture with {} channels: expected a gray one", gray.channels()));
+  seen.axis.clear();
+  seen.notes.clear();
+  seen.ends = {};
+  seen.blur = seen.noise = seen.contrast = seen.covered = 0;
+  seen.is_closed = false;
+  seen.threshold = threshold_of(gray, config.threshold, histogram_samples);
+  // A thin arm may fall between the samples.
+  if (!seen.threshold.reason.empty()) seen.threshold = threshold_of(gray, config.threshold);
+  seen.reason = seen.threshold.reason;
+  if (!seen.reason.empty()) return;
+  const bool by_block = config.threshold.method == ThresholdMethod::by_block;
+  if (by_block) blocks.make(gray, config.threshold, seen.threshold);
+  components.find(gray, seen.threshold, by_block ? &blocks : nullptr);
+  seen.contrast = seen.threshold.bright - seen.threshold.dark;
+}
+
+template <typename Value>
+void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
+  order.clear();
+  for (std::uint32_t i = 0; i < components.list.size(); ++i)
+    if (components.list[i].area >= least_area) order.push_back(i);
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::uint32_t i) { return components.list[i].area; });
+  if (order.empty()) {
+    seen.reason = fmt::format(
+        "nothing of at least {} px is {} enough", least_area,
+        names_of(static_cast<const Figure*>(nullptr))[static_cast<std::size_t>(seen.threshold.figure)]);
+    return;
+  }
+  std::string first_reason;
+  for (std::size_t i = 0; i < std::min(order.size(), most_tries); ++i) {
+    const Component& component = components.list[order[i]];
+    seen.reason.clear();
+    if (follow(picture, scale, component)) {
+      note_others();
+      return;
+    }
+    if (i == 0) first_reason = seen.reason;
+  }
+  seen.reason = first_reason;
+}
+
+// The tube of a component, from the first seed that leads to both its ends, or else the one that leads
+// farthest.
+template <typename Value>
+bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Component& component) {
+  tube_seeds(components, component, seeds);
+  if (seeds.empty()) {
+    seen.reason = "the figure has no end within the picture";
+    return false;
+  }
+  const double width = seeds.front().width;
+  if (static_cast<double>(component.area) < least_slenderness * width * width ||
+      component.on_border > 6 * width + 12) {
+    seen.reason = fmt::format(
+        "the largest figure is no tube: {} px large, about {:.0f} px across, {} px of it on "
+        "the picture's border",
+        component.area, width, component.on_border);
+    return false;
+  }
+  best.axis.clear();
+  for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
+    if (!follow_from(picture, scale, component, seeds[i])) continue;
+    if (best.axis.empty() || merit(seen) > merit(best)) best = seen;
+    if (is_whole(seen)) break;
+  }
+  if (best.axis.empty()) {
+    seen.axis.clear();
+    seen.reason = fmt::format(
+        "the borders of the figure ({} px, about {:.0f} px across) cannot be followed: it is no "
+        "tube, or points at the camera",
+        component.area, width);
+    return false;
+  }
+  seen = best;
+  order_ends();
+  return true;
+}
+
+// The tube near a seed, both ways.
+template <typename Value>
+bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, const Component& component,
+                                  const TubeSeed& rough) {
+  const double contrast = (seen.threshold.bright - seen.threshold.dark) * scale;
+  const TubeSeed place = shortest_chord(components, rough.center, 2 * rough.width + 4);
+  TubeTracker<Value> tracker(picture, seen.threshold.figure, seen.threshold.level * scale, contrast, steps);
+  const auto seed = tracker.seed(place.center, place.normal, 0.5 * place.width);
+  if (!seed) return false;
+  ahead.clear(), sections.clear();
+  const TrackEnd back = tracker.follow(*seed, -1, ahead);
+  sections.assign(ahead.rbegin(), ahead.rend());
+  sections.push_back(*seed);
+  TrackEnd front = TrackEnd::closed;
+  if (back != TrackEnd::closed) front = tracker.follow(*seed, 1, sections);
+  if (static_cast<double>(sections.size()) * tracker.step() < least_slenderness * 2 * seed->half_width)
+    return false;
+  seen.is_closed = front == TrackEnd::closed;
+  const TrackEnd behind = seen.is_closed ? TrackEnd::closed : back;
+  if (!curve.fit(tracker, {behind, front}, sections, seen)) return false;
+  if (2 * std::ranges::count_if(seen.axis, &AxisSample::is_seen) < std::ssize(seen.axis)) return false;
+  seen.blur = tracker.blur();
+  seen.noise = tracker.noise() / scale;
+  seen.contrast = tracker.contrast() / scale;
+  double explained = 0;
+  for (std::size_t i = 1; i < seen.axis.size(); ++i)
+    explained += seen.axis[i].width * (seen.axis[i].pixel - seen.axis[i - 1].pixel).norm();
+  for (const AxisEnd& end : seen.ends)
+    explained += 0.25 * std::numbers::pi * end.bulge * seen.axis.back().width;
+  seen.covered = explained / static_cast<double>(component.area);
+  return seen.covered >= least_covered;
+}
+
+void ArmFinder::Work::order_ends() {
+  auto& [base, tip] = seen.ends;
+  bool is_reversed = false;
+  if (config.base) {
+    is_reversed = (tip.pixel - *config.base).norm() < (base.pixel - *config.base).norm();
+  } else if ((base.kind == AxisEndKind::border) != (tip.kind == AxisEndKind::border)) {
+    is_reversed = tip.kind == AxisEndKind::border;
+  } else {
+    is_reversed = tip.pixel.y() > base.pixel.y();
+  }
+  if (is_reversed) {
+    std::swap(base, tip);
+    std::ranges::reverse(seen.axis);
+    for (AxisSample& sample : seen.axis) sample.normal = -sample.normal;
+  }
+  if (seen.is_closed) {
+    seen.notes.emplace_back("the tube comes back to where it starts: it has no ends");
+    return;
+  }
+  for (const AxisEnd& end : seen.ends) {
+    const char* name = &end == &base ? "base" : "tip";
+    if (end.kind == AxisEndKind::border)
+      seen.notes.push_back(fmt::format("the picture's border cuts the arm at its {}", name));
+    if (end.kind == AxisEndKind::lost)
+      seen.notes.push_back(
+          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are seen no more: it lies along another "
+                      "figure, or points at the camera",
+                      end.pixel.x(), end.pixel.y()));
+  }
+}
+
+void ArmFinder::Work::note_others() {
+  const auto measured = std::ranges::find_if(order, [&](std::uint32_t i) {
+    const Eigen::Vector2d middle = seen.axis[seen.axis.size() / 2].pixel;
+    const Run* run = components.run_at(static_cast<int>(std::lround(middle.x())),
+                                       static_cast<int>(std::lround(middle.y())));
+    return run != nullptr && run->component == i;
+  });
+  const double area = measured == order.end() ? 0 : static_cast<double>(components.list[*measured].area);
+  std::size_t others = 0;
+  for (const std::uint32_t i : order)
+    if ((measured == order.end() || i != *measured) &&
+        static_cast<double>(components.list[i].area) > 0.2 * area)
+      ++others;
+  if (others > 0)
+    seen.notes.push_back(fmt::format("{} other figure{} of a like size: the largest tube is measured", others,
+                                     others > 1 ? "s" : ""));
+  if (seen.covered < 0.8)
+    seen.notes.push_back(
+        fmt::format("the tube explains {:.0f} % of its silhouette: something else touches it, or it "
+                    "crosses itself",
+                    100 * seen.covered));
+}
+
+const ArmSighting& ArmFinder::find(const Image<std::uint8_t>& gray) {
+  work_->segment(gray);
+  if (work_->seen.reason.empty()) work_->find_axis(gray, scale_of(gray, 255));
+  return work_->seen;
+}
+
+const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
+  if (white < 1) throw std::invalid_argument(fmt::format("white at {}: expected at least 1", white));
+  Work& work = *work_;
+  work.bytes = Image<std::uint8_t>(gray.width(), gray.height(), gray.channels());
+  const auto from = gray.values();
+  auto to = work.bytes.values();
+  for (std::size_t i = 0; i < from.size(); ++i)
+    to[i] = static_cast<std::uint8_t>(std::min(255, (from[i] * 255 + white / 2) / white));
+  work.segment(work.bytes);
+  if (work.seen.reason.empty()) work.find_axis(gray, scale_of(gray, white));
+  return work.seen;
+}
+
+}  // namespace flexura

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/vision/threshold.h"
+
+namespace flexura {
+
+struct ArmFinderConfig {
+  ThresholdConfig threshold;
+  /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
+  /// lower one in the picture.
+  std::optional<Eigen::Vector2d> base;
+};
+
+/// A point of a median axis.
+struct AxisSample {
+  Eigen::Vector2d pixel = {0, 0};
+  Eigen::Vector2d normal = {0, 1};  ///< A unit vector: the direction from base to tip, turned from u to v.
+  double width = 0;                 ///< Between the borders along the normal, px.
+  double sigma = 0;                 ///< Standard deviation of `pixel` along the normal, px.
+  bool is_seen = false;             ///< Both borders are; otherwise what is near carries over.
+};
+
+enum class AxisEndKind {
+  free,    ///< The arm ends: `pixel` is where its sides do.
+  border,  ///< Cut by the picture's border.
+  lost,    ///< Its borders are seen no more.
+};
+const std::vector<std::string>& names_of(const AxisEndKind*);
+
+struct AxisEnd {
+  AxisEndKind kind = AxisEndKind::lost;
+  Eigen::Vector2d pixel = {0, 0};
+  /// How far the silhouette reaches beyond `pixel`, px: an end seen at an angle, or a round one.
+  double bulge = 0;
+  double sigma = 0;  ///< Of a free end: standard deviation of `pixel` along the axis, px.
+};
+
+/// What is seen of an arm in one picture.
+struct ArmSighting {
+  Threshold threshold;
+  std::string reason;              ///< Why there is no axis; "" when there is one.
+  std::vector<std::string> notes;  ///< What else there is to know of the picture.
+  std::vector<AxisSample> axis;    ///< From the base on, one or two pixels apart.
+  std::array<AxisEnd, 2> ends;     ///< Base and tip.
+  double blur = 0;                 ///< Of its borders as they are sampled, a standard deviation, px.
+  double noise = 0;                ///< Of the picture, a standard deviation, of 0 to 255.
+  double contrast = 0;             ///< Across its borders, of 0 to 255.
+  bool is_closed = false;          ///< The axis comes back to where it starts: it has no ends.
+  double covered = 0;              ///< The share of the silhouette that the axis and its widths explain.
+
+  [[nodiscard]] bool is_found() const { return !axis.empty(); }
+};
+
+/// Finds the arm in pictures: threshold, runs, components, then the tube's two borders, cross-section by
+/// cross-section, each to a small part of a pixel (docs/vision.md). Reused, it allocates no more. The same
+/// picture gives the same answer, whatever was seen before.
+class ArmFinder {
+ public:
+  explicit ArmFinder(ArmFinderConfig config = {});
+  ~ArmFinder();
+  ArmFinder(ArmFinder&&) noexcept;
+  ArmFinder& operator=(ArmFinder&&) noexcept;
+
+  /// Of a gray picture; valid until the next call. std::invalid_argument: more than one channel.
+  const ArmSighting& find(const Image<std::uint8_t>& gray);
+  /// Of one with more than 8 bits; brightness counts from 0 to `white`.
+  const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/vision/arm_finder.h"
+#include "flexura/vision/curve_smoother.h"
+#include "flexura/vision/tube_tracker.h"
+
+namespace flexura {
+
+/// Makes a smooth median axis of the cross-sections of a tube: normals from the curve itself, measured again
+/// along them, and smoothed as far as the noise allows. Reused, it allocates no more.
+class AxisCurve {
+ public:
+  /// Fills axis and ends of `seen`, in the order of the sections; false when no axis is left. `stops`: why
+  /// the sections end, at the first and the last one.
+  template <typename Value>
+  bool fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
+           std::vector<CrossSection>& sections, ArmSighting& seen);
+
+ private:
+  void load(std::span<const CrossSection> sections);
+  void smooth_by_noise(std::span<const CrossSection> sections, double step, double sigma);
+  void take(std::span<const CrossSection> sections, double step, double blur, double sigma,
+            std::vector<AxisSample>& axis);
+  void doubt_neighbours(std::vector<AxisSample>& axis);
+
+  CurveSmoother smoother_;
+  std::vector<CurveSmoother::Values> smooth_;
+  std::vector<double> weights_, strengths_;
+  std::vector<std::size_t> doubtful_;
+};
+
+extern template bool AxisCurve::fit(TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&,
+                                    std::vector<CrossSection>&, ArmSighting&);
+extern template bool AxisCurve::fit(TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&,
+                                    std::vector<CrossSection>&, ArmSighting&);
+
+}  // namespace flexura

@@ -1,0 +1,75 @@
+#include "flexura/vision/backbone_image.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d, Eigen::Vector3d;
+
+// The directions to the two borders of a sample; not finite where there are none.
+std::array<Vector3d, 2> directions(const Lens& lens, const AxisSample& sample) {
+  std::array<Vector3d, 2> result;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const double offset = (side == 0 ? 0.5 : -0.5) * sample.width;
+    const auto ray = lens.unproject(sample.pixel + offset * sample.normal);
+    result[side].setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (ray) result[side] = Vector3d(ray->x(), ray->y(), 1).normalized();
+  }
+  return result;
+}
+
+}  // namespace
+
+void to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
+  const std::size_t n = axis.size();
+  if (n < 3) return;
+  std::vector<std::array<Vector3d, 2>> borders;
+  borders.reserve(n);
+  for (const AxisSample& sample : axis) borders.push_back(directions(lens, sample));
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t last = i > 0 ? i - 1 : 0, next = i + 1 < n ? i + 1 : i;
+    const auto &here = borders[i], &before = borders[last], &after = borders[next];
+    const Vector3d first = after[0] - before[0], second = after[1] - before[1], tangent = first + second;
+    const Vector3d chord = here[0] - here[1];
+    // Both borders are seen under the same angle from the tangent's direction where they belong to one arc
+    // length: slide along them until the chord is square to the axis.
+    const double wanted = chord.dot(tangent) / tangent.squaredNorm();
+    const double most = 0.2 * chord.norm() / std::max(first.norm(), second.norm());
+    // Where the width is not measured, nothing can be said of it.
+    const bool is_measured = axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
+    const double slide = is_measured ? std::clamp(wanted, -most, most) : 0;
+    const Vector3d middle = here[0] - slide * first + here[1] + slide * second;
+    if (!middle.allFinite()) continue;
+    if (const auto pixel = lens.project(middle)) axis[i].pixel = *pixel;
+  }
+}
+
+std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {
+  if (!(radius > 0) || !std::isfinite(radius))
+    throw std::invalid_argument(fmt::format("a radius of {} m: expected one above 0", radius));
+  std::vector<double> depths;
+  depths.reserve(axis.size());
+  for (const AxisSample& sample : axis) {
+    const auto [first, second] = directions(lens, sample);
+    // Chord of the directions = 2 r sqrt(1 - (r/D)^2) / distance of the touching points.
+    const double near = 2 * radius / (first - second).norm(), share = radius / near;
+    const double touching = near * std::sqrt(std::max(0.0, 1 - share * share));
+    const double distance = std::hypot(touching, radius);
+    depths.push_back(distance * (first + second).normalized().z());
+  }
+  return depths;
+}
+
+}  // namespace flexura

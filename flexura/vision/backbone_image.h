@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "flexura/camera/intrinsics.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// Moves a median axis to where the backbone is seen, exactly so for a tube of constant radius: the two
+/// planes through the camera that touch the tube at arc length s lie evenly to both sides of the plane that
+/// holds the camera and the backbone's tangent at s, so the backbone's direction is half-way between those of
+/// the two borders, on the sphere around the camera and not in the picture (docs/vision.md). Samples that the
+/// lens shows nowhere stay. Fewer than 3 samples stay as they are.
+void to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
+
+/// The depth of the backbone at each sample of such an axis, along the optical axis, m, from the tube's width
+/// and its radius, m: to first order in radius over distance squared. Not a number where the lens shows
+/// nothing. std::invalid_argument: a radius that is not positive.
+[[nodiscard]] std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis,
+                                                  double radius);
+
+}  // namespace flexura

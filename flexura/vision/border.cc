@@ -1,0 +1,131 @@
+#include "flexura/vision/border.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "flexura/vision/edge_finder.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+
+// The picture's gradient at a pixel, over 5 x 5 pixels.
+Vector2d gradient(const Image<std::uint8_t>& gray, int u, int v) {
+  Vector2d sum = Vector2d::Zero();
+  for (int j = -2; j <= 2; ++j) {
+    for (int i = -2; i <= 2; ++i) {
+      const double value =
+          gray.at(std::clamp(u + i, 0, gray.width() - 1), std::clamp(v + j, 0, gray.height() - 1));
+      sum += value * Vector2d(i, j) * std::exp(-0.4 * (i * i + j * j));
+    }
+  }
+  return sum;
+}
+
+// Follows the outer border of a component once around (M. J. Moore's neighbours, with J. Jacob's stop).
+std::vector<std::pair<int, int>> trace(const Components& components, std::uint32_t component) {
+  constexpr std::array<std::pair<int, int>, 8> ring = {
+      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  const auto is_own = [&](int u, int v) {
+    const Run* run = components.run_at(u, v);
+    return run != nullptr && run->component == component;
+  };
+  const Run& first = components.runs[components.list[component].first_run];
+  std::vector<std::pair<int, int>> pixels;
+  int u = first.first, v = first.v, from = 4;  // Came from the left, where the ground is.
+  const std::size_t most = 8 * static_cast<std::size_t>(components.list[component].area) + 8;
+  int first_way = -1;
+  while (pixels.size() < most) {
+    int way = -1;
+    for (int k = 1; k <= 8; ++k) {
+      const int next = (from + k) % 8;
+      const auto [du, dv] = ring[static_cast<std::size_t>(next)];
+      if (is_own(u + du, v + dv)) {
+        way = next;
+        break;
+      }
+    }
+    if (way < 0) return {{u, v}};
+    if (u == first.first && v == first.v) {
+      if (way == first_way) break;
+      if (first_way < 0) first_way = way;
+    }
+    pixels.emplace_back(u, v);
+    u += ring[static_cast<std::size_t>(way)].first, v += ring[static_cast<std::size_t>(way)].second;
+    from = (way + 4) % 8;
+  }
+  return pixels;
+}
+
+}  // namespace
+
+void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
+                 std::uint32_t component, double blur, std::vector<BorderPoint>& border) {
+  border.clear();
+  BlurredSteps steps;
+  const int sign = threshold.figure == Figure::dark ? 1 : -1;
+  const EdgeFinder<std::uint8_t> edges(gray, sign, steps);
+  const double contrast = threshold.bright - threshold.dark;
+  std::vector<std::pair<int, int>> pixels = trace(components, component);
+  // A pixel is passed twice where the figure is a pixel wide.
+  std::ranges::sort(pixels);
+  const auto repeated = std::ranges::unique(pixels);
+  pixels.erase(repeated.begin(), repeated.end());
+  for (const auto& [u, v] : pixels) {
+    const Vector2d slope = sign * gradient(gray, u, v);
+    if (!(slope.norm() > 0)) continue;
+    const Vector2d normal = slope.normalized();
+    double offset = 0;
+    for (int round = 0; round < 6; ++round) {
+      const auto fit = edges.look(Vector2d(u, v) + offset * normal, normal, blur, 6);
+      if (!fit || fit->contrast < 0.35 * contrast || std::abs(offset) > 2 + blur) break;
+      offset += std::clamp(fit->offset, -1.0, 1.0);
+      if (std::abs(fit->offset) > 0.1) continue;
+      if (fit->residual < 0.12 * fit->contrast + 2)
+        border.push_back({Vector2d(u, v) + offset * normal, normal, fit->contrast});
+      break;
+    }
+  }
+}
+
+FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConfig& config) {
+  FigureBorder result;
+  Components components;
+  result.threshold = segment(gray, config, components);
+  result.reason = result.threshold.reason;
+  if (!result.reason.empty()) return result;
+  // The largest that does not touch the picture's border; if all do, the largest.
+  std::size_t best = components.list.size();
+  const auto key = [&](std::size_t i) {
+    return std::pair(components.list[i].on_border == 0, components.list[i].area);
+  };
+  for (std::size_t i = 0; i < components.list.size(); ++i)
+    if (components.list[i].area >= 24 && (best == components.list.size() || key(i) > key(best))) best = i;
+  if (best == components.list.size()) {
+    result.reason = "there is no figure of at least 24 px";
+    return result;
+  }
+  result.area = components.list[best].area;
+  result.touches_border = components.list[best].on_border > 0;
+  // The blur that leaves most of the border and least of the picture unexplained.
+  std::size_t most = 0;
+  std::vector<BorderPoint> border;
+  for (const double blur : {0.5, 0.6, 0.75, 0.9, 1.1, 1.4, 1.8, 2.4, 3.2}) {
+    find_border(gray, result.threshold, components, static_cast<std::uint32_t>(best), blur, border);
+    if (border.size() <= most + most / 50) continue;
+    most = border.size();
+    result.points = border, result.blur = blur;
+  }
+  if (result.points.empty()) result.reason = "the largest figure has no sharp border";
+  return result;
+}
+
+}  // namespace flexura

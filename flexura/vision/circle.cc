@@ -1,0 +1,148 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/vision/conic.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
+constexpr double pi = std::numbers::pi;
+
+// Of chi-square with two degrees of freedom: exceeded in 1 of 100 cases; and how far off its centre it has to
+// be to be exceeded in 9 of 10.
+constexpr double chi_square_bound = 9.21, noncentrality = 17.43;
+
+// Points are taken relative to their mean and of size 1.
+struct Normalized {
+  Vector2d mean = Vector2d::Zero();
+  double size = 0;
+};
+
+Normalized normalized(std::span<const Vector2d> points) {
+  Normalized result;
+  for (const Vector2d& point : points) result.mean += point / static_cast<double>(points.size());
+  for (const Vector2d& point : points) result.size = std::max(result.size, (point - result.mean).norm());
+  return result;
+}
+
+// A z + B x + C y + D = 0 with z = x^2 + y^2 that minimizes its square sum under B^2 + C^2 - 4 A D = 1: the
+// generalized eigenvector of the smallest eigenvalue that is not negative.
+std::optional<Vector3d> pratt(std::span<const Vector2d> points, const Normalized& unit) {
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  for (const Vector2d& point : points) {
+    const Vector2d p = (point - unit.mean) / unit.size;
+    const Eigen::Vector4d row(p.squaredNorm(), p.x(), p.y(), 1);
+    moments += row * row.transpose();
+  }
+  Eigen::Matrix4d inverse_bound = Eigen::Matrix4d::Zero();
+  inverse_bound(0, 3) = inverse_bound(3, 0) = -0.5;
+  inverse_bound(1, 1) = inverse_bound(2, 2) = 1;
+  const Eigen::EigenSolver<Eigen::Matrix4d> solver(inverse_bound * moments);
+  double least = 1e300;
+  std::optional<Eigen::Vector4d> best;
+  for (int i = 0; i < 4; ++i) {
+    const double value = solver.eigenvalues()[i].real();
+    if (std::abs(solver.eigenvalues()[i].imag()) > 1e-9 || value < -1e-9 || value >= least) continue;
+    least = value, best = solver.eigenvectors().col(i).real();
+  }
+  if (!best || std::abs((*best)[0]) < 1e-9 * best->norm()) return std::nullopt;
+  const Vector2d center = -best->segment<2>(1) / (2 * (*best)[0]);
+  const double squared = center.squaredNorm() - (*best)[3] / (*best)[0];
+  if (!(squared > 0)) return std::nullopt;
+  return Vector3d(center.x(), center.y(), std::sqrt(squared));
+}
+
+// The largest gap between directions from the centre is what the points leave of the circle.
+double arc_of(std::span<const Vector2d> points, const Vector2d& center) {
+  std::vector<double> angles;
+  angles.reserve(points.size());
+  for (const Vector2d& point : points)
+    angles.push_back(std::atan2(point.y() - center.y(), point.x() - center.x()));
+  std::ranges::sort(angles);
+  double gap = angles.front() + 2 * pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+  // A gap no wider than the points are apart is none.
+  return gap < 3 * 2 * pi / static_cast<double>(angles.size()) ? 2 * pi : 2 * pi - gap;
+}
+
+// A circle tilted by tau shows as radius (1 - tau^2/4 + tau^2/4 cos 2 (phi - phi0)): what the circle's own
+// unknowns leave of the second harmonic carries the test.
+void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit) {
+  Matrix3d own = Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 2> mixed = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix2d harmonic = Eigen::Matrix2d::Zero();
+  Vector3d own_left = Vector3d::Zero();
+  Vector2d left = Vector2d::Zero();
+  for (const Vector2d& point : points) {
+    const Vector2d way = point - fit.center;
+    const double phi = std::atan2(way.y(), way.x()), distance = way.norm() - fit.radius;
+    const Vector3d unknowns(std::cos(phi), std::sin(phi), 1);
+    const Vector2d second(std::cos(2 * phi), std::sin(2 * phi));
+    own += unknowns * unknowns.transpose(), mixed += unknowns * second.transpose();
+    harmonic += second * second.transpose();
+    own_left += distance * unknowns, left += distance * second;
+  }
+  const Eigen::LDLT<Matrix3d> solver(own);
+  const Eigen::Matrix2d gram = harmonic - mixed.transpose() * solver.solve(mixed);
+  const Vector2d gradient = left - mixed.transpose() * solver.solve(own_left);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gram);
+  const double least = std::max(0.0, eigen.eigenvalues()[0]);
+  double statistic = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (eigen.eigenvalues()[i] < 1e-12 * static_cast<double>(points.size())) continue;
+    statistic += std::pow(eigen.eigenvectors().col(i).dot(gradient), 2) / eigen.eigenvalues()[i];
+  }
+  fit.is_verified = statistic <= chi_square_bound * sigma * sigma;
+  const double amplitude = least > 0 ? sigma * std::sqrt(noncentrality / least) : fit.radius;
+  const double tilt = 2 * std::sqrt(amplitude / fit.radius);
+  fit.detectable_tilt = tilt < 0.5 * pi ? tilt : 0.5 * pi;
+}
+
+}  // namespace
+
+std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optional<double> sigma) {
+  if (points.size() < 3) return std::nullopt;
+  const Normalized unit = normalized(points);
+  if (!(unit.size > 0) || !std::isfinite(unit.size)) return std::nullopt;
+  const auto start = pratt(points, unit);
+  if (!start || start->tail<1>()[0] > 1e4) return std::nullopt;
+  CircleFit fit;
+  fit.center = unit.mean + unit.size * start->head<2>(), fit.radius = unit.size * (*start)[2];
+  Matrix3d normal = Matrix3d::Zero();
+  double squares = 0;
+  for (int round = 0; round < 50; ++round) {
+    Vector3d gradient = Vector3d::Zero();
+    normal.setZero(), squares = 0;
+    for (const Vector2d& point : points) {
+      const Vector2d way = point - fit.center;
+      const double distance = way.norm(), miss = distance - fit.radius;
+      const Vector2d direction = distance > 0 ? Vector2d(way / distance) : Vector2d(1, 0);
+      const Vector3d row(-direction.x(), -direction.y(), -1);
+      normal += row * row.transpose(), gradient += miss * row, squares += miss * miss;
+    }
+    const Vector3d step = -normal.ldlt().solve(gradient);
+    if (!step.allFinite()) return std::nullopt;
+    fit.center += step.head<2>(), fit.radius += step[2];
+    if (step.norm() < 1e-10 * unit.size) break;
+  }
+  if (!(fit.radius > 0) || !fit.center.allFinite()) return std::nullopt;
+  const auto count = static_cast<double>(points.size());
+  fit.rms = std::sqrt(squares / count);
+  const double spread = sigma.value_or(count > 3 ? std::sqrt(squares / (count - 3)) : 0);
+  fit.covariance = spread * spread * normal.inverse();
+  fit.arc = arc_of(points, fit.center);
+  // Five points or fewer lie on an ellipse whatever they are.
+  constexpr std::size_t decided = 6;
+  fit.detectable_tilt = 0.5 * pi;
+  if (points.size() >= decided) test_circle(points, std::max(spread, 1e-9 * fit.radius), fit);
+  return fit;
+}
+
+}  // namespace flexura

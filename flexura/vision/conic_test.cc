@@ -1,0 +1,162 @@
+#include "flexura/vision/conic.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+constexpr double pi = std::numbers::pi;
+
+double normal_noise(TestRandom& random) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) sum += random.uniform(0, 1);
+  return sum;
+}
+
+/// The image of a circle of radius 1 from 5 away at focal length 1000, the camera having gone around it by
+/// `tilt`.
+std::vector<Vector2d> orbit_picture(double tilt, double from, double to, int count) {
+  std::vector<Vector2d> points;
+  for (int i = 0; i < count; ++i) {
+    const double phi = from + (to - from) * i / count;
+    const double x = std::cos(phi), y = std::sin(phi);
+    const double depth = 5 + y * std::sin(tilt);
+    points.emplace_back(1000 * x / depth, 1000 * y * std::cos(tilt) / depth);
+  }
+  return points;
+}
+
+TEST(Circle, IsFoundWithItsCovariance) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Vector2d center = random.vector<2>(-300, 300);
+    const double radius = random.uniform(20, 400), from = random.uniform(0, 6), arc = random.uniform(1, 6.2);
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    constexpr int trials = 60;
+    for (int k = 0; k < trials; ++k) {
+      std::vector<Vector2d> points;
+      for (int i = 0; i < 80; ++i) {
+        const double phi = from + arc * i / 79, r = radius + 0.1 * normal_noise(random);
+        points.emplace_back(center + r * Vector2d(std::cos(phi), std::sin(phi)));
+      }
+      const auto fit = fit_circle(points, 0.1);
+      ASSERT_TRUE(fit);
+      EXPECT_NEAR(fit->arc, arc, 0.15);
+      const Eigen::Vector3d miss(fit->center.x() - center.x(), fit->center.y() - center.y(),
+                                 fit->radius - radius);
+      squares += miss.cwiseAbs2() / trials;
+      covariance = fit->covariance;
+    }
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(squares[i] / covariance(i, i), 1, 0.75) << i;
+  });
+}
+
+TEST(Circle, OfAnOrbitingCameraIsOffByWhatGeometrySays) {
+  for (const auto& [degrees, worst] : {std::pair{1.0, 0.015}, {5.0, 0.37}, {10.0, 1.49}}) {
+    const auto points = orbit_picture(degrees * pi / 180, 0, 2 * pi, 720);
+    const auto fit = fit_circle(points);
+    ASSERT_TRUE(fit);
+    double largest = 0;
+    for (const Vector2d& point : points)
+      largest = std::max(largest, std::abs((point - fit->center).norm() - fit->radius));
+    EXPECT_NEAR(largest, worst, 0.03 * worst + 0.001);
+  }
+  const auto arc = orbit_picture(10 * pi / 180, 0, pi / 6, 60);
+  const auto fit = fit_circle(arc);
+  ASSERT_TRUE(fit);
+  double largest = 0;
+  for (const Vector2d& point : arc)
+    largest = std::max(largest, std::abs((point - fit->center).norm() - fit->radius));
+  EXPECT_LT(largest, 0.02);  // of 10 degrees of tilt nothing is left
+}
+
+TEST(Circle, TestSeesTheTiltThatItSaysItSeesAndLittleLess) {
+  TestRandom random(5);
+  for (const double arc : {2 * pi, pi, pi / 2}) {
+    const auto seen = [&](double tilt, int trials) {
+      int count = 0;
+      for (int k = 0; k < trials; ++k) {
+        auto points = orbit_picture(tilt, 0.3, 0.3 + arc, 200);
+        for (Vector2d& point : points) point += 0.1 * Vector2d(normal_noise(random), normal_noise(random));
+        count += fit_circle(points, 0.1)->is_verified ? 0 : 1;
+      }
+      return static_cast<double>(count) / trials;
+    };
+    const double tilt = fit_circle(orbit_picture(0, 0.3, 0.3 + arc, 200), 0.1)->detectable_tilt;
+    EXPECT_GT(seen(tilt, 200), 0.8) << arc;
+    EXPECT_LT(seen(0, 400), 0.04) << arc;
+    EXPECT_LT(seen(0.3 * tilt, 200), 0.3) << arc;
+  }
+  EXPECT_GT(fit_circle(orbit_picture(0, 0, pi / 6, 200), 0.1)->detectable_tilt, 0.3);
+}
+
+TEST(Ellipse, IsFoundWithItsCovariance) {
+  for_random_cases(20, [](TestRandom& random) {
+    EllipseFit truth;
+    truth.center = random.vector<2>(0, 600);
+    truth.semi_axes = {random.uniform(60, 300), random.uniform(20, 55)};
+    truth.angle = random.uniform(-1.5, 1.5);
+    Eigen::Matrix<double, 5, 1> squares = Eigen::Matrix<double, 5, 1>::Zero();
+    Eigen::Matrix<double, 5, 5> covariance;
+    constexpr int trials = 60;
+    for (int k = 0; k < trials; ++k) {
+      std::vector<Vector2d> points;
+      for (int i = 0; i < 150; ++i) {
+        const double t = 2 * pi * i / 150;
+        const Vector2d local(truth.semi_axes.x() * std::cos(t), truth.semi_axes.y() * std::sin(t));
+        const Vector2d point = truth.center + Eigen::Rotation2Dd(truth.angle) * local;
+        points.emplace_back(point + 0.1 * Vector2d(normal_noise(random), normal_noise(random)));
+      }
+      const auto fit = fit_ellipse(points);
+      ASSERT_TRUE(fit);
+      EXPECT_NEAR(fit->rms, 0.1, 0.03);
+      Eigen::Matrix<double, 5, 1> miss;
+      miss << fit->center - truth.center, fit->semi_axes - truth.semi_axes, fit->angle - truth.angle;
+      squares += miss.cwiseAbs2() / trials;
+      covariance = fit->covariance;
+    }
+    for (int i = 0; i < 5; ++i) EXPECT_NEAR(squares[i] / covariance(i, i), 1, 0.75) << i;
+  });
+}
+
+TEST(Ellipse, DistanceIsToTheNearestPoint) {
+  for_random_cases(50, [](TestRandom& random) {
+    EllipseFit ellipse;
+    ellipse.semi_axes = {random.uniform(10, 50), random.uniform(2, 10)};
+    ellipse.angle = random.uniform(-1.5, 1.5);
+    const Vector2d point = random.vector<2>(-60, 60);
+    double nearest = 1e9;
+    for (int i = 0; i < 20000; ++i) {
+      const double t = 2 * pi * i / 20000;
+      const Vector2d local(ellipse.semi_axes.x() * std::cos(t), ellipse.semi_axes.y() * std::sin(t));
+      nearest = std::min(nearest, (Eigen::Rotation2Dd(ellipse.angle) * local - point).norm());
+    }
+    EXPECT_NEAR(std::abs(distance_to(ellipse, point)), nearest, 1e-3);
+  });
+}
+
+TEST(Circle, OfFewPointsProvesNothing) {
+  const auto fit = fit_circle(std::vector<Vector2d>{{0, 0}, {10, 0}, {3, 8}});
+  ASSERT_TRUE(fit);
+  EXPECT_FALSE(fit->is_verified);
+  EXPECT_DOUBLE_EQ(fit->detectable_tilt, 0.5 * std::numbers::pi);
+}
+
+TEST(Conics, OfTooFewPointsOrALineAreNone) {
+  const std::vector<Vector2d> line = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}, {6, 6}};
+  EXPECT_FALSE(fit_circle(line));
+  EXPECT_FALSE(fit_ellipse(line));
+  EXPECT_FALSE(fit_circle(std::vector<Vector2d>{{0, 0}, {1, 0}}));
+  EXPECT_FALSE(fit_ellipse(std::vector<Vector2d>(5, Vector2d(1, 2))));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// A coloured band around the arm, or a spot on it.
+struct MarkerSighting {
+  /// A band: where the backbone is seen in its middle. A spot: its middle on the axis.
+  Eigen::Vector2d pixel = {0, 0};
+  double along = 0;   ///< Way along the axis from its first sample, px.
+  double length = 0;  ///< Along the axis, px.
+  double sigma = 0;   ///< Standard deviation of `along`, px.
+  /// How far the band's front bulges along the axis, in half widths of the arm: the sine of the angle by
+  /// which the arm is turned out of the picture's plane, positive where it comes towards the camera from base
+  /// to tip.
+  double bulge = 0;
+  Eigen::Vector3d color = {
+      0, 0, 0};         ///< Red, green, blue of its middle, of 0 to 255; a gray picture's three times.
+  bool is_band = true;  ///< Seen across the arm; otherwise a spot.
+  /// Much longer than others of its kind nearby: probably two in one.
+  bool may_be_merged = false;
+};
+
+struct MarkerSightings {
+  std::vector<MarkerSighting> markers;  ///< From the base on.
+  std::vector<std::string> notes;       ///< Of gaps where one may be missing, and what was left out.
+};
+
+/// The markers along an arm that was found in `picture` (gray, or red, green, blue): what differs from the
+/// arm's own colour. In a gray picture bands show by their brightness.
+[[nodiscard]] MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm);
+
+}  // namespace flexura

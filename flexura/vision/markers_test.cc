@@ -1,0 +1,137 @@
+#include "flexura/vision/markers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "flexura/vision/backbone_image.h"
+#include "flexura/vision/picture_file.h"
+#include "tests/support/seen_arms.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+const Color red = {0.85, 0.1, 0.1}, green = {0.1, 0.6, 0.1};
+
+std::vector<MarkerRing> even_bands(double step) {
+  std::vector<MarkerRing> bands;
+  for (double s = 0.08; s < 0.75; s += step) bands.push_back({s - 0.008, s + 0.008, red});
+  return bands;
+}
+
+// An arm of 0.8 m, slightly bent, all in view, with these bands.
+class BandedPicture {
+ public:
+  explicit BandedPicture(const std::vector<MarkerRing>& bands) {
+    BentArm bent;
+    bent.arm.kind = ArmKind::spatial;
+    for (int i = 0; i < 2; ++i) bent.arm.sections.push_back({.length = 0.4, .radius = {0.02, 0.02}});
+    bent.state = ArmState::straight(2);
+    bent.state.bends = {{0, 0.5}, {0.2, -0.4}};
+    scene.background = Color::Constant(0.85);
+    scene.arm.tube = tube_of(bent.arm, bent.backbone());
+    scene.arm.albedo = {0.08, 0.08, 0.09};
+    scene.arm.markers = bands;
+    options.color = true;
+    view = pinhole_view(look_at({0, 0.4, 1.6}, {0, 0.4, 0}), options.width, options.height, 800);
+    picture = photograph(scene, view, options, 1);
+  }
+
+  [[nodiscard]] MarkerSightings found() const {
+    ArmFinder finder;
+    ArmSighting arm = finder.find(gray_picture(picture));
+    EXPECT_TRUE(arm.is_found()) << arm.reason;
+    to_backbone_image(view.lens, arm.axis);
+    return find_markers(picture, arm);
+  }
+  // Where the middle of band i is seen.
+  [[nodiscard]] Eigen::Vector2d middle(std::size_t i) const {
+    Renderer renderer;
+    renderer.prepare(scene, view);
+    const MarkerRing& ring = scene.arm.markers[i];
+    const std::vector<double> place = {0.5 * (ring.s_from + ring.s_to)};
+    return projected_axis(renderer, place).front().pixel.value();
+  }
+
+  SeenArmOptions options;
+  Scene scene;
+  View view;
+  Image<std::uint8_t> picture;
+};
+
+TEST(Markers, AreFoundInOrderToAFewTenthsOfAPixel) {
+  const BandedPicture seen(even_bands(0.09));
+  const MarkerSightings found = seen.found();
+  ASSERT_EQ(found.markers.size(), seen.scene.arm.markers.size());
+  EXPECT_TRUE(found.notes.empty());
+  for (std::size_t i = 0; i < found.markers.size(); ++i) {
+    EXPECT_TRUE(found.markers[i].is_band);
+    EXPECT_FALSE(found.markers[i].may_be_merged);
+    EXPECT_LT((found.markers[i].pixel - seen.middle(i)).norm(), 0.4) << i;
+    EXPECT_GT(found.markers[i].color.x(), 2 * found.markers[i].color.y());
+  }
+}
+
+TEST(Markers, AMissingOneIsNotedWhereItIsMissing) {
+  std::vector<MarkerRing> bands = even_bands(0.09);
+  bands.erase(bands.begin() + 3);
+  const MarkerSightings found = BandedPicture(bands).found();
+  ASSERT_EQ(found.markers.size(), bands.size());
+  ASSERT_EQ(found.notes.size(), 1U);
+  EXPECT_THAT(found.notes.front(), HasSubstr("between markers 3 and 4"));
+}
+
+TEST(Markers, TwoThatRunTogetherAreOneThatIsMarked) {
+  std::vector<MarkerRing> bands = even_bands(0.09);
+  bands.insert(bands.begin() + 5, {bands[4].s_to, bands[4].s_to + 0.024, red});
+  const MarkerSightings found = BandedPicture(bands).found();
+  ASSERT_EQ(found.markers.size(), bands.size() - 1);
+  for (std::size_t i = 0; i < found.markers.size(); ++i)
+    EXPECT_EQ(found.markers[i].may_be_merged, i == 4) << i;
+}
+
+TEST(Markers, TwoOfOtherColoursThatTouchAreNotMixed) {
+  std::vector<MarkerRing> bands = even_bands(0.18);
+  bands[2].albedo = green;
+  const MarkerSightings found = BandedPicture(bands).found();
+  ASSERT_EQ(found.markers.size(), bands.size());
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const Eigen::Vector3d& color = found.markers[i].color;
+    EXPECT_EQ(color.y() > color.x(), i == 2) << color.transpose();
+  }
+}
+
+// Paints a disc of `radius` px around a place of the picture.
+void paint(Image<std::uint8_t>& picture, const Eigen::Vector2d& at, double radius) {
+  for (int v = 0; v < picture.height(); ++v)
+    for (int u = 0; u < picture.width(); ++u)
+      if (std::hypot(u - at.x(), v - at.y()) < radius) picture.at(u, v, 0) = 200;
+}
+
+TEST(Markers, SpeckOnTheArmIsNoBand) {
+  BandedPicture seen(even_bands(0.18));
+  // Between the second and the third band; half as wide as the arm is across.
+  paint(seen.picture, 0.5 * (seen.middle(1) + seen.middle(2)), 4);
+  const MarkerSightings found = seen.found();
+  std::size_t bands = 0;
+  for (const MarkerSighting& marker : found.markers) bands += marker.is_band ? 1 : 0;
+  EXPECT_EQ(bands, seen.scene.arm.markers.size());
+}
+
+TEST(Markers, WhatIsBesideTheArmIsNone) {
+  BandedPicture seen(even_bands(0.18));
+  for (std::size_t i = 0; i < 2; ++i) paint(seen.picture, seen.middle(i) + Eigen::Vector2d(45, 5), 6);
+  const MarkerSightings found = seen.found();
+  EXPECT_EQ(found.markers.size(), seen.scene.arm.markers.size());
+}
+
+TEST(Markers, APlainArmHasNone) { EXPECT_TRUE(BandedPicture({}).found().markers.empty()); }
+
+}  // namespace
+}  // namespace flexura

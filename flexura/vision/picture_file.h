@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "flexura/base/image.h"
+
+namespace flexura {
+
+/// A picture from a file: gray or red, green, blue.
+struct Photograph {
+  Image<std::uint8_t> bytes;   ///< Always; of more than 8 bits the upper ones.
+  Image<std::uint16_t> words;  ///< Empty for 8 bits; values from 0 to `white`, of hot pixels more.
+  int white = 255;
+  /// It has two values only: `bytes` has 0 and 255 for them, blurred by a pixel.
+  bool is_mask = false;
+};
+
+/// Larger pictures are refused, px.
+inline constexpr std::int64_t most_pixels = std::int64_t{1} << 27;
+
+/// Reads what OpenCV's imgcodecs reads (PNG, JPEG, TIFF, BMP, PNM, WebP, ...), 8 or 16 bits; a transparent
+/// part counts as it is coloured. Throws InputError, with `name` for its source: not a picture, cut short, of
+/// another depth, too large.
+[[nodiscard]] Photograph decode_picture(std::span<const std::uint8_t> file, const std::string& name);
+
+/// The brightness of a picture: 0.2126 red + 0.7152 green + 0.0722 blue.
+[[nodiscard]] Image<std::uint8_t> gray_picture(const Image<std::uint8_t>& picture);
+[[nodiscard]] Image<std::uint16_t> gray_picture(const Image<std::uint16_t>& picture);
+
+}  // namespace flexura

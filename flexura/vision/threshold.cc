@@ -1,0 +1,233 @@
+#include "flexura/vision/threshold.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace flexura {
+namespace {
+
+// Two classes nearer than this are none: noise, or a shaded screen.
+constexpr double least_contrast = 10;
+
+// Pixels counted side by side in one place. (Longer stretches cost less, but fewer of them miss thin arms.)
+constexpr std::size_t stretch = 16;
+
+// Sums over a histogram up to and with each brightness.
+struct Moments {
+  double count = 0, sum = 0, squares = 0;
+
+  void add(double brightness, double times) {
+    count += times;
+    sum += times * brightness;
+    squares += times * brightness * brightness;
+  }
+  [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0; }
+  [[nodiscard]] double deviations() const { return count > 0 ? squares - sum * sum / count : 0; }
+};
+
+Moments moments(const Histogram& histogram, std::size_t first, std::size_t last) {
+  Moments result;
+  for (std::size_t i = first; i < last; ++i) result.add(static_cast<double>(i), histogram[i]);
+  return result;
+}
+
+// The last brightness of the dark class. Where several are as good, the middle of them: a threshold between
+// two far modes then stands half-way.
+double otsu_split(const Histogram& histogram) {
+  const Moments all = moments(histogram, 0, 256);
+  Moments dark;
+  double best = -1, first = 0, last = 0;
+  for (std::size_t i = 0; i < 255; ++i) {
+    dark.add(static_cast<double>(i), histogram[i]);
+    if (dark.count == 0 || dark.count == all.count) continue;
+    const double between = dark.sum / dark.count - (all.sum - dark.sum) / (all.count - dark.count);
+    const double variance = dark.count * (all.count - dark.count) * between * between;
+    if (variance > best) best = variance, first = static_cast<double>(i);
+    if (variance >= best) last = static_cast<double>(i);
+  }
+  return best < 0 ? 127 : std::floor(0.5 * (first + last));
+}
+
+// Smoothed until two peaks are left (J. M. S. Prewitt, M. L. Mendelsohn, 1966); the lowest place between
+// them.
+double valley_split(const Histogram& histogram) {
+  std::array<double, 256> smooth{}, next{};
+  std::ranges::copy(histogram, smooth.begin());
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<std::size_t> peaks;
+    for (std::size_t i = 0; i < 256; ++i) {
+      const double before = i > 0 ? smooth[i - 1] : -1, after = i < 255 ? smooth[i + 1] : -1;
+      if (smooth[i] > before && smooth[i] >= after && smooth[i] > 0) peaks.push_back(i);
+    }
+    if (peaks.size() < 2) break;
+    if (peaks.size() == 2) {
+      const auto valley = std::min_element(smooth.begin() + static_cast<std::ptrdiff_t>(peaks[0]),
+                                           smooth.begin() + static_cast<std::ptrdiff_t>(peaks[1]));
+      return static_cast<double>(valley - smooth.begin());
+    }
+    for (std::size_t i = 0; i < 256; ++i)
+      next[i] = (smooth[i > 0 ? i - 1 : 0] + smooth[i] + smooth[i < 255 ? i + 1 : 255]) / 3;
+    smooth = next;
+  }
+  return otsu_split(histogram);
+}
+
+std::string reason_against(const Histogram& histogram, const Threshold& found, double count) {
+  if (count == 0) return "the picture has no pixels";
+  for (const std::size_t end : {std::size_t{0}, std::size_t{255}}) {
+    if (histogram[end] < 0.995 * count) continue;
+    return fmt::format("the picture is {}: {:.4g} % of it is {}", end == 0 ? "black" : "saturated",
+                       100 * histogram[end] / count, end == 0 ? 0 : 255);
+  }
+  const double contrast = found.bright - found.dark;
+  if (contrast < std::max(least_contrast, 3 * found.spread)) {
+    return fmt::format(
+        "the picture is blank: no two brightnesses stand apart (means {:.1f} and {:.1f}, "
+        "spread {:.1f})",
+        found.dark, found.bright, found.spread);
+  }
+  return "";
+}
+
+// What the outermost pixels mostly are is ground.
+Figure figure_of(const Image<std::uint8_t>& gray, double level) {
+  std::size_t bright = 0, count = 0;
+  const auto look = [&](int u, int v) { ++count, bright += gray.at(u, v) > level ? 1 : 0; };
+  for (int u = 0; u < gray.width(); ++u) look(u, 0), look(u, gray.height() - 1);
+  for (int v = 0; v < gray.height(); ++v) look(0, v), look(gray.width() - 1, v);
+  return 2 * bright >= count ? Figure::dark : Figure::bright;
+}
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const ThresholdMethod*) {
+  static const std::vector<std::string> names = {"otsu", "two_mode", "fixed", "by_block"};
+  return names;
+}
+
+const std::vector<std::string>& names_of(const Figure*) {
+  static const std::vector<std::string> names = {"dark", "bright"};
+  return names;
+}
+
+Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples) {
+  // Four counters a brightness: neighbours are alike, and one counter would have to wait for itself.
+  std::array<Histogram, 4> counts{};
+  const auto values = gray.values();
+  const std::size_t step =
+      stretch * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(samples, 1));
+  // A step that shares no rhythm with the rows.
+  const std::size_t odd_step = step == stretch ? stretch : step + (step / stretch % 2 == 0 ? 3 : 5);
+  for (std::size_t from = 0; from < values.size(); from += odd_step) {
+    const std::size_t to = std::min(from + stretch, values.size());
+    for (std::size_t i = from; i < to; ++i) ++counts[i % 4][values[i]];
+  }
+  Histogram sum{};
+  for (std::size_t i = 0; i < 256; ++i) sum[i] = counts[0][i] + counts[1][i] + counts[2][i] + counts[3][i];
+  return sum;
+}
+
+Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config) {
+  Threshold found;
+  found.method = config.method;
+  found.level = config.level;
+  if (config.method == ThresholdMethod::two_mode) found.level = valley_split(histogram) + 0.5;
+  if (config.method == ThresholdMethod::otsu || config.method == ThresholdMethod::by_block)
+    found.level = otsu_split(histogram) + 0.5;
+  const auto split = static_cast<std::size_t>(std::clamp(std::floor(found.level) + 1, 0.0, 256.0));
+  const Moments dark = moments(histogram, 0, split), bright = moments(histogram, split, 256);
+  found.dark = dark.mean(), found.bright = bright.mean();
+  if (dark.count == 0) found.dark = found.bright;
+  if (bright.count == 0) found.bright = found.dark;
+  const double count = dark.count + bright.count;
+  found.spread = count > 0 ? std::sqrt(std::max(0.0, dark.deviations() + bright.deviations()) / count) : 0;
+  found.reason = reason_against(histogram, found, count);
+  return found;
+}
+
+Threshold threshold_of(const Image<std::uint8_t>& gray, const ThresholdConfig& config, std::size_t samples) {
+  Threshold found = threshold_of(histogram_of(gray, samples), config);
+  if (found.reason.empty()) found.figure = config.figure.value_or(figure_of(gray, found.level));
+  return found;
+}
+
+void BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
+                           const Threshold& whole) {
+  block_ = std::max(8, config.block);
+  columns_ = (gray.width() + block_ - 1) / block_, rows_ = (gray.height() + block_ - 1) / block_;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  levels_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), none);
+  // A block is looked at with half of each neighbour: one wholly within the figure still sees ground.
+  for (int j = 0; j < rows_; ++j) {
+    for (int i = 0; i < columns_; ++i) {
+      Histogram histogram{};
+      const int v0 = std::max(0, j * block_ - block_ / 2), u0 = std::max(0, i * block_ - block_ / 2);
+      const int v1 = std::min(gray.height(), (j + 1) * block_ + block_ / 2);
+      const int u1 = std::min(gray.width(), (i + 1) * block_ + block_ / 2);
+      for (int v = v0; v < v1; ++v)
+        for (int u = u0; u < u1; ++u) ++histogram[gray.at(u, v)];
+      const Threshold here = threshold_of(histogram);
+      const bool is_apart = here.bright - here.dark > std::max(0.35 * (whole.bright - whole.dark), 15.0);
+      if (is_apart && here.reason.empty())
+        levels_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
+                static_cast<std::size_t>(i)] = here.level;
+    }
+  }
+  // What has no level of its own takes the mean of its neighbours', again and again until all have one.
+  for (bool is_open = true; is_open;) {
+    is_open = false;
+    const std::vector<double> before = levels_;
+    bool changed = false;
+    for (int j = 0; j < rows_; ++j) {
+      for (int i = 0; i < columns_; ++i) {
+        const auto at = [&](int a, int b) {
+          return static_cast<std::size_t>(b) * static_cast<std::size_t>(columns_) +
+                 static_cast<std::size_t>(a);
+        };
+        if (!std::isnan(before[at(i, j)])) continue;
+        double sum = 0, count = 0;
+        for (int b = std::max(0, j - 1); b <= std::min(rows_ - 1, j + 1); ++b)
+          for (int a = std::max(0, i - 1); a <= std::min(columns_ - 1, i + 1); ++a)
+            if (!std::isnan(before[at(a, b)])) sum += before[at(a, b)], ++count;
+        if (count > 0)
+          levels_[at(i, j)] = sum / count, changed = true;
+        else
+          is_open = true;
+      }
+    }
+    if (is_open && !changed) levels_.assign(levels_.size(), whole.level), is_open = false;
+  }
+}
+
+void BlockThresholds::row(int v, std::vector<std::uint8_t>& levels) const {
+  const auto place = [&](int pixel, int count, int& low, double& share) {
+    const double x = std::clamp((pixel + 0.5) / block_ - 0.5, 0.0, static_cast<double>(count - 1));
+    low = std::min(static_cast<int>(x), std::max(0, count - 2));
+    share = count > 1 ? x - low : 0;
+  };
+  int j = 0;
+  double down = 0;
+  place(v, rows_, j, down);
+  const auto at = [&](int a, int b) {
+    return levels_[static_cast<std::size_t>(std::min(b, rows_ - 1)) * static_cast<std::size_t>(columns_) +
+                   static_cast<std::size_t>(std::min(a, columns_ - 1))];
+  };
+  for (std::size_t u = 0; u < levels.size(); ++u) {
+    int i = 0;
+    double right = 0;
+    place(static_cast<int>(u), columns_, i, right);
+    const double top = at(i, j) + right * (at(i + 1, j) - at(i, j));
+    const double bottom = at(i, j + 1) + right * (at(i + 1, j + 1) - at(i, j + 1));
+    levels[u] = static_cast<std::uint8_t>(std::clamp(std::ceil(top + down * (bottom - top)), 1.0, 255.0));
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/vision/blurred_step.h"
+#include "flexura/vision/edge_finder.h"
+#include "flexura/vision/threshold.h"
+
+namespace flexura {
+
+/// Where a line across a tube meets its two borders.
+struct CrossSection {
+  Eigen::Vector2d center = {0, 0};  ///< Half-way between the borders, px.
+  Eigen::Vector2d normal = {
+      0, 1};              ///< Along the line, a unit vector: the direction of travel turned from u to v.
+  double half_width = 0;  ///< px
+  std::array<bool, 2> is_seen = {false, false};  ///< The border on the normal's side, and the other one.
+
+  [[nodiscard]] bool is_whole() const { return is_seen[0] && is_seen[1]; }
+};
+
+/// Why a tube was followed no further.
+enum class TrackEnd {
+  free,    ///< The figure ends.
+  border,  ///< The picture ends.
+  lost,    ///< Its borders are seen no more, and it does not end either.
+  closed,  ///< It comes back to where it started.
+};
+
+/// Follows a tube through a picture, a cross-section every pixel or two: predicted from the ones before
+/// (position, direction and curvature by a fading memory), measured on both borders. Where one border cannot
+/// be seen the other one carries on with the width; where neither can (the tube crosses itself, or a hair
+/// lies over it), it goes on along its arc for some widths.
+template <typename Value>
+class TubeTracker {
+ public:
+  /// `level`: of the picture, between figure and ground; `contrast`: what an edge has at least roughly.
+  TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
+
+  /// The cross-section near a place, `normal` roughly across the tube; none when its borders are not there.
+  [[nodiscard]] std::optional<CrossSection> seed(const Eigen::Vector2d& center, const Eigen::Vector2d& normal,
+                                                 double half_width);
+  /// Follows the tube from a seed along +tangent (`way` 1) or against it (-1) and appends what is found, the
+  /// seed itself not.
+  TrackEnd follow(const CrossSection& seed, int way, std::vector<CrossSection>& sections);
+  /// Measures a section that is known to a fraction of a pixel once more: borders not seen stay so.
+  /// `widening`: how fast the half width grows along the tangent.
+  void refine(CrossSection& section, double widening);
+  /// Measures how blurred the borders are at whole sections.
+  void measure_blur(std::span<const CrossSection> sections);
+
+  [[nodiscard]] const EdgeFinder<Value>& edges() const { return edges_; }
+  [[nodiscard]] double level() const { return level_; }
+  /// Between cross-sections, px: 1 for a thin tube, 2 for a wide one.
+  [[nodiscard]] double step() const { return step_; }
+  /// Standard deviation of what blurs the borders, px.
+  [[nodiscard]] double blur() const { return blur_; }
+  /// Standard deviation of the picture's noise as the borders show it, and their contrast.
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] double contrast() const { return contrast_; }
+  /// Standard deviation of a border's place, px.
+  [[nodiscard]] double sigma() const { return sigma_ * noise_ / contrast_; }
+
+ private:
+  struct State;
+  // What a step's surprise changes of what is known.
+  struct Gains {
+    explicit Gains(double step);
+    double position, direction, curvature, width, widening;
+  };
+  struct Look {
+    std::optional<double> offset;
+    bool is_outside = false;  // Of the picture.
+  };
+  [[nodiscard]] Look look(const Eigen::Vector2d& from, const Eigen::Vector2d& outward,
+                          const Eigen::Vector2d& normal, double half_width, double capture);
+  CrossSection meet(State& state, const Gains& gains, int way);
+  void count(State& state, const CrossSection& section) const;
+  [[nodiscard]] std::optional<TrackEnd> stop(const State& state) const;
+  [[nodiscard]] bool is_figure(const Eigen::Vector2d& pixel) const;
+  void guess_blur(const CrossSection& section);
+
+  EdgeFinder<Value> edges_;
+  double level_, contrast_, noise_, blur_ = 0.8, sigma_ = 2.5, step_ = 1;
+};
+
+extern template class TubeTracker<std::uint8_t>;
+extern template class TubeTracker<std::uint16_t>;
+
+}  // namespace flexura

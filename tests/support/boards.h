@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/calibrate/board_bundle.h"
+#include "flexura/calibrate/board_target.h"
+#include "flexura/camera/intrinsics.h"
+#include "flexura/math/pose.h"
+#include "flexura/math/so3.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+
+/// A normally distributed number (G. Box, M. Muller).
+inline double normal_number(TestRandom& random) {
+  const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
+  return radius * std::cos(random.uniform(0, 2 * std::numbers::pi));
+}
+
+/// A board before a camera that looks along z: `distance` m off, tilted by up to `tilt` rad and turned by up
+/// to a quarter of a turn, its middle up to `aside` of the distance off the axis.
+inline Pose random_board(TestRandom& random, const BoardTarget& board, double distance, double tilt = 0.6,
+                         double aside = 0.2) {
+  const double direction = random.uniform(0, 2 * std::numbers::pi), angle = random.uniform(0.3, 1) * tilt;
+  Pose X_CB;
+  X_CB.rotation = so3_exp({angle * std::cos(direction), angle * std::sin(direction), 0}) *
+                  so3_exp({0, 0, random.uniform(-0.8, 0.8)});
+  const Eigen::Vector3d middle(0.5 * board.square * (board.columns - 1),
+                               0.5 * board.square * (board.rows - 1), 0);
+  X_CB.position =
+      Eigen::Vector3d(random.uniform(-aside, aside), random.uniform(-aside, aside), 1) * distance -
+      X_CB.rotation * middle;
+  return X_CB;
+}
+
+/// What the bundle's cameras see of the board, with normal noise of `sigma` px.
+inline std::vector<BoardView> seen_boards(const BoardBundle& truth,
+                                          const std::vector<Eigen::Vector2d>& points, double sigma,
+                                          TestRandom& random) {
+  std::vector<BoardView> views;
+  for (const Pose& X_1B : truth.boards) {
+    BoardView& view = views.emplace_back();
+    for (std::size_t camera = 0; camera < truth.lenses.size(); ++camera) {
+      const Lens lens(truth.lenses[camera]);
+      auto& pixels = view.pixels.emplace_back();
+      for (const Eigen::Vector2d& point : points) {
+        const Eigen::Vector3d p_CP =
+            truth.cameras[camera].inverse() * (X_1B * Eigen::Vector3d(point.x(), point.y(), 0));
+        pixels.push_back(lens.project(p_CP).value() +
+                         sigma * Eigen::Vector2d(normal_number(random), normal_number(random)));
+      }
+    }
+  }
+  return views;
+}
+
+/// Whether the board is dark at a place in its plane, in units of `square`.
+inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at) {
+  if (board.pattern == BoardPattern::chessboard) {
+    const bool is_on = at.x() > -1 && at.y() > -1 && at.x() < board.columns && at.y() < board.rows;
+    const auto cell = static_cast<int>(std::floor(at.x()) + std::floor(at.y()));
+    return is_on && cell % 2 == 0;
+  }
+  constexpr double radius = 0.3;
+  const double row = std::clamp(std::round(at.y()), 0.0, board.rows - 1.0);
+  const bool is_shifted = board.pattern == BoardPattern::asymmetric_circles;
+  const double step = is_shifted ? 2 : 1, shift = is_shifted && static_cast<int>(row) % 2 == 1 ? 1 : 0;
+  const double column = std::clamp(std::round((at.x() - shift) / step), 0.0, board.columns - 1.0);
+  return (at - Eigen::Vector2d(step * column + shift, row)).norm() < radius * (is_shifted ? 1.4 : 1);
+}
+
+/// A picture of the board on bright ground, sixteen samples a pixel.
+inline Image<std::uint8_t> board_picture(const BoardTarget& board, const Lens& lens, const Pose& X_CB,
+                                         int width, int height) {
+  Image<std::uint8_t> picture(width, height);
+  const Pose X_BC = X_CB.inverse();
+  constexpr int side = 4;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      int dark = 0;
+      for (int sample = 0; sample < side * side; ++sample) {
+        const Eigen::Vector2d pixel(u + (sample % side + 0.5) / side - 0.5,
+                                    v + (sample / side + 0.5) / side - 0.5);
+        const auto direction = lens.unproject(pixel);
+        if (!direction) continue;
+        const Eigen::Vector3d ray = X_BC.rotation * direction->homogeneous();
+        const Eigen::Vector3d at = X_BC.position - X_BC.position.z() / ray.z() * ray;
+        dark += is_dark(board, at.head<2>() / board.square) ? 1 : 0;
+      }
+      picture.at(u, v) = static_cast<std::uint8_t>(225 - 195 * dark / (side * side));
+    }
+  }
+  return picture;
+}
+
+}  // namespace flexura

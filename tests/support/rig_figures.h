@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "flexura/calibrate/rig_aim.h"
+#include "flexura/calibrate/rig_calibration.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+
+/// How a derived quantity was found to be, beside what is true.
+struct RigFigure {
+  double error = 0, sigma = 0;
+};
+
+/// What matters of a calibration, at the two last stances of the trial, one of each camera.
+struct RigFigures {
+  RigFigure angle;                 ///< Between the optical axes, rad.
+  RigFigure zoom_ratio;            ///< Share.
+  std::array<RigFigure, 2> focal;  ///< Share.
+  double aim = 0;  ///< How far the axes' distances from the arm's middle are wrong, the larger, m.
+};
+
+inline RigFigures figures_of(const RigTrial& trial, const RigProblem& problem, const RigCalibration& found) {
+  const RigVariables& variables = problem.variables();
+  // Markers are counted along the arm as it was believed to be, so that the pictures stay out.
+  const RigVariables truth(trial.truth(), problem.prior(), {trial.seen().poses, trial.seen().stances, {}});
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(truth.count());
+  const std::size_t last = trial.seen().stances.size() - 1;
+  const std::array<std::size_t, 2> stances = {last - 1, last};
+  std::vector<OpticalAxis> is, should;
+  for (const std::size_t stance : stances) {
+    is.push_back(optical_axis(variables, found.x, observed_stance(variables, stance)));
+    should.push_back(optical_axis(truth, none, {trial.stance(stance), {}}));
+  }
+  const Eigen::Vector3d middle = arm_middle(trial.truth(), trial.seen().poses.back());
+  const auto figure = [&](const RigQuantity& a, const RigQuantity& b) {
+    return RigFigure{a.value - b.value, a.sigma(found.covariance)};
+  };
+  RigFigures figures;
+  figures.angle = figure(axes_angle(is[0], is[1]), axes_angle(should[0], should[1]));
+  figures.zoom_ratio =
+      figure(log_zoom_ratio(is[0], is[1], middle), log_zoom_ratio(should[0], should[1], middle));
+  for (std::size_t i = 0; i < 2; ++i) {
+    figures.focal[i] = figure(log_focal(is[i]), log_focal(should[i]));
+    const auto a = aim_errors(is[i], middle), b = aim_errors(should[i], middle);
+    figures.aim = std::max(figures.aim, std::hypot(a[0].value - b[0].value, a[1].value - b[1].value));
+  }
+  return figures;
+}
+
+}  // namespace flexura

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "flexura/render/renderer.h"
+#include "flexura/render/sensor_image.h"
+#include "flexura/render/truth.h"
+#include "tests/support/render_scenes.h"
+
+namespace flexura {
+
+/// How random arms are photographed.
+struct SeenArmOptions {
+  double noise = 2;  ///< Standard deviation in values of an 8-bit image.
+  double psf = 0.7;  ///< px
+  int width = 640, height = 480;
+  bool color = false;
+  bool bands = false;
+  double most_bend = 1.2;  ///< Of a section, rad.
+};
+
+/// A picture of an arm, and where its backbone is seen.
+struct SeenArm {
+  Scene scene;
+  View view;
+  Image<std::uint8_t> picture;
+  std::vector<AxisPoint> truth;  ///< Evenly along the arm.
+  double radius = 0;             ///< m
+};
+
+/// A picture of a scene as a sensor delivers it.
+inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, const SeenArmOptions& options,
+                                      std::uint64_t seed) {
+  Renderer renderer;
+  LightImage light;
+  const PixelKind pixels = options.color ? PixelKind::color : PixelKind::gray;
+  renderer.render(scene, view, pixels, light);
+  SensorConfig config;
+  config.width = view.width, config.height = view.height;
+  config.pixels = pixels;
+  config.psf = options.psf, config.read_noise = options.noise;
+  SensorRows rows;
+  Image<std::uint8_t> picture(view.width, view.height, config.channels());
+  Sensor(config).read(light.light, {seed, 0, 0}, rows, picture);
+  return picture;
+}
+
+/// The exact image of the arm's backbone at `count` places.
+inline std::vector<AxisPoint> true_axis(const Scene& scene, const View& view, int count) {
+  Renderer renderer;
+  renderer.prepare(scene, view);
+  std::vector<double> s;
+  const double length = scene.arm.tube.back().arc.s + scene.arm.tube.back().arc.length;
+  for (int i = 0; i < count; ++i) s.push_back(length * i / (count - 1));
+  return projected_axis(renderer, s);
+}
+
+/// A dark arm of one to four sections before a bright ground, bent anyhow.
+struct RandomArm {
+  BentArm bent;
+  double radius = 0;  ///< m
+  Scene scene;
+};
+inline RandomArm random_arm(TestRandom& random, const SeenArmOptions& options) {
+  RandomArm arm;
+  BentArm& bent = arm.bent;
+  bent.arm.kind = ArmKind::spatial;
+  arm.radius = random.uniform(0.012, 0.03);
+  const int count = random.integer(1, 4);
+  for (int i = 0; i < count; ++i) {
+    Section& section = bent.arm.sections.emplace_back();
+    section.length = random.uniform(0.15, 0.35);
+    section.radius = {arm.radius, arm.radius};
+  }
+  bent.state = ArmState::straight(bent.arm.sections.size());
+  for (Eigen::Vector2d& bend : bent.state.bends)
+    bend = random.uniform(0, options.most_bend) * random.vector<2>(-1, 1).normalized();
+  const Backbone backbone = bent.backbone();
+  arm.scene.background = Color::Constant(random.uniform(0.7, 0.9));
+  arm.scene.arm.tube = tube_of(bent.arm, backbone);
+  arm.scene.arm.tip = random.integer(0, 1) == 0 ? TipKind::flat : TipKind::round;
+  arm.scene.arm.albedo = {0.08, 0.08, 0.09};
+  for (double s = 0.05; options.bands && s < backbone.length() - 0.03; s += 0.07)
+    arm.scene.arm.markers.push_back({s, s + 0.015, {0.85, 0.1, 0.1}});
+  return arm;
+}
+
+/// A random arm as it is seen from 1.2 to 3 m away, from any side.
+inline SeenArm random_seen_arm(TestRandom& random, const SeenArmOptions& options) {
+  SeenArm seen;
+  RandomArm arm = random_arm(random, options);
+  const Backbone backbone = arm.bent.backbone();
+  seen.radius = arm.radius, seen.scene = std::move(arm.scene);
+  const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
+  const Eigen::Vector3d direction(random.uniform(-1, 1), random.uniform(-0.4, 0.4), random.uniform(-1, 1));
+  const Eigen::Vector3d from = middle + direction.normalized() * random.uniform(1.2, 3);
+  seen.view = pinhole_view(look_at(from, middle + random.vector<3>(-0.1, 0.1)), options.width, options.height,
+                           random.uniform(1.1, 1.7) * options.width * (from - middle).norm() / 2.4);
+  seen.picture =
+      photograph(seen.scene, seen.view, options, static_cast<std::uint64_t>(random.integer(0, 1 << 30)));
+  seen.truth = true_axis(seen.scene, seen.view, 601);
+  return seen;
+}
+
+/// The distance of a pixel to the curve through points that are near to each other, px; its sign tells the
+/// side.
+inline double distance_to(const std::vector<AxisPoint>& curve, const Eigen::Vector2d& pixel) {
+  double best = 1e9, sign = 1;
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    if (!curve[i].pixel || !curve[i + 1].pixel) continue;
+    const Eigen::Vector2d from = *curve[i].pixel, way = *curve[i + 1].pixel - from, to = pixel - from;
+    const double share = std::clamp(to.dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+    const double distance = (to - share * way).norm();
+    if (distance < best) best = distance, sign = way.x() * to.y() - way.y() * to.x() < 0 ? -1 : 1;
+  }
+  return sign * best;
+}
+
+}  // namespace flexura

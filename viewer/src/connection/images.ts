@@ -1,0 +1,27 @@
+// Camera pictures on their way to the screen. They stream in, the next one when the last was acknowledged.
+import type { ImageMessage } from '../protocol/state';
+
+export interface Picture {
+  bitmap: ImageBitmap;
+  time: number;
+  number: number;
+}
+
+export class Pictures {
+  private generation = 0;
+
+  constructor(private readonly show: (camera: string, picture: Picture) => void) {}
+
+  /** What is being decoded now belongs to another run: it will not be shown. */
+  reset(): void {
+    ++this.generation;
+  }
+
+  /** Decodes a picture and shows it; resolves when that is done, so that it can be acknowledged. */
+  async take(camera: string, message: ImageMessage): Promise<void> {
+    const generation = this.generation;
+    const bitmap = await createImageBitmap(new Blob([message.file as BlobPart], { type: message.type }));
+    if (generation !== this.generation) return bitmap.close();
+    this.show(camera, { bitmap, time: message.time, number: message.number });
+  }
+}

@@ -1,0 +1,187 @@
+// One WebSocket that comes back by itself. What the messages mean is somebody else's business (state/).
+import { signal } from '@preact/signals';
+import type { Reply, TextMessage } from '../protocol/types';
+import { Backoff } from './backoff';
+import { enter, type Entry } from './entry';
+
+export type LinkStatus =
+  | { kind: 'connecting' }
+  | { kind: 'open' }
+  /** Lost or never there; `at` is when the next attempt comes (performance.now). */
+  | { kind: 'waiting'; at: number; why: string }
+  /** The server is there but does not let us in. */
+  | { kind: 'refused'; why: string };
+
+export interface LinkListener {
+  text(message: TextMessage): void;
+  bytes(message: ArrayBuffer): void;
+  closed(): void;
+}
+
+export class RequestError extends Error {}
+
+interface Waiting {
+  resolve(result: unknown): void;
+  reject(error: Error): void;
+  timer: ReturnType<typeof setTimeout>;
+}
+
+/** No word for so long: ask for one. */
+const quiet_ms = 700;
+/** Not even an answer for so long: what is shown is old. */
+const stale_ms = 2000;
+/** Then the connection is taken for dead, as when the network went away without a word. */
+const dead_ms = 8000;
+const request_ms = 15000;
+
+export class Link {
+  readonly status = signal<LinkStatus>({ kind: 'connecting' });
+  /** The server speaks: what is shown is of now. */
+  readonly fresh = signal(false);
+  /** When the last word came (performance.now), 0 before the first. */
+  last_word = 0;
+  private socket: WebSocket | null = null;
+  private readonly waiting = new Map<number, Waiting>();
+  private readonly backoff = new Backoff();
+  private next_id = 1;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private pinging = false;
+  private readonly watcher: ReturnType<typeof setInterval>;
+
+  constructor(
+    private readonly listener: LinkListener,
+    private readonly entry: Entry,
+  ) {
+    this.watcher = setInterval(() => this.watch(), 250);
+  }
+
+  /** Connects now, whatever it was waiting for. */
+  async open(): Promise<void> {
+    clearTimeout(this.timer);
+    this.drop();
+    this.status.value = { kind: 'connecting' };
+    const outcome = await enter(this.entry);
+    if (outcome.kind === 'refused') {
+      this.status.value = { kind: 'refused', why: outcome.why };
+      return;
+    }
+    if (outcome.kind === 'unreachable') return this.wait('The program does not answer.');
+    this.dial();
+  }
+
+  /** Ends it for good. */
+  stop(): void {
+    clearInterval(this.watcher);
+    clearTimeout(this.timer);
+    this.drop();
+  }
+
+  /** The result of what is asked; RequestError with the server's line when it refuses. */
+  request<Result = unknown>(what: string, values: Record<string, unknown> = {}): Promise<Result> {
+    const socket = this.socket;
+    if (!socket || socket.readyState !== WebSocket.OPEN) {
+      return Promise.reject(new RequestError('There is no connection to the program.'));
+    }
+    const id = this.next_id++;
+    socket.send(JSON.stringify({ id, do: what, ...values }));
+    return new Promise<Result>((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this.waiting.delete(id);
+        reject(new RequestError(`No answer to "${what}".`));
+      }, request_ms);
+      this.waiting.set(id, { resolve: resolve as (result: unknown) => void, reject, timer });
+    });
+  }
+
+  /** Says something that gets no reply. */
+  tell(what: string, values: Record<string, unknown>): void {
+    if (this.socket?.readyState === WebSocket.OPEN) {
+      this.socket.send(JSON.stringify({ id: this.next_id++, do: what, ...values }));
+    }
+  }
+
+  private dial(): void {
+    const address = new URL('socket', this.entry.base);
+    address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = new WebSocket(address);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    let opened = false;
+    socket.onopen = () => {
+      opened = true;
+      this.heard();
+      this.status.value = { kind: 'open' };
+    };
+    socket.onmessage = ({ data }) => {
+      this.heard();
+      this.backoff.reset();
+      if (typeof data === 'string') this.text(data);
+      else this.listener.bytes(data as ArrayBuffer);
+    };
+    socket.onclose = ({ reason }) => {
+      if (this.socket !== socket) return;
+      this.drop();
+      const lost = reason ? `The program closed the connection: ${reason}` : 'The connection was lost.';
+      this.wait(opened ? lost : 'The program did not take the connection.');
+    };
+  }
+
+  private text(data: string): void {
+    const message = JSON.parse(data) as TextMessage;
+    if (message.type === 'reply') this.reply(message);
+    else this.listener.text(message);
+  }
+
+  private reply({ id, result, error }: Reply): void {
+    const waiting = this.waiting.get(id);
+    if (!waiting) return;
+    this.waiting.delete(id);
+    clearTimeout(waiting.timer);
+    if (error !== undefined) waiting.reject(new RequestError(error));
+    else waiting.resolve(result);
+  }
+
+  private heard(): void {
+    this.last_word = performance.now();
+    if (!this.fresh.value) this.fresh.value = true;
+  }
+
+  /** Silence may mean that nothing moves: only an unanswered ping makes what is shown stale. */
+  private watch(): void {
+    if (this.status.value.kind !== 'open') return;
+    const silence = performance.now() - this.last_word;
+    if (silence > dead_ms) {
+      this.drop();
+      this.wait('The program has not said a word for some seconds.');
+      return;
+    }
+    if (silence > stale_ms) this.fresh.value = false;
+    if (silence > quiet_ms && !this.pinging) {
+      this.pinging = true;
+      this.request('ping').catch(() => {}).finally(() => (this.pinging = false));
+    }
+  }
+
+  private wait(why: string): void {
+    const delay = this.backoff.next();
+    this.status.value = { kind: 'waiting', at: performance.now() + delay, why };
+    this.timer = setTimeout(() => void this.open(), delay);
+  }
+
+  private drop(): void {
+    const socket = this.socket;
+    this.socket = null;
+    this.fresh.value = false;
+    this.pinging = false;
+    if (socket) {
+      socket.onclose = socket.onmessage = socket.onopen = null;
+      socket.close();
+      this.listener.closed();
+    }
+    for (const { reject, timer } of this.waiting.values()) {
+      clearTimeout(timer);
+      reject(new RequestError('The connection was lost before the answer came.'));
+    }
+    this.waiting.clear();
+  }
+}

@@ -1,0 +1,117 @@
+// As in MuJoCo's simulate (Space, arrows, +/-, F1, Esc, Backspace, brackets) and Blender (the numpad).
+import { total_length } from '../scene/rings';
+import { preferences, toggle_hidden, toggle_theme } from '../state/preferences';
+import type { App } from '../ui/app';
+import type { Binding } from './keys';
+
+export function bindings_of(app: App): Binding[] {
+  return [...time(app), ...view(app), ...rig(app), ...page(app)];
+}
+
+/** Whether a key does something on the page that is shown: elsewhere than on the viewer's, the rig is not in sight. */
+export function is_in_sight({ group }: Binding, route: App['route']['value']): boolean {
+  return route === 'viewer' || group === 'Page';
+}
+
+function time({ viewer: { playback } }: App): Binding[] {
+  const group = 'Time';
+  return [
+    { group, keys: ['Space'], shown: 'Space', what: 'Play or pause; live: hold the view, or back to now', run: () => playback.toggle() },
+    { group, keys: ['ArrowRight'], shown: '→', what: 'One step forward', run: () => playback.step(1) },
+    { group, keys: ['ArrowLeft'], shown: '←', what: 'One step back', run: () => playback.step(-1) },
+    { group, keys: ['Shift+ArrowRight'], shown: 'Shift →', what: 'Half a second forward', run: () => playback.step(30) },
+    { group, keys: ['Shift+ArrowLeft'], shown: 'Shift ←', what: 'Half a second back', run: () => playback.step(-30) },
+    { group, keys: ['+', 'NumpadAdd', '='], shown: '+', what: 'Play faster', run: () => playback.faster(1) },
+    { group, keys: ['-', 'NumpadSubtract'], shown: '−', what: 'Play slower', run: () => playback.faster(-1) },
+    { group, keys: ['Home'], shown: 'Home', what: 'To the start', run: () => playback.seek(0) },
+    { group, keys: ['End'], shown: 'End', what: 'To the end; live: to now', run: () => (playback.mode.value === 'live' ? playback.go_live() : playback.seek(Infinity)) },
+  ];
+}
+
+const turn = 0.08;
+
+function view(app: App): Binding[] {
+  const group = 'View';
+  const look = (azimuth: number, elevation: number) => () => {
+    app.views.free();
+    app.view.value?.orbit.look(azimuth, elevation);
+    app.view.value?.invalidate();
+  };
+  const orbit = (right: number, up: number) => () => {
+    app.views.free();
+    app.view.value?.orbit.turn(right, up);
+    app.view.value?.invalidate();
+  };
+  const pan = (right: number, up: number) => () => {
+    app.views.free();
+    const shown = app.view.value;
+    shown?.orbit.pan(shown.camera, right, up);
+    shown?.invalidate();
+  };
+  const zoom = (factor: number) => () => {
+    app.views.free();
+    app.view.value?.orbit.zoom(factor);
+    app.view.value?.invalidate();
+  };
+  return [
+    { group, keys: ['Numpad1', '1'], shown: '1', what: 'From the front, as camera 1 (numpad too)', run: look(0, 0) },
+    { group, keys: ['Numpad3', '3'], shown: '3', what: 'From the side, as camera 2', run: look(-Math.PI / 2, 0) },
+    { group, keys: ['Numpad7', '7'], shown: '7', what: 'From above', run: look(0, Math.PI / 2) },
+    { group, keys: ['Numpad0', '0', 'a'], shown: '0', what: 'All of the arm in view', run: () => (app.views.free(), app.view.value?.frame_all()) },
+    { group, keys: ['NumpadDecimal', '.'], shown: '.', what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
+    { group, keys: ['k'], shown: 'K', what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
+    { group, keys: [']', 'BracketRight'], shown: ']', what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
+    { group, keys: ['[', 'BracketLeft'], shown: '[', what: 'The view before', run: () => app.views.cycle(-1) },
+    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], shown: 'Alt ←', what: 'Turn the view to the left', run: orbit(-turn, 0) },
+    { group, keys: ['Alt+ArrowRight', 'Numpad6'], shown: 'Alt →', what: 'Turn it to the right', run: orbit(turn, 0) },
+    { group, keys: ['Alt+ArrowUp', 'Numpad8'], shown: 'Alt ↑', what: 'Rise', run: orbit(0, turn) },
+    { group, keys: ['Alt+ArrowDown', 'Numpad2'], shown: 'Alt ↓', what: 'Sink', run: orbit(0, -turn) },
+    { group, keys: ['Alt+Shift+ArrowLeft'], shown: 'Alt Shift ←', what: 'Move the view to the left', run: pan(0.04, 0) },
+    { group, keys: ['Alt+Shift+ArrowRight'], shown: 'Alt Shift →', what: 'Move it to the right', run: pan(-0.04, 0) },
+    { group, keys: ['Alt+Shift+ArrowUp'], shown: 'Alt Shift ↑', what: 'Move it up', run: pan(0, -0.04) },
+    { group, keys: ['Alt+Shift+ArrowDown'], shown: 'Alt Shift ↓', what: 'Move it down', run: pan(0, 0.04) },
+    { group, keys: ['PageUp'], shown: 'Page Up', what: 'Nearer', run: zoom(0.9) },
+    { group, keys: ['PageDown'], shown: 'Page Down', what: 'Farther', run: zoom(1 / 0.9) },
+    { group, keys: ['t'], shown: 'T', what: 'Trail of the tip, on or off', run: () => toggle_hidden('trail') },
+    { group, keys: ['p'], shown: 'P', what: 'Plots, shown or not', run: () => (preferences.show_plots.value = !preferences.show_plots.value) },
+  ];
+}
+
+function look_at_point(app: App): void {
+  const shown = app.view.value;
+  const samples = shown?.state?.samples;
+  if (!shown || !samples) return;
+  app.views.free();
+  shown.look_at_arm(app.viewer.picked.value);
+}
+
+function pick_tip({ viewer: { picked, scene } }: App): void {
+  picked.value = picked.value === null && scene.value ? total_length(scene.value.arm) : null;
+}
+
+function rig({ viewer }: App): Binding[] {
+  const group = 'Rig';
+  const ask = (what: string) => () => void viewer.commander.plain(what);
+  return [
+    { group, keys: ['Backspace'], shown: 'Backspace', what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : ask('reset')()) },
+    { group, keys: ['h'], shown: 'H', what: 'Halt: everything stops', run: ask('halt') },
+    { group, keys: ['r'], shown: 'R', what: 'Run the tasks', run: ask('run') },
+    { group, keys: ['c'], shown: 'C', what: 'Cancel the run', run: ask('cancel') },
+  ];
+}
+
+function page(app: App): Binding[] {
+  const group = 'Page';
+  return [
+    { group, keys: ['F1', '?'], shown: 'F1', what: 'This help', run: () => (app.dialog.value = app.dialog.value === 'help' ? null : 'help') },
+    { group, keys: ['Escape'], shown: 'Esc', what: 'Close; then the free view; then pick nothing', run: () => escape(app) },
+    { group, keys: ['l'], shown: 'L', what: 'Light or dark', run: toggle_theme },
+  ];
+}
+
+function escape(app: App): void {
+  if (app.dialog.value) app.dialog.value = null;
+  else if (app.route.value !== 'viewer') return;
+  else if (app.views.current.value !== null) app.views.free();
+  else app.viewer.picked.value = null;
+}

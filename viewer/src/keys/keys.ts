@@ -1,0 +1,67 @@
+// Keys, what they do, and how the help lists them: one list (bindings.ts), so that no key can be missing from the help.
+
+export interface Binding {
+  /** As `event.code` or `event.key`, with "Shift+", "Alt+" before it. */
+  keys: string[];
+  /** How the help writes them. */
+  shown: string;
+  what: string;
+  group: string;
+  run(event: KeyboardEvent): void;
+}
+
+export interface KeyOptions {
+  enabled(binding: Binding): boolean;
+}
+
+/** Names under which a pressed key may be bound. */
+export function names_of(event: Pick<KeyboardEvent, 'key' | 'code' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>): string[] {
+  if (event.ctrlKey || event.metaKey) return [];
+  const alt = event.altKey ? 'Alt+' : '';
+  const shift = event.shiftKey ? 'Shift+' : '';
+  // A sign that needs Shift on some keyboards ("+", "?") is found by what it writes.
+  const plain = event.key.length === 1 ? alt + event.key.toLowerCase() : '';
+  return [alt + shift + event.code, alt + shift + event.key, plain].filter(Boolean);
+}
+
+export class KeyMap {
+  readonly bindings: Binding[] = [];
+  private readonly by_name = new Map<string, Binding>();
+
+  constructor(private readonly options: KeyOptions) {}
+
+  add(...bindings: Binding[]): void {
+    for (const binding of bindings) {
+      for (const key of binding.keys) {
+        if (this.by_name.has(key)) throw new Error(`the key ${key} is bound twice`);
+        this.by_name.set(key, binding);
+      }
+      this.bindings.push(binding);
+    }
+  }
+
+  handle = (event: KeyboardEvent): void => {
+    if (event.defaultPrevented) return;
+    const binding = names_of(event).map((name) => this.by_name.get(name)).find(Boolean);
+    if (!binding || !this.options.enabled(binding) || taken_by_control(event)) return;
+    event.preventDefault();
+    binding.run(event);
+  };
+}
+
+/** What a slider does itself: all the others are the page's. */
+const slid_by = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End', 'PageUp', 'PageDown'];
+const typed_into = ['INPUT', 'SELECT', 'TEXTAREA'];
+const pressed = ['BUTTON', 'A', 'SUMMARY'];
+
+/** A focused field keeps the keys that it understands itself; else one could not type, nor press a button by Space. */
+export function taken_by_control(event: KeyboardEvent): boolean {
+  const target = event.target;
+  if (!(target instanceof HTMLElement) || event.key === 'F1' || event.key === 'Escape') return false;
+  if (target.isContentEditable || target.closest('dialog')) return true;
+  if (target instanceof HTMLInputElement && target.type === 'checkbox') return event.code === 'Space';
+  if (target instanceof HTMLInputElement && target.type === 'range') return !event.altKey && slid_by.includes(event.key);
+  if (typed_into.includes(target.tagName)) return true;
+  if (target.getAttribute('role') === 'tab') return ['Space', 'Enter', 'ArrowLeft', 'ArrowRight'].includes(event.code);
+  return pressed.includes(target.tagName) && ['Space', 'Enter'].includes(event.code);
+}

@@ -1,0 +1,67 @@
+import { render } from 'preact';
+import { effect } from '@preact/signals';
+import 'uplot/dist/uPlot.min.css';
+import './ui/theme.css';
+import './ui/layout.css';
+import './ui/controls.css';
+import './ui/help.css';
+import './scene/stage.css';
+import './panels/panels.css';
+import './panels/cameras.css';
+import './plots/plots.css';
+import './timeline/timeline.css';
+import './teach/teach.css';
+import { keep_pasted, kept_token, take_token } from './connection/address';
+import { bindings_of, is_in_sight } from './keys/bindings';
+import { KeyMap } from './keys/keys';
+import { preferences, theme_now } from './state/preferences';
+import { Viewer } from './state/viewer';
+import { AppContext, make_app } from './ui/app';
+import { Page } from './ui/Page';
+
+take_token(location, history, sessionStorage);
+const viewer = new Viewer({
+  base: new URL('.', location.href).href,
+  token: () => kept_token(sessionStorage),
+});
+const app = make_app(viewer, new KeyMap({
+  enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value),
+}));
+app.keys.add(...bindings_of(app));
+app.use_token = (text) => {
+  if (!keep_pasted(text, sessionStorage)) return false;
+  void viewer.link.open();
+  return true;
+};
+addEventListener('keydown', app.keys.handle);
+const route = (): void => {
+  // An address pasted into this very tab changes the hash only.
+  if (take_token(location, history, sessionStorage)) void viewer.link.open();
+  app.route.value = location.hash === '#/teach' ? 'teach' : 'viewer';
+};
+addEventListener('hashchange', route);
+route();
+effect(() => {
+  document.documentElement.dataset.theme = theme_now();
+});
+effect(() => {
+  const title = viewer.hello.value?.title;
+  document.title = title ? `${title} – Flexura` : 'Flexura';
+});
+render(
+  <AppContext.Provider value={app}>
+    <Page />
+  </AppContext.Provider>,
+  document.getElementById('app')!,
+);
+void viewer.link.open();
+// For tests from outside (test/e2e): pictures drawn, the state that is shown, where the free view looks from, where the
+// tip is on the screen. Nothing in the page reads it.
+Object.assign(globalThis, {
+  flexura: {
+    drawn: () => app.view.value?.drawn ?? 0,
+    shown: () => viewer.shown,
+    orbit: () => app.view.value?.orbit,
+    tip: (s?: number) => app.view.value?.on_screen(s) ?? null,
+  },
+});

@@ -1,0 +1,15 @@
+import type { Overlay } from './overlay';
+
+/** Fitted circles and ellipses; the angle is from u towards v. */
+export const ellipse: Overlay = {
+  kind: 'ellipse',
+  color: '#4dabf7',
+  draw(context, layer, scale) {
+    const [u, v] = layer.center as [number, number];
+    const [a, b] = layer.axes as [number, number];
+    context.lineWidth = 2 * scale;
+    context.beginPath();
+    context.ellipse(u, v, a, b, (layer.angle as number | undefined) ?? 0, 0, 2 * Math.PI);
+    context.stroke();
+  },
+};

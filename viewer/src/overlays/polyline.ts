@@ -1,0 +1,15 @@
+import type { Overlay, Points } from './overlay';
+
+/** Lines from point to point: median axes, outlines. */
+export const polyline: Overlay = {
+  kind: 'polyline',
+  color: '#ffd43b',
+  draw(context, layer, scale) {
+    context.lineWidth = 2 * scale;
+    context.lineJoin = 'round';
+    context.beginPath();
+    for (const [u, v] of (layer.points ?? []) as Points) context.lineTo(u, v);
+    if (layer.closed) context.closePath();
+    context.stroke();
+  },
+};

@@ -1,0 +1,103 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { effect, type Signal } from '@preact/signals';
+import { draw_layers } from '../overlays/registry';
+import type { SceneCamera } from '../protocol/types';
+import type { Viewer } from '../state/viewer';
+import { use_app } from '../ui/app';
+import { format_time } from '../ui/format';
+import { Icon } from '../ui/Icon';
+import type { Pixel } from './PixelInspector';
+
+interface Props {
+  camera: SceneCamera;
+  pixel: Signal<Pixel | null>;
+}
+
+/** A live picture that is so much older than the newest state is not of now. */
+const late_s = 1;
+
+export function CameraCard({ camera, pixel }: Props) {
+  const { viewer } = use_app();
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => effect(() => {
+    viewer.picture_tick.value;
+    const layers = viewer.layers.value[camera.name] ?? [];
+    const here = pixel.value?.camera === camera.name ? pixel.value : null;
+    paint(canvas.current!, camera, viewer.picture_of.get(camera.name)?.bitmap ?? null, layers, here);
+  }), [camera]);
+  viewer.picture_tick.value;
+  viewer.tick.value;
+  const picture = viewer.picture_of.get(camera.name);
+  const old = age(viewer.freshness.value, picture?.time, viewer.history.newest?.time);
+  const point = (event: PointerEvent): void => {
+    const { clientWidth, clientHeight } = canvas.current!;
+    const u = Math.floor((event.offsetX / clientWidth) * camera.width);
+    const v = Math.floor((event.offsetY / clientHeight) * camera.height);
+    pixel.value = { camera: camera.name, ...inside(camera, u, v) };
+  };
+  const step = (event: KeyboardEvent): void => {
+    const [du, dv] = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key] ?? [0, 0];
+    if ((!du && !dv) || event.altKey) return;
+    event.preventDefault();
+    const from = pixel.value?.camera === camera.name ? pixel.value : { u: camera.width >> 1, v: camera.height >> 1 };
+    const far = event.shiftKey ? 10 : 1;
+    pixel.value = { camera: camera.name, ...inside(camera, from.u + far * du, from.v + far * dv) };
+  };
+  return (
+    <figure class="camera" data-old={old !== null}>
+      <div class="picture">
+        <canvas ref={canvas} width={camera.width} height={camera.height} tabIndex={0} role="img"
+          aria-label={`What the camera ${camera.name} sees; arrow keys move the inspected pixel`}
+          onPointerMove={point} onPointerDown={point} onKeyDown={step} />
+        {!picture && <span class="none">No picture</span>}
+        {picture && old && <span class="old">{old}</span>}
+        {picture && !old && viewer.freshness.value === 'held' && <span class="now">Now: only the view is held</span>}
+      </div>
+      <figcaption>
+        <b>{camera.name}</b>
+        <span>{picture ? format_time(picture.time) : ''}</span>
+        {picture && (
+          <a href={exact(camera.name, viewer)} download={`${camera.name}.png`} title="Save the exact picture (PNG)"
+            aria-label={`Save the exact picture of ${camera.name}`}><Icon name="save" /></a>
+        )}
+      </figcaption>
+    </figure>
+  );
+}
+
+/** The picture that is shown, losslessly: a recording's at its time, the rig's newest. */
+function exact(name: string, viewer: Viewer): string {
+  const time = viewer.playback.mode.value === 'recording' ? `?time=${viewer.playback.time.value}` : '';
+  return `image/${encodeURIComponent(name)}.png${time}`;
+}
+
+/** Why a picture is not of now; null where it is, or where nobody says so. */
+function age(freshness: string, time: number | undefined, newest: number | undefined): string | null {
+  if (time === undefined || freshness === 'recording') return null;
+  if (freshness === 'lost' || freshness === 'stale') return `Old: of ${format_time(time)}`;
+  if (newest !== undefined && newest - time > late_s) return `${(newest - time).toFixed(1)} s old`;
+  return null;
+}
+
+function inside({ width, height }: SceneCamera, u: number, v: number): { u: number; v: number } {
+  return { u: Math.min(width - 1, Math.max(0, u)), v: Math.min(height - 1, Math.max(0, v)) };
+}
+
+function paint(
+  canvas: HTMLCanvasElement, camera: SceneCamera, bitmap: ImageBitmap | null,
+  layers: Parameters<typeof draw_layers>[1], pixel: Pixel | null,
+): void {
+  const context = canvas.getContext('2d');
+  if (!context) return;
+  context.clearRect(0, 0, camera.width, camera.height);
+  if (!bitmap) return;
+  context.drawImage(bitmap, 0, 0, camera.width, camera.height);
+  // Line widths in pixels of the screen, whatever the picture's size.
+  const scale = camera.width / Math.max(1, canvas.clientWidth);
+  draw_layers(context, layers, scale);
+  if (!pixel) return;
+  context.strokeStyle = '#ff4fa3';
+  context.lineWidth = 1.5 * scale;
+  const half = 6 * scale;
+  context.strokeRect(pixel.u + 0.5 - half, pixel.v + 0.5 - half, 2 * half, 2 * half);
+}

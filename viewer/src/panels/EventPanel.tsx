@@ -1,0 +1,27 @@
+import { use_app } from '../ui/app';
+import { format_time } from '../ui/format';
+import type { Level } from '../protocol/types';
+
+const words: Record<Level, string> = { info: 'Note', warning: 'Warning', error: 'Error' };
+
+/** What happened, newest first; a click goes there. */
+export function EventPanel() {
+  const { viewer } = use_app();
+  const marks = viewer.hello.value?.marks ?? [];
+  const all = [...marks, ...viewer.events.value].sort((a, b) => b.time - a.time);
+  if (!all.length) return <p class="empty">Nothing has happened.</p>;
+  return (
+    <ol class="events">
+      {all.map(({ time, level, name, text }, i) => (
+        <li key={`${time} ${name} ${i}`} data-level={level}>
+          <button type="button" onClick={() => viewer.playback.seek(time)}>
+            <time>{format_time(time)}</time>
+            <span class="sr">{words[level]}:</span>
+            <b>{name}</b>
+            <span>{text}</span>
+          </button>
+        </li>
+      ))}
+    </ol>
+  );
+}

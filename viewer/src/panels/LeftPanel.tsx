@@ -1,0 +1,39 @@
+import type { ComponentChildren } from 'preact';
+import { useSignal } from '@preact/signals';
+import { use_app } from '../ui/app';
+import { left_tabs } from './registry';
+
+export function LeftPanel() {
+  const open = useSignal(left_tabs[0].id);
+  const { viewer } = use_app();
+  const bad = viewer.events.value.filter(({ level }) => level !== 'info').length;
+  const tab = left_tabs.find(({ id }) => id === open.value) ?? left_tabs[0];
+  const move = (by: number): void => {
+    const place = left_tabs.indexOf(tab);
+    open.value = left_tabs[(place + by + left_tabs.length) % left_tabs.length].id;
+    document.getElementById(`tab-${open.value}`)?.focus();
+  };
+  return (
+    <aside class="left" aria-label="Controls">
+      <div class="tabs" role="tablist" aria-label="Controls">
+        {left_tabs.map(({ id, label }) => (
+          <button
+            key={id} id={`tab-${id}`} type="button" role="tab" aria-selected={id === tab.id}
+            aria-controls="left-panel" tabIndex={id === tab.id ? 0 : -1}
+            onClick={() => (open.value = id)}
+            onKeyDown={(event) => {
+              if (event.key === 'ArrowRight') move(1);
+              if (event.key === 'ArrowLeft') move(-1);
+            }}
+          >
+            {label}
+            {id === 'events' && bad > 0 && <span class="count">{bad}</span>}
+          </button>
+        ))}
+      </div>
+      <div class="panel" id="left-panel" role="tabpanel" aria-labelledby={`tab-${tab.id}`}>
+        {(<tab.Panel />) as ComponentChildren}
+      </div>
+    </aside>
+  );
+}

@@ -1,0 +1,62 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { effect, signal, type Signal } from '@preact/signals';
+import { Latest } from '../connection/latest';
+import type { PixelResult } from '../protocol/types';
+import { total_length } from '../scene/rings';
+import { use_app } from '../ui/app';
+import { fixed, length_places } from '../ui/format';
+
+export interface Pixel {
+  camera: string;
+  u: number;
+  v: number;
+}
+
+/** So many pixels around the inspected one, enlarged. */
+const around = 7;
+
+/** The exact value of a pixel, as the camera gave it: not read from the compressed picture on the screen. */
+export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
+  const { viewer } = use_app();
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const result = useRef(signal<PixelResult | null>(null)).current;
+  useEffect(() => {
+    const asker = new Latest<Pixel, PixelResult>(
+      ({ camera, u, v }) => viewer.link.request<PixelResult>('pixel', { camera, u, v }),
+      (answer) => (result.value = answer),
+    );
+    return effect(() => {
+      if (pixel.value && viewer.link.status.value.kind === 'open') asker.ask(pixel.value);
+      else result.value = null;
+    });
+  }, []);
+  useEffect(() => effect(() => {
+    viewer.picture_tick.value;
+    const at = pixel.value;
+    enlarge(canvas.current!, at, at ? (viewer.picture_of.get(at.camera)?.bitmap ?? null) : null);
+  }), []);
+  const at = pixel.value;
+  const exact = result.value;
+  const places = viewer.scene.value ? length_places(total_length(viewer.scene.value.arm)) : 3;
+  return (
+    <section class="pixel" aria-label="Pixel inspector">
+      <canvas ref={canvas} width={2 * around + 1} height={2 * around + 1} aria-hidden="true" />
+      <dl>
+        <div><dt>Pixel</dt><dd>{at ? `${at.camera} (${at.u}, ${at.v})` : 'point at a picture'}</dd></div>
+        <div><dt>Value</dt><dd>{exact ? `${exact.value.join(', ')} of ${2 ** exact.bits - 1}` : '–'}</dd></div>
+        <div><dt>Is</dt><dd>{exact ? exact.label + (exact.s !== null ? ` at s ${fixed(exact.s, places)} m` : '') : '–'}</dd></div>
+        <div><dt>Depth</dt><dd>{exact && exact.depth !== null ? `${fixed(exact.depth, places)} m` : '–'}</dd></div>
+      </dl>
+    </section>
+  );
+}
+
+function enlarge(canvas: HTMLCanvasElement, at: Pixel | null, bitmap: ImageBitmap | null): void {
+  const context = canvas.getContext('2d');
+  if (!context) return;
+  const size = 2 * around + 1;
+  context.clearRect(0, 0, size, size);
+  if (!at || !bitmap) return;
+  context.imageSmoothingEnabled = false;
+  context.drawImage(bitmap, at.u - around, at.v - around, size, size, 0, 0, size, size);
+}

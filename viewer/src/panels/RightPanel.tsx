@@ -1,0 +1,20 @@
+import { useSignal } from '@preact/signals';
+import { use_app } from '../ui/app';
+import { CameraCard } from './CameraCard';
+import { PixelInspector, type Pixel } from './PixelInspector';
+
+/** What the cameras see. */
+export function RightPanel() {
+  const { viewer } = use_app();
+  const pixel = useSignal<Pixel | null>(null);
+  const cameras = viewer.scene.value?.cameras ?? [];
+  return (
+    <aside class="right" aria-label="Cameras">
+      <div class="cards" data-count={cameras.length}>
+        {cameras.map((camera) => <CameraCard key={camera.name} camera={camera} pixel={pixel} />)}
+        {!cameras.length && <p class="empty">This rig has no cameras.</p>}
+      </div>
+      {cameras.length > 0 && <PixelInspector pixel={pixel} />}
+    </aside>
+  );
+}

@@ -1,0 +1,29 @@
+import { preferences, toggle_hidden } from '../state/preferences';
+import { use_app } from '../ui/app';
+import { Icon } from '../ui/Icon';
+
+/** What is in the 3D view, each with an eye. */
+export function ScenePanel() {
+  const { parts } = use_app();
+  const hidden = preferences.hidden.value;
+  return (
+    <>
+      <ul class="things">
+        {parts.value.map(({ id, label }) => {
+          const shown = !hidden.includes(id);
+          return (
+            <li key={id}>
+              <button type="button" aria-pressed={shown} aria-label={`Show: ${label}`} onClick={() => toggle_hidden(id)}>
+                <Icon name={shown ? 'eye' : 'hidden'} />
+                <span>{label}</span>
+              </button>
+            </li>
+          );
+        })}
+      </ul>
+      {hidden.length > 0 && (
+        <button type="button" class="button quiet" onClick={() => (preferences.hidden.value = [])}>Show everything</button>
+      )}
+    </>
+  );
+}

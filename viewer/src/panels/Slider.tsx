@@ -1,0 +1,107 @@
+// A slider that shows its limits and what cannot be reached now, with a field for exact values beside it.
+import type { Range } from '../protocol/types';
+import { useRef, useState } from 'preact/hooks';
+
+export interface SliderProps {
+  id: string;
+  label: string;
+  /** For screen readers, where the label alone would not say of what. */
+  title?: string;
+  value: number;
+  /** Where the thing really is, when that differs. */
+  actual?: number;
+  span: Range;
+  /** What can be reached now; beyond it is shaded. */
+  reach: Range;
+  /** Factor to the display, e.g. degrees. */
+  scale: number;
+  unit: string;
+  places: number;
+  disabled?: boolean;
+  change(value: number): void;
+}
+
+export function Slider(props: SliderProps) {
+  const { id, label, title = label, value, span, reach, scale, unit, places, disabled, change } = props;
+  const [low, high] = span;
+  const part = (x: number): number => (100 * (Math.min(high, Math.max(low, x)) - low)) / (high - low);
+  const [from, to] = [part(reach[0]), part(reach[1])];
+  const limited = reach[0] > low || reach[1] < high;
+  const input = (wish: number): void => change(Math.min(reach[1], Math.max(reach[0], wish)));
+  return (
+    <div class="slider">
+      <label for={id}>{label}</label>
+      <div class="track">
+        <span class="unreachable" style={{ left: 0, width: `${from}%` }} />
+        <span class="unreachable" style={{ left: `${to}%`, right: 0 }} />
+        {limited && <span class="limit" style={{ left: `${from}%` }} />}
+        {limited && <span class="limit" style={{ left: `${to}%` }} />}
+        {low < 0 && high > 0 && <span class="zero" style={{ left: `${part(0)}%` }} />}
+        {props.actual !== undefined && Math.abs(props.actual - value) > 0.005 * (high - low) && <span class="actual" style={{ left: `${part(props.actual)}%` }} />}
+        <input
+          id={id}
+          type="range"
+          min={low}
+          max={high}
+          step={(high - low) / 2000}
+          value={value}
+          disabled={disabled}
+          aria-label={title}
+          aria-valuetext={`${(value * scale).toFixed(places)} ${unit}`}
+          onInput={(event) => input(event.currentTarget.valueAsNumber)}
+          onKeyDown={(event) => {
+            // One press is one per cent of the slider, with Shift a tenth of that.
+            const direction = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+            if (!direction || event.altKey) return;
+            event.preventDefault();
+            input(value + (direction * (high - low)) / (event.shiftKey ? 1000 : 100));
+          }}
+        />
+      </div>
+      <NumberField label={`${title}, ${unit}`} value={value * scale} places={places} disabled={disabled}
+        change={(typed) => input(typed / scale)} />
+      <span class="unit">{unit}</span>
+    </div>
+  );
+}
+
+interface NumberFieldProps {
+  label: string;
+  value: number;
+  places: number;
+  disabled?: boolean;
+  change(value: number): void;
+}
+
+/** Shows a changing value and lets one type another: what is typed holds from Enter on. */
+export function NumberField({ label, value, places, disabled, change }: NumberFieldProps) {
+  const [typed, set_typed] = useState<string | null>(null);
+  const field = useRef<HTMLInputElement>(null);
+  const take = (): void => {
+    const number = Number((typed ?? '').replace(',', '.').replace('−', '-'));
+    if (typed !== null && typed.trim() !== '' && Number.isFinite(number)) change(number);
+    set_typed(null);
+  };
+  const shown = value.toFixed(places);
+  return (
+    <input
+      ref={field}
+      class="number"
+      type="text"
+      inputMode="decimal"
+      aria-label={label}
+      disabled={disabled}
+      value={typed ?? (Number(shown) === 0 ? (0).toFixed(places) : shown)}
+      onInput={(event) => set_typed(event.currentTarget.value)}
+      onFocus={(event) => event.currentTarget.select()}
+      onBlur={take}
+      onKeyDown={(event) => {
+        if (event.key === 'Enter') take();
+        if (event.key !== 'Escape') return;
+        set_typed(null);
+        event.stopPropagation();
+        field.current?.blur();
+      }}
+    />
+  );
+}

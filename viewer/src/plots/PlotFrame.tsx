@@ -1,0 +1,44 @@
+import type { RefObject } from 'preact';
+import { theme_now } from '../state/preferences';
+import { series_color } from './chart';
+
+interface Props {
+  place: number;
+  options: { id: string; label: string; unit: string }[];
+  chosen: string;
+  names: string[];
+  /** At the cursor, or where playback stands. */
+  values: (number | null | undefined)[];
+  host: RefObject<HTMLDivElement>;
+  choose(id: string): void;
+}
+
+/** A plot's head: what is drawn, and its values at the cursor. */
+export function PlotFrame({ place, options, chosen, names, values, host, choose }: Props) {
+  const theme = theme_now();
+  const size = Math.max(...values.map((value) => Math.abs(value ?? 0)));
+  return (
+    <figure class="plot">
+      <figcaption>
+        <select aria-label={`Plot ${place + 1} shows`} value={chosen} onChange={(event) => choose(event.currentTarget.value)}>
+          {options.map(({ id, label, unit }) => <option key={id} value={id}>{unit ? `${label}, ${unit}` : label}</option>)}
+        </select>
+        <ul class="legend">
+          {names.map((name, i) => (
+            <li key={name}>
+              <span class="swatch" style={{ background: series_color(i, theme) }} />
+              {name} <output aria-live="off">{format(values[i], size)}</output>
+            </li>
+          ))}
+        </ul>
+      </figcaption>
+      <div class="chart" ref={host} />
+    </figure>
+  );
+}
+
+/** What is nothing beside the others is written as nothing. */
+function format(value: number | null | undefined, size: number): string {
+  if (value === null || value === undefined) return '';
+  return Math.abs(value) < 1e-4 * size ? '0' : `${+value.toPrecision(4)}`.replace('-', '−');
+}

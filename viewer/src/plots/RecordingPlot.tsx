@@ -1,0 +1,76 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { effect, useSignal } from '@preact/signals';
+import type { Hello } from '../protocol/types';
+import { use_app } from '../ui/app';
+import { fill } from './chart';
+import { fetch_series, type Columns } from './data';
+import { PlotFrame } from './PlotFrame';
+import { groups_of, short_names } from './sources';
+import { use_chart } from './use_chart';
+
+const points = 2000;
+
+interface Props {
+  hello: Hello;
+  place: number;
+  chosen: string;
+  choose(id: string): void;
+}
+
+/** A recording's quantities over all of its time. Angles are shown in degrees. */
+export function RecordingPlot({ hello, place, chosen, choose }: Props) {
+  const { viewer, cursor } = use_app();
+  const columns = useSignal<Columns | null>(null);
+  const groups = groups_of(hello.quantities).map((group) =>
+    group.unit === 'rad' ? { ...group, unit: '°', factor: 180 / Math.PI } : { ...group, factor: 1 },
+  );
+  const group = groups.find(({ id }) => id === chosen) ?? standard(groups, place);
+  const duration = Math.max(hello.duration, 1e-9);
+  const draw = (chart: Parameters<typeof fill>[0] | null): void => {
+    if (chart && columns.value) fill(chart, columns.value, [0, duration]);
+  };
+  const names = group?.names ?? [];
+  const { host, chart } = use_chart(names, group?.unit ?? '', draw);
+  const wanted = useRef('');
+  useEffect(() => {
+    if (!group) return;
+    wanted.current = group.id;
+    columns.value = null;
+    fetch_series(document.baseURI, names, points, group.factor).then(
+      (fetched) => {
+        if (wanted.current !== group.id) return;
+        columns.value = fetched;
+        draw(chart.current);
+      },
+      (error: unknown) => viewer.notices.error(error),
+    );
+  }, [group?.id]);
+  useEffect(() => effect(() => {
+    viewer.playback.time.value;
+    chart.current?.redraw(false);
+  }), []);
+  const at = cursor.value ?? viewer.playback.time.value;
+  const row = columns.value ? nearest(columns.value[0], at) : -1;
+  return (
+    <PlotFrame place={place} options={groups} chosen={group?.id ?? ''} names={short_names(names)} host={host} choose={choose}
+      values={names.map((_, i) => (row >= 0 ? columns.value![i + 1][row] : null))} />
+  );
+}
+
+/** The tip first, then what comes first besides. */
+function standard<G extends { id: string }>(groups: G[], place: number): G | undefined {
+  const tip = groups.findIndex(({ id }) => id.startsWith('tip'));
+  const order = tip > 0 ? [groups[tip], ...groups.filter((_, i) => i !== tip)] : groups;
+  return order[Math.min(place, order.length - 1)];
+}
+
+function nearest(times: number[], time: number): number {
+  let low = 0;
+  let high = times.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle;
+    else high = middle;
+  }
+  return high >= 0 && Math.abs(times[high] - time) < Math.abs(times[low] - time) ? high : low;
+}

@@ -1,0 +1,96 @@
+// uPlot in the page's colours, with the shared cursor.
+import uPlot from 'uplot';
+import type { Columns } from './data';
+
+export interface ChartOptions {
+  host: HTMLElement;
+  names: string[];
+  unit: string;
+  /** Times that are drawn as lines: where playback stands. */
+  now(): number | null;
+  hover(time: number | null): void;
+  seek(time: number): void;
+}
+
+/** Told apart on both grounds, also with a colour-blind eye as far as nine can be. */
+const palettes = {
+  dark: ['#4dabf7', '#ff922b', '#51cf66', '#f06595', '#ffd43b', '#22b8cf', '#b197fc', '#ff8787', '#94d82d'],
+  light: ['#1971c2', '#d9480f', '#2b8a3e', '#a61e4d', '#a86a00', '#0b7285', '#6741d9', '#c92a2a', '#5c940d'],
+};
+
+export function make_chart({ host, names, unit, now, hover, seek }: ChartOptions): uPlot {
+  const style = getComputedStyle(document.documentElement);
+  const color = (name: string): string => style.getPropertyValue(name).trim();
+  const palette = palettes[document.documentElement.dataset.theme === 'light' ? 'light' : 'dark'];
+  const font = '11px system-ui, sans-serif';
+  const axis: uPlot.Axis = {
+    stroke: color('--text-quiet'),
+    font,
+    grid: { stroke: color('--grid'), width: 1 },
+    ticks: { stroke: color('--grid'), width: 1, size: 4 },
+  };
+  const chart = new uPlot({
+    width: Math.max(100, host.clientWidth),
+    height: Math.max(60, host.clientHeight),
+    legend: { show: false },
+    padding: [8, 10, 0, 0],
+    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(low, high) } },
+    cursor: { sync: { key: 'flexura' }, points: { size: 6 }, drag: { x: false, y: false }, y: false },
+    axes: [
+      { ...axis, size: 24, values: (_, all) => all.map((t) => `${+t.toFixed(3)}`) },
+      { ...axis, size: 52, values: (_, all) => all.map((value) => `${+value.toPrecision(6)}`.replace('-', '−')) },
+    ],
+    series: [
+      {},
+      ...names.map((name, i) => ({
+        label: name, stroke: palette[i % palette.length], width: 1.5, points: { show: false },
+        dash: i >= palette.length ? [6, 3] : undefined, value: (_: uPlot, v: number | null) => `${v ?? '–'} ${unit}`,
+      })),
+    ],
+    hooks: {
+      setCursor: [(u) => hover(u.cursor.left !== undefined && u.cursor.left >= 0 ? u.posToVal(u.cursor.left, 'x') : null)],
+      draw: [(u) => draw_now(u, now(), color('--accent'))],
+    },
+  }, [[], ...names.map(() => [])] as unknown as uPlot.AlignedData, host);
+  chart.over.addEventListener('click', () => {
+    const { left } = chart.cursor;
+    if (left !== undefined && left >= 0) seek(chart.posToVal(left, 'x'));
+  });
+  return chart;
+}
+
+export function series_color(i: number, theme: 'dark' | 'light'): string {
+  return palettes[theme][i % palettes[theme].length];
+}
+
+export function fill(chart: uPlot, columns: Columns, range: [number, number]): void {
+  chart.batch(() => {
+    chart.setData(columns as unknown as uPlot.AlignedData, false);
+    chart.setScale('x', { min: range[0], max: range[1] });
+  });
+}
+
+/** A flat line stands in the middle; nothing touches the border. */
+function roomy(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [-1, 1];
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const flat = high - low < 1e-6 * size || size < 1e-9;
+  const margin = flat ? 0.1 * size || 1 : 0.08 * (high - low);
+  return [low - margin, high + margin];
+}
+
+function draw_now(chart: uPlot, time: number | null, color: string): void {
+  if (time === null) return;
+  const x = Math.round(chart.valToPos(time, 'x', true));
+  const { left, top, width, height } = chart.bbox;
+  if (x < left || x > left + width) return;
+  const { ctx } = chart;
+  ctx.save();
+  ctx.strokeStyle = color;
+  ctx.lineWidth = devicePixelRatio;
+  ctx.beginPath();
+  ctx.moveTo(x, top);
+  ctx.lineTo(x, top + height);
+  ctx.stroke();
+  ctx.restore();
+}

@@ -1,0 +1,37 @@
+// The columns that a plot draws.
+import type { History } from '../state/history';
+import type { Source } from './sources';
+
+export type Columns = [number[], ...number[][]];
+
+/** Points of a live plot: no more than its pixels can tell apart. */
+const most_points = 500;
+
+/** The last seconds of a source, thinned so that points stay where they are from one picture to the next. */
+export function window_of(history: History, source: Source, until: number, seconds: number): Columns {
+  const columns: Columns = [[], ...source.names.map(() => [] as number[])];
+  if (!history.count) return columns;
+  const first = history.index_at(until - seconds);
+  const last = history.index_at(until);
+  const stride = Math.max(1, Math.ceil((last - first) / most_points));
+  for (let i = first; i <= last; ++i) {
+    const state = history.at_index(i);
+    if (state.sequence % stride !== 0 && i !== last) continue;
+    columns[0].push(state.time);
+    source.names.forEach((_, j) => columns[j + 1].push(source.value(state, j)));
+  }
+  return columns;
+}
+
+/** A recording's quantities from the program; throws with a line for the page. */
+export async function fetch_series(base: string, names: string[], points: number, factor: number): Promise<Columns> {
+  const address = new URL('series', base);
+  address.searchParams.set('names', names.join(','));
+  address.searchParams.set('points', String(points));
+  const answer = await fetch(address, { credentials: 'same-origin' });
+  if (!answer.ok) throw new Error(`The plot’s data did not come (${answer.status}).`);
+  const series = (await answer.json()) as Record<string, number[]>;
+  const scaled = (values: number[] = []): number[] => (factor === 1 ? values : values.map((value) => value * factor));
+  return [series.time, ...names.map((name) => scaled(series[name]))];
+}
+

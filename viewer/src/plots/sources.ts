@@ -1,0 +1,101 @@
+// What can be plotted of a live rig: taken from the states that the page remembers.
+import { camera_pan, camera_stride, camera_tilt, sample_stride, type State } from '../protocol/state';
+import type { Hello, Scene } from '../protocol/types';
+
+export interface Source {
+  id: string;
+  label: string;
+  unit: string;
+  names: string[];
+  /** The value of the series i in a state. */
+  value(state: State, i: number): number;
+}
+
+const degree = 180 / Math.PI;
+
+export function live_sources(hello: Hello, scene: Scene): Source[] {
+  const sections = scene.arm.sections.length;
+  const planar = scene.arm.kind === 'planar';
+  const sources: Source[] = [
+    {
+      id: 'tip', label: 'Tip', unit: 'm', names: ['x', 'y', 'z'],
+      value: ({ samples }, i) => samples[samples.length - sample_stride + 1 + i],
+    },
+    planar
+      ? {
+          id: 'bends', label: 'Bends', unit: '°', names: numbered('section', sections),
+          value: ({ bends }, i) => bends[2 * i] * degree,
+        }
+      : {
+          id: 'bends', label: 'Bends', unit: '°',
+          names: Array.from({ length: 2 * sections }, (_, i) => `${(i >> 1) + 1}${'xy'[i & 1]}`),
+          value: ({ bends }, i) => bends[i] * degree,
+        },
+  ];
+  if (scene.arm.sections.some(({ stretch }) => stretch[1] > stretch[0])) {
+    sources.push({
+      id: 'stretch', label: 'Stretch', unit: '%', names: numbered('section', sections),
+      value: ({ stretches }, i) => stretches[i] * 100,
+    });
+  }
+  if (hello.controls.tendons) {
+    sources.push({
+      id: 'tendons', label: 'Tendons', unit: 'mm', names: numbered('tendon', hello.controls.tendons.length),
+      value: ({ displacements }, i) => displacements[i] * 1000,
+    });
+  }
+  if (scene.cameras.length) {
+    sources.push({
+      id: 'heads', label: 'Pan and tilt', unit: '°',
+      names: scene.cameras.flatMap(({ name }) => [`${name} pan`, `${name} tilt`]),
+      value: ({ cameras }, i) => cameras[(i >> 1) * camera_stride + (i & 1 ? camera_tilt : camera_pan)] * degree,
+    });
+  }
+  return sources;
+}
+
+function numbered(word: string, count: number): string[] {
+  return Array.from({ length: count }, (_, i) => `${word} ${i + 1}`);
+}
+
+export interface Group {
+  id: string;
+  label: string;
+  unit: string;
+  names: string[];
+}
+
+const most_in_group = 9;
+
+/** A recording's quantities, put together by what their names have in common. */
+export function groups_of(quantities: Hello['quantities']): Group[] {
+  const groups = new Map<string, Group>();
+  for (const { name, unit } of quantities) {
+    const stem = name.replace(/[\s._/-]?[\[(]?\d+[\])]?/g, '').replace(/[._/ -](x|y|z)$/, '') || name;
+    const id = `${stem} ${unit}`;
+    let group = groups.get(id);
+    if (group && group.names.length >= most_in_group) {
+      // More would not be told apart: the rest stands in a group of its own.
+      group = groups.get(`${id}+`) ?? { id: `${id}+`, label: `${readable(stem)} (more)`, unit, names: [] };
+    }
+    group ??= { id, label: readable(stem), unit, names: [] };
+    groups.set(group.id, group);
+    group.names.push(name);
+  }
+  return [...groups.values()];
+}
+
+/** A quantity's name as people write it. */
+export function readable(name: string): string {
+  const words = name.replace(/_/g, ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** What tells the names of a group apart: of tip_x, tip_y and tip_z the last letters. */
+export function short_names(names: string[]): string[] {
+  if (names.length < 2) return names.map(readable);
+  let common = 0;
+  while (common < names[0].length && names.every((name) => name[common] === names[0][common])) ++common;
+  const short = names.map((name) => name.slice(common).replace(/^[\s._/[(-]+|[\])]+/g, '').replace(/_/g, ' '));
+  return short.every(Boolean) ? short : names.map(readable);
+}

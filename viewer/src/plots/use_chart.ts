@@ -1,0 +1,37 @@
+import { useEffect, useRef } from 'preact/hooks';
+import type uPlot from 'uplot';
+import { theme_now } from '../state/preferences';
+import { use_app } from '../ui/app';
+import { make_chart } from './chart';
+
+/** A chart in a host of its own, made anew with other series or another theme, as large as its host. */
+export function use_chart(names: string[], unit: string, ready: (chart: uPlot) => void) {
+  const app = use_app();
+  const host = useRef<HTMLDivElement>(null);
+  const chart = useRef<uPlot | null>(null);
+  const theme = theme_now();
+  const signature = `${names.join('|')} ${unit} ${theme}`;
+  useEffect(() => {
+    const { playback } = app.viewer;
+    const made = make_chart({
+      host: host.current!,
+      names,
+      unit,
+      now: () => (playback.mode.value === 'live' ? playback.held.value : playback.time.value),
+      hover: (time) => (app.cursor.value = time),
+      seek: (time) => playback.seek(time),
+    });
+    chart.current = made;
+    ready(made);
+    const observer = new ResizeObserver(([{ contentRect }]) => {
+      if (contentRect.width > 0) made.setSize({ width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) });
+    });
+    observer.observe(host.current!);
+    return () => {
+      observer.disconnect();
+      made.destroy();
+      chart.current = null;
+    };
+  }, [signature]);
+  return { host, chart };
+}

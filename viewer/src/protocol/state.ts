@@ -1,0 +1,97 @@
+// The binary messages. Arrays are views into the message itself: nothing is copied on the way to the screen.
+
+export const kind_state = 1;
+export const kind_image = 2;
+
+export const flag_moving = 1;
+export const flag_running = 2;
+export const flag_recording = 4;
+export const flag_unsafe = 8;
+
+/** Numbers in a row of `samples`: s, x, y, z, qw, qx, qy, qz. */
+export const sample_stride = 8;
+/** Numbers in a row of `cameras`. */
+export const camera_stride = 18;
+
+/** Where what stands in a camera's row. */
+export const camera_pan = 7;
+export const camera_tilt = 8;
+export const camera_zoom = 9;
+export const camera_stage = 10;
+export const camera_fx = 13;
+export const camera_fy = 14;
+export const camera_cx = 15;
+export const camera_cy = 16;
+
+export interface State {
+  flags: number;
+  sequence: number;
+  time: number;
+  /** Pairs x, y of each section. */
+  bends: Float32Array;
+  stretches: Float32Array;
+  samples: Float32Array;
+  cameras: Float32Array;
+  displacements: Float32Array;
+}
+
+export interface ImageMessage {
+  camera: number;
+  type: 'image/jpeg' | 'image/png';
+  number: number;
+  time: number;
+  file: Uint8Array;
+}
+
+const state_header = 24;
+const image_header = 16;
+
+/** The kind of a binary message, 0 for one without any byte. */
+export function kind_of(buffer: ArrayBuffer): number {
+  return buffer.byteLength > 0 ? new DataView(buffer).getUint8(0) : 0;
+}
+
+/** The state in a message; throws where its length is not what its counts say. */
+export function decode_state(buffer: ArrayBuffer): State {
+  if (buffer.byteLength < state_header) throw new Error('a state shorter than its header');
+  const view = new DataView(buffer);
+  const sections = view.getUint16(2, true);
+  const samples = view.getUint16(4, true);
+  const cameras = view.getUint16(6, true);
+  const tendons = view.getUint16(8, true);
+  const numbers = 3 * sections + sample_stride * samples + camera_stride * cameras + tendons;
+  if (buffer.byteLength !== state_header + 4 * numbers) {
+    throw new Error(`a state of ${buffer.byteLength} bytes, expected ${state_header + 4 * numbers}`);
+  }
+  let at = state_header;
+  const take = (count: number): Float32Array => {
+    const part = new Float32Array(buffer, at, count);
+    at += 4 * count;
+    return part;
+  };
+  return {
+    flags: view.getUint8(1),
+    sequence: view.getUint32(12, true),
+    time: view.getFloat64(16, true),
+    bends: take(2 * sections),
+    stretches: take(sections),
+    samples: take(sample_stride * samples),
+    cameras: take(camera_stride * cameras),
+    displacements: take(tendons),
+  };
+}
+
+/** The image in a message; its file is a view into the message. */
+export function decode_image(buffer: ArrayBuffer): ImageMessage {
+  if (buffer.byteLength < image_header) throw new Error('an image shorter than its header');
+  const view = new DataView(buffer);
+  const format = view.getUint16(2, true);
+  if (format > 1) throw new Error(`an image of the unknown format ${format}`);
+  return {
+    camera: view.getUint8(1),
+    type: format === 1 ? 'image/png' : 'image/jpeg',
+    number: view.getUint32(4, true),
+    time: view.getFloat64(8, true),
+    file: new Uint8Array(buffer, image_header),
+  };
+}

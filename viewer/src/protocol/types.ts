@@ -1,0 +1,218 @@
+// What the page and the program say to each other: docs/viewer-protocol.md. SI units and radians throughout.
+
+export type Vector3 = [number, number, number];
+/** x, y, z, qw, qx, qy, qz in the world. */
+export type Pose = [number, number, number, number, number, number, number];
+export type Range = [number, number];
+export type Level = 'info' | 'warning' | 'error';
+
+export interface SceneSection {
+  length: number;
+  radius: Range;
+  max_bend: number | null;
+  stretch: Range;
+}
+
+export interface SceneMarker {
+  from: number;
+  to: number;
+  color: Vector3;
+}
+
+export interface SceneDisk {
+  at: number;
+  radius: number;
+  thickness: number;
+}
+
+export interface SceneArm {
+  kind: 'planar' | 'spatial';
+  sections: SceneSection[];
+  color: Vector3;
+  tip: 'flat' | 'round';
+  markers: SceneMarker[];
+  disks: SceneDisk[];
+  disk_color: Vector3;
+  base: Pose;
+  visible: boolean;
+}
+
+export interface SceneScreen {
+  pose: Pose;
+  size: [number, number];
+  brightness: number;
+}
+
+export interface SceneEtalon {
+  pose: Pose;
+  radius: number;
+  height: number;
+  line_width: number;
+  color: Vector3;
+  line_color: Vector3;
+}
+
+export type SceneObstacle = { name: string } & (
+  | { kind: 'plane'; point: Vector3; normal: Vector3 }
+  | { kind: 'sphere'; center: Vector3; radius: number }
+  | { kind: 'capsule'; from: Vector3; to: Vector3; radius: number }
+  | { kind: 'box'; center: Vector3; half_sizes: Vector3; rotation?: [number, number, number, number] }
+);
+
+export interface SceneCamera {
+  name: string;
+  width: number;
+  height: number;
+  channels: 1 | 3;
+}
+
+export interface Scene {
+  arm: SceneArm;
+  screens: SceneScreen[];
+  etalon: SceneEtalon | null;
+  obstacles: SceneObstacle[];
+  cameras: SceneCamera[];
+  light: { towards: Vector3; ambient: number; directional: number };
+  background: number;
+}
+
+export interface SectionControl {
+  bend: number | null;
+  stretch: Range;
+  bend_rate: number | null;
+}
+
+export interface HeadControl {
+  camera: string;
+  pan: Range;
+  tilt: Range;
+  zoom: Range;
+  /** A ratio where it is not said. */
+  zoom_unit?: 'ratio' | 'count';
+}
+
+export interface StageControl {
+  camera: string;
+  x: Range;
+  y: Range;
+  z: Range;
+}
+
+/** A tendon that ends with a section: displacements in m, positive pulled in; where it lies around the backbone. */
+export interface TendonControl {
+  section: number;
+  displacement: Range;
+  radius: number;
+  angle: number;
+}
+
+export interface Controls {
+  sections: SectionControl[];
+  tendons: null | TendonControl[];
+  heads: HeadControl[];
+  stages: StageControl[];
+  tasks: { name: string; kind: string }[];
+}
+
+export interface Mark {
+  time: number;
+  end: number;
+  level: Level;
+  name: string;
+  text: string;
+}
+
+export interface Quantity {
+  name: string;
+  unit: string;
+}
+
+export interface Hello {
+  type: 'hello';
+  version: string;
+  session: string;
+  mode: 'live' | 'recording';
+  title: string;
+  scene: Scene;
+  controls: Controls;
+  duration: number;
+  marks: Mark[];
+  quantities: Quantity[];
+  report: boolean;
+  /** There is a rig to go to. */
+  rig: boolean;
+  /** There is a recording to open. */
+  recording: boolean;
+  readonly: boolean;
+}
+
+export interface EventMessage {
+  type: 'event';
+  time: number;
+  level: Level;
+  name: string;
+  text: string;
+}
+
+export type Outcome = 'done' | 'unsafe' | 'cancelled' | 'failed';
+
+export interface ProgressMessage {
+  type: 'progress';
+  what?: string;
+  fraction?: number;
+  done?: boolean;
+  outcome?: Outcome;
+  text?: string;
+}
+
+/** Drawn upon a camera's picture; one file a kind in src/overlays. */
+export interface Layer {
+  id: string;
+  kind: string;
+  color?: string;
+  [key: string]: unknown;
+}
+
+export interface OverlayMessage {
+  type: 'overlay';
+  camera: string;
+  layers: Layer[];
+}
+
+export interface GhostMessage {
+  type: 'ghost';
+  id: string;
+  color?: string;
+  poses?: Pose[];
+}
+
+export type Reply = { type: 'reply'; id: number; result?: unknown; error?: string };
+
+export type TextMessage =
+  | Hello
+  | { type: 'scene'; scene: Scene }
+  | EventMessage
+  | ProgressMessage
+  | Reply
+  | OverlayMessage
+  | GhostMessage;
+
+export interface TipResult {
+  converged: boolean;
+  reason: string;
+  bends: [number, number][];
+  position_error: number;
+  /** The arm goes there. */
+  moved?: boolean;
+  /** Why it does not, where that would harm it. */
+  danger?: string;
+}
+
+export interface PixelResult {
+  value: number[];
+  bits: number;
+  label: string;
+  depth: number | null;
+  s: number | null;
+  number: number;
+}

@@ -1,0 +1,134 @@
+import {
+  Color, CylinderGeometry, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial,
+  MeshPhongMaterial, Quaternion, Sphere, Vector3, DoubleSide,
+} from 'three';
+import { Arc, locate, new_pose } from '../../math/arc';
+import { sample_stride, type State } from '../../protocol/state';
+import type { Part, PartContext } from '../part';
+import { coarse, painter, plan_rings, radius_at } from '../rings';
+import { fineness_of, sides, Tube } from '../tube';
+
+/** The arm: skin, disks, and its shadow on the floor, which says where it is in depth. */
+export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
+  const { arm } = scene;
+  if (!arm.visible) return [];
+  const rings = plan_rings(arm);
+  const thickest = rings.reduce((most, { radius }) => Math.max(most, radius), 0);
+  // From near, more sides: each is made when it is first needed, and only the one that is seen is laid.
+  const tubes: Tube[] = [];
+  const tube_of = (level: number): Tube => (tubes[level] ??= new Tube(rings, sides[level]));
+  let tube = tube_of(0);
+  let samples: ArrayLike<number> | null = null;
+  // Arms are dark, for the cameras' sake; on a dark ground a little light of its own keeps one in sight.
+  const skin = new Mesh(tube.geometry, new MeshPhongMaterial({
+    vertexColors: true, shininess: 40, specular: 0x333333, emissive: theme === 'dark' ? 0x4a5a66 : 0, emissiveIntensity: 0.6,
+  }));
+  skin.frustumCulled = false;
+  const shadow_group = new Group();
+  const shade = new Tube(plan_rings({ ...arm, markers: [] }, painter(arm), coarse), 6);
+  const shadow = new Mesh(
+    shade.geometry,
+    new MeshBasicMaterial({ color: theme === 'dark' ? 0x0c1218 : 0xc3ccd4, side: DoubleSide }),
+  );
+  shadow.frustumCulled = false;
+  shadow.matrixAutoUpdate = false;
+  shadow.matrix.makeScale(1, 0, 1).setPosition(0, floor - 5e-4 * span, 0);
+  shadow_group.add(shadow);
+
+  const group = new Group();
+  group.add(skin);
+  const disks = make_disks(arm.disks, arm.disk_color);
+  if (disks) group.add(disks.mesh);
+  return [
+    {
+      id: 'arm',
+      label: 'Arm',
+      group,
+      draw(state: State) {
+        samples = state.samples;
+        tube.lay(samples);
+        disks?.draw(state);
+      },
+      seen_from(eye, pixels) {
+        if (!samples) return;
+        const next = tube_of(fineness_of((pixels * thickest) / Math.max(thickest, distance_to(samples, eye))));
+        if (next === tube) return;
+        tube = next;
+        tube.lay(samples);
+        skin.geometry = tube.geometry;
+      },
+      dispose() {
+        tubes.forEach((each) => each.dispose());
+        (skin.material as MeshPhongMaterial).dispose();
+        disks?.mesh.dispose();
+      },
+    },
+    {
+      id: 'shadow',
+      label: 'Shadow on the floor',
+      group: shadow_group,
+      draw: ({ samples }) => shade.lay(samples),
+      dispose() {
+        shade.dispose();
+        (shadow.material as MeshBasicMaterial).dispose();
+      },
+    },
+    ...make_base({ scene, span, floor, theme }),
+  ];
+}
+
+/** From the nearest of the backbone's samples. */
+function distance_to(samples: ArrayLike<number>, { x, y, z }: Vector3): number {
+  let square = Infinity;
+  for (let i = 1; i + 2 < samples.length; i += sample_stride) {
+    const dx = samples[i] - x;
+    const dy = samples[i + 1] - y;
+    const dz = samples[i + 2] - z;
+    square = Math.min(square, dx * dx + dy * dy + dz * dz);
+  }
+  return Math.sqrt(square);
+}
+
+function make_disks(
+  disks: { at: number; radius: number; thickness: number }[],
+  color: [number, number, number],
+): { mesh: InstancedMesh; draw(state: State): void } | null {
+  if (!disks.length) return null;
+  const geometry = new CylinderGeometry(1, 1, 1, 18).rotateX(Math.PI / 2);
+  const mesh = new InstancedMesh(geometry, new MeshLambertMaterial({ color: new Color(...color) }), disks.length);
+  mesh.frustumCulled = false;
+  // As the skin's (tube.ts): a sphere of where the disks were would keep clicks from them.
+  mesh.boundingSphere = new Sphere(new Vector3(), Infinity);
+  const arc = new Arc();
+  const pose = new_pose();
+  const matrix = new Matrix4();
+  const place = new Vector3();
+  const turn = new Quaternion();
+  const size = new Vector3();
+  return {
+    mesh,
+    draw({ samples }) {
+      disks.forEach(({ at, radius, thickness }, i) => {
+        const { interval, fraction } = locate(samples, at);
+        arc.set(samples, interval).pose(fraction, pose);
+        place.set(pose[0], pose[1], pose[2]);
+        turn.set(pose[4], pose[5], pose[6], pose[3]);
+        mesh.setMatrixAt(i, matrix.compose(place, turn, size.set(radius, radius, thickness)));
+      });
+      mesh.instanceMatrix.needsUpdate = true;
+    },
+  };
+}
+
+/** A socket in which the arm stands. */
+function make_base({ scene, span, theme }: PartContext): Part[] {
+  const [x, y, z, qw, qx, qy, qz] = scene.arm.base;
+  const radius = Math.max(radius_at(scene.arm, 0) * 1.9, 0.012 * span);
+  const height = radius * 0.8;
+  const geometry = new CylinderGeometry(radius * 0.82, radius, height, 28).rotateX(Math.PI / 2).translate(0, 0, -height / 2);
+  const material = new MeshLambertMaterial({ color: theme === 'dark' ? 0x5b6b7a : 0x7c8a97 });
+  const mesh = new Mesh(geometry, material);
+  mesh.position.set(x, y, z);
+  mesh.quaternion.set(qx, qy, qz, qw);
+  return [{ id: 'base', label: 'Base', group: mesh, dispose: () => (geometry.dispose(), material.dispose()) }];
+}

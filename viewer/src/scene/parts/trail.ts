@@ -1,0 +1,49 @@
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Line, LineBasicMaterial } from 'three';
+import { sample_stride, type State } from '../../protocol/state';
+import type { Part, PartContext } from '../part';
+
+const most_points = 3000;
+/** Time and way between two shown states above which the tip was not seen to go there: one scrubbed. */
+const jump_s = 0.5;
+const jump_share = 0.03;
+
+/** Where the tip was: begins anew when time jumps. */
+export function make_trail({ span, theme }: PartContext): Part[] {
+  const points = new Float32Array(3 * most_points);
+  const attribute = new BufferAttribute(points, 3).setUsage(DynamicDrawUsage);
+  const geometry = new BufferGeometry().setAttribute('position', attribute);
+  const line = new Line(geometry, new LineBasicMaterial({ color: theme === 'dark' ? 0xffc857 : 0xb36b00 }));
+  line.frustumCulled = false;
+  let count = 0;
+  let time = 0;
+  geometry.setDrawRange(0, 0);
+  return [{
+    id: 'trail',
+    label: 'Trail of the tip',
+    group: line,
+    draw(state: State) {
+      const tip = state.samples.length - sample_stride + 1;
+      const [x, y, z] = [state.samples[tip], state.samples[tip + 1], state.samples[tip + 2]];
+      const last = 3 * (count - 1);
+      const way = count ? Math.hypot(x - points[last], y - points[last + 1], z - points[last + 2]) : 0;
+      if (Math.abs(state.time - time) > jump_s && way > jump_share * span) count = 0;
+      time = state.time;
+      if (count && way < 1e-3 * span) return;
+      if (count === most_points) {
+        // The oldest half goes at once: moving all of it at every state would cost more.
+        points.copyWithin(0, (3 * most_points) / 2);
+        count = most_points / 2;
+      }
+      points[3 * count] = x;
+      points[3 * count + 1] = y;
+      points[3 * count + 2] = z;
+      ++count;
+      geometry.setDrawRange(0, count);
+      attribute.needsUpdate = true;
+    },
+    dispose() {
+      geometry.dispose();
+      (line.material as LineBasicMaterial).dispose();
+    },
+  }];
+}

@@ -1,0 +1,105 @@
+// Where along the arm the tube has its rings, and what each looks like: fixed by the scene, while their places follow
+// every state.
+import type { SceneArm, Vector3 } from '../protocol/types';
+
+export interface Ring {
+  /** Along the unstretched arm, m. */
+  s: number;
+  radius: number;
+  /** Along the tangent from S(s): caps reach beyond the arm's end. */
+  offset: number;
+  /** Parts of the normal: away from the backbone, and along it. */
+  outward: number;
+  along: number;
+  color: Vector3;
+}
+
+/** How finely the arm is divided: so that its outline looks smooth on a projector, and no finer, for slow machines. */
+export interface Fineness {
+  arm: number;
+  section: number;
+  cap: number;
+}
+
+const fine: Fineness = { arm: 120, section: 11, cap: 5 };
+export const coarse: Fineness = { arm: 40, section: 6, cap: 2 };
+
+export function total_length(arm: SceneArm): number {
+  return arm.sections.reduce((sum, { length }) => sum + length, 0);
+}
+
+/** The arm's radius at s; where two sections meet, the one that starts there or, with `before`, the one that ends. */
+export function radius_at(arm: SceneArm, s: number, before = false): number {
+  let start = 0;
+  for (const section of arm.sections) {
+    const end = start + section.length;
+    if (s < end || (before && s <= end) || section === arm.sections[arm.sections.length - 1]) {
+      const f = section.length > 0 ? Math.min(1, Math.max(0, (s - start) / section.length)) : 0;
+      return section.radius[0] + f * (section.radius[1] - section.radius[0]);
+    }
+    start = end;
+  }
+  return 0;
+}
+
+/** All rings, base first: cap, sections with doubled rings where colour or radius jump, tip. */
+export function plan_rings(
+  arm: SceneArm, paint: (s: number) => Vector3 = painter(arm), fineness: Fineness = fine,
+): Ring[] {
+  const total = total_length(arm);
+  const rings: Ring[] = [];
+  const edges = arm.markers.flatMap(({ from, to }) => [from, to]);
+  let start = 0;
+  for (const section of arm.sections) {
+    const end = start + section.length;
+    const slope = (section.radius[1] - section.radius[0]) / section.length;
+    const norm = Math.hypot(1, slope);
+    const count = Math.max(fineness.section, Math.round((fineness.arm * section.length) / total));
+    const stops = stops_of(start, end, count, edges);
+    const tiny = 1e-9 * total;
+    for (let i = 0; i + 1 < stops.length; ++i) {
+      // Coloured from just inside each interval, so that a marker's edge is an edge.
+      const color = paint((stops[i] + stops[i + 1]) / 2);
+      for (const s of [stops[i], stops[i + 1]]) {
+        const last = rings[rings.length - 1];
+        const radius = section.radius[0] + slope * (s - start);
+        const same = last && Math.abs(last.s - s) < tiny && last.radius === radius && same_color(last.color, color);
+        if (!same) rings.push({ s, radius, offset: 0, outward: 1 / norm, along: -slope / norm, color });
+      }
+    }
+    start = end;
+  }
+  return [...base_cap(rings[0]), ...rings, ...tip_cap(rings[rings.length - 1], arm.tip, fineness.cap)];
+}
+
+export function painter(arm: SceneArm): (s: number) => Vector3 {
+  return (s) => arm.markers.find(({ from, to }) => s >= from && s <= to)?.color ?? arm.color;
+}
+
+function stops_of(start: number, end: number, count: number, edges: number[]): number[] {
+  const stops = Array.from({ length: count + 1 }, (_, i) => start + ((end - start) * i) / count);
+  for (const edge of edges) if (edge > start && edge < end) stops.push(edge);
+  return stops.sort((a, b) => a - b).filter((s, i, all) => i === 0 || s - all[i - 1] > 1e-9 * (end - start));
+}
+
+function same_color(a: Vector3, b: Vector3): boolean {
+  return a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
+}
+
+function base_cap(first: Ring): Ring[] {
+  const flat = { ...first, outward: 0, along: -1 };
+  return [{ ...flat, radius: 0 }, flat];
+}
+
+function tip_cap(last: Ring, kind: SceneArm['tip'], count: number): Ring[] {
+  if (kind === 'flat') {
+    const flat = { ...last, outward: 0, along: 1 };
+    return [flat, { ...flat, radius: 0 }];
+  }
+  return Array.from({ length: count }, (_, i) => {
+    const angle = ((i + 1) / count) * (Math.PI / 2);
+    const outward = Math.cos(angle);
+    const along = Math.sin(angle);
+    return { ...last, offset: last.radius * along, radius: last.radius * outward, outward, along };
+  });
+}

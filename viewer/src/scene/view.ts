@@ -1,0 +1,225 @@
+// The 3D view: draws when something changed, and only then.
+import {
+  AmbientLight, Color, DirectionalLight, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
+} from 'three';
+import { point_at } from '../math/arc';
+import type { Picture } from '../connection/images';
+import type { State } from '../protocol/state';
+import type { GhostMessage, Scene } from '../protocol/types';
+import { see_through } from './camera_view';
+import { Orbit } from './orbit';
+import type { Part, Theme } from './part';
+import { make_handles, type Handles } from './parts/handles';
+import { part_makers } from './parts/registry';
+import { total_length } from './rings';
+import { draws_in_software, Sharpness } from './sharpness';
+
+/** Between two updates of the pictures in the view. */
+const picture_ms = 200;
+const backgrounds = { dark: 0x131b23, light: 0xeef2f5 };
+
+export class SceneView {
+  readonly orbit = new Orbit();
+  readonly camera = new PerspectiveCamera(38, 1, 0.01, 100);
+  readonly renderer: WebGLRenderer;
+  parts: Part[] = [];
+  handles: Handles | null = null;
+  scene: Scene | null = null;
+  state: State | null = null;
+  span = 1;
+  /** How many pictures were drawn: what the frame rate is measured by. */
+  drawn = 0;
+  /** The rig's camera through which one looks; null for the free view. */
+  through: string | null = null;
+  private readonly world = new World();
+  private readonly ambient = new AmbientLight(0xffffff, 1);
+  private readonly sun = new DirectionalLight(0xffffff, 1);
+  private readonly head_light = new DirectionalLight(0xffffff, 0.5);
+  private readonly size = new Vector2(1, 1);
+  private readonly sharpness: Sharpness;
+  private readonly pictures = new Map<string, Picture>();
+  private picture_timer: ReturnType<typeof setTimeout> | undefined;
+  private frame = 0;
+  private dirty = false;
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    const software = draws_in_software();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: 'high-performance' });
+    this.sharpness = new Sharpness(software, () => this.request());
+    this.sharpness.apply(this.renderer, true);
+    this.camera.add(this.head_light);
+    this.world.add(this.ambient, this.sun, this.camera);
+  }
+
+  /** Builds what stands there anew; the view stays where it was unless `frame_all`. */
+  build(scene: Scene, theme: Theme, frame_all: boolean): void {
+    this.clear();
+    this.scene = scene;
+    this.span = this.orbit.span = Math.max(1e-6, total_length(scene.arm));
+    const floor = this.floor_height(scene);
+    const context = { scene, span: this.span, floor, theme };
+    this.handles = make_handles(context);
+    this.parts = [...part_makers.flatMap((make) => make(context)), this.handles];
+    for (const { group } of this.parts) this.world.add(group);
+    this.world.background = new Color(backgrounds[theme]);
+    this.ambient.intensity = Math.PI * Math.max(0.25, scene.light.ambient * 0.8);
+    this.sun.intensity = Math.PI * scene.light.directional;
+    this.sun.position.set(...scene.light.towards);
+    if (frame_all) this.frame_all();
+    if (this.state) this.draw_state(this.state);
+    this.invalidate();
+  }
+
+  /** Draws a state; one in which nothing moved is not drawn again unless `anyway`. */
+  draw_state(state: State, anyway = true): void {
+    const before = this.state;
+    this.state = state;
+    if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)) return;
+    for (const part of this.parts) part.draw?.(state);
+    this.invalidate();
+  }
+
+  /** The cameras' pictures hang in the view a few times a second: beside it they are shown in full. */
+  show_picture(name: string, picture: Picture): void {
+    this.pictures.set(name, picture);
+    this.picture_timer ??= setTimeout(() => {
+      this.picture_timer = undefined;
+      for (const [camera, newest] of this.pictures) {
+        // One of another run was closed meanwhile.
+        if (newest.bitmap.width > 0) for (const part of this.parts) part.picture?.(camera, newest);
+      }
+      this.pictures.clear();
+      this.request();
+    }, picture_ms);
+  }
+
+  show_ghosts(ghosts: Record<string, GhostMessage>): void {
+    for (const part of this.parts) part.ghosts?.(ghosts);
+    this.invalidate();
+  }
+
+  hide(ids: string[]): void {
+    for (const { id, group } of this.parts) group.visible = !ids.includes(id);
+    this.invalidate();
+  }
+
+  look_through(name: string | null): void {
+    this.through = name;
+    for (const part of this.parts) part.inside?.(name);
+    this.invalidate();
+  }
+
+  resize(width: number, height: number): void {
+    if (width < 1 || height < 1) return;
+    this.size.set(width, height);
+    this.renderer.setSize(width, height, false);
+    this.invalidate();
+  }
+
+  /** All of the arm's reach in view. */
+  frame_all(): void {
+    if (!this.scene) return;
+    const { base } = this.scene.arm;
+    const up = this.scene.arm.kind === 'planar' ? 0.45 : 0.42;
+    this.orbit.target.set(base[0], base[1] + this.up_of_base(this.scene) * up * this.span, base[2]);
+    this.orbit.distance = 2.9 * this.span;
+    this.invalidate();
+  }
+
+  /** Looks at the arm's point at s, or at its tip. */
+  look_at_arm(s: number | null): void {
+    if (!this.scene || !this.state) return;
+    const { position } = point_at(this.state.samples, s ?? total_length(this.scene.arm));
+    this.orbit.target.set(...position);
+    this.invalidate();
+  }
+
+  /** Where the arm's point at s is, or its tip, in pixels of the window. */
+  on_screen(s = Infinity): { x: number; y: number } | null {
+    if (!this.state) return null;
+    const point = new Vector3(...point_at(this.state.samples, s).position).project(this.camera);
+    const box = this.canvas.getBoundingClientRect();
+    return { x: box.left + ((point.x + 1) / 2) * box.width, y: box.top + ((1 - point.y) / 2) * box.height };
+  }
+
+  /** Something moved: there is a new picture to draw. */
+  invalidate(): void {
+    this.sharpness.moved();
+    this.request();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    clearTimeout(this.picture_timer);
+    this.sharpness.stop();
+    this.clear();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
+  private request(): void {
+    this.dirty = true;
+    if (!this.frame) this.frame = requestAnimationFrame(this.render);
+  }
+
+  /** What is under the pixel (x, y), if anything is. */
+  hit(x: number, y: number): Vector3 | null {
+    const pointer = new Vector2((2 * x) / this.size.x - 1, 1 - (2 * y) / this.size.y);
+    const ray = new Raycaster();
+    ray.setFromCamera(pointer, this.camera);
+    ray.params.Line.threshold = 0;
+    const groups = this.parts.filter(({ group, id }) => group.visible && id !== 'shadow').map(({ group }) => group);
+    return ray.intersectObjects(groups, true).find(({ object }) => object.visible && object.type !== 'LineSegments')?.point ?? null;
+  }
+
+  get width(): number {
+    return this.size.x;
+  }
+
+  get height(): number {
+    return this.size.y;
+  }
+
+  private up_of_base({ arm: { base } }: Scene): number {
+    const [, , , w, x, y, z] = base;
+    return 2 * (y * z - w * x) >= -1e-9 ? 1 : -1;
+  }
+
+  /** Under an arm that stands, and under the reach of one that hangs. */
+  private floor_height(scene: Scene): number {
+    return scene.arm.base[1] - (this.up_of_base(scene) > 0 ? 0 : 1.05 * this.span);
+  }
+
+  private clear(): void {
+    for (const part of this.parts) {
+      this.world.remove(part.group);
+      part.dispose();
+    }
+    this.parts = [];
+  }
+
+  private render = (): void => {
+    this.frame = 0;
+    if (!this.dirty) return;
+    this.dirty = false;
+    const through = this.through !== null && this.scene && this.state
+      && see_through(this.camera, this.scene, this.state, this.through, this.size.x / this.size.y);
+    if (!through) {
+      this.camera.aspect = this.size.x / this.size.y;
+      this.orbit.place(this.camera);
+      this.camera.updateProjectionMatrix();
+    }
+    this.camera.updateMatrixWorld();
+    this.sharpness.apply(this.renderer);
+    const pixels = (this.camera.projectionMatrix.elements[5] * this.size.y * this.renderer.getPixelRatio()) / 2;
+    for (const part of this.parts) part.seen_from?.(this.camera.position, pixels);
+    this.renderer.render(this.world, this.camera);
+    ++this.drawn;
+  };
+}
+
+function same(a: Float32Array, b: Float32Array): boolean {
+  if (a.length !== b.length) return false;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
+  return true;
+}

@@ -1,0 +1,98 @@
+// What a person does to the rig, each kind with one request outstanding and only the newest waiting.
+import { signal } from '@preact/signals';
+import { Latest } from '../connection/latest';
+import type { TipResult, Vector3 } from '../protocol/types';
+import type { Viewer } from './viewer';
+
+export type ArmCommand = Record<string, unknown>;
+
+export class Commander {
+  /** What inverse kinematics said last, and for which goal; null when nobody drags. */
+  readonly tip_result = signal<TipResult | null>(null);
+  readonly tip_goal = signal<Vector3 | null>(null);
+  private readonly arm_latest: Latest<ArmCommand>;
+  private readonly tip_latest: Latest<Vector3, TipResult>;
+  private is_tip_led = false;
+  private readonly axes = new Map<string, Latest<Record<string, unknown>>>();
+
+  constructor(private readonly viewer: Viewer) {
+    const { link, notices } = viewer;
+    const told = (_: unknown, error: Error | null): void => {
+      if (error) notices.error(error);
+    };
+    this.arm_latest = new Latest<ArmCommand>((values) => link.request('arm', values), told);
+    this.tip_latest = new Latest<Vector3, TipResult>(
+      (position) => link.request<TipResult>('tip', { position }),
+      (result, error) => {
+        if (this.is_tip_led) this.tip_result.value = result;
+        if (error) notices.error(error);
+      },
+    );
+  }
+
+  arm(values: ArmCommand): void {
+    this.viewer.playback.go_live();
+    this.forget_tip();
+    this.arm_latest.ask(values);
+  }
+
+  /** The tip is to be there. */
+  tip(position: Vector3): void {
+    this.viewer.playback.go_live();
+    this.is_tip_led = true;
+    this.tip_goal.value = position;
+    this.tip_latest.ask(position);
+  }
+
+  /** Nobody drags the tip any more. */
+  release_tip(): void {
+    this.tip_goal.value = null;
+  }
+
+  /** The arm goes elsewhere: where its tip was to be is of no more concern, nor what is still to come of that. */
+  forget_tip(): void {
+    this.is_tip_led = false;
+    this.tip_latest.forget();
+    this.tip_goal.value = null;
+    this.tip_result.value = null;
+  }
+
+  /** Moves a head or a stage: `what` is the request's name. */
+  axis(what: 'head' | 'stage', camera: string, values: Record<string, number>): void {
+    const key = `${what} ${camera} ${Object.keys(values).join()}`;
+    let latest = this.axes.get(key);
+    if (!latest) {
+      latest = new Latest<Record<string, unknown>>(
+        (all) => this.viewer.link.request(what, all),
+        (_, error) => error && this.viewer.notices.error(error),
+      );
+      this.axes.set(key, latest);
+    }
+    latest.ask({ camera, ...values });
+  }
+
+  /** A request without values: halt, reset, run, cancel, open, live. True when it was taken. */
+  async plain(what: string): Promise<boolean> {
+    if (what === 'reset' || what === 'run') this.forget_tip();
+    try {
+      await this.viewer.link.request(what);
+      return true;
+    } catch (error) {
+      this.viewer.notices.error(error);
+      return false;
+    }
+  }
+}
+
+const reasons: Record<string, string> = {
+  not_reachable: 'Out of reach',
+  at_limit: 'At the limits of the arm',
+  no_convergence: 'No shape found',
+};
+
+/** Why the tip does not come to where it is wanted; null where it does. */
+export function obstruction(result: TipResult): string | null {
+  if (result.danger) return result.danger;
+  if (result.converged) return null;
+  return reasons[result.reason] ?? result.reason;
+}

@@ -1,0 +1,60 @@
+import type { State } from '../protocol/state';
+
+/** The states of the last seconds, so that one can look back while the rig goes on. */
+export class History {
+  private states: State[] = [];
+  private from = 0;
+
+  constructor(readonly seconds = 60) {}
+
+  /** Adds the newest; forgets all when time went back (a reset), and what is too old. */
+  add(state: State): void {
+    const last = this.newest;
+    if (last && state.time < last.time) this.clear();
+    if (last && state.time === last.time) this.states.pop();
+    this.states.push(state);
+    while (this.states[this.from].time < state.time - this.seconds) ++this.from;
+    // Dropped in bulk: shifting an array at every state would copy it sixty times a second.
+    if (this.from > 1000) {
+      this.states.splice(0, this.from);
+      this.from = 0;
+    }
+  }
+
+  clear(): void {
+    this.states = [];
+    this.from = 0;
+  }
+
+  get newest(): State | undefined {
+    return this.states[this.states.length - 1];
+  }
+
+  get oldest(): State | undefined {
+    return this.states[this.from];
+  }
+
+  get count(): number {
+    return this.states.length - this.from;
+  }
+
+  at_index(i: number): State {
+    return this.states[this.from + i];
+  }
+
+  /** The place of the last state that is not after the time; 0 when all are. */
+  index_at(time: number): number {
+    let low = 0;
+    let high = this.count - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.at_index(middle).time <= time) low = middle;
+      else high = middle - 1;
+    }
+    return Math.max(0, low);
+  }
+
+  at(time: number): State | undefined {
+    return this.count ? this.at_index(this.index_at(time)) : undefined;
+  }
+}

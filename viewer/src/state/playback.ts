@@ -1,0 +1,124 @@
+// Which time is shown. Live, that is now, or an instant of the last seconds that is held; a recording has the page's
+// own clock, which asks the program for the states (one request outstanding).
+import { computed, signal } from '@preact/signals';
+import { Latest } from '../connection/latest';
+import type { State } from '../protocol/state';
+import type { History } from './history';
+
+export interface PlaybackHost {
+  history: History;
+  ask_at(time: number): Promise<unknown>;
+  show(state: State): void;
+  failed(error: Error): void;
+}
+
+export const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
+/** What one step is: a sixtieth of a second, as states come. */
+export const step_s = 1 / 60;
+
+export class Playback {
+  readonly mode = signal<'live' | 'recording'>('live');
+  readonly duration = signal(0);
+  /** A recording is playing. */
+  readonly playing = signal(false);
+  readonly speed = signal(1);
+  /** Of a recording: where it stands. Live: the held instant, null for now. */
+  readonly time = signal(0);
+  readonly held = signal<number | null>(null);
+  readonly running = computed(() => (this.mode.value === 'live' ? this.held.value === null : this.playing.value));
+  private readonly asker: Latest<number>;
+  private frame = 0;
+  private before = 0;
+
+  constructor(private readonly host: PlaybackHost) {
+    this.asker = new Latest<number>((time) => host.ask_at(time), (_, error) => {
+      // One that was under way when the rig took the recording's place is nobody's concern any more.
+      if (!error || this.mode.value !== 'recording') return;
+      this.playing.value = false;
+      host.failed(error);
+    });
+  }
+
+  /** Another run, or another rig: from its start. */
+  start(mode: 'live' | 'recording', duration: number): void {
+    this.pause();
+    this.asker.forget();
+    this.mode.value = mode;
+    this.duration.value = duration;
+    this.held.value = null;
+    this.time.value = 0;
+    if (mode === 'recording') this.asker.ask(0);
+  }
+
+  /** The connection is back: asks for where it stands. */
+  again(): void {
+    if (this.mode.value === 'recording') this.asker.ask(this.time.value);
+  }
+
+  toggle(): void {
+    if (this.running.value) this.pause();
+    else this.play();
+  }
+
+  play(): void {
+    if (this.mode.value === 'live') return this.go_live();
+    if (this.time.value >= this.duration.value) this.time.value = 0;
+    this.playing.value = true;
+    this.before = performance.now();
+    cancelAnimationFrame(this.frame);
+    this.frame = requestAnimationFrame(this.advance);
+  }
+
+  pause(): void {
+    if (this.mode.value === 'live') {
+      const newest = this.host.history.newest;
+      if (newest && this.held.value === null) this.held.value = newest.time;
+      return;
+    }
+    this.playing.value = false;
+  }
+
+  go_live(): void {
+    this.held.value = null;
+    const newest = this.host.history.newest;
+    if (newest) this.host.show(newest);
+  }
+
+  /** To a time; live ones stay within what is remembered. */
+  seek(time: number): void {
+    if (this.mode.value === 'live') return this.hold(time);
+    this.time.value = Math.min(this.duration.value, Math.max(0, time));
+    this.asker.ask(this.time.value);
+  }
+
+  step(count: number): void {
+    this.pause();
+    const now = this.mode.value === 'live' ? (this.held.value ?? 0) : this.time.value;
+    this.seek(now + count * step_s);
+  }
+
+  faster(by: number): void {
+    const place = speeds.indexOf(this.speed.value) + by;
+    this.speed.value = speeds[Math.min(speeds.length - 1, Math.max(0, place))];
+  }
+
+  private hold(time: number): void {
+    const { history } = this.host;
+    const oldest = history.oldest;
+    const newest = history.newest;
+    if (!oldest || !newest) return;
+    const drawn = Math.min(newest.time, Math.max(oldest.time, time));
+    this.held.value = drawn;
+    const state = history.at(drawn);
+    if (state) this.host.show(state);
+  }
+
+  private advance = (now: number): void => {
+    if (!this.playing.value) return;
+    const time = this.time.value + ((now - this.before) / 1000) * this.speed.value;
+    this.before = now;
+    this.seek(time);
+    if (time >= this.duration.value) this.playing.value = false;
+    else this.frame = requestAnimationFrame(this.advance);
+  };
+}

@@ -1,0 +1,60 @@
+// What a person set for this browser. Nothing of an experiment is kept here.
+import { effect, signal, type Signal } from '@preact/signals';
+
+const prefix = 'flexura.';
+
+function kept<T>(name: string, standard: T): Signal<T> {
+  let start = standard;
+  try {
+    const text = localStorage.getItem(prefix + name);
+    if (text !== null) start = JSON.parse(text) as T;
+  } catch {
+    // Storage may be switched off, or hold something else's value: then the standard holds.
+  }
+  const value = signal(start);
+  effect(() => {
+    const text = JSON.stringify(value.value);
+    try {
+      localStorage.setItem(prefix + name, text);
+    } catch {
+      // Not kept, then.
+    }
+  });
+  return value;
+}
+
+export type Theme = 'system' | 'dark' | 'light';
+export type ArmMode = 'bends' | 'archings' | 'cord_angles' | 'tendons';
+
+export const preferences = {
+  theme: kept<Theme>('theme', 'system'),
+  keys: kept('keys', true),
+  hidden: kept<string[]>('hidden', []),
+  /** Until someone chose: the first that the arm has. */
+  arm_mode: kept<ArmMode | null>('arm_mode', null),
+  plots: kept<[string, string]>('plots', ['tip', 'bends']),
+  recording_plots: kept<[string, string]>('recording_plots', ['', '']),
+  show_plots: kept('show_plots', true),
+};
+
+export type Preferences = typeof preferences;
+
+const asks_for_light = typeof matchMedia === 'function' ? matchMedia('(prefers-color-scheme: light)') : null;
+const system_light = signal(asks_for_light?.matches ?? false);
+asks_for_light?.addEventListener('change', ({ matches }) => (system_light.value = matches));
+
+/** The theme that holds now. */
+export function theme_now(): 'dark' | 'light' {
+  const theme = preferences.theme.value;
+  if (theme !== 'system') return theme;
+  return system_light.value ? 'light' : 'dark';
+}
+
+export function toggle_theme(): void {
+  preferences.theme.value = theme_now() === 'dark' ? 'light' : 'dark';
+}
+
+export function toggle_hidden(id: string): void {
+  const hidden = preferences.hidden.value;
+  preferences.hidden.value = hidden.includes(id) ? hidden.filter((other) => other !== id) : [...hidden, id];
+}

@@ -1,0 +1,220 @@
+// Everything that the page knows, and where the messages go.
+import { computed, signal } from '@preact/signals';
+import { Link, type LinkListener } from '../connection/link';
+import { Pictures, type Picture } from '../connection/images';
+import type { Entry } from '../connection/entry';
+import { decode_image, decode_state, flag_running, kind_image, kind_of, kind_state, type State } from '../protocol/state';
+import type { EventMessage, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
+import { Commander } from './commander';
+import { History } from './history';
+import { Notices } from './notices';
+import { Playback } from './playback';
+
+/** What one can believe of what is on the screen. */
+export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none';
+
+const kept_events = 200;
+/** Panels read the state so often; the 3D view has every one. */
+const tick_ms = 80;
+/** A live rig's time goes on: without states for so long something is wrong, answers or not. */
+const stateless_ms = 3000;
+const image_rate = 30;
+
+export class Viewer implements LinkListener {
+  readonly notices = new Notices();
+  readonly history = new History();
+  readonly link: Link;
+  readonly playback: Playback;
+  readonly commander: Commander;
+  readonly pictures: Pictures;
+
+  readonly hello = signal<Hello | null>(null);
+  readonly scene = signal<Scene | null>(null);
+  readonly events = signal<EventMessage[]>([]);
+  readonly progress = signal<ProgressMessage | null>(null);
+  readonly layers = signal<Record<string, Layer[]>>({});
+  readonly ghosts = signal<Record<string, GhostMessage>>({});
+  /** Grows with each picture of a camera; the picture itself is in `picture_of`. */
+  readonly picture_tick = signal(0);
+  /** Grows some ten times a second while the shown state changes. */
+  readonly tick = signal(0);
+  /** The flags of the newest state. */
+  readonly flags = signal(0);
+  /** The picked point of the backbone, m along the unstretched arm. */
+  readonly picked = signal<number | null>(null);
+  /** Counts starts afresh: a new run, a new rig, a restarted program. */
+  readonly epoch = signal(0);
+  readonly freshness = computed<Freshness>(() => this.judge());
+
+  shown: State | null = null;
+  readonly picture_of = new Map<string, Picture>();
+  readonly state_listeners = new Set<(state: State) => void>();
+  readonly picture_listeners = new Set<(camera: string, picture: Picture) => void>();
+  private readonly stateless = signal(false);
+  private last_state = 0;
+  private tick_timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(entry: Entry) {
+    this.link = new Link(this, entry);
+    this.pictures = new Pictures((camera, picture) => this.show_picture(camera, picture));
+    this.playback = new Playback({
+      history: this.history,
+      ask_at: (time) => this.link.request('at', { time }),
+      show: (state) => this.show(state),
+      failed: (error) => this.notices.error(error),
+    });
+    this.commander = new Commander(this);
+    setInterval(() => this.watch_states(), 500);
+  }
+
+  get readonly(): boolean {
+    const hello = this.hello.value;
+    return !hello || hello.readonly || hello.mode === 'recording';
+  }
+
+  /** Nothing can be moved now: a recording, a run of tasks, a connection that is lost. */
+  get still(): boolean {
+    return this.readonly || (this.flags.value & flag_running) !== 0 || this.freshness.value === 'lost';
+  }
+
+  text(message: TextMessage): void {
+    switch (message.type) {
+      case 'hello':
+        return this.greet(message);
+      case 'scene':
+        this.scene.value = message.scene;
+        return;
+      case 'event':
+        this.events.value = [...this.events.value.slice(1 - kept_events), message];
+        return;
+      case 'progress':
+        return this.take_progress(message);
+      case 'overlay':
+        this.layers.value = { ...this.layers.value, [message.camera]: message.layers };
+        return;
+      case 'ghost':
+        return this.take_ghost(message);
+    }
+  }
+
+  bytes(message: ArrayBuffer): void {
+    try {
+      const kind = kind_of(message);
+      if (kind === kind_state) this.take_state(decode_state(message));
+      else if (kind === kind_image) void this.take_image(message);
+      // Other kinds are later versions'; this page knows nothing to draw for them.
+    } catch (error) {
+      this.notices.error(error);
+    }
+  }
+
+  closed(): void {
+    this.progress.value = null;
+  }
+
+  private greet(hello: Hello): void {
+    const before = this.hello.value;
+    const afresh = !before || before.session !== hello.session || before.mode !== hello.mode
+      || before.title !== hello.title || before.duration !== hello.duration;
+    this.hello.value = hello;
+    this.scene.value = hello.scene;
+    if (before && before.session !== hello.session) this.notices.info('The program was started again.');
+    if (afresh) {
+      this.forget();
+      this.playback.start(hello.mode, hello.duration);
+    } else {
+      this.playback.again();
+    }
+    for (const { name } of hello.scene.cameras) {
+      // A recording without pictures refuses; the page then shows none.
+      this.link.request('images', { camera: name, rate: image_rate }).catch(() => {});
+    }
+  }
+
+  /** Nothing of another run may be taken for this one's. */
+  private forget(): void {
+    this.history.clear();
+    this.shown = null;
+    this.flags.value = 0;
+    this.events.value = [];
+    this.progress.value = null;
+    this.layers.value = {};
+    this.ghosts.value = {};
+    this.picked.value = null;
+    this.commander.forget_tip();
+    this.pictures.reset();
+    for (const { bitmap } of this.picture_of.values()) bitmap.close();
+    this.picture_of.clear();
+    this.picture_tick.value++;
+    this.epoch.value++;
+  }
+
+  private take_progress(message: ProgressMessage): void {
+    this.progress.value = message;
+    if (!message.done) return;
+    const text = message.text || `The tasks ended: ${message.outcome ?? 'done'}.`;
+    if (message.outcome === 'done') this.notices.info(text);
+    else this.notices.error(text);
+  }
+
+  private take_ghost(message: GhostMessage): void {
+    const { [message.id]: _, ...others } = this.ghosts.value;
+    this.ghosts.value = message.poses?.length ? { ...others, [message.id]: message } : others;
+  }
+
+  private take_state(state: State): void {
+    this.last_state = performance.now();
+    this.stateless.value = false;
+    this.flags.value = state.flags;
+    if (this.playback.mode.value === 'recording') {
+      this.show(state);
+      return;
+    }
+    this.history.add(state);
+    if (this.playback.held.value === null) this.show(state);
+  }
+
+  private show(state: State): void {
+    this.shown = state;
+    for (const listener of this.state_listeners) listener(state);
+    this.tick_timer ??= setTimeout(() => {
+      this.tick_timer = undefined;
+      this.tick.value++;
+    }, tick_ms);
+  }
+
+  private async take_image(message: ArrayBuffer): Promise<void> {
+    const image = decode_image(message);
+    const camera = this.scene.value?.cameras[image.camera]?.name;
+    if (camera === undefined) return;
+    try {
+      await this.pictures.take(camera, image);
+    } catch {
+      this.notices.error(`A picture of the camera ${camera} could not be read.`);
+    }
+    // Also after a bad one: else the stream would stand still for ever.
+    this.link.tell('ack', { camera, number: image.number });
+  }
+
+  private show_picture(camera: string, picture: Picture): void {
+    const before = this.picture_of.get(camera);
+    this.picture_of.set(camera, picture);
+    for (const listener of this.picture_listeners) listener(camera, picture);
+    before?.bitmap.close();
+    this.picture_tick.value++;
+  }
+
+  private watch_states(): void {
+    const live = this.playback.mode.value === 'live' && this.link.status.value.kind === 'open';
+    this.stateless.value = live && performance.now() - this.last_state > stateless_ms;
+  }
+
+  private judge(): Freshness {
+    const link = this.link.status.value;
+    if (!this.hello.value) return 'none';
+    if (link.kind !== 'open') return 'lost';
+    if (!this.link.fresh.value || this.stateless.value) return 'stale';
+    if (this.hello.value.mode === 'recording') return 'recording';
+    return this.playback.held.value === null ? 'live' : 'held';
+  }
+}

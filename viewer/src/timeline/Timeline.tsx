@@ -1,0 +1,92 @@
+import type { Mark } from '../protocol/types';
+import { speeds } from '../state/playback';
+import { use_app } from '../ui/app';
+import { format_time } from '../ui/format';
+import { Icon } from '../ui/Icon';
+
+/** Time: play, pause, step, speed, and a line to scrub along, with marks for what happened. */
+export function Timeline() {
+  const { viewer } = use_app();
+  const { playback } = viewer;
+  const live = playback.mode.value === 'live';
+  const running = playback.running.value;
+  const ready = viewer.hello.value !== null;
+  return (
+    <section class="timeline" aria-label="Timeline">
+      <div class="transport" role="group" aria-label="Playback">
+        <button type="button" class="button quiet square" disabled={!ready} aria-label="One step back" title="One step back (←)"
+          onClick={() => playback.step(-1)}><Icon name="back" /></button>
+        <button type="button" class="button square" disabled={!ready} id="play"
+          aria-label={running ? (live ? 'Hold the view' : 'Pause') : live ? 'Back to now' : 'Play'} title="Space"
+          onClick={() => playback.toggle()}><Icon name={running ? 'pause' : 'play'} /></button>
+        <button type="button" class="button quiet square" disabled={!ready} aria-label="One step forward" title="One step forward (→)"
+          onClick={() => playback.step(1)}><Icon name="next" /></button>
+        {live ? (
+          <button type="button" class="button live-button" disabled={!ready || playback.held.value === null}
+            onClick={() => playback.go_live()}>Now</button>
+        ) : (
+          <select aria-label="Speed" title="Slower or faster (− +)" value={playback.speed.value}
+            onChange={(event) => (playback.speed.value = Number(event.currentTarget.value))}>
+            {speeds.map((speed) => <option key={speed} value={speed}>{speed}×</option>)}
+          </select>
+        )}
+      </div>
+      <Line />
+    </section>
+  );
+}
+
+function Line() {
+  const { viewer, cursor } = use_app();
+  const { playback, history } = viewer;
+  viewer.tick.value;
+  const live = playback.mode.value === 'live';
+  const newest = history.newest?.time ?? 0;
+  const from = live ? Math.max(history.oldest?.time ?? 0, newest - history.seconds) : 0;
+  const to = live ? newest : playback.duration.value;
+  const time = live ? (playback.held.value ?? newest) : playback.time.value;
+  const part = (t: number): string => `${(100 * Math.min(1, Math.max(0, (t - from) / Math.max(1e-9, to - from)))).toFixed(3)}%`;
+  const marks = marks_of(viewer.hello.value?.marks ?? [], viewer.events.value, from, to);
+  const hover = cursor.value;
+  return (
+    <>
+      <output class="time" id="time" aria-live="off">{viewer.freshness.value === 'live' ? 'now' : ''} {format_time(time)}</output>
+      <div class="line">
+        <input type="range" id="scrub" aria-label="Time" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
+          aria-valuetext={format_time(time)}
+          onInput={(event) => {
+            if (!live) playback.pause();
+            playback.seek(event.currentTarget.valueAsNumber);
+          }} />
+        <div class="rail" aria-hidden="true">
+          <span class="done" style={{ width: part(time) }} />
+          {hover !== null && hover >= from && hover <= to && <span class="hover" style={{ left: part(hover) }} />}
+        </div>
+        <div class="marks">
+          {marks.map((mark, i) => (
+            <button key={i} type="button" class="mark" data-level={mark.level} data-span={mark.end > mark.time} tabIndex={-1}
+              style={{ left: part(mark.time), width: `calc(${part(room_of(mark, marks, to))} - ${part(mark.time)})` }}
+              title={`${format_time(mark.time)}  ${mark.name}${mark.text ? `: ${mark.text}` : ''}`}
+              aria-label={`${mark.level}: ${mark.name} at ${format_time(mark.time)}`}
+              onClick={() => playback.seek(mark.time)}>
+              <span>{mark.name}</span>
+            </button>
+          ))}
+        </div>
+      </div>
+      <output class="time end" aria-live="off">{live ? `last ${Math.round(to - from)} s` : format_time(to)}</output>
+    </>
+  );
+}
+
+/** Where a mark's label must end: with the mark, or where the next one begins. */
+function room_of(mark: Mark, marks: Mark[], to: number): number {
+  if (mark.end > mark.time) return mark.end;
+  return Math.min(to, ...marks.filter(({ time }) => time > mark.time).map(({ time }) => time));
+}
+
+function marks_of(marks: Mark[], events: Omit<Mark, 'end'>[], from: number, to: number): Mark[] {
+  return [...marks, ...events.map((event) => ({ ...event, end: event.time }))]
+    .filter(({ time, end }) => end >= from && time <= to)
+    .sort((a, b) => (b.end - b.time) - (a.end - a.time));
+}

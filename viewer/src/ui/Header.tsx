@@ -1,0 +1,96 @@
+import { flag_unsafe } from '../protocol/state';
+import { theme_now, toggle_theme } from '../state/preferences';
+import { use_app } from './app';
+import { Icon } from './Icon';
+
+const badges = {
+  live: ['LIVE', 'What is shown is of now.'],
+  held: ['HELD', 'The view is held at a past instant; the rig goes on.'],
+  recording: ['RECORDING', 'A recording: nothing moves.'],
+  stale: ['STALE', 'No new data come: what is shown is old.'],
+  lost: ['NO CONNECTION', 'The connection is lost: what is shown is old.'],
+  none: ['CONNECTING', 'Nothing was received yet.'],
+} as const;
+
+export function Header() {
+  const app = use_app();
+  const { viewer } = app;
+  const hello = viewer.hello.value;
+  const freshness = viewer.freshness.value;
+  const [badge, meaning] = badges[freshness];
+  const teaching = app.route.value === 'teach';
+  return (
+    <header class="header">
+      <a class="brand" href="#/" aria-label="Flexura, the viewer">
+        <svg viewBox="0 0 32 32" aria-hidden="true"><path d="M8 27V18C8 9 14 5 19 5s7 4 7 7-2 5-5 5-4-2-4-4" /></svg>
+        <span>Flexura</span>
+      </a>
+      <h1 class="title">{teaching ? 'The planar arm, by its equations' : (hello?.title ?? '')}</h1>
+      {!teaching && <span class="badge" data-kind={freshness} role="status" title={meaning}>{badge}</span>}
+      {!teaching && (viewer.flags.value & flag_unsafe) !== 0 && <span class="badge" data-kind="unsafe" role="status">UNSAFE</span>}
+      <span class="spacer" />
+      {!teaching && hello && <Rig />}
+      <nav class="tools" aria-label="Page">
+        {teaching ? (
+          <a class="button" href="#/"><Icon name="back" />Viewer</a>
+        ) : (
+          <a class="button quiet" href="#/teach"><Icon name="teach" />Learn</a>
+        )}
+        <button type="button" class="button quiet square" onClick={toggle_theme}
+          aria-label={theme_now() === 'dark' ? 'Light colours' : 'Dark colours'} title="Light or dark (L)">
+          <Icon name={theme_now() === 'dark' ? 'sun' : 'moon'} />
+        </button>
+        <button type="button" class="button quiet square" onClick={() => (app.dialog.value = 'help')}
+          aria-label="Help and keys" title="Help (F1)"><Icon name="help" /></button>
+      </nav>
+    </header>
+  );
+}
+
+/** Tasks and what belongs to them. */
+function Rig() {
+  const { viewer } = use_app();
+  const hello = viewer.hello.value!;
+  const progress = viewer.progress.value;
+  const running = progress !== null && !progress.done;
+  const ask = (what: string) => () => void viewer.commander.plain(what);
+  const connected = viewer.link.status.value.kind === 'open';
+  const report = hello.report && (
+    <a class="button quiet" href="report" target="_blank" rel="noopener"><Icon name="report" />Report</a>
+  );
+  if (hello.mode === 'recording') {
+    return (
+      <div class="tools">
+        {report}
+        {hello.rig && (
+          <button type="button" class="button" disabled={!connected} onClick={ask('live')}><Icon name="live" />To the rig</button>
+        )}
+      </div>
+    );
+  }
+  // The program says of runs before; of one that has ended since, its own last word does.
+  const recorded = hello.recording || (progress?.done === true && progress.outcome !== 'failed');
+  return (
+    <div class="tools">
+      {running && (
+        <span class="running">
+          <span class="running-text">{progress.what}</span>
+          <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
+          <button type="button" class="button" onClick={ask('cancel')}><Icon name="close" />Cancel</button>
+        </span>
+      )}
+      {!running && hello.controls.tasks.length > 0 && (
+        <button type="button" class="button primary" disabled={!connected || viewer.readonly} onClick={ask('run')}
+          title={hello.controls.tasks.map(({ name, kind }) => `${name} (${kind})`).join('\n')}>
+          <Icon name="run" />Run tasks
+        </button>
+      )}
+      {recorded && !running && <button type="button" class="button" disabled={!connected} onClick={ask('open')}><Icon name="film" />Recording</button>}
+      {report}
+      <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
+        title="Everything stops (H)"><Icon name="halt" />Halt</button>
+      <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}
+        title="Everything back to the start (Backspace)"><Icon name="reset" />Reset</button>
+    </div>
+  );
+}

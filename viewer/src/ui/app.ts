@@ -1,0 +1,47 @@
+// What every component can reach.
+import { createContext } from 'preact';
+import { useContext } from 'preact/hooks';
+import { signal, type Signal } from '@preact/signals';
+import type { KeyMap } from '../keys/keys';
+import type { SceneView } from '../scene/view';
+import type { Viewer } from '../state/viewer';
+import { Views } from '../state/views';
+
+export type Dialog = 'help' | null;
+
+export interface App {
+  viewer: Viewer;
+  views: Views;
+  view: Signal<SceneView | null>;
+  /** What is in the 3D view and can be hidden. */
+  parts: Signal<{ id: string; label: string }[]>;
+  dialog: Signal<Dialog>;
+  route: Signal<'viewer' | 'teach'>;
+  /** The time under the pointer in a plot or on the timeline, which all of them show. */
+  cursor: Signal<number | null>;
+  keys: KeyMap;
+  /** Takes a pasted address or token and connects with it; false when there is none in it. */
+  use_token(text: string): boolean;
+}
+
+export function make_app(viewer: Viewer, keys: KeyMap): App {
+  return {
+    viewer,
+    views: new Views(() => viewer.scene.value?.cameras.map(({ name }) => name) ?? []),
+    view: signal(null),
+    parts: signal([]),
+    dialog: signal(null),
+    route: signal('viewer'),
+    cursor: signal(null),
+    keys,
+    use_token: () => false,
+  };
+}
+
+export const AppContext = createContext<App | null>(null);
+
+export function use_app(): App {
+  const app = useContext(AppContext);
+  if (!app) throw new Error('outside of the app');
+  return app;
+}

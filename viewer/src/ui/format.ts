@@ -1,0 +1,31 @@
+/** A time as it stands on the clocks of the page. */
+export function format_time(seconds: number): string {
+  if (!Number.isFinite(seconds)) return '–';
+  const sign = seconds < 0 ? '−' : '';
+  const all = Math.abs(seconds);
+  const minutes = Math.floor(all / 60);
+  const rest = (all - 60 * minutes).toFixed(2).padStart(minutes ? 5 : 4, '0');
+  return minutes ? `${sign}${minutes}:${rest}` : `${sign}${rest} s`;
+}
+
+/** A number with so many places and a real minus. */
+export function fixed(value: number, places: number): string {
+  if (!Number.isFinite(value)) return '–';
+  const text = value.toFixed(places);
+  return (Number(text) === 0 ? (0).toFixed(places) : text).replace('-', '−');
+}
+
+/** Lengths of an arm of that size: metres with as many places as matter. */
+export function length_places(span: number): number {
+  return Math.min(5, Math.max(2, 3 - Math.floor(Math.log10(span))));
+}
+
+export const degree = 180 / Math.PI;
+
+export function angle(radians: number, places = 1): string {
+  return `${fixed(radians * degree, places)}°`;
+}
+
+export function vector(values: ArrayLike<number>, places: number): string {
+  return Array.from(values, (value) => fixed(value, places)).join(', ');
+}

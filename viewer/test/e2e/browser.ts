@@ -1,0 +1,166 @@
+// A browser for the page's tests, and hands in it.
+import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { chromium, type Browser, type Page } from 'playwright-core';
+
+/** The built page: FLEXURA_PAGE, or what `npm run build` made. */
+export const dist = process.env.FLEXURA_PAGE ?? fileURLToPath(new URL('../../dist', import.meta.url));
+
+/** By how much longer everything may take, on a machine that does much else. */
+const patience = Number(process.env.FLEXURA_PATIENCE ?? 1);
+
+export async function launch(): Promise<Browser> {
+  if (!existsSync(`${dist}/index.html`)) throw new Error(`there is no page in ${dist}: npm run build`);
+  // The default software WebGL: it is what a headless machine has.
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--disable-dev-shm-usage'],
+  });
+}
+
+export interface Opened {
+  page: Page;
+  /** What the browser complained of: scripts' errors, and whatever the security policy refused. */
+  complaints: string[];
+}
+
+export async function open_page(
+  browser: Browser, url: string, options: { width?: number; height?: number; dark?: boolean } = {},
+): Promise<Opened> {
+  const { width = 1440, height = 900, dark = true } = options;
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light' });
+  context.setDefaultTimeout(30_000 * patience);
+  const page = await context.newPage();
+  const complaints: string[] = [];
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(message.text())) {
+      complaints.push(message.text());
+    }
+  });
+  await page.goto(url);
+  return { page, complaints };
+}
+
+/** The 3D view alone: what lies upon it (a clock that runs, buttons, notes) would be in a picture of it too. */
+export async function stage_picture(page: Page): Promise<Buffer> {
+  const show = (visibility: string) => page.evaluate((value) => {
+    for (const above of document.querySelectorAll<HTMLElement>('.stage > :not(canvas), .notices')) above.style.visibility = value;
+  }, visibility);
+  await show('hidden');
+  try {
+    return await page.locator('#stage').screenshot();
+  } finally {
+    await show('');
+  }
+}
+
+/** The 3D view once it has come to rest: as it was a moment before. */
+export async function stage_at_rest(page: Page, ms = 8000): Promise<Buffer> {
+  let before = await stage_picture(page);
+  const end = Date.now() + patience * ms;
+  for (;;) {
+    await page.waitForTimeout(300);
+    const now = await stage_picture(page);
+    if (now.equals(before)) return now;
+    if (Date.now() > end) throw new Error('the 3D view does not come to rest');
+    before = now;
+  }
+}
+
+/** How many colours there are in a picture, roughly: one for each 16 levels of a channel. */
+export async function colors_in(page: Page, png: Buffer): Promise<number> {
+  return page.evaluate(async (text) => {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext('2d')!;
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const seen = new Set<number>();
+    for (let i = 0; i < data.length; i += 4) seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
+    return seen.size;
+  }, png.toString('base64'));
+}
+
+export interface ServerState {
+  time: number;
+  bends: number[];
+  tip: number[];
+  /** x, y, z, q, pan, tilt, zoom, ... of the first camera. */
+  camera: number[];
+  /** Of the tendons. */
+  displacements: number[];
+  is_running: boolean;
+}
+
+/** A state as the server sends it to another client than the page: read from the bytes, not from the page. */
+export async function server_state(page: Page): Promise<ServerState> {
+  return page.evaluate(() => new Promise<ServerState>((resolve, reject) => {
+    const socket = new WebSocket(new URL('socket', location.href.replace(/^http/, 'ws').replace(/#.*/, '')));
+    socket.binaryType = 'arraybuffer';
+    socket.onerror = () => reject(new Error('no second connection'));
+    socket.onmessage = ({ data }) => {
+      if (typeof data === 'string' || new DataView(data as ArrayBuffer).getUint8(0) !== 1) return;
+      socket.close();
+      const view = new DataView(data as ArrayBuffer);
+      const sections = view.getUint16(2, true);
+      const samples = view.getUint16(4, true);
+      const numbers = new Float32Array(data as ArrayBuffer, 24);
+      const last = 3 * sections + 8 * (samples - 1);
+      resolve({
+        time: view.getFloat64(16, true),
+        bends: Array.from(numbers.subarray(0, 2 * sections)),
+        tip: Array.from(numbers.subarray(last + 1, last + 4)),
+        camera: Array.from(numbers.subarray(last + 8, last + 26)),
+        displacements: Array.from(numbers.subarray(last + 8 + 18 * view.getUint16(6, true))),
+        is_running: (view.getUint8(1) & 2) !== 0,
+      });
+    };
+  }));
+}
+
+/** How many names each plot's legend shows in full: within the plot, above its chart. */
+export async function legends(page: Page): Promise<{ names: number; seen: number }[]> {
+  return page.evaluate(() => [...document.querySelectorAll('.plot')].map((plot) => {
+    const frame = plot.getBoundingClientRect();
+    const chart = plot.querySelector('.chart')!.getBoundingClientRect();
+    const list = plot.querySelector('.legend')!.getBoundingClientRect();
+    const items = [...plot.querySelectorAll('.legend li')].map((item) => item.getBoundingClientRect());
+    const inside = items.filter(({ right, bottom }) =>
+      right <= frame.right + 1 && bottom <= Math.min(chart.top, list.bottom) + 1);
+    return { names: items.length, seen: inside.length };
+  }));
+}
+
+/** Waits until it is so. */
+export async function until(what: () => boolean | Promise<boolean>, ms = 8000, why = 'it did not happen'): Promise<void> {
+  const end = Date.now() + patience * ms;
+  while (!(await what())) {
+    if (Date.now() > end) throw new Error(why);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+/** Where on the screen the arm's point at s is, or its tip. */
+export async function tip_on_screen(page: Page, s?: number): Promise<{ x: number; y: number }> {
+  return page.evaluate((at) => (globalThis as unknown as { flexura: { tip(s?: number): { x: number; y: number } } }).flexura.tip(at), s);
+}
+
+/** Where the free view looks from. */
+export async function orbit_of(page: Page): Promise<{ azimuth: number; elevation: number; distance: number; target: { x: number; y: number; z: number } }> {
+  return page.evaluate(() => {
+    const { azimuth, elevation, distance, target } = (globalThis as unknown as {
+      flexura: { orbit(): Awaited<ReturnType<typeof orbit_of>> };
+    }).flexura.orbit();
+    return { azimuth, elevation, distance, target: { x: target.x, y: target.y, z: target.z } };
+  });
+}
+
+/** Moves a range input as a hand would: to the value, with an event. */
+export async function slide(page: Page, selector: string, value: number): Promise<void> {
+  await page.locator(selector).first().evaluate((input: HTMLInputElement, to) => {
+    input.value = String(to);
+    input.dispatchEvent(new Event('input', { bubbles: true }));
+  }, value);
+}

@@ -1,0 +1,60 @@
+// `flexura view` and `run` as a person starts them, of the build whose program FLEXURA_PROGRAM names.
+import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+export const program = process.env.FLEXURA_PROGRAM;
+
+export class Program {
+  /** What it printed. */
+  url = '';
+  /** In which it works, and keeps its secrets. */
+  readonly folder = mkdtempSync(join(tmpdir(), 'flexura-e2e-'));
+  private child: ChildProcess | null = null;
+
+  /** Of an experiment's file or a run's folder, or by whole words: `run x.toml --view`. */
+  constructor(private readonly what: string | string[] = ['view']) {}
+
+  get port(): number {
+    return Number(new URL(this.url).port);
+  }
+
+  async start(port = 0): Promise<void> {
+    const words = typeof this.what === 'string' ? ['view', this.what] : this.what;
+    const child = spawn(program!, [...words, '--no-browser', '--port', String(port)], {
+      cwd: this.folder, env: { ...process.env, XDG_RUNTIME_DIR: this.folder }, stdio: ['ignore', 'pipe', 'inherit'],
+    });
+    this.child = child;
+    this.url = await new Promise<string>((resolve, reject) => {
+      let said = '';
+      child.stdout!.on('data', (bytes) => {
+        said += String(bytes);
+        const url = /viewer: (\S+)\n/.exec(said)?.[1];
+        if (url) resolve(url);
+      });
+      child.on('error', reject);
+      child.on('exit', () => reject(new Error(`${program} ended: ${said}`)));
+    });
+  }
+
+  /** Runs an experiment; gives the folder of its results. */
+  record(file: string): string {
+    const results = join(this.folder, 'recorded');
+    execFileSync(program!, ['run', file, '--out', results], { stdio: ['ignore', 'ignore', 'inherit'] });
+    return results;
+  }
+
+  async end(): Promise<void> {
+    const { child } = this;
+    if (!child || child.exitCode !== null) return;
+    const over = new Promise((resolve) => child.once('exit', resolve));
+    child.kill('SIGTERM');
+    await over;
+  }
+
+  async stop(): Promise<void> {
+    await this.end();
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}

@@ -1,0 +1,241 @@
+// A recording: scrubbing, playing, plots, marks; the fake one, and one that `flexura run` made.
+import { fileURLToPath } from 'node:url';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { planar_rig } from '../fake/rigs';
+import { FakeServer } from '../fake/server';
+import { dist, launch, legends, open_page, server_state, slide, stage_at_rest, until } from './browser';
+import { Program, program } from './program';
+import type { Served } from './rig_tests';
+
+const file = fileURLToPath(new URL('recording.toml', import.meta.url));
+const fresh = async (): Promise<FakeServer> => {
+  const server = new FakeServer(dist, planar_rig(), 'recording');
+  await server.start();
+  return server;
+};
+
+let browser: Browser;
+let served: Served;
+let page: Page;
+let complaints: string[];
+
+function opened_before(start: () => Promise<Served>, kind: 'recording' | 'live'): void {
+  beforeAll(async () => {
+    browser = await launch();
+    served = await start();
+    ({ page, complaints } = await open_page(browser, served.url, { width: 1280, height: 720 }));
+    await page.waitForSelector(`.badge[data-kind="${kind}"]`);
+    await page.waitForSelector('.section .slider');
+  });
+
+  afterAll(async () => {
+    await browser?.close();
+    await served?.stop();
+  });
+}
+
+const shown_time = () => page.evaluate(() =>
+  (globalThis as unknown as { flexura: { shown(): { time: number } } }).flexura.shown().time);
+const stage = () => stage_at_rest(page);
+
+/** What holds of each recording of 6 s whose second task, `back`, starts at 4 s; its states are `a_state` s apart. */
+function recording_tests(a_state: number, title: string): void {
+  test('scrubbing shows the states of the times, forwards and back', async () => {
+    const start = await stage();
+    for (const time of [3.5, 1.25, 5]) {
+      await slide(page, '#scrub', time);
+      await until(async () => Math.abs((await shown_time()) - time) < a_state);
+      expect(await page.locator('#clock').textContent()).toBeTruthy();
+    }
+    expect((await stage()).equals(start)).toBe(false);
+    await slide(page, '#scrub', 0);
+    await until(async () => (await shown_time()) === 0);
+  });
+
+  test('it plays at its speed, pauses, and stops at the end', async () => {
+    await slide(page, '#scrub', 1);
+    await page.keyboard.press('+');
+    expect(await page.locator('select[aria-label="Speed"]').inputValue()).toBe('2');
+    await page.keyboard.press('Space');
+    await until(async () => (await shown_time()) > 1.5);
+    await page.keyboard.press('Space');
+    await page.waitForTimeout(200);
+    const paused = await shown_time();
+    await page.waitForTimeout(300);
+    expect(await shown_time()).toBe(paused);
+    await slide(page, '#scrub', 5.6);
+    await page.keyboard.press('Space');
+    await until(async () => (await page.getByRole('button', { name: 'Play', exact: true }).count()) === 1 && (await shown_time()) === 6);
+  });
+
+  test('steps go both ways', async () => {
+    await slide(page, '#scrub', 2);
+    await until(async () => Math.abs((await shown_time()) - 2) < a_state);
+    const before = await shown_time();
+    await page.keyboard.press('ArrowRight');
+    await until(async () => Math.abs((await shown_time()) - before - 1 / 60) < a_state && (await shown_time()) > before);
+    await page.keyboard.press('ArrowLeft');
+    await until(async () => (await shown_time()) === before);
+  });
+
+  test('pictures follow the time', async () => {
+    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000);
+    await slide(page, '#scrub', 0);
+    const camera = page.locator('.picture canvas').first();
+    const said = page.locator('.camera figcaption span').first();
+    await until(async () => (await said.textContent()) === '0.00 s');
+    const before = await camera.screenshot();
+    await slide(page, '#scrub', 4);
+    await until(async () => (await said.textContent()) === '4.00 s');
+    expect((await camera.screenshot()).equals(before)).toBe(false);
+  });
+
+  test('marks stand on the timeline and go to their time', async () => {
+    const mark = page.locator('.mark').filter({ hasText: 'back' });
+    await mark.click();
+    await until(async () => Math.abs((await shown_time()) - 4) < a_state);
+    const [mark_box, rail] = [(await mark.boundingBox())!, (await page.locator('.rail').boundingBox())!];
+    expect((mark_box.x - rail.x) / rail.width).toBeCloseTo(4 / 6, 1);
+  });
+
+  test('nothing moves here: the sliders are off', async () => {
+    expect(await page.locator('.section .slider input').first().isDisabled()).toBe(true);
+    expect(await page.getByRole('button', { name: 'Run tasks' }).count()).toBe(0);
+  });
+
+  test('the report opens from the page', async () => {
+    const [opened] = await Promise.all([page.context().waitForEvent('page'), page.getByRole('link', { name: 'Report' }).click()]);
+    await opened.waitForLoadState();
+    expect(await opened.title()).toContain(title);
+    await opened.close();
+  });
+
+  test('the browser had nothing to complain of', () => {
+    expect(complaints).toEqual([]);
+  });
+}
+
+describe('a recording', () => {
+  const a_state = 1e-6;
+  let server: FakeServer;
+  opened_before(async () => (server = await fresh()), 'recording');
+
+  test('one request for a time is outstanding at a time, and the last time asked for is reached', async () => {
+    server.log.length = 0;
+    server.delay_ms = 150;
+    server.most_outstanding = 0;
+    for (let i = 0; i < 30; ++i) await slide(page, '#scrub', (6 * i) / 29);
+    await until(async () => Math.abs((await shown_time()) - 6) < 1e-6);
+    server.delay_ms = 0;
+    const asked = server.log.filter((request) => request.do === 'at').map((request) => request.time as number);
+    expect(server.most_outstanding).toBe(1);
+    expect(asked.length).toBeLessThan(30);
+    expect(asked.at(-1)).toBe(6);
+  });
+
+  test('plots show what the recording knows, with one cursor for both', async () => {
+    const legend = page.locator('.legend').first();
+    await until(async () => /x .*\d/.test((await legend.textContent()) ?? ''));
+    const before = await legend.textContent();
+    const box = (await page.locator('.chart .u-over').first().boundingBox())!;
+    await page.mouse.move(box.x + 20, box.y + 30);
+    await until(async () => (await legend.textContent()) !== before);
+    expect(await page.locator('.rail .hover').count()).toBe(1);
+    const other = page.locator('.chart .u-cursor-x').nth(1);
+    await until(async () => (await other.boundingBox()) !== null);
+    await page.mouse.click(box.x + box.width / 2, box.y + 30);
+    await until(async () => Math.abs((await shown_time()) - 3) < 0.1);
+  });
+
+  test('the legends show every name, those of eight sections too', async () => {
+    const shown = await legends(page);
+    expect(Math.max(...shown.map(({ names }) => names))).toBe(8);
+    for (const { names, seen } of shown) expect(seen).toBe(names);
+  });
+
+  test('to the rig there is a way where there is a rig', async () => {
+    const to_the_rig = page.getByRole('button', { name: 'To the rig' });
+    expect(await to_the_rig.count()).toBe(1);
+    server.session.has_rig = false;
+    server.greet_all();
+    await until(async () => (await to_the_rig.count()) === 0);
+    server.session.has_rig = true;
+    server.greet_all();
+    await until(async () => (await to_the_rig.count()) === 1);
+  });
+
+  test('a warning without a span stands as a line, one with a span as a band', async () => {
+    const band = () => page.locator('.mark[data-level="warning"]').evaluate((mark) => getComputedStyle(mark).backgroundColor);
+    const spanned = await band();
+    expect(spanned).not.toMatch(/transparent|rgba\(0, 0, 0, 0\)/);
+    await page.locator('.mark[data-level="warning"]').click();
+    await until(async () => Math.abs((await shown_time()) - 2.5) < a_state);
+    await page.locator('.mark[data-level="warning"]').evaluate((mark: HTMLElement) => (mark.dataset.span = 'false'));
+    expect(await band()).toMatch(/transparent|rgba\(0, 0, 0, 0\)/);
+    await page.locator('.mark[data-level="warning"]').evaluate((mark: HTMLElement) => (mark.dataset.span = 'true'));
+  });
+
+  recording_tests(a_state, 'Report');
+});
+
+describe.skipIf(!program)('what the program ran', () => {
+  opened_before(async () => {
+    const made = new Program();
+    const recorded = new Program(['view', made.record(file)]);
+    await recorded.start();
+    return {
+      url: recorded.url,
+      stop: async () => {
+        await recorded.stop();
+        await made.stop();
+      },
+    };
+  }, 'recording');
+
+  recording_tests(0.02, 'A recording');
+});
+
+describe.skipIf(!program)('the program’s rig, its refusals and its run', () => {
+  opened_before(async () => {
+    const rig = new Program(file);
+    await rig.start();
+    return rig;
+  }, 'live');
+
+  test('a way into an obstacle is refused where screen readers hear it', async () => {
+    await slide(page, '#arm-bends-0', 2);
+    await until(async () => (await page.locator('[role="alert"]').textContent())!.includes('ball'));
+    expect(Math.abs((await server_state(page)).bends[0])).toBeLessThan(0.1);
+  });
+
+  test('its tasks run, and what they leave can be opened and left', async () => {
+    await page.keyboard.press('r');
+    await page.getByRole('button', { name: 'Recording' }).click({ timeout: 25000 });
+    await page.waitForSelector('.badge[data-kind="recording"]');
+    await slide(page, '#scrub', 4);
+    await until(async () => Math.abs((await shown_time()) - 4) < 0.02);
+    expect((await server_state(page)).bends[0]).toBeCloseTo(0, 1);
+    await page.getByRole('button', { name: 'To the rig' }).click();
+    await page.waitForSelector('.badge[data-kind="live"]');
+    expect(complaints).toEqual([]);
+  });
+});
+
+describe.skipIf(!program)('a run that is watched', () => {
+  opened_before(async () => {
+    const run = new Program(['run', file, '--out', 'watched', '--set', 'task.0.duration=19000', '--view']);
+    await run.start();
+    return run;
+  }, 'live');
+
+  test('it is shown as it goes on, can be cancelled, and is a recording when it is over', async () => {
+    const { time } = await server_state(page);
+    await until(async () => (await server_state(page)).time > time);
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    await page.waitForSelector('.badge[data-kind="recording"]');
+    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeGreaterThan(time);
+    expect(await page.getByRole('button', { name: 'To the rig' }).count()).toBe(0);
+    expect(complaints).toEqual([]);
+  });
+});

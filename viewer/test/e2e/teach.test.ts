@@ -1,0 +1,115 @@
+// The teaching page, which needs no rig.
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, expect, test } from 'vitest';
+import { planar_rig } from '../fake/rigs';
+import { FakeServer } from '../fake/server';
+import { dist, launch, legends, open_page, slide, until } from './browser';
+
+let browser: Browser;
+let server: FakeServer;
+let page: Page;
+let complaints: string[];
+const degree = Math.PI / 180;
+
+beforeAll(async () => {
+  browser = await launch();
+  server = new FakeServer(dist, planar_rig());
+  await server.start();
+  ({ page, complaints } = await open_page(browser, `http://127.0.0.1:${server.port}/#/teach`, { width: 1280, height: 720, dark: false }));
+  await page.waitForSelector('.plane');
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+const effector = () => page.locator('#effector').textContent();
+const open = (name: string) => page.getByRole('button', { name }).first().click();
+const done = (name: string) => until(async () => /Done/.test((await page.locator('#verdict').textContent()) ?? ''), 4000, name);
+const set = (i: number, degrees: number) => slide(page, `#arching-${i}`, degrees * degree);
+
+test('it starts with the paper’s arm in the paper’s place', async () => {
+  expect(await effector()).toContain('(−10.738, 5.201)');
+  expect(await page.locator('.recurrence tbody tr').count()).toBe(8);
+  expect(await page.locator('math').count()).toBeGreaterThan(3);
+});
+
+test('values follow the hand', async () => {
+  const joint = (await page.locator('.joint[data-tip="true"]').boundingBox())!;
+  const before = await effector();
+  await page.mouse.move(joint.x + joint.width / 2, joint.y + joint.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(joint.x + 80, joint.y - 60, { steps: 6 });
+  await page.mouse.up();
+  expect(await effector()).not.toBe(before);
+});
+
+test('no equation and no row is cut off, however large its numbers', async () => {
+  for (let i = 0; i < 8; ++i) await set(i, -179.9);
+  for (let i = 1; i <= 8; ++i) {
+    await page.locator('.recurrence tbody tr').nth(i - 1).click();
+    expect(await page.locator('.teach-text h2').first().textContent()).toBe(`Section ${i}`);
+    const beyond = await page.locator('.teach-text').evaluate((box) => {
+      const { left, width } = box.getBoundingClientRect();
+      const right = left + (box as HTMLElement).clientWidth;
+      return [...box.querySelectorAll('*')].map((part) => part.getBoundingClientRect())
+        .filter((part) => part.width > 0 && (part.right > right || part.left < left)).length + Math.max(0, box.scrollWidth - Math.ceil(width));
+    });
+    expect(beyond, `section ${i}`).toBe(0);
+  }
+  await open('The paper’s arm, free');
+});
+
+test('each of the five exercises knows when it is done', async () => {
+  await open('A half circle');
+  expect(await page.locator('#verdict').textContent()).not.toContain('Done');
+  await set(0, -90);
+  await done('half circle');
+
+  await open('Aside, and upright again');
+  await set(0, -15);
+  await set(1, 15);
+  await page.getByLabel('Arching of section 1, °').fill('-14.85');
+  await page.keyboard.press('Enter');
+  await page.getByLabel('Arching of section 2, °').fill('14.85');
+  await page.keyboard.press('Enter');
+  await done('aside');
+
+  await open('Reach a point');
+  const tip = (await page.locator('.joint[data-tip="true"]').boundingBox())!;
+  const goal = (await page.locator('.goal circle').boundingBox())!;
+  await page.mouse.move(tip.x + tip.width / 2, tip.y + tip.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(goal.x + goal.width / 2, goal.y + goal.height / 2, { steps: 12 });
+  await page.mouse.up();
+  await done('reach');
+
+  await open('The second cord');
+  await set(1, 30);
+  await done('second cord');
+
+  await open('5 The paper’s arm');
+  await set(4, 9);
+  await done('paper');
+  expect(await page.locator('#verdict').textContent()).toContain('(−10.738, 5.201)');
+  expect(await page.locator('.tally').textContent()).toBe('5 of 5');
+});
+
+test('the way back is a link', async () => {
+  await page.goto(server.url);
+  await page.waitForSelector('.bench');
+  await page.getByRole('link', { name: 'Learn' }).click();
+  await page.waitForSelector('.plane');
+  await page.getByRole('link', { name: 'Viewer', exact: true }).click();
+  await page.waitForSelector('.bench');
+});
+
+test('of a live arm with eight sections the legends show every name', async () => {
+  await until(async () => (await legends(page)).some(({ names }) => names === 8));
+  for (const { names, seen } of await legends(page)) expect(seen).toBe(names);
+});
+
+test('the browser had nothing to complain of', () => {
+  expect(complaints).toEqual([]);
+});

@@ -1,0 +1,37 @@
+// The binary messages, written by hand from docs/viewer-protocol.md: the page's reader is tested against them.
+export interface StateRows {
+  flags: number;
+  sequence: number;
+  time: number;
+  bends: ArrayLike<number>;
+  stretches: ArrayLike<number>;
+  samples: ArrayLike<number>;
+  cameras: ArrayLike<number>;
+  displacements: ArrayLike<number>;
+}
+
+export function encode_state(state: StateRows): Buffer {
+  const parts = [state.bends, state.stretches, state.samples, state.cameras, state.displacements];
+  const bytes = Buffer.alloc(24 + 4 * parts.reduce((sum, { length }) => sum + length, 0));
+  bytes.writeUInt8(1, 0);
+  bytes.writeUInt8(state.flags, 1);
+  bytes.writeUInt16LE(state.stretches.length, 2);
+  bytes.writeUInt16LE(state.samples.length / 8, 4);
+  bytes.writeUInt16LE(state.cameras.length / 18, 6);
+  bytes.writeUInt16LE(state.displacements.length, 8);
+  bytes.writeUInt32LE(state.sequence, 12);
+  bytes.writeDoubleLE(state.time, 16);
+  let at = 24;
+  for (const part of parts) for (let i = 0; i < part.length; ++i) at = bytes.writeFloatLE(part[i], at);
+  return bytes;
+}
+
+export function encode_image(camera: number, number: number, time: number, png: Buffer): Buffer {
+  const head = Buffer.alloc(16);
+  head.writeUInt8(2, 0);
+  head.writeUInt8(camera, 1);
+  head.writeUInt16LE(1, 2);
+  head.writeUInt32LE(number, 4);
+  head.writeDoubleLE(time, 8);
+  return Buffer.concat([head, png]);
+}

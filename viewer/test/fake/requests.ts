@@ -1,0 +1,119 @@
+// What the fake rig answers to each request of the protocol.
+import { cord_angles_of, archings_of } from '../../src/math/planar';
+import { point_at } from '../../src/math/arc';
+import type { Bends } from './arm';
+import type { FakeSession } from './session';
+
+export interface Client {
+  send(text: string): void;
+  push(bytes: Buffer): void;
+  /** Pictures a second of each camera, 0 for none. */
+  rates: Map<string, number>;
+  /** Where it stands in a recording. */
+  time: number;
+}
+
+type Request = Record<string, unknown> & { do: string };
+type Answer = Record<string, unknown> | Promise<Record<string, unknown>>;
+
+export interface Hub {
+  session: FakeSession;
+  greet_all(): void;
+  tell_all(message: Record<string, unknown>): void;
+}
+
+const moving = ['arm', 'tip', 'head', 'stage', 'halt', 'reset', 'run'];
+
+export function answer(hub: Hub, client: Client, request: Request): Answer {
+  const { session } = hub;
+  if (session.mode === 'recording' && moving.includes(request.do)) throw new Error('this is a recording: nothing moves');
+  const handle = handlers[request.do];
+  if (!handle) throw new Error(`no request is called "${request.do}"`);
+  return handle(hub, request, client) ?? {};
+}
+
+function bends_of(session: FakeSession, request: Request): Bends {
+  if (request.bends) return request.bends as Bends;
+  if (request.archings) return (request.archings as number[]).map((b) => [-2 * b, 0]);
+  if (request.cord_angles) return archings_of(request.cord_angles as number[]).map((b) => [-2 * b, 0]);
+  if (request.tendons) return session.arm.from_tendons(request.tendons as number[]);
+  throw new Error('one of bends, cord_angles, archings and tendons is needed');
+}
+
+function camera_of(session: FakeSession, request: Request): number {
+  const i = session.rig.scene.cameras.findIndex(({ name }) => name === request.camera);
+  if (i < 0) throw new Error(`no camera is called "${String(request.camera)}"`);
+  return i;
+}
+
+const handlers: Record<string, (hub: Hub, request: Request, client: Client) => Answer | void> = {
+  arm: ({ session }, request) => session.arm.command(bends_of(session, request), request.stretches as number[] | undefined),
+  tip: ({ session }, request) => {
+    const result = session.arm.inverse(request.position as number[]);
+    session.arm.command(result.bends);
+    return { ...result };
+  },
+  head: ({ session }, request) => {
+    const head = session.heads[camera_of(session, request)];
+    for (const axis of ['pan', 'tilt', 'zoom'] as const) if (typeof request[axis] === 'number') head[axis] = request[axis];
+  },
+  stage: ({ session }, request) => {
+    camera_of(session, request);
+    ['x', 'y', 'z'].forEach((axis, i) => typeof request[axis] === 'number' && (session.stage[i] = request[axis] as number));
+  },
+  halt: ({ session }) => session.halt(),
+  reset: ({ session }) => session.reset(),
+  run: (hub) => {
+    const { session } = hub;
+    if (session.running) throw new Error('a run is going on');
+    session.reset();
+    session.running = session.time;
+    const timer = setInterval(() => {
+      if (!session.running) {
+        clearInterval(timer);
+        return hub.tell_all({ type: 'progress', done: true, outcome: 'cancelled', text: 'The run was cancelled.' });
+      }
+      hub.tell_all({ type: 'progress', what: session.rig.controls.tasks[0].name, fraction: session.share() });
+      if (session.share() < 1) return;
+      clearInterval(timer);
+      session.running = 0;
+      session.has_recording = true;
+      hub.tell_all({ type: 'event', time: session.time, level: 'info', name: 'done', text: 'the tasks are done' });
+      hub.tell_all({ type: 'progress', done: true, outcome: 'done', text: 'The tasks are done.' });
+    }, 100);
+    return { folder: 'results/0001' };
+  },
+  cancel: ({ session }) => session.halt(),
+  open: (hub) => {
+    hub.session.mode = 'recording';
+    hub.greet_all();
+  },
+  live: (hub) => {
+    hub.session.mode = 'live';
+    hub.greet_all();
+  },
+  at: ({ session }, request, client) => {
+    const time = Math.min(session.duration, Math.max(0, request.time as number));
+    if (session.mode !== 'recording') throw new Error('only a recording can be asked for a time');
+    client.time = time;
+    client.push(session.state(time));
+    return { time };
+  },
+  images: ({ session }, request, client) => {
+    camera_of(session, request);
+    client.rates.set(request.camera as string, request.rate as number);
+  },
+  pixel: ({ session }, request) => {
+    const value = session.pixel(camera_of(session, request), request.u as number, request.v as number);
+    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: session.sequence };
+  },
+  point: ({ session }, request) => ({ ...point_at(session.arm.samples(), request.s as number), section: 0 }),
+  backbone: ({ session }, request) => ({ poses: session.arm.samples(request.bends as Bends) }),
+  ping: () => ({}),
+  // For the tests only: what the rig's state is, and what the cord angles of it are.
+  test_state: ({ session }) => ({
+    time: session.time, bends: session.arm.bends, target: session.arm.target,
+    cord_angles: cord_angles_of(session.arm.bends.map(([x]) => -x / 2)),
+    heads: session.heads, tip: session.arm.tip(session.arm.bends),
+  }),
+};

@@ -121,7 +121,10 @@ void print(const Tally& tally, int cases) {
               100 * root_mean_square(tally.errors), 100 * quantile(tally.errors, 0.999),
               100 * quantile(tally.flagged_errors, 0.5), quantile(tally.ratios, 0.5),
               quantile(tally.ratios, 0.95));
-  if (tally.shares.empty()) return void(std::printf(" | |\n"));
+  if (tally.shares.empty()) {
+    std::printf(" | |\n");
+    return;
+  }
   const auto within = [&](double share) {
     const auto count = std::ranges::count_if(tally.shares, [&](double value) { return value < share; });
     return 100.0 * static_cast<double>(count) / static_cast<double>(tally.shares.size());
@@ -140,8 +143,12 @@ int study(int cases, std::uint64_t seed) {
     TestRandom random(seed + static_cast<std::uint64_t>(i));
     const Case one = random_case(random);
     const Backbone truth = one.bent.backbone();
-    const ShapePrior known{.arm = one.bent.arm};
     const Eigen::Vector3d base = truth.pose(0).position;
+    const std::array<ShapePrior, 3> priors = {
+        ShapePrior{.arm = one.bent.arm},
+        unknown_arm(base, truth.length()),
+        unknown_arm(std::nullopt, std::nullopt),
+    };
     for (std::size_t k = 0; k < tallies.size(); ++k) {
       std::vector<Sighting> sightings;
       for (std::size_t j = 0; j < 2; ++j) {
@@ -151,15 +158,14 @@ int study(int cases, std::uint64_t seed) {
         ArmFinder finder(config);
         sightings.push_back(sighting_of(finder.find(one.pictures[j]), one.views[j]));
       }
-      ShapeEstimator estimator(k == 0   ? known
-                               : k == 1 ? unknown_arm(base, truth.length())
-                                        : unknown_arm(std::nullopt, std::nullopt));
+      ShapeEstimator estimator(priors[k]);
       const ShapeEstimate found = estimator.estimate(sightings);
       tallies[k].add(found, one, k == 0);
       if (is_told)
-        std::fprintf(stderr, "%d %zu found %d error %.4f %% rms %.3f px doubted %.2f notes %zu%s\n", i, k,
-                     found.is_found, found.is_found ? 100 * shape_error(found.shape, truth) : 0.0, found.rms,
-                     found.doubted, found.notes.size(),
+        std::fprintf(stderr, "%d %zu %s error %.4f %% rms %.3f px doubted %.2f notes %zu%s\n", i, k,
+                     found.is_found ? "found" : "lost",
+                     found.is_found ? 100 * shape_error(found.shape, truth) : 0.0, found.rms, found.doubted,
+                     found.notes.size(),
                      found.notes.empty() ? found.reason.c_str() : found.notes.front().c_str());
     }
   }

@@ -108,6 +108,15 @@ std::size_t Recording::place_at(const Entries& entries, double time) {
   return after == entries.begin() ? 0 : static_cast<std::size_t>(after - entries.begin()) - 1;
 }
 
+double Recording::interval() const {
+  std::vector<std::uint64_t> intervals;
+  for (std::size_t i = 1; i < states_.size(); ++i) intervals.push_back(states_[i].time - states_[i - 1].time);
+  if (intervals.empty()) return 0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return seconds(*middle);
+}
+
 std::size_t Recording::state_at(double time) const { return place_at(states_, time); }
 
 ArmState Recording::state(std::size_t place) const {

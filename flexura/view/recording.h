@@ -26,6 +26,8 @@ class Recording {
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const { return seconds(states_.back().time); }  ///< s
+  /// The median time from one state to the next, s; 0 where there is one alone.
+  [[nodiscard]] double interval() const;
 
   /// How many states there are, never 0; the place of the one at or just before `time` s, or the first.
   [[nodiscard]] std::size_t states() const { return states_.size(); }

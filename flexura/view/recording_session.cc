@@ -82,6 +82,7 @@ Hello RecordingSession::hello() const {
   hello.scene = scene_node(*viewed());
   hello.controls = controls_node(*viewed());
   hello.duration = recording_->duration();
+  hello.interval = recording_->interval();
   hello.marks = recording_->marks();
   hello.quantities = SeriesTable::quantities(viewed()->model);
   hello.report = std::filesystem::exists(recording_->folder() / report_file_name);

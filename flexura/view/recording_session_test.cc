@@ -71,6 +71,7 @@ TEST_F(RecordingSessionTest, ShowsTheLoggedStateAtOrBeforeATime) {
   const Hello hello = session_->hello();
   EXPECT_EQ(hello.mode, "recording");
   EXPECT_EQ(hello.duration, 1);
+  EXPECT_EQ(hello.interval, 0.02);
   EXPECT_TRUE(hello.report);
   const Schedule schedule(experiment_);
   for (const auto& [asked, shown] : std::vector<std::pair<double, double>>{

@@ -32,6 +32,7 @@ struct Hello {
   Node scene;
   Node controls;
   double duration = 0;  ///< s
+  double interval = 0;  ///< Between two states of a recording, mostly, s.
   std::vector<Mark> marks;
   std::vector<Quantity> quantities;
   bool report = false;

@@ -23,6 +23,7 @@ std::string hello_text(const Hello& hello, const std::string& session, bool has_
                                  {"scene", {}, hello.scene},
                                  {"controls", {}, hello.controls},
                                  {"duration", {}, {hello.duration, {}}},
+                                 {"interval", {}, {hello.interval, {}}},
                                  {"marks", {}, Codec<std::vector<Mark>>::write(hello.marks)},
                                  {"quantities", {}, Codec<std::vector<Quantity>>::write(hello.quantities)},
                                  {"report", {}, {hello.report, {}}},

@@ -136,6 +136,8 @@ export interface Hello {
   scene: Scene;
   controls: Controls;
   duration: number;
+  /** Between two states of a recording, s; 0 live. */
+  interval: number;
   marks: Mark[];
   quantities: Quantity[];
   report: boolean;

@@ -13,12 +13,14 @@ export interface PlaybackHost {
 }
 
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** What one step is: a sixtieth of a second, as states come. */
-export const step_s = 1 / 60;
+/** What one step is live: a sixtieth of a second, as states come. */
+const live_step_s = 1 / 60;
 
 export class Playback {
   readonly mode = signal<'live' | 'recording'>('live');
   readonly duration = signal(0);
+  /** One step of time, s: of a recording from one of its states to the next. */
+  step_s = live_step_s;
   /** A recording is playing. */
   readonly playing = signal(false);
   readonly speed = signal(1);
@@ -40,11 +42,12 @@ export class Playback {
   }
 
   /** Another run, or another rig: from its start. */
-  start(mode: 'live' | 'recording', duration: number): void {
+  start(mode: 'live' | 'recording', duration: number, interval: number): void {
     this.pause();
     this.asker.forget();
     this.mode.value = mode;
     this.duration.value = duration;
+    this.step_s = mode === 'recording' && interval > 0 ? interval : live_step_s;
     this.held.value = null;
     this.time.value = 0;
     if (mode === 'recording') this.asker.ask(0);
@@ -92,9 +95,14 @@ export class Playback {
   }
 
   step(count: number): void {
+    this.skip(count * this.step_s);
+  }
+
+  /** Pauses, some seconds on or back. */
+  skip(seconds: number): void {
     this.pause();
     const now = this.mode.value === 'live' ? (this.held.value ?? 0) : this.time.value;
-    this.seek(now + count * step_s);
+    this.seek(now + seconds);
   }
 
   faster(by: number): void {

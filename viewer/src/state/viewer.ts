@@ -121,7 +121,7 @@ export class Viewer implements LinkListener {
     if (before && before.session !== hello.session) this.notices.info('The program was started again.');
     if (afresh) {
       this.forget();
-      this.playback.start(hello.mode, hello.duration);
+      this.playback.start(hello.mode, hello.duration, hello.interval);
     } else {
       this.playback.again();
     }

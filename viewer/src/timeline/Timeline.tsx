@@ -68,7 +68,8 @@ function Line() {
               style={{ left: part(mark.time), width: `calc(${part(room_of(mark, marks, to))} - ${part(mark.time)})` }}
               title={`${format_time(mark.time)}  ${mark.name}${mark.text ? `: ${mark.text}` : ''}`}
               aria-label={`${mark.level}: ${mark.name} at ${format_time(mark.time)}`}
-              onClick={() => playback.seek(mark.time)}>
+              // Keeps no focus: Space after it is to play, not to come back here.
+              onMouseDown={(event) => event.preventDefault()} onClick={() => playback.seek(mark.time)}>
               <span>{mark.name}</span>
             </button>
           ))}

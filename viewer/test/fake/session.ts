@@ -82,7 +82,7 @@ export class FakeSession {
     const recording = this.mode === 'recording';
     return {
       type: 'hello', version: '0.1.0', session, mode: this.mode, title: this.rig.title, scene: this.rig.scene,
-      controls: this.rig.controls, duration: this.duration,
+      controls: this.rig.controls, duration: this.duration, interval: this.mode === 'recording' ? 1 / 60 : 0,
       marks: recording
         ? [
             { time: 0, end: 4, level: 'info', name: 'reach', text: 'move' },

@@ -24,7 +24,7 @@ namespace flexura {
 namespace {
 
 constexpr std::size_t count = 1000;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // SplitMix64, in [0, 1).
 double random(std::uint64_t& state) {

@@ -17,7 +17,7 @@ namespace {
 
 // The paper's arm in its final position.
 constexpr std::array<double, 8> paper_lengths = {2., 3., 1., 2., 4., 2., 1., 1.};
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::array<double, 8> paper_archings = {.05 * pi, .05 * pi, .1 * pi, .1 * pi,
                                                   .05 * pi, -.3 * pi, .2 * pi, -.35 * pi};
 

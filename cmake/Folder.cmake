@@ -1,12 +1,13 @@
-# flexura_folder(NAME [LINKS targets...] [PRIVATE_LINKS targets...])
+# flexura_folder(NAME [THREADS] [LINKS targets...] [PRIVATE_LINKS targets...])
 #
 # Makes the library flexura::NAME from the current folder: every *.cc and *.h in it, but for
 #   *_test.cc       quick tests    -> executable NAME_test,       ctest NAME,      label quick
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
+# THREADS says that its code or its tests start threads: ThreadSanitizer has something to look for in its tests alone.
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINKS;PRIVATE_LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "" "LINKS;PRIVATE_LINKS")
   file(GLOB sources CONFIGURE_DEPENDS *.cc *.h)
   set(tests ${sources})
   set(fuzzers ${sources})
@@ -25,7 +26,11 @@ function(flexura_folder name)
   flexura_use_pch(flexura_${name} flexura_pch HEADERS ${FLEXURA_PCH_HEADERS})
   set_property(GLOBAL APPEND PROPERTY FLEXURA_FOLDERS ${name})
 
-  if(FLEXURA_TESTS)
+  set(has_tests ${FLEXURA_TESTS})
+  if(FLEXURA_SANITIZE STREQUAL thread AND NOT arg_THREADS)
+    set(has_tests OFF)
+  endif()
+  if(has_tests)
     set(full_tests ${tests})
     list(FILTER tests EXCLUDE REGEX "_full_test[.]cc$")
     list(FILTER full_tests INCLUDE REGEX "_full_test[.]cc$")

@@ -4,8 +4,9 @@
 usage: check_includes.py [ROOT]
 
 ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
-an include or a link that goes up or sideways or past the list, a folder that the list lacks, and a
-folder of the list without its flexura_folder(NAME ...).
+an include or a link that goes up or sideways or past the list, a folder that the list lacks, a
+folder of the list without its flexura_folder(NAME ...), and a type that two headers define: the
+compiler sees no two of them at once, and the linker joins what it should not.
 """
 
 import re
@@ -13,6 +14,8 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+TYPE = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?(?: :[^;\n]*)? \{", re.M)
+UNNAMED = re.compile(r"^namespace \{\n.*?^\}  // namespace\n", re.M | re.S)
 LINK = re.compile(r"\bflexura::(\w+)")
 
 
@@ -61,6 +64,15 @@ def check_target(root, floors, folder):
             yield f"{path.relative_to(root)}: {folder} may not link {other}"
 
 
+def check_types(root):
+    first = {}
+    for header in sorted((root / "flexura").rglob("*.h")):
+        for name in TYPE.findall(UNNAMED.sub("", header.read_text())):
+            if name in first:
+                yield f"{header.relative_to(root)}: {name} is defined in {first[name]} too"
+            first.setdefault(name, header.relative_to(root))
+
+
 def problems(root):
     """What is wrong in the tree at `root`, a line each."""
     floors = read_floors(root / "flexura/floors.txt")
@@ -72,6 +84,7 @@ def problems(root):
         for source in sorted((root / "flexura" / folder).rglob("*")):
             if source.suffix in (".cc", ".h"):
                 yield from check_source(root, floors, folder, source)
+    yield from check_types(root)
 
 
 def main():

@@ -46,6 +46,16 @@ class CheckIncludes(unittest.TestCase):
         self.assertEqual(
             self.problems(), ['flexura/left/b.cc:1: "../right/e.h" is not written "flexura/FOLDER/FILE"'])
 
+    def test_a_type_that_two_headers_define_is_found_but_not_an_unnamed_or_a_declared_one(self):
+        self.write("flexura/base/a.h", "struct Tube {\n};\nclass Later;\n")
+        self.write("flexura/left/b.h", "namespace {\nstruct Tube {\n};\n}  // namespace\nclass Later final : public X {\n};\n")
+        self.assertEqual(self.problems(), [])
+        self.write("flexura/right/b.h", "class Later : Tube {\n};\nstruct Tube {\n};\n")
+        self.assertEqual(self.problems(), [
+            "flexura/right/b.h: Later is defined in flexura/left/b.h too",
+            "flexura/right/b.h: Tube is defined in flexura/base/a.h too",
+        ])
+
     def test_what_the_tests_share_stays_out_of_the_library(self):
         self.write("flexura/top/c.cc", '#include "tests/support/folder.h"\n')
         self.assertEqual(self.problems(), [

@@ -29,17 +29,8 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 29;
-
-Node number(double value) { return {value, {}}; }
-Node text(const std::string& value) { return {value, {}}; }
-Node texts(const std::vector<std::string>& values) {
-  Node::Array entries;
-  for (const std::string& value : values) entries.push_back(text(value));
-  return {std::move(entries), {}};
-}
 Node vector(const Eigen::Vector3d& p) {
-  return {Node::Array{number(p.x()), number(p.y()), number(p.z())}, {}};
+  return {Node::Array{number_node(p.x()), number_node(p.y()), number_node(p.z())}, {}};
 }
 
 void check(const EstimateArguments& arguments) {
@@ -132,7 +123,7 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
 
 Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapePrior& prior) {
   Look look;
-  const std::string file = read_text_file(name, most_bytes);
+  const std::string file = read_text_file(name, most_picture_bytes);
   const Photograph photograph =
       decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
@@ -147,11 +138,11 @@ Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapeP
 }
 
 Node image_node(const std::string& name, const MeasuredCamera& camera, const Look& look) {
-  Node::Table entry{{"image", {}, text(name)},
-                    {"camera", {}, text(camera.name)},
+  Node::Table entry{{"image", {}, text_node(name)},
+                    {"camera", {}, text_node(camera.name)},
                     {"points", {}, {static_cast<std::int64_t>(look.samples), {}}}};
-  if (!look.reason.empty()) entry.push_back({"reason", {}, text(look.reason)});
-  if (!look.notes.empty()) entry.push_back({"notes", {}, texts(look.notes)});
+  if (!look.reason.empty()) entry.push_back({"reason", {}, text_node(look.reason)});
+  if (!look.notes.empty()) entry.push_back({"notes", {}, texts_node(look.notes)});
   return {std::move(entry), {}};
 }
 
@@ -164,8 +155,8 @@ double root_mean_square(const std::vector<double>& values) {
 void add_angles(const std::vector<DirectionAngles>& angles, const std::string& before, Node::Table& answer) {
   Node::Array azimuths, elevations;
   for (const DirectionAngles& angle : angles) {
-    azimuths.push_back(number(angle.azimuth));
-    elevations.push_back(number(angle.elevation));
+    azimuths.push_back(number_node(angle.azimuth));
+    elevations.push_back(number_node(angle.elevation));
   }
   answer.push_back({before + "azimuth", {}, {std::move(azimuths), {}}});
   answer.push_back({before + "elevation", {}, {std::move(elevations), {}}});
@@ -195,7 +186,7 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
   if (found.markers.empty()) return;
   Node::Array markers;
   for (const PlacedMarker& marker : found.markers) {
-    Node::Table entry{{"s", {}, number(marker.s)},
+    Node::Table entry{{"s", {}, number_node(marker.s)},
                       {"at", {}, vector(backbone.pose(std::min(marker.s, backbone.length())).position)},
                       {"images", {}, {static_cast<std::int64_t>(marker.looks), {}}}};
     markers.push_back({std::move(entry), {}});
@@ -215,14 +206,14 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
   const auto count = static_cast<std::size_t>(arguments.points);
   add_angles(direction_angles(backbone, count), "", answer);
   add_plane_angles(sightings, count, answer);
-  answer.push_back({"length", {}, number(backbone.length())});
-  answer.push_back({"sigma", {}, number(root_mean_square(found.sigma))});
-  answer.push_back({"rms_px", {}, number(found.rms)});
+  answer.push_back({"length", {}, number_node(backbone.length())});
+  answer.push_back({"sigma", {}, number_node(root_mean_square(found.sigma))});
+  answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);
   if (arguments.arm.empty()) return;
   Node::Array bends;
   for (const Eigen::Vector2d& bend : found.shape.state.bends)
-    bends.push_back({Node::Array{number(bend.x()), number(bend.y())}, {}});
+    bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
   answer.push_back({"bends", {}, {std::move(bends), {}}});
 }
 
@@ -244,8 +235,8 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   if (found.is_found)
     add_shape(found, sightings, arguments, answer);
   else
-    answer.push_back({"reason", {}, text(found.reason)});
-  if (!found.notes.empty()) answer.push_back({"notes", {}, texts(found.notes)});
+    answer.push_back({"reason", {}, text_node(found.reason)});
+  if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});
   answer.push_back({"images", {}, {std::move(images), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;

@@ -22,17 +22,10 @@
 namespace flexura {
 namespace {
 
-Node text(const std::string& value) { return {value, {}}; }
-Node number(double value) { return {value, {}}; }
-Node texts(const std::vector<std::string>& values) {
-  Node::Array entries;
-  for (const std::string& value : values) entries.push_back(text(value));
-  return {std::move(entries), {}};
-}
-
 void check_file(const std::string& option, const std::string& file) {
   if (file.empty() || std::filesystem::path(file).extension() == ".toml") return;
-  throw input_error(option, fmt::format("{}: expected a file name that ends in .toml", text(file).brief()));
+  throw input_error(option,
+                    fmt::format("{}: expected a file name that ends in .toml", text_node(file).brief()));
 }
 
 void check(const IntrinsicsArguments& arguments) {
@@ -83,11 +76,11 @@ int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& boa
   if (is_pair) pictures.push_back(look_for_board(arguments.right, board, "--right"));
   const IntrinsicsFit fit = fit_pictures(arguments, board, pictures);
   Node::Table answer{{"found", {}, {fit.is_found, {}}}};
-  if (!fit.is_found) answer.push_back({"reason", {}, text(fit.reason)});
+  if (!fit.is_found) answer.push_back({"reason", {}, text_node(fit.reason)});
   answer.push_back({"board", {}, board_node(board)});
   if (const auto notes = notes_of(pictures, fit); !notes.empty())
-    answer.push_back({"notes", {}, texts(notes)});
-  if (fit.points > 0) answer.push_back({"rms_px", {}, number(fit.rms)});
+    answer.push_back({"notes", {}, texts_node(notes)});
+  if (fit.points > 0) answer.push_back({"rms_px", {}, number_node(fit.rms)});
   add_held_out(fit, answer);
   if (fit.is_found) {
     std::vector<CalibratedCamera> cameras;

@@ -19,13 +19,11 @@ namespace {
 constexpr std::array<const char*, intrinsics_count> parameter_names = {"fx", "fy", "cx", "cy", "k1",
                                                                        "k2", "p1", "p2", "k3"};
 
-Node number(double value) { return {value, {}}; }
 Node whole(std::size_t value) { return {static_cast<std::int64_t>(value), {}}; }
-Node text(const std::string& value) { return {value, {}}; }
 template <typename Vector>
 Node numbers(const Vector& values) {
   Node::Array entries;
-  for (const double value : values) entries.push_back(number(value));
+  for (const double value : values) entries.push_back(number_node(value));
   return {std::move(entries), {}};
 }
 template <typename Matrix>
@@ -38,12 +36,12 @@ Node rows_of(const Matrix& matrix) {
 Node views_node(const BoardPictures& pictures, const IntrinsicsFit& fit, std::size_t camera) {
   Node::Array views;
   for (std::size_t i = 0; i < pictures.names.size(); ++i) {
-    Node::Table entry{{"image", {}, text(pictures.names[i])}};
+    Node::Table entry{{"image", {}, text_node(pictures.names[i])}};
     if (!pictures.sightings[i].is_found()) {
-      entry.push_back({"reason", {}, text(pictures.sightings[i].reason)});
+      entry.push_back({"reason", {}, text_node(pictures.sightings[i].reason)});
     } else if (camera < fit.cameras.size() && i < fit.cameras[camera].view_rms.size()) {
       const auto rms = fit.cameras[camera].view_rms[i];
-      entry.push_back({"rms_px", {}, rms ? number(*rms) : Node{}});
+      entry.push_back({"rms_px", {}, rms ? number_node(*rms) : Node{}});
       if (fit.is_held_out[i]) entry.push_back({"held_out", {}, {true, {}}});
     }
     views.push_back({std::move(entry), {}});
@@ -55,20 +53,21 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
   const Intrinsics& lens = fit.lens;
   Node::Table sigma;
   for (int i = 0; i < static_cast<int>(estimated); ++i)
-    sigma.push_back({parameter_names[static_cast<std::size_t>(i)], {}, number(fit.sigma(i))});
+    sigma.push_back({parameter_names[static_cast<std::size_t>(i)], {}, number_node(fit.sigma(i))});
   Node::Array untold;
-  for (const int i : fit.untold) untold.push_back(text(parameter_names[static_cast<std::size_t>(i)]));
-  entry.insert(entry.end(),
-               {{"fx", {}, number(lens.fx)},
-                {"fy", {}, number(lens.fy)},
-                {"cx", {}, number(lens.cx)},
-                {"cy", {}, number(lens.cy)},
-                {"distortion", {}, numbers(lens.distortion)},
-                {"sigma", {}, {std::move(sigma), {}}},
-                {"untold", {}, {std::move(untold), {}}},
-                {"corner_sigma_px", {}, std::isfinite(fit.corner_sigma) ? number(fit.corner_sigma) : Node{}},
-                {"rms_px", {}, number(fit.rms)}});
-  if (!is_alone) entry.push_back({"rms_alone_px", {}, number(fit.rms_alone)});
+  for (const int i : fit.untold) untold.push_back(text_node(parameter_names[static_cast<std::size_t>(i)]));
+  entry.insert(
+      entry.end(),
+      {{"fx", {}, number_node(lens.fx)},
+       {"fy", {}, number_node(lens.fy)},
+       {"cx", {}, number_node(lens.cx)},
+       {"cy", {}, number_node(lens.cy)},
+       {"distortion", {}, numbers(lens.distortion)},
+       {"sigma", {}, {std::move(sigma), {}}},
+       {"untold", {}, {std::move(untold), {}}},
+       {"corner_sigma_px", {}, std::isfinite(fit.corner_sigma) ? number_node(fit.corner_sigma) : Node{}},
+       {"rms_px", {}, number_node(fit.rms)}});
+  if (!is_alone) entry.push_back({"rms_alone_px", {}, number_node(fit.rms_alone)});
   entry.push_back({"covariance", {}, rows_of(fit.covariance.topLeftCorner(estimated, estimated))});
 }
 
@@ -92,10 +91,10 @@ void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector
 
 Node board_node(const BoardTarget& board) {
   const auto& names = names_of(static_cast<const BoardPattern*>(nullptr));
-  return {Node::Table{{"pattern", {}, text(names[static_cast<std::size_t>(board.pattern)])},
+  return {Node::Table{{"pattern", {}, text_node(names[static_cast<std::size_t>(board.pattern)])},
                       {"columns", {}, {std::int64_t{board.columns}, {}}},
                       {"rows", {}, {std::int64_t{board.rows}, {}}},
-                      {"square", {}, number(board.square)}},
+                      {"square", {}, number_node(board.square)}},
           {}};
 }
 
@@ -105,7 +104,7 @@ Node camera_node(const std::string& name, const BoardPictures& pictures, const I
   for (std::size_t i = 0; i < pictures.sightings.size(); ++i)
     used += pictures.sightings[i].is_found() && !fit.is_held_out[i] ? 1 : 0;
   Node::Table entry{
-      {"name", {}, text(name)},
+      {"name", {}, text_node(name)},
       {"size",
        {},
        {Node::Array{{std::int64_t{pictures.size[0]}, {}}, {std::int64_t{pictures.size[1]}, {}}}, {}}},
@@ -121,10 +120,10 @@ Node pair_node(const IntrinsicsFit& fit) {
   const Pose& X_12 = fit.poses[1];
   const Eigen::Matrix<double, 6, 6>& covariance = fit.pose_covariance[1];
   const Eigen::Vector<double, 6> sigma = covariance.diagonal().cwiseSqrt();
-  return {Node::Table{{"rms_px", {}, number(fit.rms)},
+  return {Node::Table{{"rms_px", {}, number_node(fit.rms)},
                       {"position", {}, numbers(X_12.position)},
                       {"rotation", {}, numbers(quaternion_wxyz(X_12.rotation))},
-                      {"distance", {}, number(X_12.position.norm())},
+                      {"distance", {}, number_node(X_12.position.norm())},
                       {"sigma_position", {}, numbers(Eigen::Vector3d(sigma.head<3>()))},
                       {"sigma_rotation", {}, numbers(Eigen::Vector3d(sigma.tail<3>()))},
                       {"covariance", {}, rows_of(covariance)}},
@@ -151,7 +150,7 @@ void add_held_out(const IntrinsicsFit& fit, Node::Table& answer) {
   answer.push_back(
       {"held_out",
        {},
-       {Node::Table{{"views", {}, {views, {}}}, {"rms_px", {}, number(*fit.held_out_rms)}}, {}}});
+       {Node::Table{{"views", {}, {views, {}}}, {"rms_px", {}, number_node(*fit.held_out_rms)}}, {}}});
 }
 
 }  // namespace flexura

@@ -21,8 +21,6 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 29;
-
 // The whole text as a number, or nothing.
 template <typename Number>
 std::optional<Number> number_in(std::string_view text) {
@@ -106,7 +104,7 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
   BoardPictures pictures;
   pictures.names = files;
   for (const std::string& name : files) {
-    const std::string file = read_text_file(name, most_bytes);
+    const std::string file = read_text_file(name, most_picture_bytes);
     const Photograph photograph =
         decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
     const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};

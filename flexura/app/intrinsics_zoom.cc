@@ -21,14 +21,6 @@
 namespace flexura {
 namespace {
 
-Node text(const std::string& value) { return {value, {}}; }
-Node number(double value) { return {value, {}}; }
-Node texts(const std::vector<std::string>& values) {
-  Node::Array entries;
-  for (const std::string& value : values) entries.push_back(text(value));
-  return {std::move(entries), {}};
-}
-
 // One position of a zoom, measured.
 struct MeasuredZoom {
   ZoomGroup group;
@@ -62,12 +54,12 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
 
 Node zoom_node(const IntrinsicsArguments& arguments, const std::string& name, const MeasuredZoom& zoom) {
   Node::Table entry;
-  if (zoom.group.ratio) entry.push_back({"ratio", {}, number(*zoom.group.ratio)});
-  if (zoom.group.count) entry.push_back({"count", {}, number(*zoom.group.count)});
-  entry.push_back({"folder", {}, text(zoom.group.folder)});
-  if (!zoom.fit.is_found) entry.push_back({"reason", {}, text(zoom.fit.reason)});
+  if (zoom.group.ratio) entry.push_back({"ratio", {}, number_node(*zoom.group.ratio)});
+  if (zoom.group.count) entry.push_back({"count", {}, number_node(*zoom.group.count)});
+  entry.push_back({"folder", {}, text_node(zoom.group.folder)});
+  if (!zoom.fit.is_found) entry.push_back({"reason", {}, text_node(zoom.fit.reason)});
   if (const auto notes = notes_of({zoom.pictures}, zoom.fit); !notes.empty())
-    entry.push_back({"notes", {}, texts(notes)});
+    entry.push_back({"notes", {}, texts_node(notes)});
   add_held_out(zoom.fit, entry);
   Node camera = camera_node(name, zoom.pictures, zoom.fit, 0, static_cast<int>(arguments.distortion));
   auto& members = *camera.as<Node::Table>();
@@ -99,7 +91,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
       reason = fmt::format("this is no zoom: {}: {}", fault->path, fault->what);
   }
   Node::Table answer{{"found", {}, {reason.empty(), {}}}};
-  if (!reason.empty()) answer.push_back({"reason", {}, text(reason)});
+  if (!reason.empty()) answer.push_back({"reason", {}, text_node(reason)});
   answer.push_back({"board", {}, board_node(board)});
   if (reason.empty()) {
     double square = 0;
@@ -109,7 +101,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
       square += zoom.fit.rms * zoom.fit.rms * static_cast<double>(zoom.fit.points);
     }
     const double rms = std::sqrt(square / static_cast<double>(points));
-    answer.push_back({"rms_px", {}, number(rms)});
+    answer.push_back({"rms_px", {}, number_node(rms)});
     write_files(arguments, {camera}, rms, points, answer);
   }
   Node::Array entries;

@@ -19,7 +19,7 @@ using ::testing::Not;
 
 const std::string paper_arm_file = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
 
-Arm spatial_arm(const std::string& limits = "max_bend_deg=120") {
+Arm limited_arm(const std::string& limits = "max_bend_deg=120") {
   const std::string section = "[[arm.section]]\nlength=0.3\n" + limits + "\n";
   return parse_experiment("[arm]\nkind='spatial'\n" + section + section + section, "x.toml").arm.arm();
 }
@@ -30,7 +30,7 @@ bool flag(const Node& node, const char* key) { return *node.find(key)->as<bool>(
 std::string text(const Node& node, const char* key) { return *node.find(key)->as<std::string>(); }
 
 TEST(AnswerInverse, IsUndoneByForwardKinematics) {
-  const Arm arm = spatial_arm();
+  const Arm arm = limited_arm();
   const Node answer = parsed(answer_inverse(arm, R"({"position":[0.2,0.6,0.1],"rotation":[1,0,0,0]})"));
   EXPECT_TRUE(flag(answer, "converged"));
   EXPECT_EQ(text(answer, "reason"), "converged");
@@ -64,7 +64,7 @@ TEST(AnswerInverse, OfAPlanarArmSaysArchings) {
 }
 
 TEST(AnswerInverse, SaysStretchesWhereTheyAreFree) {
-  const Arm arm = spatial_arm("stretch_limits=[0.8,1.2]");
+  const Arm arm = limited_arm("stretch_limits=[0.8,1.2]");
   const Node answer = parsed(answer_inverse(arm, R"({"position":[0,1.0,0]})"));
   EXPECT_TRUE(flag(answer, "converged"));
   double length = 0.0;
@@ -74,20 +74,20 @@ TEST(AnswerInverse, SaysStretchesWhereTheyAreFree) {
 }
 
 TEST(AnswerInverse, SaysWhyNotAndWhatIsNearest) {
-  const Node far = parsed(answer_inverse(spatial_arm(), R"({"position":[0,1.9,0]})"));
+  const Node far = parsed(answer_inverse(limited_arm(), R"({"position":[0,1.9,0]})"));
   EXPECT_FALSE(flag(far, "converged"));
   EXPECT_EQ(text(far, "reason"), "not_reachable");
   EXPECT_TRUE(flag(far, "proven"));
   EXPECT_NEAR(number(far, "distance"), 1.0, 1e-9);
   EXPECT_NEAR(*far.find("nearest")->as<Node::Array>()->at(1).as<double>(), 0.9, 1e-9);
-  const Node held = parsed(answer_inverse(spatial_arm(), R"({"position":[0,0.01,0]})"));
+  const Node held = parsed(answer_inverse(limited_arm(), R"({"position":[0,0.01,0]})"));
   EXPECT_EQ(text(held, "reason"), "at_limit");
   EXPECT_EQ(number(held, "distance"), number(held, "position_error"));
 }
 
 TEST(AnswerInverse, ListsAllSolutionsWhenAsked) {
   const Node answer =
-      parsed(answer_inverse(spatial_arm(), R"({"position":[0.2,0.6,0.1],"rotation":[1,0,0,0],"all":true})"));
+      parsed(answer_inverse(limited_arm(), R"({"position":[0.2,0.6,0.1],"rotation":[1,0,0,0],"all":true})"));
   ASSERT_GE(answer.find("solutions")->as<Node::Array>()->size(), 1U);
   EXPECT_EQ(*answer.find("solutions")
                  ->as<Node::Array>()
@@ -99,21 +99,21 @@ TEST(AnswerInverse, ListsAllSolutionsWhenAsked) {
                  ->at(0)
                  .as<double>(),
             *answer.find("bends")->as<Node::Array>()->at(0).as<Node::Array>()->at(0).as<double>());
-  const Node none = parsed(answer_inverse(spatial_arm(), R"({"position":[0,2,0],"all":true})"));
+  const Node none = parsed(answer_inverse(limited_arm(), R"({"position":[0,2,0],"all":true})"));
   EXPECT_TRUE(none.find("solutions")->as<Node::Array>()->empty());
   EXPECT_EQ(text(none, "reason"), "not_reachable");
 }
 
 TEST(AnswerInverse, LaysTheArmAlongACurve) {
-  const Node straight = parsed(answer_inverse(spatial_arm(), R"({"curve":[[0,0,0],[0,0.9,0]]})"));
+  const Node straight = parsed(answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0,0.9,0]]})"));
   EXPECT_TRUE(flag(straight, "converged"));
   EXPECT_LE(number(straight, "position_error"), 1e-9);
-  const Node longer = parsed(answer_inverse(spatial_arm(), R"({"curve":[[0,0,0],[0,1.9,0]]})"));
+  const Node longer = parsed(answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0,1.9,0]]})"));
   EXPECT_EQ(text(longer, "reason"), "not_reachable");
 }
 
 TEST(AnswerInverse, SaysWhatIsNearestInEveryAnswerThatDidNotConverge) {
-  const Arm arm = spatial_arm();
+  const Arm arm = limited_arm();
   for (const char* line :
        {R"({"curve":[[0,0,0],[0,1.9,0]]})", R"({"curve":[[0,0,0],[0.3,0.1,0],[0,0.2,0],[0.3,0.3,0.2]]})",
         R"({"curve":[[0,0,0],[0.2,0,0],[0,0,0],[0.2,0,0],[0,0,0]]})", R"({"curve":[[0,0.01,0],[0,0.9,0]]})",
@@ -134,7 +134,7 @@ TEST(AnswerInverse, SaysWhatIsNearestInEveryAnswerThatDidNotConverge) {
 }
 
 TEST(AnswerInverse, BeginsAtTheStartAndFollowsTheWish) {
-  const Arm arm = spatial_arm();
+  const Arm arm = limited_arm();
   const std::string start = R"("start":{"bends":[[1,0],[0,1],[-1,0]]})";
   const std::string there = answer_inverse(arm, R"({"position":[0.2,0.6,0.1],)" + start + "}");
   const std::string plain = answer_inverse(arm, R"({"position":[0.2,0.6,0.1]})");
@@ -174,14 +174,14 @@ TEST(AnswerInverse, AnswersABadLineWithItsError) {
       {R"({"position":[0,1,0],"position":[0,1,0]})", "given twice"},
   };
   for (const auto& [line, error] : lines) {
-    EXPECT_THAT(answer_inverse(spatial_arm(), line), HasSubstr(error)) << line;
-    EXPECT_THAT(answer_inverse(spatial_arm(), line), ::testing::StartsWith("{\"error\":")) << line;
+    EXPECT_THAT(answer_inverse(limited_arm(), line), HasSubstr(error)) << line;
+    EXPECT_THAT(answer_inverse(limited_arm(), line), ::testing::StartsWith("{\"error\":")) << line;
   }
 }
 
 TEST(AnswerInverse, TakesAQuaternionThatIsAlmostOfUnitLength) {
   const std::string answer =
-      answer_inverse(spatial_arm(), R"({"position":[0.2,0.6,0.1],"rotation":[1.0005,0,0,0]})");
+      answer_inverse(limited_arm(), R"({"position":[0.2,0.6,0.1],"rotation":[1.0005,0,0,0]})");
   EXPECT_THAT(answer, HasSubstr("\"converged\":true"));
   EXPECT_THAT(answer, Not(HasSubstr("error\":\"")));
 }

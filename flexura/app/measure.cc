@@ -21,11 +21,10 @@
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
+#include "flexura/vision/picture_file.h"
 
 namespace flexura {
 namespace {
-
-constexpr std::size_t most_bytes = std::size_t{1} << 29;
 
 template <typename E>
 E named(const std::string& option, const std::string& word) {
@@ -87,8 +86,8 @@ int measure_one(const MeasureArguments& arguments, MeasureSettings settings, con
                 std::ostream& out) {
   const std::string& name = arguments.images.front();
   settings.lens = lens;
-  const Measurement found =
-      measure_picture(bytes_of(read_text_file(name, most_bytes)), name, settings, !arguments.overlay.empty());
+  const Measurement found = measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name,
+                                            settings, !arguments.overlay.empty());
   if (!arguments.overlay.empty()) replace_file(arguments.overlay, png(found.overlay));
   out << write_json(found.answer, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;
@@ -101,7 +100,8 @@ int measure_many(const MeasureArguments& arguments, MeasureSettings settings,
     const std::string& name = arguments.images[i];
     settings.lens = lenses[i];
     try {
-      const Measurement found = measure_picture(bytes_of(read_text_file(name, most_bytes)), name, settings);
+      const Measurement found =
+          measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, settings);
       out << write_json(found.answer) << '\n';
       if (!found.is_found && status == exit_done) status = exit_missed;
     } catch (const InputError& error) {

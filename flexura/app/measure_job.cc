@@ -14,13 +14,6 @@ double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 double px(double value) { return rounded(value, 1e4); }
 
-Node number_node(double value) { return {value, {}}; }
-Node text_node(const std::string& value) { return {value, {}}; }
-Node texts_node(const std::vector<std::string>& values) {
-  Node::Array entries;
-  for (const std::string& value : values) entries.push_back(text_node(value));
-  return {std::move(entries), {}};
-}
 Node pixel_pair(const Eigen::Vector2d& value) {
   return {Node::Array{number_node(px(value.x())), number_node(px(value.y()))}, {}};
 }

@@ -25,9 +25,6 @@ inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 6
 /// To 1e-4 px.
 [[nodiscard]] double px(double value);
 
-[[nodiscard]] Node number_node(double value);
-[[nodiscard]] Node text_node(const std::string& value);
-[[nodiscard]] Node texts_node(const std::vector<std::string>& values);
 /// [u, v], px.
 [[nodiscard]] Node pixel_pair(const Eigen::Vector2d& value);
 /// As docs/vision.md has them; null where there is none.

@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::string program = FLEXURA_BINARY_DIR "/bin/flexura";
-const std::string paper_arm = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+const std::string paper_file = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
 
 struct Ended {
   int status = -1;
@@ -59,7 +59,7 @@ class Program : public ::testing::Test {
 };
 
 TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
-  const Ended ended = run("run " + paper_arm);
+  const Ended ended = run("run " + paper_file);
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.out, "end effector: (-10.738, 5.201)\nresults: results/01_paper_arm\n");
   EXPECT_THAT(ended.err, IsEmpty()) << "no progress line in a pipe";
@@ -67,11 +67,11 @@ TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
        {"experiment.toml", "log.mcap", "summary.json", "timing.json", "report.html", "figures/arm-end.svg"}) {
     EXPECT_TRUE(std::filesystem::exists(path("results/01_paper_arm/") + file)) << file;
   }
-  EXPECT_THAT(run("run " + paper_arm).out, HasSubstr("results: results/01_paper_arm-2\n"));
+  EXPECT_THAT(run("run " + paper_file).out, HasSubstr("results: results/01_paper_arm-2\n"));
 }
 
 TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
-  const Ended ended = run("run " + paper_arm + " --json --out elsewhere --seed 5");
+  const Ended ended = run("run " + paper_file + " --json --out elsewhere --seed 5");
   EXPECT_EQ(ended.status, 0);
   const Node summary = parse_json(ended.out, "stdout");
   EXPECT_EQ(*summary.find("seed")->as<std::int64_t>(), 5);
@@ -80,16 +80,16 @@ TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
 }
 
 TEST_F(Program, EndsWithOneWhenALimitWouldBeBroken) {
-  const Ended ended = run("run " + paper_arm + " --set arm.section.1.max_bend_deg=3");
+  const Ended ended = run("run " + paper_file + " --set arm.section.1.max_bend_deg=3");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, HasSubstr("unsafe: 0.833333 s to 5 s: section 2: bend 18 deg, limit 3 deg\n"));
 }
 
 TEST_F(Program, ChecksWithoutRunning) {
-  const Ended safe = run("check " + paper_arm);
+  const Ended safe = run("check " + paper_file);
   EXPECT_EQ(safe.status, 0);
   EXPECT_EQ(safe.out, "note: 0 s: singular pose: the tip can set out in 1 of 2 dimensions\nsafe\n");
-  const Ended unsafe = run("check " + paper_arm + " --json --set arm.section.1.max_bend_deg=3");
+  const Ended unsafe = run("check " + paper_file + " --json --set arm.section.1.max_bend_deg=3");
   EXPECT_EQ(unsafe.status, 1);
   const Node found = parse_json(unsafe.out, "stdout");
   EXPECT_FALSE(*found.find("safe")->as<bool>());
@@ -132,12 +132,12 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
     EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << arguments << ": " << ended.err;
   }
   EXPECT_THAT(run("chek x.toml").err, HasSubstr("there is no command \"chek\"; did you mean \"check\"?"));
-  EXPECT_EQ(run("run " + paper_arm + " --set arm.section.0.length=nan").status, 2);
+  EXPECT_EQ(run("run " + paper_file + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
 }
 
 TEST_F(Program, EndsWithThreeWhenTheSystemFails) {
-  EXPECT_EQ(run("run " + paper_arm + " --out /proc/here").status, 3);
+  EXPECT_EQ(run("run " + paper_file + " --out /proc/here").status, 3);
   std::ofstream(path("out")) << "";
   EXPECT_EQ(wait(start("schema", "/dev/full")).status, 3);
 }
@@ -190,7 +190,7 @@ TEST_F(Program, KeepsTheTokenOfAPortWhenItIsStartedAgain) {
 }
 
 TEST_F(Program, ServesWhatARunLeft) {
-  EXPECT_EQ(run("run " + paper_arm + " --out results").status, 0);
+  EXPECT_EQ(run("run " + paper_file + " --out results").status, 0);
   const Ended of_the_log = run("view results/log.mcap --no-browser");
   EXPECT_EQ(of_the_log.status, 2);
   EXPECT_THAT(of_the_log.err, HasSubstr("expected the folder in which it lies"));

@@ -92,6 +92,16 @@ std::string Node::literal() const {
   return "[" + text + "]";
 }
 
+Node number_node(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
+
+Node text_node(std::string value) { return {std::move(value), {}}; }
+
+Node texts_node(const std::vector<std::string>& values) {
+  Node::Array entries;
+  for (const std::string& value : values) entries.push_back(text_node(value));
+  return {std::move(entries), {}};
+}
+
 void merge(Node& under, Node over) {
   auto* below = under.as<Node::Table>();
   auto* above = over.as<Node::Table>();

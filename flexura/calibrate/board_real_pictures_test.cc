@@ -15,12 +15,12 @@
 #include "flexura/calibrate/board_target.h"
 #include "flexura/calibrate/intrinsics_fit.h"
 #include "flexura/vision/picture_file.h"
+#include "tests/support/boards.h"
 
 namespace flexura {
 namespace {
 
 const std::filesystem::path folder = "/usr/share/doc/opencv-doc/examples/data";
-const std::vector<std::array<int, 2>> one_size = {{640, 480}}, two_sizes = {{640, 480}, {640, 480}};
 
 class RealBoards : public testing::Test {
  protected:

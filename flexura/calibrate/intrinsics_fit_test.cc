@@ -30,9 +30,8 @@ using testing::IsEmpty;
 
 const BoardTarget board;
 const std::vector<Eigen::Vector2d> points = board.points();
-const std::vector<std::array<int, 2>> one_size = {{640, 480}}, two_sizes = {{640, 480}, {640, 480}};
 
-Intrinsics random_lens(TestRandom& random) {
+Intrinsics random_intrinsics(TestRandom& random) {
   Intrinsics lens{.fx = random.uniform(450, 900),
                   .fy = 0,
                   .cx = random.uniform(300, 340),
@@ -47,7 +46,7 @@ Intrinsics random_lens(TestRandom& random) {
 double distance_for(const Intrinsics& lens) { return 0.7e-3 * lens.fx; }
 
 BoardBundle random_camera(TestRandom& random, int views) {
-  BoardBundle truth{{random_lens(random)}, {Pose{}}, {}};
+  BoardBundle truth{{random_intrinsics(random)}, {Pose{}}, {}};
   for (int i = 0; i < views; ++i)
     truth.boards.push_back(random_board(random, board, distance_for(truth.lenses[0])));
   return truth;

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, step = 0.075 * degree;
+constexpr double step = 0.075 * degree;
 
 // A rig as calibrations find them: nothing is where it was meant to be.
 RigModel found_rig(TestRandom& random) {

@@ -17,7 +17,6 @@
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 RigTrial planned_trial(const RigTrialConfig& config, TestRandom& random, std::size_t pictures = 12) {

@@ -14,8 +14,6 @@
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-
 ArmState bent(double x, double y) {
   ArmState state = ArmState::straight(3);
   for (Eigen::Vector2d& bend : state.bends) bend = {x, y};

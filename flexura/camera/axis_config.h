@@ -52,6 +52,9 @@ void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate
 /// Reports limits in the wrong order.
 void check_limits(const std::array<double, 2>& limits, Reader& reader);
 
+/// Of the angles of a head's axes, rad.
+inline constexpr NumberRange turn_range = {.min = -10, .max = 10};
+
 /// The table of fields of an axis type S, an AxisConfig with defaults of its own; its limits lie within
 /// `range`.
 template <class S>

@@ -11,8 +11,6 @@
 namespace flexura {
 namespace {
 
-constexpr NumberRange turn_range = {.min = -10, .max = 10};
-
 void check_start(const AxisConfig& axis, double start, const std::string& path, Reader& reader) {
   if (start >= axis.limits[0] && start <= axis.limits[1]) return;
   reader.problem_at(path, fmt::format("{:.6g} is outside the axis's limits {:.6g} to {:.6g}", start,

@@ -7,7 +7,6 @@ namespace flexura {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr NumberRange turn_range = {.min = -10, .max = 10};
 constexpr NumberRange offset_range = {.min = -1e3, .max = 1e3};
 constexpr AxisUnits turn_units = {Unit::radian, Unit::radian_per_second, Unit::radian_per_second_squared};
 constexpr AxisUnits zoom_units = {Unit::none, Unit::none, Unit::none};

@@ -26,7 +26,7 @@ Eigen::Matrix3d matrix_of(const Rows& rows) {
   return matrix;
 }
 
-void check_camera(const MeasuredCamera& camera, Reader& reader) {
+void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
   if (camera.rotation.error() > largest_error) {
     reader.problem_at("rotation",
                       fmt::format("rotation is {:.2g} off a rotation: expected the rows of a rotation "
@@ -100,7 +100,7 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
               "rotation", &C::rotation,
               {.meaning = "Of the camera's frame (x right, y down, z forward) in the world: three rows of a "
                           "matrix, or [w, x, y, z]."})
-          .check(check_camera);
+          .check(check_measured_camera);
   return table;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Eigen::VectorXd numbers(const Intrinsics& lens) {
+Eigen::VectorXd numbers_of(const Intrinsics& lens) {
   Eigen::VectorXd result(intrinsics_count);
   result << lens.fx, lens.fy, lens.cx, lens.cy,
       Eigen::Map<const Eigen::Vector<double, 5>>(lens.distortion.data());
@@ -83,7 +83,7 @@ TEST(Zoom, ItsSlopeIsItsDerivative) {
     const double at = random.uniform(first, last);
     const auto function = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       Eigen::VectorXd y(intrinsics_count + 1);
-      y << numbers(zoom.at(x[0])), zoom.ratio(x[0]);
+      y << numbers_of(zoom.at(x[0])), zoom.ratio(x[0]);
       return y;
     };
     // Rows are corners of the second derivative: steps that may cross one find the slope to first order.
@@ -108,7 +108,7 @@ Eigen::VectorXd difference(const LensConfig& config, double zoom, double step, C
   const auto at = [&](double offset) {
     LensConfig changed = config;
     change(changed, offset);
-    return numbers(ZoomTable(changed, 640, 480).at(zoom));
+    return numbers_of(ZoomTable(changed, 640, 480).at(zoom));
   };
   return (at(step) - at(-step)) / (2 * step);
 }

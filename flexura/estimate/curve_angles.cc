@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // The azimuth's sine and cosine above which the planes' reading is singular: 80 degrees.
 constexpr double singular_cosine = 0.17364817766693033;

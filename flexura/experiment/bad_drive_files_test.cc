@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* good = R"([arm]
+constexpr const char* good_drive = R"([arm]
 kind = "spatial"
 [[arm.section]]
 length = 0.3
@@ -36,37 +36,42 @@ angle_deg = 150
 )";
 
 // The good file with the first `from` replaced.
-std::string with(const std::string& from, const std::string& to) { return replaced(good, from, to); }
+std::string drive_with(const std::string& from, const std::string& to) {
+  return replaced(good_drive, from, to);
+}
 
-TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good), "no error"); }
+TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good_drive), "no error"); }
 
 TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
   const std::vector<BadFile> files{
       {"no tendons", "[[arm.section]]\nlength = 1\n[drive]\n",
        "x.toml:3:2: drive.tendon: missing: expected an array (The tendons in the order"},
-      {"no section", with("section = 1\n", ""), "x.toml:13:1: drive.tendon[0].section: missing: expected"},
-      {"no angle", with("angle_deg = 0\n", ""), "x.toml:13:1: drive.tendon[0].angle: missing: expected"},
-      {"section 0", with("section = 1", "section = 0"),
+      {"no section", drive_with("section = 1\n", ""),
+       "x.toml:13:1: drive.tendon[0].section: missing: expected"},
+      {"no angle", drive_with("angle_deg = 0\n", ""),
+       "x.toml:13:1: drive.tendon[0].angle: missing: expected"},
+      {"section 0", drive_with("section = 1", "section = 0"),
        "x.toml:14:11: drive.tendon[0].section = 0: expected a whole number from 1 to"},
-      {"a section beyond the arm", with("section = 2", "section = 3"),
+      {"a section beyond the arm", drive_with("section = 2", "section = 3"),
        "x.toml:20:1: drive.tendon[2].section: ends at section 3 of an arm of 2: expected 1 to 2"},
-      {"half a section", with("section = 2", "section = 1.5"),
+      {"half a section", drive_with("section = 2", "section = 1.5"),
        "drive.tendon[2].section = 1.5: expected a whole number from 1 to"},
-      {"angle in mm", with("angle_deg", "angle_mm"), "drive.tendon[0].angle_mm: wrong unit: expected angle"},
-      {"no radius", with("radius_mm = 15", "radius_mm = 0"),
+      {"angle in mm", drive_with("angle_deg", "angle_mm"),
+       "drive.tendon[0].angle_mm: wrong unit: expected angle"},
+      {"no radius", drive_with("radius_mm = 15", "radius_mm = 0"),
        "x.toml:8:13: drive.radius_mm = 0: expected a number above 0 mm"},
-      {"a tendon on the backbone", with("angle_deg = 0", "angle_deg = 0\nradius = -1"),
+      {"a tendon on the backbone", drive_with("angle_deg = 0", "angle_deg = 0\nradius = -1"),
        "x.toml:16:10: drive.tendon[0].radius = -1: expected a number above 0 m"},
-      {"too few tendons", with("[[drive.tendon]]\nsection = 2\nangle_deg = 60\n", ""),
+      {"too few tendons", drive_with("[[drive.tendon]]\nsection = 2\nangle_deg = 60\n", ""),
        "drive.tendon: does not determine the bend of section 2, where 1 tendon ends: expected at least 2 in "
        "different directions"},
-      {"tendons of another section", with("section = 1", "section = 2"),
+      {"tendons of another section", drive_with("section = 1", "section = 2"),
        "drive.tendon: does not determine the bend of section 1, where 1 tendon ends: expected at least 2"},
-      {"tendons in one direction", with("angle_deg = 120", "angle_deg = 180"),
+      {"tendons in one direction", drive_with("angle_deg = 120", "angle_deg = 180"),
        "drive.tendon: does not determine the bend of section 1, where 2 tendons end: expected at least 2 in "
        "different directions"},
       {"a stretch that two tendons do not determine",
-       with("length = 0.3", "length = 0.3\nstretch_limits = [0.9, 1.1]"),
+       drive_with("length = 0.3", "length = 0.3\nstretch_limits = [0.9, 1.1]"),
        "drive.tendon: does not determine the bend and the stretch of section 1, where 2 tendons end: "
        "expected "
        "at least 3 that are not on one line"},
@@ -78,30 +83,30 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "arm.section = [{length = 1, stretch_limits = [0.5, 2]}]\n"
        "drive.tendon = [{section = 1, angle = 0}, {section = 1, angle = 0}]\n",
        "expected at least 2 on different sides of the arm"},
-      {"steps that are no multiple of the phases", with("steps = 600", "steps = 200"),
+      {"steps that are no multiple of the phases", drive_with("steps = 600", "steps = 200"),
        "x.toml:10:1: drive.motor.steps: 200 full steps a turn of a motor with 3 phases: expected a multiple "
        "of "
        "the phases"},
-      {"one phase", with("steps = 600", "phases = 1"),
+      {"one phase", drive_with("steps = 600", "phases = 1"),
        "drive.motor.phases = 1: expected a whole number from 2"},
-      {"no microsteps", with("steps = 600", "microsteps = 0"),
+      {"no microsteps", drive_with("steps = 600", "microsteps = 0"),
        "drive.motor.microsteps = 0: expected a whole number from 1"},
-      {"no speed", with("steps = 600", "max_speed = 0"),
+      {"no speed", drive_with("steps = 600", "max_speed = 0"),
        "drive.motor.max_speed = 0: expected a number above 0 rad/s"},
-      {"acceleration in the wrong unit", with("steps = 600", "max_acceleration_mm = 1"),
+      {"acceleration in the wrong unit", drive_with("steps = 600", "max_acceleration_mm = 1"),
        "drive.motor.max_acceleration_mm: wrong unit: expected max_acceleration (rad/s^2), "},
-      {"no gear", with("gear = 10", "gear = 0"), "drive.spool.gear = 0: expected a number above 0"},
-      {"negative play", with("gear = 10", "backlash_deg = -1"),
+      {"no gear", drive_with("gear = 10", "gear = 0"), "drive.spool.gear = 0: expected a number above 0"},
+      {"negative play", drive_with("gear = 10", "backlash_deg = -1"),
        "x.toml:12:16: drive.spool.backlash_deg = -1: expected a number from 0 deg"},
-      {"misspelt table", with("[drive.spool]", "[drive.spools]"),
+      {"misspelt table", drive_with("[drive.spool]", "[drive.spools]"),
        "x.toml:11:8: drive.spools: unknown key; did you mean \"spool\"?"},
-      {"no controller", with("radius_mm = 15", "axes_per_controller = 0"),
+      {"no controller", drive_with("radius_mm = 15", "axes_per_controller = 0"),
        "drive.axes_per_controller = 0: expected a whole number from 1"},
-      {"no piece between disks", with("radius_mm = 15", "disks = 0"),
+      {"no piece between disks", drive_with("radius_mm = 15", "disks = 0"),
        "drive.disks = 0: expected a whole number from 1"},
-      {"a motor of its own that does not fit", with("angle_deg = 0", "angle_deg = 0\nmotor.phases = 7"),
+      {"a motor of its own that does not fit", drive_with("angle_deg = 0", "angle_deg = 0\nmotor.phases = 7"),
        "drive.tendon[0].motor.steps: 300 full steps a turn of a motor with 7 phases"},
-      {"positions beyond what is counted exactly", with("gear = 10", "gear = 1e6\nradius = 1e-9"),
+      {"positions beyond what is counted exactly", drive_with("gear = 10", "gear = 1e6\nradius = 1e-9"),
        "drive.tendon[0]: makes up to "},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
@@ -109,9 +114,10 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
 
 TEST(BadDriveFiles, LeaveGoodOnesAlone) {
   for (const std::string& text :
-       {with("spatial", "planar"), with("angle_deg = 0", "angle_deg = 0\nreversed = true\nradius_mm = 90"),
-        with("radius_mm = 15", "disks = 1\naxes_per_controller = 1"),
-        with("steps = 600", "phases = 5\nsteps = 500\nmicrosteps = 1\nmax_step_rate = 1e5"),
+       {drive_with("spatial", "planar"),
+        drive_with("angle_deg = 0", "angle_deg = 0\nreversed = true\nradius_mm = 90"),
+        drive_with("radius_mm = 15", "disks = 1\naxes_per_controller = 1"),
+        drive_with("steps = 600", "phases = 5\nsteps = 500\nmicrosteps = 1\nmax_step_rate = 1e5"),
         std::string("arm.section = [{length = 1, stretch_limits = [0.5, 2]}]\n"
                     "drive.tendon = [{section = 1, angle = 0}, {section = 1, angle_pi = 1}]\n")}) {
     EXPECT_EQ(error_of_file(text), "no error") << text;
@@ -119,9 +125,9 @@ TEST(BadDriveFiles, LeaveGoodOnesAlone) {
 }
 
 TEST(DriveFiles, SayWhichAxisPullsWhichTendon) {
-  const Drive drive = parse_experiment(with("angle_deg = 120",
-                                            "angle_deg = 120\nradius_mm = 20\nreversed = true\n"
-                                            "spool = { radius = 0.03 }\nmotor = { steps = 300 }"),
+  const Drive drive = parse_experiment(drive_with("angle_deg = 120",
+                                                  "angle_deg = 120\nradius_mm = 20\nreversed = true\n"
+                                                  "spool = { radius = 0.03 }\nmotor = { steps = 300 }"),
                                        "x.toml")
                           .drive->drive();
   ASSERT_EQ(drive.tendons.size(), 4U);

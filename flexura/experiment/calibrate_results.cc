@@ -17,32 +17,32 @@
 namespace flexura {
 namespace {
 
-Node number(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
 Node whole(std::size_t value) { return {static_cast<std::int64_t>(value), {}}; }
 
 Node remainder_node(const RigRemainder& left) {
-  const auto pair = [](double a, double b) { return Node{Node::Array{number(a), number(b)}, {}}; };
-  return {Node::Table{{"angle_from_square", {}, number(left.angle)},
+  const auto pair = [](double a, double b) { return Node{Node::Array{number_node(a), number_node(b)}, {}}; };
+  return {Node::Table{{"angle_from_square", {}, number_node(left.angle)},
                       {"aim", {}, pair(left.aim[0].norm(), left.aim[1].norm())},
-                      {"zoom_ratio", {}, number(left.zoom_ratio)},
+                      {"zoom_ratio", {}, number_node(left.zoom_ratio)},
                       {"roll", {}, pair(left.roll[0], left.roll[1])}},
           {}};
 }
 
 Node sigma_node(const RigSigmas& sigmas) {
-  return {Node::Table{{"angle", {}, number(sigmas.angle)},
-                      {"focal", {}, {Node::Array{number(sigmas.focal[0]), number(sigmas.focal[1])}, {}}},
-                      {"zoom_ratio", {}, number(sigmas.zoom_ratio)}},
+  return {Node::Table{
+              {"angle", {}, number_node(sigmas.angle)},
+              {"focal", {}, {Node::Array{number_node(sigmas.focal[0]), number_node(sigmas.focal[1])}, {}}},
+              {"zoom_ratio", {}, number_node(sigmas.zoom_ratio)}},
           {}};
 }
 
 Node step_nodes(const std::vector<RigStep>& steps) {
   Node::Array list;
   for (const RigStep& step : steps) {
-    Node::Table entry{{"time", {}, number(step.time)},
+    Node::Table entry{{"time", {}, number_node(step.time)},
                       {"looks", {}, whole(step.looks)},
                       {"found", {}, {step.is_found, {}}},
-                      {"rms", {}, number(step.rms)}};
+                      {"rms", {}, number_node(step.rms)}};
     if (!step.is_found) entry.push_back({"reason", {}, {step.reason, {}}});
     if (step.is_found) entry.push_back({"sigma", {}, sigma_node(step.sigmas)});
     if (step.remainder) entry.push_back({"would_remain", {}, remainder_node(*step.remainder)});
@@ -55,15 +55,15 @@ Node untold_nodes(const RigObservability& seen) {
   Node::Array list;
   for (const RigBlindness& blind : seen.blindness)
     list.push_back(
-        {Node::Table{{"share_left", {}, number(blind.share)}, {"what", {}, {blind.words, {}}}}, {}});
+        {Node::Table{{"share_left", {}, number_node(blind.share)}, {"what", {}, {blind.words, {}}}}, {}});
   return {std::move(list), {}};
 }
 
 Node stance_node(const std::string& name, const RigStance& stance) {
   return {Node::Table{{"camera", {}, {name, {}}},
-                      {"pan", {}, number(stance.head.pan)},
-                      {"tilt", {}, number(stance.head.tilt)},
-                      {"zoom", {}, number(stance.head.zoom)},
+                      {"pan", {}, number_node(stance.head.pan)},
+                      {"tilt", {}, number_node(stance.head.tilt)},
+                      {"zoom", {}, number_node(stance.head.zoom)},
                       {"stage", {}, point_node(stance.stage.offset)}},
           {}};
 }
@@ -81,19 +81,19 @@ Node::Table run_members(const CalibrationRun& run) {
   const auto add = [&](const char* key, Node node) { members.push_back({key, {}, std::move(node)}); };
   add("steps", step_nodes(result.steps));
   if (!result.is_done) return members;
-  add("rms", number(result.found.rms));
+  add("rms", number_node(result.found.rms));
   add("sigma", sigma_node(result.steps.back().sigmas));
   add("target", point_node(result.target));
   add("at_start", remainder_node(*result.start_remainder));
   add("remainder", remainder_node(result.remainder));
   if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
-  add("verified_px", {Node::Array{number(result.verified[0]), number(result.verified[1])}, {}});
+  add("verified_px", {Node::Array{number_node(result.verified[0]), number_node(result.verified[1])}, {}});
   add("commanded", {Node::Array{stance_node(run.cameras[0], result.wanted.stances[0]),
                                 stance_node(run.cameras[1], result.wanted.stances[1])},
                     {}});
   Node::Array notes, gains;
   for (const std::string& note : result.wanted.notes) notes.push_back({note, {}});
-  for (const double gain : result.found.model.bend_gains) gains.push_back(number(gain));
+  for (const double gain : result.found.model.bend_gains) gains.push_back(number_node(gain));
   add("notes", {std::move(notes), {}});
   add("bend_gains", {std::move(gains), {}});
   add("untold", untold_nodes(result.observability));

@@ -9,17 +9,13 @@
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
 
 double number_at(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
 

@@ -24,17 +24,13 @@
 #include "flexura/store/text_file.h"
 #include "tests/support/calibration_files.h"
 #include "tests/support/experiment_files.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
 
 class Unwatched : public RigSessionWatcher {
  public:

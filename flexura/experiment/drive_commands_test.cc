@@ -18,6 +18,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -31,11 +32,6 @@ struct Row {
   double time = 0;
   std::vector<std::int64_t> positions;
   std::vector<double> rates;
-};
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
 };
 
 class LaboratoryArm : public ::testing::Test {

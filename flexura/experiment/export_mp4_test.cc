@@ -13,6 +13,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -39,11 +40,6 @@ sensor = {{ width = 8, height = 8, frame_rate = {0}, {2} }}
 kind = "move"
 to = {{ archings = [0.5] }}
 )";
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
 
 // Films made by a program called ffmpeg that writes its arguments and its input.
 class ExportMp4 : public ::testing::Test {

@@ -22,6 +22,7 @@
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/experiment_files.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -30,7 +31,7 @@ namespace {
 using ::testing::HasSubstr;
 
 // Small pictures of a small arm that moves for a second.
-const std::string two_cameras = R"(
+const std::string small_pictures = R"(
 [arm]
 kind = "spatial"
 [[arm.section]]
@@ -53,11 +54,6 @@ duration = 1
 to = { bends = [[0.8, 0.5], [-0.4, 1.2]] }
 )";
 
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
-
 using Film = std::vector<std::pair<std::string, Frame>>;
 
 Film film_of(const std::string& text, double step = 0.05) {
@@ -75,7 +71,7 @@ Film film_of(const std::string& text, double step = 0.05) {
 }
 
 TEST(Filming, DeliversEveryFrameOfEveryCameraInTheOrderOfTime) {
-  const Film film = film_of(two_cameras);
+  const Film film = film_of(small_pictures);
   std::map<std::string, std::vector<std::int64_t>> numbers;
   double last = 0;
   for (const auto& [camera, frame] : film) {
@@ -93,19 +89,19 @@ TEST(Filming, DeliversEveryFrameOfEveryCameraInTheOrderOfTime) {
 }
 
 TEST(Filming, GivesTheSamePicturesTwice) {
-  const Film first = film_of(two_cameras), second = film_of(two_cameras);
+  const Film first = film_of(small_pictures), second = film_of(small_pictures);
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i)
     EXPECT_EQ(*first[i].second.picture, *second[i].second.picture) << i;
 }
 
 TEST(Filming, ShowsTheArmMoving) {
-  const Film film = film_of(two_cameras);
+  const Film film = film_of(small_pictures);
   EXPECT_NE(*film.front().second.picture, *film[film.size() - 2].second.picture);
 }
 
 TEST(Filming, ShowsTheTruthAndNotWhatIsBelieved) {
-  const std::string quiet = replaced(two_cameras, "read_noise = 1, ", "");
+  const std::string quiet = replaced(small_pictures, "read_noise = 1, ", "");
   const Film believed = film_of(quiet);
   const Film same = film_of(quiet + "[truth.arm.base]\nposition = [0, 0, 0]\n");
   const Film shifted = film_of(quiet + "[truth.arm.base]\nposition = [0.1, 0, 0]\n");
@@ -239,7 +235,7 @@ TEST(DefaultStand, HasItsCamerasAtTheDistancesOfTheFile) {
 
 TEST(TrueRig, MovesNoScreensWithTheArm) {
   const Experiment experiment =
-      parse_experiment(two_cameras + "[truth.arm.base]\nposition = [0.1, 0, 0]\n", "x.toml");
+      parse_experiment(small_pictures + "[truth.arm.base]\nposition = [0.1, 0, 0]\n", "x.toml");
   EXPECT_EQ(experiment.true_stand().screen->at(0).center, default_screens(1, {0, 0, 0})[0].center);
 }
 
@@ -255,8 +251,8 @@ TEST(Filming, IsKeptInTheLogAndNothingElseOfTheLogChanges) {
       messages[message.channel->topic].emplace_back(message.text());
     return messages;
   };
-  auto filmed = log_of(two_cameras + "[record]\ncameras = true\nreport = false\n", "filmed");
-  const auto plain = log_of(two_cameras + "[record]\nreport = false\n", "plain");
+  auto filmed = log_of(small_pictures + "[record]\ncameras = true\nreport = false\n", "filmed");
+  const auto plain = log_of(small_pictures + "[record]\nreport = false\n", "plain");
   ASSERT_EQ(filmed["/camera/front"].size(), 10U);
   ASSERT_EQ(filmed["/camera/side"].size(), 5U);
   for (const std::string& text : filmed["/camera/front"]) {
@@ -276,7 +272,7 @@ TEST(Filming, LogsWhatTheRigsDevicesSayOfThemselves) {
   const TemporaryFolder folder;
   Quiet progress;
   const Experiment experiment = parse_experiment(
-      two_cameras +
+      small_pictures +
           "[record]\ncameras = true\nreport = false\n[[truth.arm.section]]\nmax_bend_rate = 0.3\n"
           "[[truth.arm.section]]\n[[truth.camera]]\nname = \"side\"\ninitial.pan_deg = 2\n",
       "x.toml");
@@ -300,25 +296,26 @@ TEST(Filming, LogsWhatTheRigsDevicesSayOfThemselves) {
 
 TEST(Filming, TellsWhatIsWrongWithCamerasAndTheTruth) {
   const BadFile bad[] = {
-      {"two of a name", replaced(two_cameras, "\"side\"", "\"front\""), "front"},
-      {"no such camera", two_cameras + "[[truth.camera]]\nname = \"top\"\n", "nothing is named \"top\""},
-      {"another arm", two_cameras + "[[truth.arm.section]]\nlength = 1\n", "the true arm has 1 sections"},
-      {"unknown key", two_cameras + "[truth]\nweather = 1\n", "truth.weather: unknown key"},
-      {"a name that leads elsewhere", replaced(two_cameras, "\"side\"", "\"../side\""),
+      {"two of a name", replaced(small_pictures, "\"side\"", "\"front\""), "front"},
+      {"no such camera", small_pictures + "[[truth.camera]]\nname = \"top\"\n", "nothing is named \"top\""},
+      {"another arm", small_pictures + "[[truth.arm.section]]\nlength = 1\n", "the true arm has 1 sections"},
+      {"unknown key", small_pictures + "[truth]\nweather = 1\n", "truth.weather: unknown key"},
+      {"a name that leads elsewhere", replaced(small_pictures, "\"side\"", "\"../side\""),
        "x.toml:14:1: camera[1].name: \"../side\" cannot name a file"},
       {"two true ones of a name",
-       two_cameras + "[[truth.camera]]\nname = \"side\"\n[[truth.camera]]\nname = \"side\"\n",
+       small_pictures + "[[truth.camera]]\nname = \"side\"\n[[truth.camera]]\nname = \"side\"\n",
        "truth.camera[1].name: \"side\" is the name of another entry"},
       {"too many frames",
-       replaced(two_cameras, "frame_rate = 10", "frame_rate = 1e6") + "[record]\ncameras = true\n",
+       replaced(small_pictures, "frame_rate = 10", "frame_rate = 1e6") + "[record]\ncameras = true\n",
        "x.toml:23:11: record.cameras: makes 1e+06 images in 1 s by the cameras' frame rates: expected at "
        "most"},
       {"a zoom that falls",
-       replaced(two_cameras, "lens = { fx = 80,",
+       replaced(small_pictures, "lens = { fx = 80,",
                 "lens = { zoom = [{ ratio = 1 },\n{ ratio = 3 },\n{ ratio = 2 }], fx = 80,"),
        "x.toml:13:3: camera[0].lens.zoom[2].ratio: expected a rising ratio"},
-      {"no focal length", replaced(two_cameras, "fx = 80", "fx = 0"), "fx = 0"},
-      {"a negative length", two_cameras + "[truth.arm.base]\nposition = [0, 0]\n", "truth.arm.base.position"},
+      {"no focal length", replaced(small_pictures, "fx = 80", "fx = 0"), "fx = 0"},
+      {"a negative length", small_pictures + "[truth.arm.base]\nposition = [0, 0]\n",
+       "truth.arm.base.position"},
   };
   for (const BadFile& file : bad) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }

@@ -28,7 +28,7 @@ Experiment parse(const std::string& rest) { return parse_experiment(arm + rest, 
 
 SafetyReport check(const std::string& rest) { return Schedule(parse(rest)).check(); }
 
-std::string error_of(const std::string& rest) { return error_of_file(arm + rest); }
+std::string error_of_rest(const std::string& rest) { return error_of_file(arm + rest); }
 
 TEST(Obstacles, BadOnesGetAClearLineWithTheirPlace) {
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -50,7 +50,7 @@ TEST(Obstacles, BadOnesGetAClearLineWithTheirPlace) {
        "x.toml:11:1: obstacle[0].rotation: has the norm 2: expected a unit quaternion"},
   };
   for (const auto& [text, error] : cases)
-    EXPECT_THAT(error_of("[[obstacle]]\n" + text + "\n"), HasSubstr(error)) << text;
+    EXPECT_THAT(error_of_rest("[[obstacle]]\n" + text + "\n"), HasSubstr(error)) << text;
 }
 
 TEST(Obstacles, AreKeptInTheExperimentAsRunAndNamedByTheirPlace) {
@@ -114,9 +114,9 @@ TEST(TipTargets, OutsideTheWorkspaceAreViolationsWithTheNearestDistance) {
 
 TEST(TipTargets, BesideAShapeAreRefused) {
   EXPECT_THAT(
-      error_of("[[task]]\nkind = 'move'\nto.position = [0, 1, 0]\nto.bends = [[0, 0], [0, 0]]\n"),
+      error_of_rest("[[task]]\nkind = 'move'\nto.position = [0, 1, 0]\nto.bends = [[0, 0], [0, 0]]\n"),
       HasSubstr("task[0].to.position: stands beside a shape: expected a place for the tip or a shape"));
-  EXPECT_THAT(error_of("[[task]]\nkind = 'move'\nto.position = [0, 1]\n"), HasSubstr("x.toml:9:"));
+  EXPECT_THAT(error_of_rest("[[task]]\nkind = 'move'\nto.position = [0, 1]\n"), HasSubstr("x.toml:9:"));
 }
 
 TEST(MotorLimits, OfAFileAreChecked) {
@@ -129,7 +129,7 @@ TEST(MotorLimits, OfAFileAreChecked) {
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_EQ(report.violations[0].hazard, Hazard::motor_position);
   EXPECT_EQ(report.violations[0].name, "1.4");
-  EXPECT_THAT(error_of("[drive]\nmotor = { max_position = 0 }\ntendon = []\n"),
+  EXPECT_THAT(error_of_rest("[drive]\nmotor = { max_position = 0 }\ntendon = []\n"),
               HasSubstr("max_position = 0"));
 }
 

@@ -11,15 +11,11 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/json.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
 
 TEST(RunsLog, OpensElsewhereUnderFoxglovesNames) {
   const std::filesystem::path reader = FLEXURA_SOURCE_DIR "/tests/node/read_mcap.mjs";

@@ -8,6 +8,7 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
+#include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -47,11 +48,6 @@ kind = "move"
 duration = 1
 to = { bends = [[1, 0], [0, 0]] }
 )";
-
-class Quiet : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
 
 Experiment experiment_of(const std::string& text) { return parse_experiment(text, "x.toml"); }
 

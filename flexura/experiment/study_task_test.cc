@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 constexpr std::size_t largest_file = std::size_t{1} << 26;
 const std::filesystem::path example = FLEXURA_SOURCE_DIR "/examples/04_image_study/experiment.toml";
 
-constexpr const char* good = R"([[arm.section]]
+constexpr const char* good_study = R"([[arm.section]]
 length = 1.0
 [[camera]]
 name = "front"
@@ -44,7 +44,9 @@ points = 5
 target.radius = 0.4
 )";
 
-std::string with(const std::string& from, const std::string& to) { return replaced(good, from, to); }
+std::string study_with(const std::string& from, const std::string& to) {
+  return replaced(good_study, from, to);
+}
 
 class NoProgress : public Progress {
  public:
@@ -69,45 +71,47 @@ class Study : public ::testing::Test {
 
 TEST_F(Study, BadFilesSayWhatIsWrong) {
   const std::vector<BadFile> files{
-      {"good", good, "no error"},
-      {"no such camera", with("camera = \"front\"", "camera = \"back\""),
+      {"good", good_study, "no error"},
+      {"no such camera", study_with("camera = \"front\"", "camera = \"back\""),
        "x.toml:11:1: task[0].camera: there is no camera \"back\": expected one of \"front\", \"side\""},
-      {"nothing varied", with("vary.orbit_deg = [-60, 60]", "vary = {}"),
+      {"nothing varied", study_with("vary.orbit_deg = [-60, 60]", "vary = {}"),
        "x.toml:12:1: task[0].vary: names no parameter: expected one, such as orbit_deg = [-60, 60]"},
-      {"no vary", with("vary.orbit_deg = [-60, 60]", ""), "task[0].vary: missing: expected a table"},
-      {"two varied", with("points = 5", "vary.zoom = [1, 2]"),
+      {"no vary", study_with("vary.orbit_deg = [-60, 60]", ""), "task[0].vary: missing: expected a table"},
+      {"two varied", study_with("points = 5", "vary.zoom = [1, 2]"),
        "x.toml:13:6: task[0].vary.zoom: stands beside vary.orbit: expected one parameter"},
-      {"unknown parameter", with("orbit_deg", "orbits_deg"),
+      {"unknown parameter", study_with("orbit_deg", "orbits_deg"),
        "vary.orbits_deg: unknown key; did you mean \"orbit"},
-      {"wrong unit", with("orbit_deg", "orbit_mm"), "vary.orbit_mm: wrong unit: expected orbit (rad)"},
-      {"one value", with("[-60, 60]", "[60]"), "expected an array of 2"},
-      {"the same value", with("[-60, 60]", "[60, 60]"), "has the same value twice"},
-      {"NaN", with("-60", "nan"), "task[0].vary.orbit_deg[0] = nan: expected a number from"},
-      {"infinity", with("-60", "inf"), "task[0].vary.orbit_deg[0] = inf: expected a number from"},
-      {"many turns", with("-60", "-60000"), "task[0].vary.orbit_deg[0] = -60000: expected a number from"},
-      {"beyond the head", with("orbit_deg = [-60", "tilt_deg = [-46"),
+      {"wrong unit", study_with("orbit_deg", "orbit_mm"), "vary.orbit_mm: wrong unit: expected orbit (rad)"},
+      {"one value", study_with("[-60, 60]", "[60]"), "expected an array of 2"},
+      {"the same value", study_with("[-60, 60]", "[60, 60]"), "has the same value twice"},
+      {"NaN", study_with("-60", "nan"), "task[0].vary.orbit_deg[0] = nan: expected a number from"},
+      {"infinity", study_with("-60", "inf"), "task[0].vary.orbit_deg[0] = inf: expected a number from"},
+      {"many turns", study_with("-60", "-60000"),
+       "task[0].vary.orbit_deg[0] = -60000: expected a number from"},
+      {"beyond the head", study_with("orbit_deg = [-60", "tilt_deg = [-46"),
        "task[0].vary.tilt[0]: -0.802851 is outside the axis's limits -0.785398 to 1.5708"},
-      {"beyond the zoom", with("orbit_deg = [-60, 60]", "zoom = [1, 11]"),
+      {"beyond the zoom", study_with("orbit_deg = [-60, 60]", "zoom = [1, 11]"),
        "task[0].vary.zoom[1]: 11 is outside the axis's limits 1 to 10"},
-      {"a stage without travel", with("orbit_deg = [-60, 60]", "stage_z_mm = [0, 10]"),
+      {"a stage without travel", study_with("orbit_deg = [-60, 60]", "stage_z_mm = [0, 10]"),
        "task[0].vary.stage_z[1]: 0.01 is outside the axis's limits 0 to 0"},
-      {"no focal length", with("orbit_deg = [-60, 60]", "focal_length = [0, 800]"),
+      {"no focal length", study_with("orbit_deg = [-60, 60]", "focal_length = [0, 800]"),
        "task[0].vary.focal_length[0] = 0: expected a number from 0.001"},
-      {"no points", with("points = 5", "points = 0"),
+      {"no points", study_with("points = 5", "points = 0"),
        "task[0].points = 0: expected a whole number from 2 to 10000"},
-      {"half a point", with("points = 5", "points = 4.5"), "task[0].points = 4.5: expected a whole number"},
-      {"no radius", with("radius = 0.4", "radius = 0"),
+      {"half a point", study_with("points = 5", "points = 4.5"),
+       "task[0].points = 4.5: expected a whole number"},
+      {"no radius", study_with("radius = 0.4", "radius = 0"),
        "task[0].target.radius = 0: expected a number from 1e-06 m"},
-      {"no normal", with("target.radius = 0.4", "target.normal = [0, 0, 0]"),
+      {"no normal", study_with("target.radius = 0.4", "target.normal = [0, 0, 0]"),
        "task[0].target.normal: has no direction: expected a length above 0"},
-      {"in the camera", with("target.radius = 0.4", "target.center = [0, 0, 2.5]"),
+      {"in the camera", study_with("target.radius = 0.4", "target.center = [0, 0, 2.5]"),
        "task[0].target.center: is where the camera stands: it cannot orbit there"},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }
 
 TEST_F(Study, TakesTheDefaultCamerasToo) {
-  std::string text = replaced(good, "camera = \"front\"\n", "");
+  std::string text = replaced(good_study, "camera = \"front\"\n", "");
   text.erase(text.find("[[camera]]"), text.find("[[task]]") - text.find("[[camera]]"));
   const Experiment experiment = parse_experiment(text, "x.toml");
   EXPECT_EQ(studies_of(experiment).at(0).camera, "front");
@@ -115,7 +119,7 @@ TEST_F(Study, TakesTheDefaultCamerasToo) {
 }
 
 TEST_F(Study, TakesNoTimeAndLeavesTheArmAlone) {
-  const std::string more = std::string(good) + "[[task]]\nkind = \"hold\"\nduration = 1\n";
+  const std::string more = std::string(good_study) + "[[task]]\nkind = \"hold\"\nduration = 1\n";
   const Schedule schedule(parse_experiment(more, "x.toml"));
   EXPECT_EQ(schedule.legs().at(0).kind, "study");
   EXPECT_EQ(schedule.legs()[0].end(), 0);
@@ -123,7 +127,7 @@ TEST_F(Study, TakesNoTimeAndLeavesTheArmAlone) {
 }
 
 TEST_F(Study, WritesTableFiguresReportAndSummary) {
-  const RunResult result = run(parse_experiment(good, "x.toml"));
+  const RunResult result = run(parse_experiment(good_study, "x.toml"));
   EXPECT_EQ(result.outcome, RunOutcome::done);
   const NumberTable table = parse_csv(text_of(result, "tables/study.csv"), "study.csv");
   ASSERT_EQ(table.columns.size(), 20U);
@@ -146,7 +150,7 @@ TEST_F(Study, WritesTableFiguresReportAndSummary) {
 }
 
 TEST_F(Study, NamesItsFilesSafelyAndEachOnce) {
-  Experiment experiment = parse_experiment(good, "x.toml");
+  Experiment experiment = parse_experiment(good_study, "x.toml");
   const auto study = std::get<StudyTask>(experiment.task[0]);
   experiment.task.clear();
   for (const char* name : {"", "study", "../a b", "..", "été", "A.1"}) {
@@ -161,7 +165,7 @@ TEST_F(Study, NamesItsFilesSafelyAndEachOnce) {
 }
 
 TEST_F(Study, LeavesCellsEmptyForATargetBehindTheCamera) {
-  const std::string behind = with("target.radius = 0.4", "target.center = [0, 0, 4]");
+  const std::string behind = study_with("target.radius = 0.4", "target.center = [0, 0, 4]");
   EXPECT_EQ(seen(run(parse_experiment(behind, "x.toml"))), 5) << "in orbit the camera turns to it";
   const RunResult unseen =
       run(parse_experiment(replaced(behind, "orbit_deg = [-60, 60]", "zoom = [1, 2]"), "x.toml"));
@@ -171,8 +175,8 @@ TEST_F(Study, LeavesCellsEmptyForATargetBehindTheCamera) {
 }
 
 TEST_F(Study, VariesDownwardsAsWell) {
-  const RunResult up = run(parse_experiment(good, "x.toml"));
-  const RunResult down = run(parse_experiment(with("[-60, 60]", "[60, -60]"), "x.toml"));
+  const RunResult up = run(parse_experiment(good_study, "x.toml"));
+  const RunResult down = run(parse_experiment(study_with("[-60, 60]", "[60, -60]"), "x.toml"));
   const auto first = parse_csv(text_of(up, "tables/study.csv"), "up.csv");
   const auto second = parse_csv(text_of(down, "tables/study.csv"), "down.csv");
   EXPECT_EQ(first.rows.front(), second.rows.back());
@@ -211,7 +215,7 @@ TEST_F(Study, TheExampleGivesTheFiguresOfThePaper) {
 }
 
 TEST_F(Study, WritesTheSameBytesEachTimeAndFromItsOwnFile) {
-  const RunResult first = run(parse_experiment(std::string("title = \"t\"\n") + good, "x.toml"));
+  const RunResult first = run(parse_experiment(std::string("title = \"t\"\n") + good_study, "x.toml"));
   const RunResult second = run(load_experiment(first.folder / experiment_file_name));
   for (const char* file : {"tables/study.csv", "figures/study-image.svg", "summary.json", "report.html"})
     EXPECT_EQ(text_of(first, file), text_of(second, file)) << file;

@@ -10,25 +10,25 @@
 namespace flexura {
 namespace {
 
-using Parameter = VaryConfig::Values VaryConfig::*;
+using VariedList = VaryConfig::Values VaryConfig::*;
 using V = VaryConfig;
 
-constexpr std::array<Parameter, 3> head_parameters{&V::pan, &V::tilt, &V::zoom};
-constexpr std::array<Parameter, 3> stage_parameters{&V::stage_x, &V::stage_y, &V::stage_z};
-constexpr std::array<Parameter, 3> mount_parameters{&V::mount_x, &V::mount_y, &V::mount_z};
-constexpr std::array<Parameter, 3> tilt_axis_parameters{&V::tilt_axis_x, &V::tilt_axis_y, &V::tilt_axis_z};
-constexpr std::array<Parameter, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
-constexpr std::array<Parameter, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
+constexpr std::array<VariedList, 3> head_parameters{&V::pan, &V::tilt, &V::zoom};
+constexpr std::array<VariedList, 3> stage_parameters{&V::stage_x, &V::stage_y, &V::stage_z};
+constexpr std::array<VariedList, 3> mount_parameters{&V::mount_x, &V::mount_y, &V::mount_z};
+constexpr std::array<VariedList, 3> tilt_axis_parameters{&V::tilt_axis_x, &V::tilt_axis_y, &V::tilt_axis_z};
+constexpr std::array<VariedList, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
+constexpr std::array<VariedList, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
 
 // The place of a parameter in a list; its size when it is not there.
 template <std::size_t n>
-std::size_t place_in(const std::array<Parameter, n>& list, Parameter parameter) {
+std::size_t place_in(const std::array<VariedList, n>& list, VariedList parameter) {
   std::size_t i = 0;
   while (i < n && list[i] != parameter) ++i;
   return i;
 }
 
-Intrinsics with(Intrinsics lens, Parameter parameter, double value) {
+Intrinsics with(Intrinsics lens, VariedList parameter, double value) {
   const std::size_t k = place_in(distortion_parameters, parameter);
   if (k < distortion_parameters.size()) lens.distortion[k] = value;
   if (parameter == &V::focal_length) lens.fy *= value / lens.fx;
@@ -40,7 +40,7 @@ Intrinsics with(Intrinsics lens, Parameter parameter, double value) {
 }
 
 // The camera with one of its fixed offsets changed; its orientation stays.
-CameraConfig with_offset(CameraConfig config, Parameter parameter, double value) {
+CameraConfig with_offset(CameraConfig config, VariedList parameter, double value) {
   if (const std::size_t i = place_in(tilt_axis_parameters, parameter); i < 3)
     config.head.tilt_axis[i] = value;
   if (const std::size_t i = place_in(pupil_parameters, parameter); i < 3) config.head.pupil[i] = value;
@@ -67,7 +67,7 @@ Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
 
 }  // namespace
 
-View view_with(const Camera& camera, Parameter parameter, double value, const StudyTarget& target) {
+View view_with(const Camera& camera, VariedList parameter, double value, const StudyTarget& target) {
   HeadState head = camera.initial_head();
   StageState stage = camera.initial_stage();
   if (parameter == &V::pan) head.pan = value;
@@ -88,7 +88,7 @@ View view_with(const Camera& camera, Parameter parameter, double value, const St
   return view;
 }
 
-const AxisConfig* moved_axis(const Camera& camera, Parameter parameter) {
+const AxisConfig* moved_axis(const Camera& camera, VariedList parameter) {
   if (const std::size_t i = place_in(head_parameters, parameter); i < 3) return &camera.head_axes()[i];
   if (const std::size_t i = place_in(stage_parameters, parameter); i < 3) return &camera.stage_axes()[i];
   return nullptr;

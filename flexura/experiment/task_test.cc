@@ -18,13 +18,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string arm = "[[arm.section]]\nlength = 1\n[[arm.section]]\nlength = 1\n";
+const std::string two_sections = "[[arm.section]]\nlength = 1\n[[arm.section]]\nlength = 1\n";
 
-Experiment experiment_of(const std::string& task) {
-  return parse_experiment(arm + "[[task]]\n" + task, "x.toml");
+Experiment experiment_of_task(const std::string& task) {
+  return parse_experiment(two_sections + "[[task]]\n" + task, "x.toml");
 }
 
-std::string error_of(const std::string& task) { return error_of_file(arm + "[[task]]\n" + task); }
+std::string error_of_task(const std::string& task) {
+  return error_of_file(two_sections + "[[task]]\n" + task);
+}
 
 std::vector<double> archings_at(const Experiment& experiment, double time) {
   return archings(Schedule(experiment).state_at(time));
@@ -32,13 +34,14 @@ std::vector<double> archings_at(const Experiment& experiment, double time) {
 
 TEST(Tasks, AMoveFollowsItsLaw) {
   const auto halfway = [](const std::string& law) {
-    return archings_at(experiment_of("kind='move'\nduration=4\nto.archings=[1, -1]\n" + law), 1)[0];
+    return archings_at(experiment_of_task("kind='move'\nduration=4\nto.archings=[1, -1]\n" + law), 1)[0];
   };
   EXPECT_DOUBLE_EQ(halfway(""), 0.25);
   EXPECT_DOUBLE_EQ(halfway("law='linear'\n"), 0.25);
   EXPECT_DOUBLE_EQ(halfway("law='minimum_jerk'\n"), 0.103515625);
   const auto each = archings_at(
-      experiment_of("kind='move'\nduration=4\nto.archings=[1, -1]\nlaw=['minimum_jerk', 'linear']\n"), 1);
+      experiment_of_task("kind='move'\nduration=4\nto.archings=[1, -1]\nlaw=['minimum_jerk', 'linear']\n"),
+      1);
   EXPECT_DOUBLE_EQ(each[0], 0.103515625);
   EXPECT_DOUBLE_EQ(each[1], -0.25);
 }
@@ -46,7 +49,7 @@ TEST(Tasks, AMoveFollowsItsLaw) {
 TEST(Tasks, ATrapezoidFindsItsTime) {
   // The farthest section bends by 2 rad (an arching of 1): at 0.5 rad/s and 1 rad/s^2, 0.5 s up, 3.5 s even,
   // 0.5 s down.
-  const Experiment experiment = experiment_of(
+  const Experiment experiment = experiment_of_task(
       "kind='move'\nlaw='trapezoid'\nmax_rate=0.5\nmax_acceleration=1\nto.archings=[1, -0.5]\n");
   const Schedule schedule(experiment);
   EXPECT_DOUBLE_EQ(schedule.duration(), 4.5);
@@ -55,14 +58,14 @@ TEST(Tasks, ATrapezoidFindsItsTime) {
 }
 
 TEST(Tasks, ATrapezoidWithNowhereToGoTakesNoTime) {
-  EXPECT_EQ(Schedule(experiment_of(
+  EXPECT_EQ(Schedule(experiment_of_task(
                          "kind='move'\nlaw='trapezoid'\nmax_rate=1\nmax_acceleration=1\nto.archings=[0,0]\n"))
                 .duration(),
             0);
 }
 
 TEST(Tasks, ASineSwingsCordAnglesAsAsked) {
-  const Experiment experiment = experiment_of(
+  const Experiment experiment = experiment_of_task(
       "kind='sine'\nduration=3\nperiod=2\namplitude.cord_angles_deg=[10, 20]\nphase_deg=[0, 90]\n");
   const ArmState state = Schedule(experiment).state_at(0.5);
   const std::vector<double> cords = cord_angles(experiment.arm.arm(), state);
@@ -73,7 +76,7 @@ TEST(Tasks, ASineSwingsCordAnglesAsAsked) {
 }
 
 TEST(Tasks, KeyframesArePassedInTheirUnits) {
-  const Experiment experiment = experiment_of(
+  const Experiment experiment = experiment_of_task(
       "kind='keyframes'\ncolumns=['time_ms', 'arching_2_deg', 'arching_1_deg', 'stretch_1']\n"
       "rows=[[0, 0, 0, 1], [500, 30, -60, 1.1], [1000, 0, 10, 1]]\n");
   const Schedule schedule(experiment);
@@ -87,11 +90,11 @@ TEST(Tasks, KeyframesArePassedInTheirUnits) {
 
 TEST(Tasks, AnExpressionKnowsTimeAndSection) {
   const Experiment experiment =
-      experiment_of("kind='expression'\nduration=2\narchings='0.1*i*sin(pi*t/T)'\n");
+      experiment_of_task("kind='expression'\nduration=2\narchings='0.1*i*sin(pi*t/T)'\n");
   EXPECT_NEAR(archings_at(experiment, 1)[0], 0.1, 1e-15);
   EXPECT_NEAR(archings_at(experiment, 1)[1], 0.2, 1e-15);
   const Experiment bends = parse_experiment(
-      "arm.kind='spatial'\n" + arm +
+      "arm.kind='spatial'\n" + two_sections +
           "[[task]]\nkind='expression'\nbends=[['t', '-t'], ['0', 't^2']]\nstretches='1+t/10'\n",
       "x.toml");
   const ArmState state = Schedule(bends).state_at(0.5);
@@ -102,7 +105,7 @@ TEST(Tasks, AnExpressionKnowsTimeAndSection) {
 
 TEST(Tasks, EachStartsWhereTheOneBeforeEnds) {
   const Experiment experiment =
-      parse_experiment(arm +
+      parse_experiment(two_sections +
                            "[[task]]\nkind='move'\nto.archings=[0.3, "
                            "0.1]\n[[task]]\nkind='sine'\nduration=0.25\namplitude.archings=[0.2, 0]\n"
                            "[[task]]\nkind='hold'\n",
@@ -170,13 +173,13 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='expression'\narchings='t'\ncord_angles='t'\n", "more than one way"},
       {"kind='expression'\nbends=[['t','t']]\n", "task[0].bends[0]: leaves the plane"},
   };
-  for (const auto& [task, error] : tasks) EXPECT_THAT(error_of(task), HasSubstr(error)) << task;
+  for (const auto& [task, error] : tasks) EXPECT_THAT(error_of_task(task), HasSubstr(error)) << task;
 }
 
 TEST(Tasks, AFormulaWithoutAValueBetweenTheTimesTriedIsUnsafeNotACrash) {
   for (const char* hole : {"1/abs(t-0.505)", "sqrt(abs(t-0.505)-0.001)", "ln(abs(t-0.505)-0.002)"}) {
     const Experiment experiment =
-        parse_experiment(std::string("[clock]\nstep = 0.005\n") + arm +
+        parse_experiment(std::string("[clock]\nstep = 0.005\n") + two_sections +
                              "[[task]]\nkind = 'expression'\narchings = 't*" + hole + "'\n",
                          "x.toml");
     const std::string formula = hole;
@@ -189,7 +192,7 @@ TEST(Tasks, AFormulaWithoutAValueBetweenTheTimesTriedIsUnsafeNotACrash) {
 }
 
 TEST(Tasks, ALawThatStartsElsewhereJumps) {
-  const Experiment experiment = experiment_of("kind='expression'\narchings='0.2+t'\n");
+  const Experiment experiment = experiment_of_task("kind='expression'\narchings='0.2+t'\n");
   const SafetyReport report = Schedule(experiment).check();
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 0.4");

@@ -20,11 +20,9 @@
 namespace flexura {
 namespace {
 
-Node number(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
-
 Node numbers(std::initializer_list<double> values) {
   Node::Array entries;
-  for (const double value : values) entries.push_back(number(value));
+  for (const double value : values) entries.push_back(number_node(value));
   return {std::move(entries), {}};
 }
 
@@ -69,7 +67,7 @@ Node labels_node(const Image<std::uint16_t>& labels) {
 Node::Table axis_members(const AxisPoint& point) {
   return {{"s", {}, {point.s, {}}},
           {"pixel", {}, pixel_node(point.pixel)},
-          {"depth", {}, number(point.depth)},
+          {"depth", {}, number_node(point.depth)},
           {"visible", {}, {point.is_visible, {}}}};
 }
 

@@ -19,8 +19,6 @@ namespace {
 constexpr int nearest_starts = 16;
 // Most questions are answered by the first descent or two, for less than it costs to look for a proof.
 constexpr int starts_before_proof = 2;
-// A bound counts as what holds a state from here on, of the residual's norm.
-constexpr double least_pressure = 1e-6;
 
 // A question in the base's frame, with all that its answer needs.
 struct Question {

@@ -13,7 +13,6 @@ namespace {
 // A curve says much about the arm: a few starts are enough, and each costs a whole backbone an iteration.
 constexpr int most_starts = 8;
 constexpr int most_iterations = 100;  // From one start.
-constexpr double least_pressure = 1e-6;
 
 std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
   const Pose X_BW = arm.X_WB.inverse();

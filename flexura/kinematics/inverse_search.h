@@ -9,6 +9,9 @@
 
 namespace flexura {
 
+/// A bound whose pressure is above this part of the residual's norm counts as what holds a state.
+inline constexpr double least_pressure = 1e-6;
+
 /// The best that a search has found.
 struct Found {
   Eigen::VectorXd x;

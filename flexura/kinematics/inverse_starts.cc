@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Where a section has no limit, or a wider one, starts are bent up to one of these in turn: most arms are
 // asked for bends up to a half turn, and tightly rolled ones are found from rolled ones only.
 constexpr std::array<double, 2> widest_starts = {1.25 * pi, 2.0 * pi};

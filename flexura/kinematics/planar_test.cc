@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<double> lengths(const Arm& arm) {
   std::vector<double> result;

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double shortest(const Section& section) { return section.length * section.stretch_limits[0]; }
 double longest(const Section& section) { return section.length * section.stretch_limits[1]; }

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 
+#include "flexura/model/ranges.h"
+
 namespace flexura {
 namespace {
 
 constexpr std::size_t max_marks = 10000;
-constexpr NumberRange share = {.min = 0, .max = 1};
 
 Spec color_of(const char* what) {
   return {.meaning = fmt::format("Shares of red, green and blue light that {} gives back.", what),
-          .range = share};
+          .range = share_range};
 }
 
 Spec place_of(const char* what) {
@@ -56,7 +57,7 @@ const Table<MarkerBands>& fields_of(const MarkerBands*) {
           .field("colors", &MarkerBands::colors,
                  {.meaning = "Colours of the bands (shares of red, green and blue light), taken in turn from "
                              "the base on.",
-                  .range = share,
+                  .range = share_range,
                   .count = {1, 1000}});
   return table;
 }

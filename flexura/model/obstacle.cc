@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "flexura/math/arrays.h"
+#include "flexura/model/ranges.h"
 
 namespace flexura {
 namespace {
-
-constexpr NumberRange coordinate_range = {.min = -1e6, .max = 1e6};
 
 // Adds what every obstacle has.
 template <class S>

@@ -4,13 +4,12 @@
 #include <string>
 
 #include "flexura/math/arrays.h"
+#include "flexura/model/ranges.h"
 
 namespace flexura {
 namespace {
 
-constexpr NumberRange coordinate_range = {.min = -1e6, .max = 1e6};
 constexpr NumberRange brightness_range = {.min = 0, .max = 100};
-constexpr NumberRange share = {.min = 0, .max = 1};
 
 Spec length_of(const char* meaning) {
   return {.meaning = meaning, .unit = Unit::metre, .range = above_up_to(0, 1e6)};
@@ -46,7 +45,7 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
               "fall_off", &ScreenConfig::fall_off,
               {.meaning =
                    "Share by which its corners are darker than its middle; grows with the distance squared.",
-               .range = share})
+               .range = share_range})
           .check([](const ScreenConfig& screen, Reader& reader) {
             expect_direction(screen.normal, "normal", reader);
           });
@@ -68,10 +67,11 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
           .field("radius", &EtalonConfig::radius, length_of("Radius."))
           .field("height", &EtalonConfig::height, length_of("Height."))
           .field("color", &EtalonConfig::color,
-                 {.meaning = "Shares of red, green and blue light that it gives back.", .range = share})
+                 {.meaning = "Shares of red, green and blue light that it gives back.", .range = share_range})
           .field("line_width", &EtalonConfig::line_width, length_of("Width of a red line."))
           .field("line_color", &EtalonConfig::line_color,
-                 {.meaning = "Shares of red, green and blue light that the lines give back.", .range = share})
+                 {.meaning = "Shares of red, green and blue light that the lines give back.",
+                  .range = share_range})
           .check([](const EtalonConfig& etalon, Reader& reader) {
             if (const std::string problem = quaternion_problem(etalon.rotation); !problem.empty())
               reader.problem_at("rotation", problem);
@@ -93,7 +93,7 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
                  {.meaning = "The direction from which it comes.", .range = coordinate_range})
           .field("shadow", &LightConfig::shadow,
                  {.meaning = "Share of the directional light, and of a screen's, that a shadow takes away.",
-                  .range = share})
+                  .range = share_range})
           .field(
               "angular_radius", &LightConfig::angular_radius,
               {.meaning =

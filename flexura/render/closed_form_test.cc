@@ -22,10 +22,6 @@ LightImage picture_of(const Scene& scene, const View& view, PixelKind pixels = P
   return picture;
 }
 
-double sum_of(const Image<float>& image) {
-  return std::accumulate(image.values().begin(), image.values().end(), 0.0);
-}
-
 VisibleObstacle white(const ObstacleConfig& shape) { return {shape, {1, 1, 1}}; }
 
 TEST(LightImage, OfASphereHasTheAreaOfItsEllipse) {

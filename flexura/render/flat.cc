@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "flexura/render/ray.h"
+
 namespace flexura {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where a ray meets a circle's plane, times a positive factor: x^2 + y^2 = (radius z)^2 on the circle.
 struct PlanePoint {

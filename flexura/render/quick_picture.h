@@ -17,6 +17,9 @@
 
 namespace flexura {
 
+/// In single precision, as the quick way works.
+[[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
+
 /// Draws what is plain to see: screens, the skin of the arm, its contours before one surface and the edges of
 /// its markers, many pixels at a time in single precision; and tells which pixels are not, for the exact way.
 /// What it draws agrees with the exact way to 1/500 of full scale, but where markers' edges are seen: there a

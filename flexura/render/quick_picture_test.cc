@@ -13,7 +13,7 @@ namespace flexura {
 namespace {
 
 // An arm with rings before a screen or two, and now and then an obstacle, a round tip, disks or a taper.
-Scene some_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, const View& view) {
+Scene busy_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, const View& view) {
   Scene scene;
   scene.arm.tube = tube_of(arm, backbone);
   if (random.integer(0, 3) == 0) scene.arm.tip = TipKind::round;
@@ -72,7 +72,7 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
   for_random_cases(25, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 3) == 0 ? 0.003 : 0);
     const View view = some_view(random, bent.backbone());
-    const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
+    const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
     Renderer renderer;
     LightImage exact, quick;
@@ -110,7 +110,7 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     intrinsics.fy *= random.uniform(0.5, 2);
     if (random.integer(0, 1) == 1) intrinsics.distortion[0] = random.uniform(-0.2, 0.2);
     view.lens = Lens(intrinsics);
-    Scene scene = some_scene(random, backbone, bent.arm, view);
+    Scene scene = busy_scene(random, backbone, bent.arm, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};
     Renderer renderer;
     LightImage exact, quick;
@@ -129,7 +129,7 @@ TEST(QuickPicture, IsTheSameOnEveryPath) {
     const BentArm bent = random_bent_arm(random, 0);
     View view = some_view(random, bent.backbone());
     view.width -= random.integer(0, 30);
-    const Scene scene = some_scene(random, bent.backbone(), bent.arm, view);
+    const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
     LightImage expected;
     Renderer(SimdPath::baseline).render(scene, view, pixels, expected);

@@ -7,8 +7,6 @@
 namespace flexura {
 namespace {
 
-float number(double x) { return static_cast<float>(x); }
-
 // A function of the image that takes (by_u, by_v) more from pixel to pixel, times `scale`.
 Linear linear(double value, double by_u, double by_v, double scale = 1) {
   return {number(scale * value), number(scale * by_u), number(scale * by_v)};

@@ -5,11 +5,7 @@
 #include "flexura/render/quick_picture.h"
 
 namespace flexura {
-namespace {
-
-float number(double x) { return static_cast<float>(x); }
-
-}  // namespace
+namespace {}  // namespace
 
 // The arm's flat ends; where the skin at one is not drawn the quick way, and of all other discs, the exact
 // way draws all.

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace flexura {
+
+/// The depth of nothing.
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// What a point of the image sees: the points depth * direction, depth > 0, in C.
 struct Ray {

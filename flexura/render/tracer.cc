@@ -5,10 +5,10 @@
 #include <functional>
 #include <numbers>
 
+#include "flexura/render/ray.h"
+
 namespace flexura {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <typename T>
 const T& at(const std::vector<T>& list, std::uint32_t index) {

@@ -15,10 +15,6 @@
 namespace flexura {
 namespace {
 
-double sum_of(const Image<float>& image) {
-  return std::accumulate(image.values().begin(), image.values().end(), 0.0);
-}
-
 // A straight arm of 1 m along +Y, radius 0.05, two sections, a marker on each.
 struct StraightArm {
   Arm arm;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "flexura/render/ray.h"
+
 namespace flexura {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Arc length from the piece's start of the foot of (x, z), smooth through curvature 0.
 double arc_length(double curvature, double x, double z) {

@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Arc planar_arc(double bend_x) {
   Arm arm;

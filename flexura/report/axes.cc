@@ -28,6 +28,11 @@ std::string tick_label(double value, double step, double largest) {
 
 }  // namespace
 
+Interval grown_to(Interval range, double extent) {
+  const double more = std::max(0.0, extent - range.extent()) / 2;
+  return {range.low - more, range.high + more};
+}
+
 void Interval::include(double value) {
   low = std::min(low, value);
   high = std::max(high, value);

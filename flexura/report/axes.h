@@ -18,6 +18,12 @@ struct Interval {
   void include(double value);
 };
 
+inline constexpr double heading_space = 34.0;  ///< Above a plot, for its heading.
+inline constexpr double tallest_plot = 430.0;
+
+/// The range grown about its middle to an extent of at least `extent`.
+[[nodiscard]] Interval grown_to(Interval range, double extent);
+
 /// The range grown about its middle to an extent of at least `least`, and then by `margin` of the extent at
 /// each end. An extent too small for its own numbers to tell apart counts as nothing, so the result has one
 /// that is > 0.

@@ -13,7 +13,6 @@ namespace flexura {
 namespace {
 
 constexpr double chart_width = 520.0;
-constexpr double heading_space = 34.0;
 constexpr double right_space = 18.0;
 constexpr double chart_plot_height = 216.0;
 constexpr double dash_length = 11.0;  // Of each of several lines on top of each other.

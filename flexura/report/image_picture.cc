@@ -11,10 +11,8 @@ namespace flexura {
 namespace {
 
 constexpr double picture_width = 520.0;
-constexpr double heading_space = 34.0;
-constexpr double right_space = 18.0;
-constexpr double tallest_plot = 430.0;
-constexpr double flattest_plot = 0.4;  // Height over width.
+constexpr double space_right_of_picture = 18.0;
+constexpr double flattest_picture = 0.4;  // Height over width.
 
 // What of the image the outlines take up along one axis; all of it where they are outside.
 Interval shown_along(const ImagePlot& plot, int axis) {
@@ -32,19 +30,14 @@ Interval shown_along(const ImagePlot& plot, int axis) {
   return range.low <= range.high ? range : all;
 }
 
-Interval grown_to(Interval range, double extent) {
-  const double more = std::max(0.0, extent - range.extent()) / 2;
-  return {range.low - more, range.high + more};
-}
-
 PlotFrame frame_of(const ImagePlot& plot) {
   const double margin = plot.background.empty() ? 0.05 : 0;
   Interval x = padded(shown_along(plot, 0), 1, margin);
   Interval y = padded(shown_along(plot, 1), 1, margin);
   const double left = left_of_axes(y, tallest_plot);
-  const double width = picture_width - left - right_space;
+  const double width = picture_width - left - space_right_of_picture;
   x = grown_to(x, y.extent() * width / tallest_plot);
-  y = grown_to(y, flattest_plot * x.extent());
+  y = grown_to(y, flattest_picture * x.extent());
   return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}, true};
 }
 

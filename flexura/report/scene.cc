@@ -9,20 +9,13 @@
 namespace flexura {
 namespace {
 
-constexpr double heading_space = 34.0;    // Room for the heading.
-constexpr double right_space = 16.0;      // And right of a plot, for half a tick label.
+constexpr double space_for_label = 16.0;  // And right of a plot, for half a tick label.
 constexpr double one_view_width = 440.0;  // Width of a picture.
 constexpr double two_views_width = 600.0;
-constexpr double tallest_plot = 430.0;  // Of a plot.
-constexpr double flattest_plot = 0.6;   // Height over width of a plot.
+constexpr double flattest_plot = 0.6;  // Height over width of a plot.
 constexpr double margin_part = 0.06;
 
 Interval range_along(const Eigen::AlignedBox3d& box, int axis) { return {box.min()[axis], box.max()[axis]}; }
-
-Interval grown_to(Interval range, double extent) {
-  const double more = std::max(0.0, extent - range.extent()) / 2;
-  return {range.low - more, range.high + more};
-}
 
 Eigen::AlignedBox2d text_box(const Eigen::Vector2d& corner, std::string_view content) {
   const Eigen::Vector2d size = {7.6 * static_cast<double>(content.size()), 17.0};
@@ -47,7 +40,7 @@ PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least) 
   // The room for tick labels depends on the plot's height and the height on that room; the tallest is a fair
   // guess.
   const double left = left_of_axes(up, tallest_plot);
-  const double plot_width = scene.width / plots - left - right_space;
+  const double plot_width = scene.width / plots - left - space_for_label;
   widest = std::max(widest, up.extent() * plot_width / tallest_plot);
   up = grown_to(up, flattest_plot * widest);
   const double plot_height = plot_width * up.extent() / widest;

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Contact, FindsThickSectionsThatMeetRoundAThinOneWithinHalfATurn) {
   Arm arm;

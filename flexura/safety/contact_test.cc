@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A planar arm of equal sections of 1 m.
 Arm even_arm(std::size_t sections, double radius) {

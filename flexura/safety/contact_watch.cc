@@ -14,7 +14,7 @@ constexpr QuantityBounds in_contact{no_distance, no_distance};
 QuantityBounds undecided(double moved) { return {-no_distance, contact_tolerance + moved}; }
 
 // No pair is deeper than two points in one place.
-double deepest_pair(const TubeArc& a, const TubeArc& b) {
+double deepest_pair(const SectionTube& a, const SectionTube& b) {
   return -std::max(a.radius[0], a.radius[1]) - std::max(b.radius[0], b.radius[1]);
 }
 
@@ -107,9 +107,9 @@ QuantityBounds ContactWatch::bounds(const Chain& chain) const {
 QuantityBounds ContactWatch::self_bounds(const Chain& chain) {
   const PairRule possible = chain.rule(-1);
   if (!chain.has_pairs(possible) || chain.apart() >= chain.moved()) return free_of_contact;
-  const TubeArc& first = chain.first_tube();
+  const SectionTube& first = chain.first_tube();
   if (stay_apart(first, chain.grown(1), possible, deepest)) return free_of_contact;
-  const TubeArc thin = chain.grown(-1);
+  const SectionTube thin = chain.grown(-1);
   const bool may_meet = deepest_pair(first, thin) < deepest;  // nothing is left of what moves far
   if (may_meet && come_within(first, thin, chain.rule(1), deepest)) return in_contact;
   return undecided(chain.moved());

@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Arm thin_arm(std::size_t sections) {
   Arm arm;

@@ -12,9 +12,9 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
-Arm one_section() {
+Arm thin_section() {
   Arm arm;
   arm.sections.resize(1);
   return arm;
@@ -22,7 +22,8 @@ Arm one_section() {
 
 ArmState state(double bend, double stretch = 1) { return {{{bend, 0}}, {stretch}}; }
 
-SafetyReport check(const Arm& arm, const MotionPtr& motion, const std::vector<ObstacleConfig>& around = {}) {
+SafetyReport check_among(const Arm& arm, const MotionPtr& motion,
+                         const std::vector<ObstacleConfig>& around = {}) {
   return check_motions(arm, obstacles(around), motion->at(0), {{motion, 0}}, 0.02);
 }
 
@@ -36,59 +37,60 @@ void expect_just(Hazard hazard, const std::function<SafetyReport(double part)>& 
 }
 
 TEST(Hazard, Bend) {
-  Arm arm = one_section();
+  Arm arm = thin_section();
   arm.sections[0].max_bend = 1;
   expect_just(Hazard::bend, [&](double part) {
-    return check(arm, point_to_point_motion(state(0), state(part), {Profile::minimum_jerk(3)}));
+    return check_among(arm, point_to_point_motion(state(0), state(part), {Profile::minimum_jerk(3)}));
   });
   // A peak far shorter than a step of the clock.
-  expect_just(Hazard::bend,
-              [&](double part) { return check(arm, sine_motion(state(0), {{part, 0}}, {0}, 0.011, 0.005)); });
+  expect_just(Hazard::bend, [&](double part) {
+    return check_among(arm, sine_motion(state(0), {{part, 0}}, {0}, 0.011, 0.005));
+  });
 }
 
 TEST(Hazard, BendRate) {
-  Arm arm = one_section();
+  Arm arm = thin_section();
   arm.sections[0].max_bend_rate = 2;
   expect_just(Hazard::bend_rate, [&](double part) {
-    return check(arm, sine_motion(state(0), {{part / pi, 0}}, {pi / 2}, 1, 0.6));
+    return check_among(arm, sine_motion(state(0), {{part / pi, 0}}, {pi / 2}, 1, 0.6));
   });
   expect_just(Hazard::bend_rate, [&](double part) {
-    return check(
+    return check_among(
         arm, keyframe_motion({0, 1, 2}, {state(0), state(1), state(1 + 2 * part)}, Interpolation::linear));
   });
 }
 
 TEST(Hazard, Stretch) {
-  Arm arm = one_section();
+  Arm arm = thin_section();
   arm.sections[0].stretch_limits = {0.8, 1.2};
   for (const double limit : arm.sections[0].stretch_limits) {
     expect_just(Hazard::stretch, [&](double part) {
       const double to = 1 + part * (limit - 1);
-      return check(arm, point_to_point_motion(state(0), state(0, to), {Profile::linear(1)}));
+      return check_among(arm, point_to_point_motion(state(0), state(0, to), {Profile::linear(1)}));
     });
   }
 }
 
 TEST(Hazard, Folding) {
-  Arm arm = one_section();
+  Arm arm = thin_section();
   arm.sections[0].radius = {0.1, 0.4};
   expect_just(Hazard::folding, [&](double part) {
-    return check(arm, point_to_point_motion(state(0), state(2.5 * part), {Profile::linear(1)}));
+    return check_among(arm, point_to_point_motion(state(0), state(2.5 * part), {Profile::linear(1)}));
   });
 }
 
 TEST(Hazard, JumpOfAFormula) {
   expect_just(Hazard::jump, [&](double part) {
-    return check(one_section(), function_motion(1, [part](double t) {
-                   return state(1e-3 * t + (t > 0.371 ? std::max(0.0, part - 1) : 0));
-                 }));
+    return check_among(thin_section(), function_motion(1, [part](double t) {
+                         return state(1e-3 * t + (t > 0.371 ? std::max(0.0, part - 1) : 0));
+                       }));
   });
 }
 
 TEST(Hazard, FormulaWithoutAValue) {
   expect_just(Hazard::not_finite, [&](double part) {
-    return check(one_section(),
-                 function_motion(1, [part](double t) { return state(std::sqrt(1 - part * t)); }));
+    return check_among(thin_section(),
+                       function_motion(1, [part](double t) { return state(std::sqrt(1 - part * t)); }));
   });
 }
 
@@ -101,33 +103,33 @@ TEST(Hazard, SelfContact) {
   expect_just(Hazard::self_contact, [&](double part) {
     const double radius = part * std::sin(3) / 1.5;
     for (Section& section : arm.sections) section.radius = {radius, radius};
-    return check(arm,
-                 point_to_point_motion(ArmState::straight(4), curled, std::vector(4, Profile::linear(2))));
+    return check_among(
+        arm, point_to_point_motion(ArmState::straight(4), curled, std::vector(4, Profile::linear(2))));
   });
 }
 
 // The straight arm stands on the origin along +Y; its tip's ball reaches 1.02 m.
 TEST(Hazard, Obstacles) {
-  const Arm arm = one_section();
+  const Arm arm = thin_section();
   const MotionPtr stand = hold_motion(state(0), 1);
   const double r = 0.02;
   expect_just(Hazard::obstacle, [&](double part) {
-    return check(arm, stand, {PlaneConfig{.point = {0, 1.02 / part, 0}, .normal = {0, -3, 0}}});
+    return check_among(arm, stand, {PlaneConfig{.point = {0, 1.02 / part, 0}, .normal = {0, -3, 0}}});
   });
   expect_just(Hazard::obstacle, [&](double part) {
-    return check(arm, stand, {SphereConfig{.center = {0.3, 0.5, 0.4}, .radius = part * 0.5 - r}});
+    return check_among(arm, stand, {SphereConfig{.center = {0.3, 0.5, 0.4}, .radius = part * 0.5 - r}});
   });
   expect_just(Hazard::obstacle, [&](double part) {
-    return check(arm, stand,
-                 {CapsuleConfig{.from = {-1, 0.4, 0.3}, .to = {1, 0.4, 0.3}, .radius = part * 0.3 - r}});
+    return check_among(
+        arm, stand, {CapsuleConfig{.from = {-1, 0.4, 0.3}, .to = {1, 0.4, 0.3}, .radius = part * 0.3 - r}});
   });
   // Turned by 45 degrees about Z, its edge points at the arm.
   expect_just(Hazard::obstacle, [&](double part) {
-    return check(arm, stand,
-                 {BoxConfig{.center = {0.5, 0.5, 0},
-                            .half_sizes = {(part * 0.5 - r) / std::numbers::sqrt2,
-                                           (part * 0.5 - r) / std::numbers::sqrt2, 1},
-                            .rotation = {std::cos(pi / 8), 0, 0, std::sin(pi / 8)}}});
+    return check_among(arm, stand,
+                       {BoxConfig{.center = {0.5, 0.5, 0},
+                                  .half_sizes = {(part * 0.5 - r) / std::numbers::sqrt2,
+                                                 (part * 0.5 - r) / std::numbers::sqrt2, 1},
+                                  .rotation = {std::cos(pi / 8), 0, 0, std::sin(pi / 8)}}});
   });
 }
 
@@ -136,8 +138,8 @@ TEST(Hazard, ObstacleTouchedBetweenTwoSteps) {
   const MotionPtr swing = sine_motion(state(0), {{1, 0}}, {0}, 0.036, 0.018);
   const double farthest = 1 - std::cos(1.0) + 0.02;
   const auto wall = [&](double at) { return PlaneConfig{.point = {at, 0, 0}, .normal = {-1, 0, 0}}; };
-  EXPECT_TRUE(check(one_section(), swing, {wall(farthest + 1e-5)}).is_safe());
-  const SafetyReport report = check(one_section(), swing, {wall(farthest - 1e-3)});
+  EXPECT_TRUE(check_among(thin_section(), swing, {wall(farthest + 1e-5)}).is_safe());
+  const SafetyReport report = check_among(thin_section(), swing, {wall(farthest - 1e-3)});
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_NEAR(report.violations[0].value, 1e-3, 1e-5);
 }

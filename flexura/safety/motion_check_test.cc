@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Arm one_section() {
+Arm short_section() {
   Arm arm;
   arm.sections.resize(1);
   return arm;
@@ -49,7 +49,7 @@ TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
 
 TEST(MotionCheck, FindsTheWorstValueOfALongSpan) {
   constexpr double degree = std::numbers::pi / 180;
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend = 10 * degree;
   const ArmState slight = bent(12 * degree);
   const auto law = keyframe_motion(
@@ -63,7 +63,7 @@ TEST(MotionCheck, FindsTheWorstValueOfALongSpan) {
 }
 
 TEST(MotionCheck, AMeanRateIsThatOfTheWholeStep) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend_rate = 1;
   const auto formula = function_motion(3, [](double t) { return bent(t > 1 && t < 1.2 ? 2 * (t - 1) : 0); });
   const SafetyReport report = check(arm, formula, 0.1);
@@ -117,7 +117,7 @@ TEST(MotionCheck, TellsHowFarItIsAndEndsWhenAsked) {
 }
 
 TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend = 1;
   const SafetyReport report = check(arm, point_to_point_motion(bent(0), bent(2), {Profile::linear(4)}));
   ASSERT_EQ(report.violations.size(), 1u);
@@ -133,7 +133,7 @@ TEST(MotionCheck, TellsWhenWhereAndHowMuch) {
 }
 
 TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend = 1;
   const SafetyReport report =
       check(arm, point_to_point_motion(bent(0), bent(1 + 1e-8), {Profile::linear(1)}));
@@ -143,7 +143,7 @@ TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {
 }
 
 TEST(MotionCheck, LimitsThatAreJustTouchedAreKept) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend = 2;
   arm.sections[0].stretch_limits = {0.5, 1};
   arm.sections[0].max_bend_rate = 1.875;
@@ -155,7 +155,7 @@ TEST(MotionCheck, LimitsThatAreJustTouchedAreKept) {
 }
 
 TEST(MotionCheck, FindsAPeakBetweenTwoSamplesOfTheClock) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend = 0.999;
   const MotionPtr swing = sine_motion(bent(0), {{1, 0}}, {0}, 4, 2);  // above the limit for 57 ms
   const SafetyReport report = check(arm, swing, 0.7);
@@ -165,7 +165,7 @@ TEST(MotionCheck, FindsAPeakBetweenTwoSamplesOfTheClock) {
 }
 
 TEST(MotionCheck, FindsATooFastPieceOfAMicrosecond) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].max_bend_rate = 1;
   const auto keyframes =
       keyframe_motion({0, 5, 5 + 1e-6, 10}, {bent(0), bent(0), bent(1e-5), bent(0)}, Interpolation::linear);
@@ -177,7 +177,7 @@ TEST(MotionCheck, FindsATooFastPieceOfAMicrosecond) {
 }
 
 TEST(MotionCheck, FindsFolding) {
-  Arm arm = one_section();
+  Arm arm = short_section();
   arm.sections[0].radius = {0.2, 0.5};
   EXPECT_TRUE(check(arm, hold_motion(bent(1.9999), 1)).is_safe());
   EXPECT_FALSE(check(arm, hold_motion(bent(2), 1)).is_safe());
@@ -189,7 +189,7 @@ TEST(MotionCheck, FindsFolding) {
 
 TEST(MotionCheck, FindsJumpsBetweenTasks) {
   const SafetyReport report = check_motions(
-      one_section(), {}, bent(0), {{hold_motion(bent(0), 1), 0}, {hold_motion(bent(0.1), 1), 1}}, 0.02);
+      short_section(), {}, bent(0), {{hold_motion(bent(0), 1), 0}, {hold_motion(bent(0.1), 1), 1}}, 0.02);
   ASSERT_EQ(report.violations.size(), 1u);
   EXPECT_EQ(report.violations[0].hazard, Hazard::jump);
   EXPECT_EQ(report.violations[0].start, 1);
@@ -214,22 +214,22 @@ TEST(MotionCheck, FindsJumpsInFormulasAndNoneWhereTheyAreOnlyFast) {
 
 TEST(MotionCheck, SaysWhatItOnlySampled) {
   const auto formula = function_motion(3, [](double t) { return bent(0.1 * t); });
-  const SafetyReport report = check(one_section(), formula, 0.05);
+  const SafetyReport report = check(short_section(), formula, 0.05);
   EXPECT_TRUE(report.is_safe());
   EXPECT_THAT(report.caveats,
               testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: the law has no bound on its rates"));
-  EXPECT_TRUE(check(one_section(), hold_motion(bent(0), 1)).caveats.empty());
+  EXPECT_TRUE(check(short_section(), hold_motion(bent(0), 1)).caveats.empty());
 }
 
 TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   const auto nowhere = function_motion(2, [](double t) { return bent(std::sqrt(1 - t)); });
-  const SafetyReport report = check(one_section(), nowhere, 0.1);
+  const SafetyReport report = check(short_section(), nowhere, 0.1);
   ASSERT_FALSE(report.is_safe());
   EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
   EXPECT_NEAR(report.violations[0].start, 1.1, 1e-9);
   EXPECT_EQ(report.violations[0].text(), "at 1.1 s: section 1: no possible value");
   const auto no_length = function_motion(2, [](double t) -> ArmState { return {{{0, 0}}, {1 - t}}; });
-  const SafetyReport shrunk = check(one_section(), no_length, 0.1);
+  const SafetyReport shrunk = check(short_section(), no_length, 0.1);
   ASSERT_FALSE(shrunk.is_safe());
   EXPECT_EQ(shrunk.violations.back().hazard, Hazard::not_finite);
   EXPECT_NEAR(shrunk.violations.back().start, 1, 1e-9);
@@ -256,7 +256,7 @@ TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {
   const auto law = keyframe_motion(
       {0, 1, 2, 3, 4}, {state(1), state(0.05), state(0.01), state(0.05), state(1)}, Interpolation::smooth);
   ASSERT_LT(law->at(1.5).stretches[0], 0);
-  const SafetyReport report = check(one_section(), law);
+  const SafetyReport report = check(short_section(), law);
   ASSERT_FALSE(report.is_safe());
   for (const Violation& violation : report.violations)
     EXPECT_TRUE(violation.hazard == Hazard::stretch || violation.hazard == Hazard::folding)

@@ -19,7 +19,7 @@ TEST(Spans, FindWhatRisesAboveALimitFromStartToEnd) {
   const auto sine = with_rate([](double t) { return std::sin(t); }, [](double, double) { return 1.0; });
   const std::vector<Span> spans = spans_above(0.5, sine, {0, 10}, fine).spans;
   ASSERT_EQ(spans.size(), 2u);
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   EXPECT_NEAR(spans[0].start, pi / 6, 1e-7);
   EXPECT_NEAR(spans[0].end, 5 * pi / 6, 1e-7);
   EXPECT_NEAR(spans[1].start, 2 * pi + pi / 6, 1e-7);

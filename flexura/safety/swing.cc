@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-double largest_radius(const TubeArc& tube) { return std::max(tube.radius[0], tube.radius[1]); }
+double largest_radius(const SectionTube& tube) { return std::max(tube.radius[0], tube.radius[1]); }
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Swing::Swing(const Arm& arm, const ArmState& state)
     : turn_(arm.sections.size()), stretch_(arm.sections.size()) {
   if (!flexura::is_possible(state)) return;
   tubes_ = tube_arcs(arm, state);
-  for (const TubeArc& tube : tubes_) length_.push_back(tube.length);
+  for (const SectionTube& tube : tubes_) length_.push_back(tube.length);
 }
 
 Swing::Swing(const Arm& arm, const Motion& motion, const Span& span)
@@ -50,7 +50,7 @@ void Chain::restart(std::size_t first) {
 // d length / 2; in between that is convex, so a line from start to end bounds it.
 void Chain::add(std::size_t section) {
   last_ = section;
-  const TubeArc& tube = last_tube();
+  const SectionTube& tube = last_tube();
   const double turn = swing_->turn_[section];
   const double stretch = swing_->stretch_[section];
   moved_before_ = moved_;
@@ -62,8 +62,8 @@ void Chain::add(std::size_t section) {
   thinnest_ = std::min(thinnest_, largest_radius(tube));
 }
 
-TubeArc Chain::grown(double sign, double share) const {
-  TubeArc tube = last_tube();
+SectionTube Chain::grown(double sign, double share) const {
+  SectionTube tube = last_tube();
   tube.radius[0] += sign * share * moved_before_;
   tube.radius[1] += sign * share * moved_;
   return tube;
@@ -79,13 +79,13 @@ PairRule Chain::rule(double sign) const {
 }
 
 bool Chain::has_pairs(const PairRule& rule) const {
-  const TubeArc& b = last_tube();
+  const SectionTube& b = last_tube();
   return b.turn + b.bend.norm() - first_tube().turn >= rule.turn || rule.gap < no_distance;
 }
 
 double Chain::apart() const {
-  const TubeArc& a = first_tube();
-  const TubeArc& b = last_tube();
+  const SectionTube& a = first_tube();
+  const SectionTube& b = last_tube();
   return (middle_ - b.point(0.5)).norm() - (a.length + b.length) / 2 - largest_radius(a) - largest_radius(b);
 }
 

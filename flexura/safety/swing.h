@@ -20,15 +20,15 @@ class Swing {
 
   /// Whether the state in the middle is possible; without, there are no tubes.
   [[nodiscard]] bool is_possible() const { return !tubes_.empty(); }
-  [[nodiscard]] const std::vector<TubeArc>& tubes() const { return tubes_; }
+  [[nodiscard]] const std::vector<SectionTube>& tubes() const { return tubes_; }
 
  private:
   friend class Chain;
 
-  std::vector<TubeArc> tubes_;   // in the middle
-  std::vector<double> turn_;     // of each section: change of its bend, rad
-  std::vector<double> length_;   // the longest it gets, m
-  std::vector<double> stretch_;  // change of its length, m
+  std::vector<SectionTube> tubes_;  // in the middle
+  std::vector<double> turn_;        // of each section: change of its bend, rad
+  std::vector<double> length_;      // the longest it gets, m
+  std::vector<double> stretch_;     // change of its length, m
 };
 
 /// Sections that follow each other, from `first` to `last`: how far the last one may move in the frame of any
@@ -43,12 +43,12 @@ class Chain {
 
   [[nodiscard]] std::size_t first() const { return first_; }
   [[nodiscard]] std::size_t last() const { return last_; }
-  [[nodiscard]] const TubeArc& first_tube() const { return swing_->tubes_[first_]; }
-  [[nodiscard]] const TubeArc& last_tube() const { return swing_->tubes_[last_]; }
+  [[nodiscard]] const SectionTube& first_tube() const { return swing_->tubes_[first_]; }
+  [[nodiscard]] const SectionTube& last_tube() const { return swing_->tubes_[last_]; }
   /// How far the last section's end may move, m.
   [[nodiscard]] double moved() const { return moved_; }
   /// The last section's tube made thicker (sign 1) or thinner (-1) by a `share` of what it may move.
-  [[nodiscard]] TubeArc grown(double sign, double share = 1) const;
+  [[nodiscard]] SectionTube grown(double sign, double share = 1) const;
   /// Which pairs of points to ask of, given what may change: all that may count (sign -1), or those that
   /// surely do (1).
   [[nodiscard]] PairRule rule(double sign) const;

@@ -7,16 +7,16 @@
 
 namespace flexura {
 
-Eigen::Vector3d TubeArc::point(double u) const {
+Eigen::Vector3d SectionTube::point(double u) const {
   const Eigen::Vector2d part = bend * u;
   const double t = part.norm();
   const Eigen::Vector2d across = cosc(t) * part;
   return X_WS.position + (length * u) * (X_WS.rotation * Eigen::Vector3d(across.x(), across.y(), sinc(t)));
 }
 
-std::vector<TubeArc> tube_arcs(const Arm& arm, const ArmState& state) {
+std::vector<SectionTube> tube_arcs(const Arm& arm, const ArmState& state) {
   const Backbone backbone(arm, state);
-  std::vector<TubeArc> tubes;
+  std::vector<SectionTube> tubes;
   tubes.reserve(arm.sections.size());
   constexpr double quarter = std::numbers::pi / 2;
   double turn = 0;

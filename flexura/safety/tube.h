@@ -18,7 +18,7 @@ inline constexpr double distance_tolerance = 5e-7;  ///< m
 inline constexpr double no_distance = std::numeric_limits<double>::infinity();
 
 /// One section's tube as it stands.
-struct TubeArc {
+struct SectionTube {
   Pose X_WS;                          ///< Frame at its start; z is the tangent.
   Eigen::Vector2d bend;               ///< rad
   double length = 0;                  ///< m, stretch included.
@@ -38,7 +38,7 @@ struct TubeArc {
 };
 
 /// The arm's tubes, one a section. `state` must fit the arm, else std::invalid_argument.
-[[nodiscard]] std::vector<TubeArc> tube_arcs(const Arm& arm, const ArmState& state);
+[[nodiscard]] std::vector<SectionTube> tube_arcs(const Arm& arm, const ArmState& state);
 
 /// Which pairs of backbone points count: those between which the backbone turns by `turn` rad or more, and
 /// those between which it is longer than half a circle of their mean radius by `gap` m or more.
@@ -60,24 +60,28 @@ struct DistanceWish {
 ///
 /// Branch and bound: a piece of an arc of length l that turns by psi stays within l min(psi/8, 1/2) of its
 /// chord, so the distance of two chords bounds that of the pieces, ever closer as they get shorter.
-[[nodiscard]] double tube_distance(const TubeArc& a, const TubeArc& b, const PairRule& rule,
+[[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                    double cap = no_distance);
 
 /// Whether all these pairs are surely as far apart; false where it takes long to prove.
-[[nodiscard]] bool stay_apart(const TubeArc& a, const TubeArc& b, const PairRule& rule, double distance);
+[[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,
+                              double distance);
 
 /// Whether some of these pairs are surely nearer; false where it takes long to prove.
-[[nodiscard]] bool come_within(const TubeArc& a, const TubeArc& b, const PairRule& rule, double distance);
+[[nodiscard]] bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule,
+                               double distance);
 
 /// The least distance from the tube's surface to the obstacle, m, negative where they overlap; of the tube
 /// from the fraction `from` on. To a plane it is exact.
-[[nodiscard]] double obstacle_distance(const TubeArc& tube, double from, const Obstacle& obstacle,
+[[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceWish& wish);
 
 /// Whether the tube surely stays as far from the obstacle; false where it takes long to prove.
-[[nodiscard]] bool stays_clear(const TubeArc& tube, double from, const Obstacle& obstacle, double distance);
+[[nodiscard]] bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle,
+                               double distance);
 
 /// Whether the tube surely comes nearer to the obstacle; false where it takes long to prove.
-[[nodiscard]] bool comes_within(const TubeArc& tube, double from, const Obstacle& obstacle, double distance);
+[[nodiscard]] bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle,
+                                double distance);
 
 }  // namespace flexura

@@ -18,7 +18,7 @@ struct Least {
 // The least distance from a piece's chord, less the tube's radius, to an obstacle: golden section search,
 // which finds the minimum of a convex function. The value changes no faster than place and radius, so what is
 // left of the interval says how wrong it may be.
-Least least(const TubeArc& tube, const Piece& piece, const Obstacle& obstacle) {
+Least least(const SectionTube& tube, const Piece& piece, const Obstacle& obstacle) {
   constexpr double golden = 0.6180339887498949;
   const double radius = tube.radius_at(piece.from);
   const double grow = tube.radius_at(piece.to) - radius;
@@ -50,7 +50,7 @@ Least least(const TubeArc& tube, const Piece& piece, const Obstacle& obstacle) {
 // Along an arc that has turned by t so far the height changes by (length / turn) size sin(t + phase) per rad,
 // the radius by grow / turn: the difference is least at an end, or where both are the same. From one such
 // place to the next, 2 pi further on, it changes by the same amount, so that the first and the last will do.
-std::array<double, 4> lowest_places(const TubeArc& tube, const Eigen::Vector3d& normal_W, double from,
+std::array<double, 4> lowest_places(const SectionTube& tube, const Eigen::Vector3d& normal_W, double from,
                                     double to) {
   const double turn = tube.bend.norm();
   if (turn == 0) return {from, to, from, to};
@@ -74,7 +74,7 @@ struct ObstacleNode {
 
 class ObstacleSearch {
  public:
-  ObstacleSearch(const TubeArc& tube, const Obstacle& obstacle, const DistanceWish& wish)
+  ObstacleSearch(const SectionTube& tube, const Obstacle& obstacle, const DistanceWish& wish)
       : tube_(tube), obstacle_(obstacle), enough_(wish.enough), best_(wish.cap) {}
 
   // As PairSearch::find.
@@ -127,7 +127,7 @@ class ObstacleSearch {
     for (const double u : lowest_places(tube_, *obstacle_.normal, from, 1)) try_at(u);
   }
 
-  const TubeArc& tube_;
+  const SectionTube& tube_;
   const Obstacle& obstacle_;
   double enough_;
   double best_;
@@ -136,19 +136,19 @@ class ObstacleSearch {
 
 }  // namespace
 
-double obstacle_distance(const TubeArc& tube, double from, const Obstacle& obstacle,
+double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                          const DistanceWish& wish) {
   ObstacleSearch search(tube, obstacle, wish);
   (void)search.find(from, most_steps);
   return search.best();
 }
 
-bool stays_clear(const TubeArc& tube, double from, const Obstacle& obstacle, double distance) {
+bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle, double distance) {
   ObstacleSearch search(tube, obstacle, {distance, distance});
   return search.find(from, few_cuts) && search.best() >= distance;
 }
 
-bool comes_within(const TubeArc& tube, double from, const Obstacle& obstacle, double distance) {
+bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle, double distance) {
   ObstacleSearch search(tube, obstacle, {distance, distance});
   return search.find(from, few_cuts) && search.best() < distance;
 }

@@ -66,7 +66,7 @@ struct PairNode {
 
 class PairSearch {
  public:
-  PairSearch(const TubeArc& a, const TubeArc& b, const PairRule& rule, const DistanceWish& wish)
+  PairSearch(const SectionTube& a, const SectionTube& b, const PairRule& rule, const DistanceWish& wish)
       : a_(a), b_(b), rule_(rule), enough_(wish.enough), best_(wish.cap) {}
 
   // Whether the least distance was found, or one below what is enough, within so many steps.
@@ -91,7 +91,7 @@ class PairSearch {
   [[nodiscard]] double best() const { return best_; }
 
  private:
-  static std::pair<Piece, Piece> halves(const TubeArc& tube, const Piece& piece) {
+  static std::pair<Piece, Piece> halves(const SectionTube& tube, const Piece& piece) {
     const double middle = piece.middle();
     const Eigen::Vector3d at = tube.point(middle);
     return {{piece.from, middle, piece.start, at}, {middle, piece.to, at, piece.end}};
@@ -153,8 +153,8 @@ class PairSearch {
     best_ = std::min(best_, (a_.point(u) - b_.point(v)).norm() - a_.radius_at(u) - b_.radius_at(v));
   }
 
-  const TubeArc& a_;
-  const TubeArc& b_;
+  const SectionTube& a_;
+  const SectionTube& b_;
   PairRule rule_;
   double enough_;
   double best_;
@@ -163,18 +163,18 @@ class PairSearch {
 
 }  // namespace
 
-double tube_distance(const TubeArc& a, const TubeArc& b, const PairRule& rule, double cap) {
+double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule, double cap) {
   PairSearch search(a, b, rule, {.cap = cap});
   (void)search.find(most_steps);
   return search.best();
 }
 
-bool stay_apart(const TubeArc& a, const TubeArc& b, const PairRule& rule, double distance) {
+bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule, double distance) {
   PairSearch search(a, b, rule, {distance, distance});
   return search.find(few_steps) && search.best() >= distance;
 }
 
-bool come_within(const TubeArc& a, const TubeArc& b, const PairRule& rule, double distance) {
+bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule, double distance) {
   PairSearch search(a, b, rule, {distance, distance});
   return search.find(few_steps) && search.best() < distance;
 }

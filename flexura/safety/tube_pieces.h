@@ -24,12 +24,12 @@ struct Piece {
   [[nodiscard]] double at(double chord_fraction) const { return from + chord_fraction * (to - from); }
 };
 
-inline Piece piece_of(const TubeArc& tube, double from, double to) {
+inline Piece piece_of(const SectionTube& tube, double from, double to) {
   return {from, to, tube.point(from), tube.point(to)};
 }
 
 // How far the backbone may be from the chord.
-inline double slack_of(const TubeArc& tube, const Piece& piece) {
+inline double slack_of(const SectionTube& tube, const Piece& piece) {
   const double part = piece.to - piece.from;
   return tube.length * part * std::min(tube.bend.norm() * part / 8, 0.5);
 }

@@ -14,15 +14,16 @@
 namespace flexura {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
-TubeArc tube_at(const Eigen::Vector3d& position, const Eigen::Vector2d& bend, double length, double radius) {
+SectionTube tube_at(const Eigen::Vector3d& position, const Eigen::Vector2d& bend, double length,
+                    double radius) {
   return {{Eigen::Matrix3d::Identity(), position}, bend, length, {radius, radius}, 0};
 }
 
 // The distance between the tubes at u and v. Where the pair must turn by more between them, v is drawn to
 // where it just does.
-double distance_at(const TubeArc& a, const TubeArc& b, double least_turn, double u, double v) {
+double distance_at(const SectionTube& a, const SectionTube& b, double least_turn, double u, double v) {
   const double missing = a.turn_at(u) + least_turn - b.turn_at(v);
   if (missing > 0) v += b.bend.norm() > 0 ? missing / b.bend.norm() : 2;
   if (v > 1) return no_distance;
@@ -30,7 +31,8 @@ double distance_at(const TubeArc& a, const TubeArc& b, double least_turn, double
 }
 
 // Goes down from (u, v) by ever smaller steps.
-double descended(const TubeArc& a, const TubeArc& b, double least_turn, double u, double v, double step) {
+double descended(const SectionTube& a, const SectionTube& b, double least_turn, double u, double v,
+                 double step) {
   constexpr int ways = 16;
   double best = distance_at(a, b, least_turn, u, v);
   for (double h = step; h > 1e-11;) {
@@ -47,7 +49,7 @@ double descended(const TubeArc& a, const TubeArc& b, double least_turn, double u
 }
 
 // Brute force: a grid, and a descent from every point of it that is no farther than its neighbours.
-double brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
+double brute_force(const SectionTube& a, const SectionTube& b, double least_turn) {
   constexpr int n = 60;
   std::vector<double> grid;
   for (int i = 0; i <= n; ++i) {
@@ -70,7 +72,7 @@ double brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
   return best;
 }
 
-void expect_as_brute_force(const TubeArc& a, const TubeArc& b, double least_turn) {
+void expect_as_brute_force(const SectionTube& a, const SectionTube& b, double least_turn) {
   const double expected = brute_force(a, b, least_turn);
   const double found = tube_distance(a, b, {least_turn});
   if (expected == no_distance) return;  // the grid may miss a sliver of pairs
@@ -83,7 +85,7 @@ TEST(TubeDistance, IsThatOfBruteForce) {
     Arm arm = random_arm(random);
     for (Section& section : arm.sections)
       section.radius = {random.uniform(0.01, 0.1), random.uniform(0.01, 0.1)};
-    const std::vector<TubeArc> tubes = tube_arcs(arm, random_state(random, arm));
+    const std::vector<SectionTube> tubes = tube_arcs(arm, random_state(random, arm));
     const auto last = static_cast<int>(tubes.size()) - 1;
     const auto i = static_cast<std::size_t>(random.integer(0, last));
     const auto j = static_cast<std::size_t>(random.integer(static_cast<int>(i), last));
@@ -94,8 +96,10 @@ TEST(TubeDistance, IsThatOfBruteForce) {
 
 TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
   for_random_cases(60, [](TestRandom& random) {
-    const TubeArc a = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.01);
-    const TubeArc b = tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.02);
+    const SectionTube a =
+        tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.01);
+    const SectionTube b =
+        tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.02);
     const double found = tube_distance(a, b, {-100});
     for (int k = 0; k < 2000; ++k) {
       const Eigen::Vector3d p = a.point(random.uniform(0, 1));
@@ -106,7 +110,7 @@ TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
 }
 
 // Of a grid of pairs that the rule counts.
-double least_of_grid(const TubeArc& a, const TubeArc& b, const PairRule& rule, int n) {
+double least_of_grid(const SectionTube& a, const SectionTube& b, const PairRule& rule, int n) {
   double least = no_distance;
   for (int i = 0; i <= n; ++i) {
     const double u = static_cast<double>(i) / n;
@@ -125,10 +129,10 @@ TEST(TubeDistance, CountsWhatIsFarAlongTheArmToo) {
     Arm arm = random_arm(random);
     for (Section& section : arm.sections)
       section.radius = {random.uniform(0.01, 0.1), random.uniform(0.01, 0.1)};
-    const std::vector<TubeArc> tubes = tube_arcs(arm, random_state(random, arm));
+    const std::vector<SectionTube> tubes = tube_arcs(arm, random_state(random, arm));
     const auto last = static_cast<int>(tubes.size()) - 1;
-    const TubeArc& a = tubes[static_cast<std::size_t>(random.integer(0, last))];
-    for (const TubeArc& b : tubes) {
+    const SectionTube& a = tubes[static_cast<std::size_t>(random.integer(0, last))];
+    for (const SectionTube& b : tubes) {
       if (b.start < a.start) continue;
       const PairRule rule{pi, random.uniform(-0.01, 0.01)};
       const double found = tube_distance(a, b, rule);
@@ -143,30 +147,30 @@ TEST(TubeDistance, CountsWhatIsFarAlongTheArmToo) {
 }
 
 TEST(TubeDistance, OfParallelAndCrossingStraightTubesIsExact) {
-  const TubeArc a = tube_at({0, 0, 0}, {0, 0}, 1, 0.1);
+  const SectionTube a = tube_at({0, 0, 0}, {0, 0}, 1, 0.1);
   EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0.2}, {0, 0}, 1, 0.1), {-1}), 0.3, 1e-12);
   EXPECT_NEAR(tube_distance(a, tube_at({0, 0, 1.5}, {0, 0}, 1, 0.1), {-1}), 0.3, 1e-12);
   EXPECT_NEAR(tube_distance(a, tube_at({0.5, 0, 0}, {1e-9, 0}, 1, 0.1), {-1}), 0.3, 1e-6);
 }
 
 TEST(TubeDistance, OfAHalfTurnIsTheDiameter) {
-  const TubeArc half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // radius of curvature 1
+  const SectionTube half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // radius of curvature 1
   EXPECT_NEAR(tube_distance(half, half, {pi - 1e-9}), 1.5, 1e-6);
   EXPECT_EQ(tube_distance(half, half, {pi + 1e-9}), no_distance);
 }
 
 TEST(TubeDistance, OfAFullCircleIsItsOverlap) {
   for (const double bend : {2 * pi, 2.5 * pi, 4 * pi}) {
-    const TubeArc circle = tube_at({0, 0, 0}, {0, bend}, 1, 0.01);
+    const SectionTube circle = tube_at({0, 0, 0}, {0, bend}, 1, 0.01);
     EXPECT_NEAR(tube_distance(circle, circle, {pi}), -0.02, 1e-6) << bend;
   }
-  const TubeArc open = tube_at({0, 0, 0}, {1.9 * pi, 0}, 1.9 * pi, 0.01);
+  const SectionTube open = tube_at({0, 0, 0}, {1.9 * pi, 0}, 1.9 * pi, 0.01);
   EXPECT_NEAR(tube_distance(open, open, {pi}), 2 * std::sin(0.05 * pi) - 0.02, 1e-6);
 }
 
 TEST(TubeDistance, StopsWhereItsQuestionIsAnswered) {
-  const TubeArc a = tube_at({0, 0, 0}, {1, 0}, 1, 0.1);
-  const TubeArc b = tube_at({0.7, 0.3, 0}, {-1, 2}, 1, 0.1);
+  const SectionTube a = tube_at({0, 0, 0}, {1, 0}, 1, 0.1);
+  const SectionTube b = tube_at({0.7, 0.3, 0}, {-1, 2}, 1, 0.1);
   const double exact = tube_distance(a, b, {-100});
   EXPECT_EQ(tube_distance(a, b, {-100}, exact - 1e-3), exact - 1e-3);
   EXPECT_TRUE(stay_apart(a, b, {-100}, exact - 1e-5));
@@ -192,7 +196,7 @@ std::vector<Obstacle> random_obstacles(TestRandom& random) {
 
 TEST(ObstacleDistance, IsThatOfBruteForce) {
   for_random_cases(100, [](TestRandom& random) {
-    TubeArc tube = tube_at(random.vector<3>(-2, 2), random.vector<2>(-5, 5), random.uniform(0.2, 3), 0);
+    SectionTube tube = tube_at(random.vector<3>(-2, 2), random.vector<2>(-5, 5), random.uniform(0.2, 3), 0);
     tube.radius = {random.uniform(0.01, 0.2), random.uniform(0.01, 0.2)};
     const double from = random.uniform(0, 0.5);
     for (const Obstacle& obstacle : random_obstacles(random)) {
@@ -218,7 +222,7 @@ TEST(ObstacleDistance, OfWhatLiesFlatOnABoxIsSoonProved) {
   const Obstacle table = obstacles({BoxConfig{.center = {0, 0, -0.05}, .half_sizes = {2, 2, 0.05}}}).front();
   const Eigen::Matrix3d along = so3_exp({0, pi / 2, 0});
   for (const double gap : {0.0, 1e-7, -1e-5, -0.01}) {
-    const TubeArc flat{{along, {0, 0, 0.02 + gap}}, {0, 2}, 0.3, {0.02, 0.02}, 0};
+    const SectionTube flat{{along, {0, 0, 0.02 + gap}}, {0, 2}, 0.3, {0.02, 0.02}, 0};
     EXPECT_NEAR(obstacle_distance(flat, 0, table, {}), gap, 1e-9);
     EXPECT_TRUE(stays_clear(flat, 0, table, gap - 1e-9));
     EXPECT_TRUE(comes_within(flat, 0, table, gap + 1e-6));
@@ -227,9 +231,9 @@ TEST(ObstacleDistance, OfWhatLiesFlatOnABoxIsSoonProved) {
 
 TEST(ObstacleDistance, CountsFromTheFractionOnAndAlongAPlane) {
   const Obstacle ground = obstacles({PlaneConfig{.normal = {3, 0, 0}}}).front();
-  const TubeArc along = tube_at({0.5, 0, 0}, {0, 0}, 1, 0.1);
+  const SectionTube along = tube_at({0.5, 0, 0}, {0, 0}, 1, 0.1);
   EXPECT_NEAR(obstacle_distance(along, 0, ground, {}), 0.4, 1e-6);
-  const TubeArc away = tube_at({0, 0, 0}, {pi, 0}, pi, 0.1);
+  const SectionTube away = tube_at({0, 0, 0}, {pi, 0}, pi, 0.1);
   EXPECT_NEAR(obstacle_distance(away, 0, ground, {}), -0.1, 1e-6);
   EXPECT_NEAR(obstacle_distance(away, 0.5, ground, {}), 1 - 0.1, 1e-6);
   EXPECT_EQ(obstacle_distance(away, 1.5, ground, {}), no_distance);

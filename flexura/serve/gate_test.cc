@@ -14,10 +14,10 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-const std::string token = "00112233445566778899aabbccddeeff";
+const std::string gate_token = "00112233445566778899aabbccddeeff";
 const std::string ticket = "ffeeddccbbaa99887766554433221100";
 
-Gate gate() { return {8421, {"Lab.example", "tunnel:9000", "[::1]"}, token, ticket}; }
+Gate gate() { return {8421, {"Lab.example", "tunnel:9000", "[::1]"}, gate_token, ticket}; }
 
 RequestHead head(const std::string& lines) {
   return std::get<RequestHead>(parse_request_head("GET / HTTP/1.1\r\nHost: a\r\n" + lines));
@@ -29,7 +29,7 @@ TEST(Gate, KnowsItsOwnNamesWithTheirPorts) {
     EXPECT_TRUE(gate().knows_host(host, "127.0.0.1")) << host;
   }
   EXPECT_TRUE(gate().knows_host("[fe80::1]:8421", "fe80::1"));
-  EXPECT_TRUE(Gate(80, {"lab"}, token, ticket).knows_host("lab", "127.0.0.1"));
+  EXPECT_TRUE(Gate(80, {"lab"}, gate_token, ticket).knows_host("lab", "127.0.0.1"));
 }
 
 TEST(Gate, IsCalledLocalhostByThoseOnThisMachineOnly) {
@@ -63,18 +63,19 @@ TEST(Gate, KnowsItsOwnPagesOnly) {
 }
 
 TEST(Gate, TakesTheTokenFromTheHeader) {
-  EXPECT_TRUE(gate().has_bearer(head("Authorization: Bearer " + token)));
-  EXPECT_TRUE(gate().has_bearer(head("Authorization: bearer   " + token)));
-  for (const std::string& value : Texts{
-           "Bearer", "Bearer ", token, "Basic " + token, "Bearer " + token + "0", "Bearer " + token.substr(1),
-           "Bearer 00112233445566778899AABBCCDDEEFF", "Bearer  x" + token, "Bearer, " + token}) {
+  EXPECT_TRUE(gate().has_bearer(head("Authorization: Bearer " + gate_token)));
+  EXPECT_TRUE(gate().has_bearer(head("Authorization: bearer   " + gate_token)));
+  for (const std::string& value :
+       Texts{"Bearer", "Bearer ", gate_token, "Basic " + gate_token, "Bearer " + gate_token + "0",
+             "Bearer " + gate_token.substr(1), "Bearer 00112233445566778899AABBCCDDEEFF",
+             "Bearer  x" + gate_token, "Bearer, " + gate_token}) {
     EXPECT_FALSE(gate().has_bearer(head("Authorization: " + value))) << value;
   }
-  EXPECT_FALSE(gate().has_bearer(head("Cookie: flexura_8421=" + token)));
+  EXPECT_FALSE(gate().has_bearer(head("Cookie: flexura_8421=" + gate_token)));
 }
 
 TEST(Gate, TakesTheTicketFromTheCookieOfItsPort) {
-  EXPECT_TRUE(gate().has_token(head("Authorization: Bearer " + token)));
+  EXPECT_TRUE(gate().has_token(head("Authorization: Bearer " + gate_token)));
   for (const std::string& value :
        Texts{"flexura_8421=" + ticket, "a=b; flexura_8421=" + ticket + "; c",
              "flexura_8421=wrong;flexura_8421=" + ticket, ";;flexura_8421=" + ticket + ";"}) {
@@ -83,7 +84,7 @@ TEST(Gate, TakesTheTicketFromTheCookieOfItsPort) {
   for (const std::string& value :
        Texts{"", ";", "=", "flexura_8421", "flexura_8421=", "flexura_8422=" + ticket,
              "xflexura_8421=" + ticket, "Flexura_8421=" + ticket, "flexura_8421=\"" + ticket + "\"",
-             "flexura_8421=" + ticket + "x", ticket, "flexura_8421=" + token}) {
+             "flexura_8421=" + ticket + "x", ticket, "flexura_8421=" + gate_token}) {
     EXPECT_FALSE(gate().has_token(head("Cookie: " + value))) << value;
   }
   EXPECT_FALSE(gate().has_token(head("X: y")));
@@ -105,13 +106,13 @@ TEST(Token, HasNewBitsEachTime) {
 }
 
 TEST(Token, IsEqualToItselfOnly) {
-  EXPECT_TRUE(equal_in_constant_time(token, token));
+  EXPECT_TRUE(equal_in_constant_time(gate_token, gate_token));
   EXPECT_TRUE(equal_in_constant_time("", ""));
-  EXPECT_FALSE(equal_in_constant_time(token, token.substr(1)));
-  for (std::size_t i = 0; i < token.size(); ++i) {
-    std::string other = token;
+  EXPECT_FALSE(equal_in_constant_time(gate_token, gate_token.substr(1)));
+  for (std::size_t i = 0; i < gate_token.size(); ++i) {
+    std::string other = gate_token;
     other[i] = static_cast<char>(other[i] ^ 1);
-    EXPECT_FALSE(equal_in_constant_time(token, other)) << i;
+    EXPECT_FALSE(equal_in_constant_time(gate_token, other)) << i;
   }
 }
 

@@ -24,15 +24,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::array<std::uint8_t, 5> page_bytes = {0x1f, 0x8b, 'p', 'a', 'g'};
+constexpr std::array<std::uint8_t, 5> zipped_page = {0x1f, 0x8b, 'p', 'a', 'g'};
 constexpr std::array<std::uint8_t, 4> script_bytes = {0x1f, 0x8b, 'j', 's'};
-constexpr std::array<Asset, 2> assets = {Asset{"/index.html", "text/html; charset=utf-8", page_bytes},
-                                         Asset{"/assets/index-1a2b.js", "text/javascript", script_bytes}};
+constexpr std::array<Asset, 2> page_assets = {
+    Asset{"/index.html", "text/html; charset=utf-8", zipped_page},
+    Asset{"/assets/index-1a2b.js", "text/javascript", script_bytes}};
 
 class ServerTest : public testing::Test {
  protected:
   Server& start(ServerConfig config = {}) {
-    server_ = std::make_unique<Server>(std::move(config), assets, host_);
+    server_ = std::make_unique<Server>(std::move(config), page_assets, host_);
     return *server_;
   }
   [[nodiscard]] std::string host_line() const {
@@ -69,7 +70,7 @@ TEST_F(ServerTest, ServesThePageAndItsParts) {
   start();
   const RawAnswer page = ask(get("/"));
   EXPECT_EQ(page.status, 200);
-  EXPECT_EQ(page.body, std::string(page_bytes.begin(), page_bytes.end()));
+  EXPECT_EQ(page.body, std::string(zipped_page.begin(), zipped_page.end()));
   EXPECT_EQ(page.fields.at("content-encoding"), "gzip");
   EXPECT_EQ(page.fields.at("content-type"), "text/html; charset=utf-8");
   EXPECT_EQ(ask(get("/assets/index-1a2b.js")).body, std::string(script_bytes.begin(), script_bytes.end()));
@@ -111,14 +112,14 @@ TEST_F(ServerTest, ListensWhereItSaysAndNowhereElse) {
   EXPECT_EQ(server.url(), "http://127.0.0.1:" + std::to_string(server.port()) + "/#token=" + server.token());
   ServerConfig taken;
   taken.port = server.port();
-  EXPECT_THROW(Server(taken, assets, host_), std::system_error);
+  EXPECT_THROW(Server(taken, page_assets, host_), std::system_error);
   ServerConfig nonsense;
   nonsense.address = "nowhere";
-  EXPECT_THROW(Server(nonsense, assets, host_), std::system_error);
+  EXPECT_THROW(Server(nonsense, page_assets, host_), std::system_error);
   // 192.0.2.1 is nobody's (RFC 5737).
   ServerConfig foreign;
   foreign.address = "192.0.2.1";
-  EXPECT_THROW(Server(foreign, assets, host_), std::system_error);
+  EXPECT_THROW(Server(foreign, page_assets, host_), std::system_error);
 }
 
 TEST_F(ServerTest, HasAnotherTokenEachTime) {

@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/motions.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double forever = 1e9;  // s of horizon
 
 struct Command {
   double time, target, duration;

@@ -10,13 +10,12 @@
 
 #include "flexura/kinematics/tendons.h"
 #include "flexura/sim/simulated_clock.h"
+#include "tests/support/motions.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rigs.h"
 
 namespace flexura {
 namespace {
-
-constexpr double forever = 1e9;  // s of horizon
 
 ArmState random_shape(TestRandom& random) {
   ArmState state = ArmState::straight(2);

@@ -12,14 +12,13 @@
 
 #include "flexura/sim/simulated_clock.h"
 #include "tests/support/cameras.h"
+#include "tests/support/motions.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double forever = 1e9;  // s of horizon
 
 // A head in which nothing is ideal.
 CameraConfig real_camera(TestRandom& random) {

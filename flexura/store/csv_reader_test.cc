@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::string error_of(std::string_view text) {
+std::string csv_error_of(std::string_view text) {
   try {
     (void)parse_csv(text, "x.csv");
   } catch (const InputError& error) {
@@ -28,17 +28,18 @@ TEST(ParseCsv, ReadsNamesAndNumbers) {
 }
 
 TEST(ParseCsv, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(error_of(""), "x.csv:1:1: empty: expected a line of column names");
-  EXPECT_EQ(error_of("a,,a\n"), "x.csv:1:3: a column without a name\nx.csv:1:4: column \"a\" is there twice");
-  EXPECT_EQ(error_of("a,b\n1\n1,2,3\n"),
+  EXPECT_EQ(csv_error_of(""), "x.csv:1:1: empty: expected a line of column names");
+  EXPECT_EQ(csv_error_of("a,,a\n"),
+            "x.csv:1:3: a column without a name\nx.csv:1:4: column \"a\" is there twice");
+  EXPECT_EQ(csv_error_of("a,b\n1\n1,2,3\n"),
             "x.csv:2:1: 1 values: expected 2, one a column\nx.csv:3:1: 3 values: expected 2, one a column");
-  EXPECT_EQ(error_of("a,b\n1,x\n,2\n"),
+  EXPECT_EQ(csv_error_of("a,b\n1,x\n,2\n"),
             "x.csv:2:3: \"x\": expected a finite number\nx.csv:3:1: \"\": expected a finite number");
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "1.2.3", "0x10", "1 2", "+-1", "+"}) {
-    EXPECT_THAT(error_of(std::string("a\n") + bad), HasSubstr("x.csv:2:1: ")) << bad;
+    EXPECT_THAT(csv_error_of(std::string("a\n") + bad), HasSubstr("x.csv:2:1: ")) << bad;
   }
-  EXPECT_THAT(error_of("a\n\"1\n"), HasSubstr("x.csv:2:1: a quote is not closed"));
-  EXPECT_THAT(error_of("a\n\"1\"2\n"), HasSubstr("text follows one"));
+  EXPECT_THAT(csv_error_of("a\n\"1\n"), HasSubstr("x.csv:2:1: a quote is not closed"));
+  EXPECT_THAT(csv_error_of("a\n\"1\"2\n"), HasSubstr("text follows one"));
 }
 
 TEST(ParseCsv, StopsAfterTwentyProblems) {

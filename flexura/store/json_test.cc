@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string error_of(std::string_view text) {
+std::string json_error_of(std::string_view text) {
   try {
     (void)parse_json(text, "line");
   } catch (const InputError& error) {
@@ -28,22 +28,22 @@ TEST(ParseJson, KeepsValuesAndTheOrderOfKeys) {
 }
 
 TEST(ParseJson, SaysWhereAndWhyTextIsNoJson) {
-  EXPECT_THAT(error_of("{\"a\": 1,\n \"b\" 2}"), HasSubstr("line:2:6: not JSON: "));
-  EXPECT_THAT(error_of(""), HasSubstr("line:1:1: not JSON: "));
-  EXPECT_THAT(error_of("[1] 2"), HasSubstr("not JSON"));
-  EXPECT_THAT(error_of("[NaN]"), HasSubstr("not JSON"));
-  EXPECT_THAT(error_of("[1e999]"), HasSubstr("not JSON"));
-  EXPECT_THAT(error_of("\"\xff\""), HasSubstr("not JSON"));
+  EXPECT_THAT(json_error_of("{\"a\": 1,\n \"b\" 2}"), HasSubstr("line:2:6: not JSON: "));
+  EXPECT_THAT(json_error_of(""), HasSubstr("line:1:1: not JSON: "));
+  EXPECT_THAT(json_error_of("[1] 2"), HasSubstr("not JSON"));
+  EXPECT_THAT(json_error_of("[NaN]"), HasSubstr("not JSON"));
+  EXPECT_THAT(json_error_of("[1e999]"), HasSubstr("not JSON"));
+  EXPECT_THAT(json_error_of("\"\xff\""), HasSubstr("not JSON"));
 }
 
 TEST(ParseJson, RefusesAKeyGivenTwice) {
-  EXPECT_THAT(error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" is given twice"));
-  EXPECT_EQ(error_of(R"({"a":{"a":1}})"), "");
+  EXPECT_THAT(json_error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" is given twice"));
+  EXPECT_EQ(json_error_of(R"({"a":{"a":1}})"), "");
 }
 
 TEST(ParseJson, RefusesDeepNesting) {
-  EXPECT_THAT(error_of(std::string(1000000, '[')), HasSubstr("nested more than 64 deep"));
-  EXPECT_EQ(error_of(std::string(64, '[') + std::string(64, ']')), "");
+  EXPECT_THAT(json_error_of(std::string(1000000, '[')), HasSubstr("nested more than 64 deep"));
+  EXPECT_EQ(json_error_of(std::string(64, '[') + std::string(64, ']')), "");
 }
 
 TEST(WriteJson, PrintsDoublesThatReadBackExactly) {

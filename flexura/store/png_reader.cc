@@ -32,14 +32,14 @@ struct PngReader {
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-struct Header {
+struct ReadHeader {
   png_uint_32 width = 0, height = 0;
   int bits = 0, channels = 0, color = 0, interlace = 0;
 };
 
 // These two are false when libpng gave up. It does so by a jump that runs no destructors: nothing here has
 // one.
-bool read_header(const PngReader& reader, std::string_view* bytes, Header* header) {
+bool read_header(const PngReader& reader, std::string_view* bytes, ReadHeader* header) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_read_fn(reader.png, bytes, take);
   png_read_info(reader.png, reader.info);
@@ -58,7 +58,7 @@ bool read_rows(const PngReader& reader, png_bytepp rows) {
 }
 
 template <typename T>
-Image<T> image_of(const PngReader& reader, const Header& header) {
+Image<T> image_of(const PngReader& reader, const ReadHeader& header) {
   Image<T> image(static_cast<int>(header.width), static_cast<int>(header.height), header.channels);
   std::vector<png_bytep> rows;
   rows.reserve(header.height);
@@ -72,7 +72,7 @@ Image<T> image_of(const PngReader& reader, const Header& header) {
 std::variant<Image<std::uint8_t>, Image<std::uint16_t>> read_png(std::string_view bytes,
                                                                  std::size_t most_pixels) {
   const PngReader reader;
-  Header header;
+  ReadHeader header;
   if (reader.png == nullptr || reader.info == nullptr || !read_header(reader, &bytes, &header))
     throw std::runtime_error("the PNG file is damaged, or none");
   if (static_cast<std::size_t>(header.width) > most_pixels / header.height)

@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-constexpr int max_depth = 32;
+constexpr int max_toml_depth = 32;
 
 // The end of the quoted text that starts at `start` (the index past its closing quotes). An unclosed one ends
 // with its line, or with the document when it is a multi-line one; the parser reports it.
@@ -36,7 +36,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
 [[noreturn]] void too_deep(std::string_view text, const std::string& source, std::size_t at,
                            const char* what) {
   const std::size_t line_start = at == 0 ? 0 : text.rfind('\n', at - 1) + 1;  // npos + 1 is 0
-  throw input_error(source, fmt::format("{} nested more than {} deep", what, max_depth),
+  throw input_error(source, fmt::format("{} nested more than {} deep", what, max_toml_depth),
                     static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1,
                     static_cast<int>(at - line_start) + 1);
 }
@@ -60,8 +60,8 @@ void check_toml_depth(std::string_view text, const std::string& source) {
     if (c == ']' || c == '}') brackets = std::max(0, brackets - 1);
     if (c == '.') ++dots;
     if (c == '\n' || c == ',' || c == '=' || c == '[' || c == '{') dots = 0;
-    if (brackets > max_depth) too_deep(text, source, i, "brackets");
-    if (dots > max_depth) too_deep(text, source, i, "a dotted key");
+    if (brackets > max_toml_depth) too_deep(text, source, i, "brackets");
+    if (dots > max_toml_depth) too_deep(text, source, i, "a dotted key");
     ++i;
   }
 }

@@ -14,23 +14,19 @@
 namespace flexura {
 namespace {
 
-Node number(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
-
 template <class Values>
 Node numbers(const Values& values) {
   Node::Array list;
-  for (const double value : values) list.push_back(number(value));
+  for (const double value : values) list.push_back(number_node(value));
   return {std::move(list), {}};
 }
-
-Node text(std::string value) { return {std::move(value), {}}; }
 
 Node section_nodes(const Arm& arm) {
   Node::Array list;
   for (const Section& section : arm.sections) {
     list.push_back({Node::Table{{"length", {}, {section.length, {}}},
                                 {"radius", {}, numbers(section.radius)},
-                                {"max_bend", {}, number(section.max_bend)},
+                                {"max_bend", {}, number_node(section.max_bend)},
                                 {"stretch", {}, numbers(section.stretch_limits)}},
                     {}});
   }
@@ -111,7 +107,7 @@ Node camera_nodes(const ViewedRig& rig) {
   Node::Array list;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const SensorConfig& sensor = rig.sensors[i];
-    list.push_back({Node::Table{{"name", {}, text(rig.cameras[i].config().name)},
+    list.push_back({Node::Table{{"name", {}, text_node(rig.cameras[i].config().name)},
                                 {"width", {}, {sensor.width, {}}},
                                 {"height", {}, {sensor.height, {}}},
                                 {"channels", {}, {std::int64_t{sensor.channels()}, {}}}},
@@ -151,7 +147,7 @@ Node tendon_nodes(const ViewedRig& rig) {
 // The limits of a camera's three axes under their names.
 Node axes_node(const Camera& camera, const std::array<AxisConfig, 3>& axes,
                const std::array<const char*, 3>& names) {
-  Node::Table table{{"camera", {}, text(camera.config().name)}};
+  Node::Table table{{"camera", {}, text_node(camera.config().name)}};
   for (std::size_t i = 0; i < names.size(); ++i) table.push_back({names[i], {}, numbers(axes[i].limits)});
   return {std::move(table), {}};
 }
@@ -159,9 +155,9 @@ Node axes_node(const Camera& camera, const std::array<AxisConfig, 3>& axes,
 Node bend_nodes(const Arm& arm) {
   Node::Array list;
   for (const Section& section : arm.sections) {
-    list.push_back({Node::Table{{"bend", {}, number(section.max_bend)},
+    list.push_back({Node::Table{{"bend", {}, number_node(section.max_bend)},
                                 {"stretch", {}, numbers(section.stretch_limits)},
-                                {"bend_rate", {}, number(section.max_bend_rate)}},
+                                {"bend_rate", {}, number_node(section.max_bend_rate)}},
                     {}});
   }
   return {std::move(list), {}};
@@ -170,9 +166,9 @@ Node bend_nodes(const Arm& arm) {
 Node task_nodes(const Experiment& experiment) {
   Node::Array list;
   for (const TaskConfig& task : experiment.task) {
-    list.push_back(
-        {Node::Table{{"name", {}, text(task_name(task))}, {"kind", {}, text(std::string(task_kind(task)))}},
-         {}});
+    list.push_back({Node::Table{{"name", {}, text_node(task_name(task))},
+                                {"kind", {}, text_node(std::string(task_kind(task)))}},
+                    {}});
   }
   return {std::move(list), {}};
 }
@@ -227,7 +223,7 @@ Node controls_node(const ViewedRig& rig) {
     Node head = axes_node(camera, camera.head_axes(), {"pan", "tilt", "zoom"});
     const std::vector<ZoomRow>& rows = camera.config().lens.zoom;
     const bool has_counts = !rows.empty() && rows.front().count;
-    std::get<Node::Table>(head.value).push_back({"zoom_unit", {}, text(has_counts ? "count" : "ratio")});
+    std::get<Node::Table>(head.value).push_back({"zoom_unit", {}, text_node(has_counts ? "count" : "ratio")});
     heads.push_back(std::move(head));
     stages.push_back(axes_node(camera, camera.stage_axes(), {"x", "y", "z"}));
   }

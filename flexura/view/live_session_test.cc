@@ -17,8 +17,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr ClientId me = 1, other = 2;
-
 // A session with a client, whose clock the test moves on.
 class LiveSessionTest : public ::testing::Test {
  protected:

@@ -20,8 +20,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ClientId me = 1, other = 2;
-
 class Quiet : public Progress {
  public:
   void update(double, std::string_view) override {}

@@ -12,14 +12,12 @@
 namespace flexura {
 namespace {
 
-Node text(std::string value) { return {std::move(value), {}}; }
-
 std::string hello_text(const Hello& hello, const std::string& session, bool has_rig, bool has_recording) {
-  return write_json({Node::Table{{"type", {}, text("hello")},
-                                 {"version", {}, text(std::string(version()))},
-                                 {"session", {}, text(session)},
-                                 {"mode", {}, text(hello.mode)},
-                                 {"title", {}, text(hello.title)},
+  return write_json({Node::Table{{"type", {}, text_node("hello")},
+                                 {"version", {}, text_node(std::string(version()))},
+                                 {"session", {}, text_node(session)},
+                                 {"mode", {}, text_node(hello.mode)},
+                                 {"title", {}, text_node(hello.title)},
                                  {"scene", {}, hello.scene},
                                  {"controls", {}, hello.controls},
                                  {"duration", {}, {hello.duration, {}}},
@@ -34,11 +32,11 @@ std::string hello_text(const Hello& hello, const std::string& session, bool has_
 }
 
 std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& answer) {
-  Node::Table table{{"type", {}, text("reply")}, {"id", {}, id ? Node{*id, {}} : Node{}}};
+  Node::Table table{{"type", {}, text_node("reply")}, {"id", {}, id ? Node{*id, {}} : Node{}}};
   if (answer.error.empty()) {
     table.push_back({"result", {}, answer.result});
   } else {
-    table.push_back({"error", {}, text(answer.error)});
+    table.push_back({"error", {}, text_node(answer.error)});
   }
   return write_json({std::move(table), {}});
 }
@@ -166,7 +164,8 @@ void Viewer::asked(const std::string& target, const std::function<void(HttpAnswe
   try {
     shown_->take(read_document(target), answer);
   } catch (const std::exception& error) {
-    answer({404, "application/json", write_json({Node::Table{{"error", {}, text(error.what())}}, {}}), ""});
+    answer(
+        {404, "application/json", write_json({Node::Table{{"error", {}, text_node(error.what())}}, {}}), ""});
   }
 }
 

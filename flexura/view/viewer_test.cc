@@ -12,8 +12,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ClientId me = 1, other = 2;
-
 // In what the zoom of a rig's last camera is said.
 std::string zoom_unit(const std::string& rig) {
   const Node controls = controls_node(*viewed_rig(rig));

@@ -13,7 +13,7 @@ namespace flexura {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Of chi-square with two degrees of freedom: exceeded in 1 of 100 cases; and how far off its centre it has to
 // be to be exceeded in 9 of 10.

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 
 // Lines along the arm, in half widths from its axis.
-constexpr std::array<double, 7> lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};
+constexpr std::array<double, 7> skin_lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};
 constexpr std::size_t middle_line = 3;
 
 // Markers are at least so much brighter or of another colour than the arm, of 255.
@@ -39,11 +39,11 @@ Vector3d color_at(const Image<std::uint8_t>& picture, const Vector2d& pixel) {
   return color;
 }
 
-// The arm's skin laid out flat: colours along the lines, a pixel apart.
+// The arm's skin laid out flat: colours along the skin_lines, a pixel apart.
 struct Skin {
   std::vector<Vector2d> axis, normals;
   std::vector<double> half_widths;
-  std::array<std::vector<Vector3d>, lines.size()> colors;
+  std::array<std::vector<Vector3d>, skin_lines.size()> colors;
 
   Skin(const Image<std::uint8_t>& picture, const ArmSighting& arm) {
     double way = 0, next = 0;
@@ -58,9 +58,9 @@ struct Skin {
       }
       way += length;
     }
-    for (std::size_t line = 0; line < lines.size(); ++line)
+    for (std::size_t line = 0; line < skin_lines.size(); ++line)
       for (std::size_t i = 0; i < axis.size(); ++i)
-        colors[line].push_back(color_at(picture, axis[i] + lines[line] * half_widths[i] * normals[i]));
+        colors[line].push_back(color_at(picture, axis[i] + skin_lines[line] * half_widths[i] * normals[i]));
   }
   [[nodiscard]] std::size_t size() const { return axis.size(); }
   [[nodiscard]] Vector2d at(double along) const {
@@ -122,15 +122,15 @@ std::optional<Part> part_of(const std::vector<Vector3d>& colors, const Stretch& 
   return part;
 }
 
-// middle(y) = x + bulge h sqrt(1 - y^2), over the lines that show the marker.
-MarkerSighting joined(const std::array<std::optional<Part>, lines.size()>& parts, double half_width) {
+// middle(y) = x + bulge h sqrt(1 - y^2), over the skin_lines that show the marker.
+MarkerSighting joined(const std::array<std::optional<Part>, skin_lines.size()>& parts, double half_width) {
   MarkerSighting marker;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Vector2d right = Vector2d::Zero();
   double count = 0, sigma = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+  for (std::size_t i = 0; i < skin_lines.size(); ++i) {
     if (!parts[i]) continue;
-    const Vector2d row(1, half_width * std::sqrt(1 - lines[i] * lines[i]));
+    const Vector2d row(1, half_width * std::sqrt(1 - skin_lines[i] * skin_lines[i]));
     normal += row * row.transpose(), right += parts[i]->middle * row;
     marker.length += parts[i]->length, sigma += parts[i]->sigma * parts[i]->sigma, ++count;
   }
@@ -180,9 +180,9 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   for (const Stretch& stretch : stretches(skin.colors[middle_line], own, bound)) {
     const std::size_t middle = (stretch.first + stretch.last) / 2;
     const Vector3d color = skin.colors[middle_line][middle], direction = (color - own).normalized();
-    std::array<std::optional<Part>, lines.size()> parts;
-    // Along the other lines the band is shifted by no more than the arm's half width.
-    for (std::size_t line = 0; line < lines.size(); ++line) {
+    std::array<std::optional<Part>, skin_lines.size()> parts;
+    // Along the other skin_lines the band is shifted by no more than the arm's half width.
+    for (std::size_t line = 0; line < skin_lines.size(); ++line) {
       Stretch near = stretch;
       if (line != middle_line) {
         const auto reach = static_cast<std::size_t>(0.6 * skin.half_widths[middle]) + 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -20,6 +21,9 @@ struct Photograph {
 
 /// Larger pictures are refused, px.
 inline constexpr std::int64_t most_pixels = std::int64_t{1} << 27;
+
+/// Larger files are refused, bytes.
+inline constexpr std::size_t most_picture_bytes = std::size_t{1} << 29;
 
 /// Reads what OpenCV's imgcodecs reads (PNG, JPEG, TIFF, BMP, PNM, WebP, ...), 8 or 16 bits; a transparent
 /// part counts as it is coloured. Throws InputError, with `name` for its source: not a picture, cut short, of

@@ -18,7 +18,7 @@ namespace {
 constexpr double least_contrast = 10;
 
 // Pixels counted side by side in one place. (Longer stretches cost less, but fewer of them miss thin arms.)
-constexpr std::size_t stretch = 16;
+constexpr std::size_t run_length = 16;
 
 // Sums over a histogram up to and with each brightness.
 struct Moments {
@@ -123,11 +123,11 @@ Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples) {
   std::array<Histogram, 4> counts{};
   const auto values = gray.values();
   const std::size_t step =
-      stretch * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(samples, 1));
+      run_length * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(samples, 1));
   // A step that shares no rhythm with the rows.
-  const std::size_t odd_step = step == stretch ? stretch : step + (step / stretch % 2 == 0 ? 3 : 5);
+  const std::size_t odd_step = step == run_length ? run_length : step + (step / run_length % 2 == 0 ? 3 : 5);
   for (std::size_t from = 0; from < values.size(); from += odd_step) {
-    const std::size_t to = std::min(from + stretch, values.size());
+    const std::size_t to = std::min(from + run_length, values.size());
     for (std::size_t i = from; i < to; ++i) ++counts[i % 4][values[i]];
   }
   Histogram sum{};

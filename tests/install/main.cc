@@ -8,7 +8,7 @@
 #include "flexura/kinematics/spatial.h"
 
 int main() {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   const std::vector<double> lengths = {2, 3, 1, 2, 4, 2, 1, 1};
   const std::vector<double> cord_angles = {.55 * pi,  .65 * pi, .8 * pi, pi,
                                            1.15 * pi, .9 * pi,  .8 * pi, .65 * pi};

@@ -18,11 +18,8 @@
 
 namespace flexura {
 
-/// A normally distributed number (G. Box, M. Muller).
-inline double normal_number(TestRandom& random) {
-  const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
-  return radius * std::cos(random.uniform(0, 2 * std::numbers::pi));
-}
+/// Of one camera, and of two, in pixels.
+inline const std::vector<std::array<int, 2>> one_size = {{640, 480}}, two_sizes = {{640, 480}, {640, 480}};
 
 /// A board before a camera that looks along z: `distance` m off, tilted by up to `tilt` rad and turned by up
 /// to a quarter of a turn, its middle up to `aside` of the distance off the axis.

@@ -76,7 +76,7 @@ inline Eigen::Vector3d random_unit(TestRandom& random) {
 /// it can, has its tip further away; pointing further round than all its bends together. Sets the limits of
 /// `arm` as needed; `at_least` receives a lower bound on the position error, m (0 for the last way).
 inline TipTarget unreachable_target(TestRandom& random, int way, Arm& arm, double& at_least) {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   TipTarget target;
   at_least = 0.0;
   if (way == 0) {

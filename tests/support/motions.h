@@ -8,6 +8,9 @@
 
 namespace flexura {
 
+/// A horizon that no motion of a test reaches, s.
+inline constexpr double forever = 1e9;
+
 /// Bends up to 3 rad in each direction (planar arms: in the plane), stretches from 0.8 to 1.2.
 inline ArmState random_keyframe(TestRandom& random, const Arm& arm) {
   ArmState state = ArmState::straight(arm.sections.size());

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -33,6 +35,12 @@ class TestRandom {
  private:
   std::mt19937_64 engine_;
 };
+
+/// A normally distributed number (G. Box, M. Muller).
+inline double normal_number(TestRandom& random) {
+  const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
+  return radius * std::cos(2 * std::numbers::pi * random.uniform(0, 1));
+}
 
 /// The seed of a test's case: FNV-1a of the test's full name, plus the case's number.
 inline std::uint64_t case_seed(int index) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <numeric>
 
 #include "flexura/camera/view.h"
 #include "flexura/math/so3.h"
@@ -103,6 +104,10 @@ inline View random_view_of(TestRandom& random, const Backbone& backbone) {
   return pinhole_view(look_at(middle + direction * random.uniform(0.6, 1.6),
                               middle + random.vector<3>(-0.1, 0.1), {0.1, 1, 0.05}),
                       160, 120, 200);
+}
+
+inline double sum_of(const Image<float>& image) {
+  return std::accumulate(image.values().begin(), image.values().end(), 0.0);
 }
 
 }  // namespace flexura

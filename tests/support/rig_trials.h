@@ -18,6 +18,8 @@
 
 namespace flexura {
 
+inline constexpr double degree = std::numbers::pi / 180;
+
 /// How far a rig is from what is believed of it: evenly within these bounds. As issue "Calibrating the two
 /// cameras" has them.
 struct RigTrialConfig {
@@ -31,11 +33,6 @@ struct RigTrialConfig {
   double noise = 0.2;            ///< px
   std::size_t markers = 9, points = 40;
 };
-
-inline double normal_number(TestRandom& random) {
-  const double size = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
-  return size * std::cos(2 * std::numbers::pi * random.uniform(0, 1));
-}
 
 /// Two cameras, 2.5 m in front of and beside an arm of three sections and 1 m, with stages and heads that
 /// count in steps of 0.075 degrees.

@@ -21,6 +21,8 @@
 
 namespace flexura {
 
+inline constexpr ClientId me = 1, other = 2;
+
 /// Keeps what clients would get.
 class FakeMessenger : public Messenger {
  public:

@@ -202,7 +202,8 @@ TEST(Tasks, ALawThatStartsElsewhereJumps) {
 TEST(Keyframes, AreReadFromAFileBesideTheExperimentAndKeptInTheExperimentAsRun) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "x.toml";
-  std::ofstream(file) << arm << "[[task]]\nkind = 'keyframes'\nfile = 'wave.csv'\ninterpolation = 'smooth'\n";
+  std::ofstream(file) << two_sections
+                      << "[[task]]\nkind = 'keyframes'\nfile = 'wave.csv'\ninterpolation = 'smooth'\n";
   std::ofstream(folder.path() / "wave.csv") << "time,arching_1,arching_2\n0,0,0\n1,0.5,-0.5\n2,0,0\n";
   const Experiment experiment = load_experiment(file);
   EXPECT_DOUBLE_EQ(archings_at(experiment, 1)[1], -0.5);
@@ -215,7 +216,7 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "x.toml";
   const auto error_with = [&](const std::string& name, const std::string& csv) {
-    std::ofstream(file) << arm << "[[task]]\nkind = 'keyframes'\nfile = '" << name << "'\n";
+    std::ofstream(file) << two_sections << "[[task]]\nkind = 'keyframes'\nfile = '" << name << "'\n";
     std::ofstream(folder.path() / "wave.csv") << csv;
     try {
       (void)load_experiment(file);
@@ -241,7 +242,7 @@ TEST(Keyframes, AMissingFileHidesNoOtherError) {
   std::ofstream(folder.path() / "bad.csv") << "time\n";
   const std::string keyframes = "[[task]]\nkind = 'keyframes'\nfile = ";
   const auto problems = [&](const std::string& tasks) {
-    std::ofstream(file) << arm << tasks;
+    std::ofstream(file) << two_sections << tasks;
     try {
       (void)load_experiment(file);
     } catch (const InputError& error) {

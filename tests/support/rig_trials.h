@@ -157,7 +157,6 @@ inline void take_plan(RigTrial& trial, std::size_t pictures = 12) {
                                                            {0.4, -0.7, -0.3, -0.4, 0.9, 0.2},
                                                            {0.1, 0.2, -0.9, 0.3, -0.4, 0.7},
                                                            {-0.5, -0.5, 0.1, 0.8, 0.2, -0.9}}};
-  constexpr double degree = std::numbers::pi / 180;
   constexpr std::array<std::array<double, 2>, 12> turns = {{{0, 0},
                                                             {6, 0},
                                                             {0, 4},

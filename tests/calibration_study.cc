@@ -22,7 +22,6 @@
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr std::size_t pictures = 12;
 
 struct Outcome {

@@ -78,8 +78,10 @@ struct InverseResult {
                                           const InverseOptions& options = {});
 
 /// The distinct solutions that options.max_starts descents find, least bent first; empty when there is none.
-/// Where the target leaves freedom each is first led to the wish (least_bending when it is none), so that
-/// one is found for each valley of the wish; where a valley is a continuum, samples of it.
+/// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
+/// that one is found for each valley of the wish. Two are the same when their backbones are nowhere further
+/// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
+/// stands for its turns about that: the first section that is bent bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseOptions& options = {});
 

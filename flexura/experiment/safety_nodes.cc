@@ -33,6 +33,7 @@ Node::Table violation_table(const Violation& violation, const std::string& text)
   const bool has_value = violation.hazard != Hazard::not_finite && std::isfinite(violation.value);
   if (has_value) table.push_back({"value", {}, {violation.value, {}}});
   if (has_value && violation.hazard != Hazard::jump) table.push_back({"limit", {}, {violation.limit, {}}});
+  if (violation.target) table.push_back({"target", {}, point_node(*violation.target)});
   table.push_back({"text", {}, {text, {}}});
   return table;
 }

@@ -46,7 +46,8 @@ void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
                              .end = duration_,
                              .worst_time = duration_,
                              .name = legs_.back().name,
-                             .value = missed});
+                             .value = missed,
+                             .target = *target});
 }
 
 double Schedule::time_of_step(std::size_t step) const {

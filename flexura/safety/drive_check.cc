@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,8 +25,11 @@ constexpr double max_countable = 9007199254740992.0;
 // One limit of one axis; joins what is too much in rows that follow each other.
 class AxisLimit {
  public:
-  AxisLimit(Hazard hazard, std::string axis, double limit)
-      : found_{.hazard = hazard, .name = std::move(axis), .limit = limit} {}
+  AxisLimit(Hazard hazard, const Drive& drive, std::size_t axis, double limit)
+      : found_{.hazard = hazard,
+               .section = drive.tendons[axis].section,
+               .name = drive.axis_name(axis),
+               .limit = limit} {}
 
   void add(Span span, double value, SafetyReport& report) {
     if (value <= found_.limit * (1 + limit_tolerance)) {
@@ -52,11 +54,10 @@ class AxisCheck {
  public:
   AxisCheck(const Drive& drive, std::size_t axis)
       : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
-        speed_(Hazard::motor_speed, drive.axis_name(axis), drive.axes[axis].motor.max_speed),
-        step_rate_(Hazard::step_rate, drive.axis_name(axis), drive.axes[axis].motor.max_step_rate),
-        acceleration_(Hazard::motor_acceleration, drive.axis_name(axis),
-                      drive.axes[axis].motor.max_acceleration),
-        position_(Hazard::motor_position, drive.axis_name(axis), drive.axes[axis].motor.max_position) {}
+        speed_(Hazard::motor_speed, drive, axis, drive.axes[axis].motor.max_speed),
+        step_rate_(Hazard::step_rate, drive, axis, drive.axes[axis].motor.max_step_rate),
+        acceleration_(Hazard::motor_acceleration, drive, axis, drive.axes[axis].motor.max_acceleration),
+        position_(Hazard::motor_position, drive, axis, drive.axes[axis].motor.max_position) {}
 
   void start(double time, double position, SafetyReport& report) {
     last_position_ = position;

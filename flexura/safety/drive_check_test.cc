@@ -76,6 +76,7 @@ TEST_F(DriveCheck, TellsWhenAndHowMuch) {
       keyframe_motion({0, 1, 2, 3}, {state(0), state(0.1), state(0.9), state(1)}, Interpolation::linear);
   const SafetyReport report = check(law);
   ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_EQ(report.violations[0].section, 0U) << "the one that the motor bends";
   EXPECT_EQ(report.violations[0].text(),
             "1 s to 2 s: axis 1.2: motor speed 458.366 deg/s, limit 286.479 deg/s");
 }

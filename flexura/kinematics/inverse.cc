@@ -125,7 +125,7 @@ InverseResult answer(const Question& q) {
     if (q.is_orientation_out_of_reach()) return answer_out_of_reach<Rows>(q);
     search(problem, q.variables, starts, q.options.max_starts, memory, found);
   }
-  if (!found.is_met()) settle(problem, q.variables, found, memory);
+  if (!found.is_met()) settle(problem, q.variables, settling_iterations, found, memory);
   if (found.is_met() && q.options.wish != InverseWish::none) {
     follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.options.wish), found.x, memory);
   }

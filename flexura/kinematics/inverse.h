@@ -34,11 +34,18 @@ enum class InverseWish {
                   ///< half its range about the middle of it.
 };
 
+/// How far a polyline may be from the smooth curve that its points are taken from, m: the largest height of
+/// an arc above its chord, and by how much arcs are longer than their chords in all (which moves the points
+/// at a part of the length along the curve), each arc turning by as much as the polyline does at its ends.
+/// Turns of 60 degrees and more are corners and mean what they say.
+[[nodiscard]] double polyline_error(const std::vector<Eigen::Vector3d>& points);
+
 struct InverseOptions {
   /// Where the search begins; one arc towards the target when left out.
   std::optional<ArmState> start = {};
   InverseWish wish = InverseWish::none;
-  /// m; when left out 1e-9 of the arm's greatest length, and 1e-3 of it for curves.
+  /// m; when left out 1e-9 of the arm's greatest length, and for curves 1e-3 of it and twice
+  /// polyline_error().
   std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< rad.
   int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.

@@ -167,6 +167,8 @@ TEST(Tasks, BadOnesGetAClearLine) {
        "0 rows: expected at least 2"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0,0],[1,0,0]]\n",
        "task[0].rows[2][0]: time 1: expected more than the 2 before it"},
+      {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2e6,0,0]]\n",
+       "task[0].rows[1][0]: time 2000000 s: expected at most 1000000 s"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[1,0,0],[2,0,0]]\n",
        "time 1: expected 0 in the first row"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0]]\n",
@@ -220,7 +222,7 @@ TEST(Tasks, ALawThatStartsElsewhereJumps) {
   const Experiment experiment = experiment_of_task("kind='expression'\narchings='0.2+t'\n");
   const SafetyReport report = Schedule(experiment).check();
   ASSERT_EQ(report.violations.size(), 1U);
-  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 0.4");
+  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 22.9183 deg");
   EXPECT_THAT(report.caveats.at(0), HasSubstr("sampled every 0.02 s"));
 }
 
@@ -257,6 +259,9 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
               HasSubstr("wave.csv:5:1: column time: time 1: expected more"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1,0,x\n"),
               HasSubstr("wave.csv:3:5: \"x\": expected a finite number"));
+  EXPECT_THAT(
+      error_with("wave.csv", "time;arching_1;arching_2\n0;0,0;0\n1;0,5;0\n"),
+      HasSubstr("wave.csv:1:5: columns are separated by ';': expected commas, and points in numbers"));
   EXPECT_THAT(error_with("none.csv", ""), HasSubstr("x.toml:7:8: task[0].file: no file \"none.csv\""));
   EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("lies outside the experiment's folder"));
 }

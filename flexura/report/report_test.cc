@@ -151,7 +151,7 @@ TEST(Report, DrawsWhatIsWorstAtOneMomentInOnePicture) {
   EXPECT_NE(report_html(data).find("</button> one; other</figcaption>"), std::string::npos);
 }
 
-std::size_t count_of(const std::string& text, const std::string& part) {
+std::size_t times_in(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
   return count;
@@ -173,17 +173,17 @@ TEST(Report, DrawsTheTargetsThatTheTipMisses) {
   const std::vector<FigureFile> figures = report_figures(data);
   for (const char* name : {"arm-unsafe-1.svg", "arm-end.svg"}) {
     EXPECT_EQ(xml_fault(svg_of(figures, name)), "");
-    EXPECT_EQ(count_of(svg_of(figures, name), "class=\"target\""), 1U) << name;
-    EXPECT_EQ(count_of(svg_of(figures, name), "class=\"target-way\""), 1U) << name;
+    EXPECT_EQ(times_in(svg_of(figures, name), "class=\"target\""), 1U) << name;
+    EXPECT_EQ(times_in(svg_of(figures, name), "class=\"target-way\""), 1U) << name;
   }
-  EXPECT_EQ(count_of(svg_of(figures, "arm-start.svg"), "target"), 0U) << "not its time";
+  EXPECT_EQ(times_in(svg_of(figures, "arm-start.svg"), "class=\"target"), 0U) << "not its time";
   // Start, middle, end, worst and player: crosses in three of them.
-  EXPECT_EQ(count_of(report_html(data), "class=\"target\""), 3U);
+  EXPECT_EQ(times_in(report_html(data), "class=\"target\""), 3U);
   // What is far away does not make the arm small: the way to it ends at the border.
   data.safety->violations[0].target = Eigen::Vector3d(0, 1e5, 0);
   const std::string far = svg_of(report_figures(data), "arm-unsafe-1.svg");
-  EXPECT_EQ(count_of(far, "class=\"target\""), 0U);
-  EXPECT_EQ(count_of(far, "class=\"target-way\""), 1U);
+  EXPECT_EQ(times_in(far, "class=\"target\""), 0U);
+  EXPECT_EQ(times_in(far, "class=\"target-way\""), 1U);
 }
 
 TEST(Report, KeepsALonePictureInItsColumn) {

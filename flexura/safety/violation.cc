@@ -30,7 +30,7 @@ const HazardText& text_of(Hazard hazard) {
                                                      {"bend rate", degrees, " deg/s"},
                                                      {"stretch", 1, ""},
                                                      {"folding: curvature times radius", 1, ""},
-                                                     {"jump", 1, ""},
+                                                     {"jump", degrees, " deg"},
                                                      {"no possible value", 1, ""},
                                                      {"self-contact", 1000, " mm deep"},
                                                      {"obstacle", 1000, " mm deep"},
@@ -82,6 +82,7 @@ std::string Violation::finding() const {
     case Hazard::not_finite:
       return shown.name;
     case Hazard::jump:
+      if (is_of_stretch) return fmt::format("{} of {:.6g} in stretch", shown.name, value);
       return fmt::format("{} {:.6g}{}", shown.name, found, shown.unit);
     default:
       return fmt::format("{} {:.6g}{}, limit {:.6g}{}", shown.name, found, shown.unit, limit * shown.factor,

@@ -37,6 +37,7 @@ struct Violation {
   std::string name = {};                          ///< Of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
+  bool is_of_stretch = false;                  ///< A jump of the stretch (a factor), not of the bend (rad).
   std::optional<Eigen::Vector3d> target = {};  ///< The place that the tip misses, world, m.
 
   /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg"; the times as span_text (spans.h) writes them.

@@ -113,9 +113,9 @@ TEST(AnswerInverse, LaysTheArmAlongACurve) {
 }
 
 TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWhatIsAsked) {
-  // A third of a circle, bent as the arm can, by five points.
+  // A sixth of a circle of the arm's length, by five points.
   const std::string points =
-      R"("curve":[[0,0,0],[0.01636,0.22310,0],[0.06423,0.43140,0],[0.14129,0.61086,0],[0.23943,0.74943,0]])";
+      R"("curve":[[0.0,0.0,0],[0.02936,0.22242,0],[0.11544,0.42961,0],[0.25233,0.60736,0],[0.43065,0.74351,0]])";
   const Node plain = parsed(answer_inverse(limited_arm(), "{" + points + "}"));
   EXPECT_TRUE(flag(plain, "converged")) << number(plain, "position_error");
   const Node strict = parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":1e-9})"));

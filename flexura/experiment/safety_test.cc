@@ -14,6 +14,7 @@
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
+#include "flexura/report/report.h"
 #include "flexura/safety/violation.h"
 #include "flexura/store/json.h"
 #include "tests/support/experiment_files.h"
@@ -123,7 +124,7 @@ TEST(TipTargets, BesideAShapeAreRefused) {
 
 TEST(Report, ShowsWhatIsMissedAndTheSectionThatAMotorBends) {
   const Experiment experiment = parse(
-      "[drive]\nmotor = { max_position = 1000 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, "
+      "[drive]\nmotor = { max_position = 100 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, "
       "angle_deg = 90 "
       "},\n{ section = 2, angle_deg = 45 }, { section = 2, angle_deg = 135 }]\n"
       "[[task]]\nkind = 'move'\nto.position = [2, 0, 0]\n");

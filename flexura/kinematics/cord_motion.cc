@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 

@@ -25,6 +25,12 @@ Arm short_section() {
   return arm;
 }
 
+Arm elastic_section() {
+  Arm arm = short_section();
+  arm.sections[0].stretch_limits = {0.5, 2};
+  return arm;
+}
+
 ArmState bent(double bend) { return {{{bend, 0}}, {1}}; }
 
 SafetyReport check(const Arm& arm, MotionPtr motion, double step = 0.02) {
@@ -196,7 +202,7 @@ TEST(MotionCheck, FindsJumpsBetweenTasks) {
   EXPECT_DOUBLE_EQ(report.violations[0].value, 0.1);
   EXPECT_EQ(report.violations[0].text(), "at 1 s: section 1: jump 5.72958 deg");
   const SafetyReport stretched =
-      check_motions(short_section(), {}, bent(0),
+      check_motions(elastic_section(), {}, bent(0),
                     {{hold_motion(bent(0), 1), 0}, {hold_motion({{{0, 0}}, {1.25}}, 1), 1}}, 0.02);
   ASSERT_EQ(stretched.violations.size(), 1u);
   EXPECT_EQ(stretched.violations[0].text(), "at 1 s: section 1: jump of 0.25 in stretch");
@@ -206,7 +212,7 @@ TEST(MotionCheck, KeepsJumpsOfBendsAndStretchesApart) {
   const auto at_once =
       keyframe_motion({0, 1, 1 + 1e-6, 2}, {bent(0), bent(0), {{{0.1, 0}}, {1.3}}, {{{0.1, 0}}, {1.3}}},
                       Interpolation::linear);
-  const SafetyReport report = check_motions(short_section(), {}, bent(0), {{at_once, 0}}, 0.02);
+  const SafetyReport report = check_motions(elastic_section(), {}, bent(0), {{at_once, 0}}, 0.02);
   ASSERT_EQ(report.violations.size(), 2u);
   for (const Violation& violation : report.violations) {
     EXPECT_EQ(violation.hazard, Hazard::jump);

@@ -104,7 +104,12 @@ std::string time_problem(double time, std::optional<double> last) {
   constexpr double longest = 1e6;
   if (!last) return time == 0 ? "" : fmt::format("time {}: expected 0 in the first row", time);
   if (time > longest) return fmt::format("time {} s: expected at most {} s", time, longest);
-  return time > *last ? "" : fmt::format("time {}: expected more than the {} before it", time, *last);
+  if (!(time > *last)) return fmt::format("time {}: expected more than the {} before it", time, *last);
+  // Nearer ones have no rates that are numbers.
+  constexpr double least_apart = 1e-9;
+  return time - *last >= least_apart ? ""
+                                     : fmt::format("time {}: expected at least {} s after the {} before it",
+                                                   time, least_apart, *last);
 }
 
 void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,

@@ -167,6 +167,8 @@ TEST(Tasks, BadOnesGetAClearLine) {
        "0 rows: expected at least 2"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0,0],[1,0,0]]\n",
        "task[0].rows[2][0]: time 1: expected more than the 2 before it"},
+      {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[1e-320,1,0]]\n",
+       "time 1e-320: expected at least 1e-09 s after the 0 before it"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2e6,0,0]]\n",
        "task[0].rows[1][0]: time 2000000 s: expected at most 1000000 s"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[1,0,0],[2,0,0]]\n",

@@ -118,7 +118,8 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
 FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConfig& config) {
   FigureBorder result;
   Components components;
-  result.threshold = segment(gray, config, components);
+  BlockThresholds blocks;
+  result.threshold = segment(gray, config, components, blocks);
   result.reason = result.threshold.reason;
   if (!result.reason.empty()) return result;
   // The largest that does not touch the picture's border; if all do, the largest.

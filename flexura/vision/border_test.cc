@@ -46,7 +46,7 @@ TEST(LargestFigure, HasItsBorderWhereItIsHoweverBlurred) {
       const auto circle = fit_circle(points);
       ASSERT_TRUE(circle) << blur;
       EXPECT_NEAR(circle->radius, radius, blur < 1 ? 0.006 : 0.015 * blur) << blur << ", seed " << seed;
-      EXPECT_LT(circle->rms, 0.03 + 0.01 * blur) << blur;
+      EXPECT_LT(circle->rms, 0.025 + 0.02 * blur) << blur;
       EXPECT_NEAR(found.blur, blur, 0.03 * blur) << is_dark;
       EXPECT_GT(points.size(), 300U) << blur;
     }
@@ -62,7 +62,7 @@ TEST(LargestFigure, HasItsBorderInOrder) {
     EXPECT_LT((found.points[i].pixel - found.points[i - 1].pixel).norm(), 2.5) << i;
 }
 
-TEST(FindEtalon, HasItsSidesWhereTheyAreHoweverBlurred) {
+TEST(EtalonSides, AreFoundWhereTheyAreHoweverBlurred) {
   unsigned seed = 31;
   for (const double blur : {0.5, 0.7, 1.0, 1.5, 2.2}) {
     const auto picture = blurred_figure(blur, 50, 220, ++seed, [](int u, int v) {
@@ -71,8 +71,8 @@ TEST(FindEtalon, HasItsSidesWhereTheyAreHoweverBlurred) {
     const EtalonSighting seen = find_etalon(picture, picture);
     ASSERT_EQ(seen.reason, "");
     const double at = 0.02 * (seen.middle_row - 90) + 100.3;
-    EXPECT_NEAR(seen.left.at, at - 40.4, 0.012) << blur << ", seed " << seed;
-    EXPECT_NEAR(seen.right.at, at + 40.4, 0.012) << blur;
+    EXPECT_NEAR(seen.left.at, at - 40.4, blur < 1.2 ? 0.012 : 0.04) << blur << ", seed " << seed;
+    EXPECT_NEAR(seen.right.at, at + 40.4, blur < 1.2 ? 0.012 : 0.04) << blur;
     EXPECT_NEAR(seen.left.slope, 0.02, 5e-4) << blur;
   }
 }

@@ -190,7 +190,8 @@ EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::
                            const ThresholdConfig& config) {
   EtalonSighting seen;
   Components components;
-  seen.threshold = segment(gray, config, components);
+  BlockThresholds blocks;
+  seen.threshold = segment(gray, config, components, blocks);
   seen.reason = seen.threshold.reason;
   if (!seen.reason.empty()) return seen;
   if (seen.threshold.figure != Figure::dark) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "flexura/safety/drive_check.h"
@@ -78,7 +79,7 @@ void laboratory_10_s_sampled(benchmark::State& state) {
 }
 BENCHMARK(laboratory_10_s_sampled)->Unit(benchmark::kMillisecond);
 
-// Nine motors at every row of the command list.
+// Nine motors at every row of the command list, and by the law's rates between the rows.
 void laboratory_10_s_motors(benchmark::State& state) {
   const Arm arm = laboratory_arm();
   Drive drive;
@@ -91,9 +92,18 @@ void laboratory_10_s_motors(benchmark::State& state) {
   std::vector<double> times;
   for (int k = 0; k <= std::lround(duration / step); ++k) times.push_back(k * step);
   const MotionPtr motion = laboratory_motion();
+  const auto rates = [&](double start, double end) -> std::optional<std::vector<SectionRates>> {
+    std::vector<SectionRates> all;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const auto known = motion->rates(i, start, end);
+      if (!known) return std::nullopt;
+      all.push_back(*known);
+    }
+    return all;
+  };
   for (auto _ : state) {
     SafetyReport report;
-    check_drive(arm, drive, [&](double t) { return motion->at(t); }, times, report);
+    check_drive(arm, drive, [&](double t) { return motion->at(t); }, times, rates, report);
     benchmark::DoNotOptimize(report);
   }
 }

@@ -26,8 +26,10 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
   const Motion& motion = checked.motion();
   const ArmState first = motion.at(0);
   const double jump = largest_change(before, first);
-  if (jump > smallest_jump && std::isfinite(jump))
-    checked.add_jump({0, 0}, most_changed(before, first), {0, jump});
+  if (jump > smallest_jump && std::isfinite(jump)) {
+    const std::size_t section = most_changed(before, first);
+    checked.add_jump({0, 0}, section, changes_stretch(before, first, section), {0, jump});
+  }
   if (!motion.rates(0, 0, motion.duration())) {
     check_sampled(checked);
   } else if (!is_possible(first)) {

@@ -6,7 +6,7 @@ import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
 import { format_time } from '../ui/format';
 import { Icon } from '../ui/Icon';
-import type { Pixel } from './PixelInspector';
+import type { Pixel } from './pixel_value';
 
 interface Props {
   camera: SceneCamera;

@@ -1,7 +1,8 @@
 import { useSignal } from '@preact/signals';
 import { use_app } from '../ui/app';
 import { CameraCard } from './CameraCard';
-import { PixelInspector, type Pixel } from './PixelInspector';
+import { PixelInspector } from './PixelInspector';
+import type { Pixel } from './pixel_value';
 
 /** What the cameras see. */
 export function RightPanel() {

@@ -39,6 +39,17 @@ const shown_time = () => page.evaluate(() =>
   (globalThis as unknown as { flexura: { shown(): { time: number } } }).flexura.shown().time);
 const stage = () => stage_at_rest(page);
 
+/** Of the front camera's picture of a time, as the server gives it losslessly: the values of its first channel. */
+const served_picture = (of: Page, at: number) => of.evaluate(async (time) => {
+  const answer = await fetch(`image/front.png?time=${time}`);
+  const bitmap = await createImageBitmap(await answer.blob());
+  const { width, height } = bitmap;
+  const context = new OffscreenCanvas(width, height).getContext('2d')!;
+  context.drawImage(bitmap, 0, 0);
+  const { data } = context.getImageData(0, 0, width, height);
+  return { width, height, values: Array.from({ length: width * height }, (_, i) => data[4 * i]) };
+}, at);
+
 /**
  * What holds of each recording of 6 s whose second task, `back`, starts at 4 s. It is shown at the times asked for, or up
  * to `a_state` s before; `interval` s is one step.
@@ -92,6 +103,34 @@ function recording_tests(a_state: number, interval: number, title: string): void
     await slide(page, '#scrub', 4);
     await until(async () => (await said.textContent()) === '4.00 s');
     expect((await camera.screenshot()).equals(before)).toBe(false);
+  });
+
+  test('under a pointer that rests, the pixel’s value goes with the picture', async () => {
+    await slide(page, '#scrub', 0);
+    const [first, second] = await Promise.all([0, 4].map((time) => served_picture(page, time)));
+    const differs = (u: number, v: number): boolean => {
+      const i = v * first.width + u;
+      return Math.abs((first.values[i] ?? 0) - (second.values[i] ?? 0)) > 40;
+    };
+    const camera = page.locator('.picture canvas').first();
+    const box = (await camera.boundingBox())!;
+    // Differs all around, too, where the pointer's place is coarser than the picture's pixels.
+    const reach = Math.floor(first.width / box.width);
+    const around = [-reach, 0, reach];
+    const places = first.values.map((_, i) => [i % first.width, Math.floor(i / first.width)]);
+    const place = places.find(([u, v]) => around.every((du) => around.every((dv) => differs(u + du, v + dv))))!;
+    await page.mouse.move(box.x + ((place[0] + 0.5) / first.width) * box.width, box.y + ((place[1] + 0.5) / first.height) * box.height);
+    const said = page.locator('.pixel dd');
+    const [, u, v] = /\((\d+), (\d+)\)/.exec((await said.first().textContent())!)!.map(Number);
+    const values = new Set<string>();
+    for (const { time, picture } of [{ time: 0, picture: first }, { time: 4, picture: second }, { time: 0, picture: first }]) {
+      await slide(page, '#scrub', time);
+      const wanted = `${picture.values[v * picture.width + u]} of 255`;
+      await until(async () => (await said.nth(1).textContent()) === wanted, 8000, `at ${time} s it is ${wanted}`);
+      values.add(wanted);
+    }
+    expect(values.size).toBe(2);
+    await page.mouse.move(box.x - 200, box.y);
   });
 
   test('marks stand on the timeline and go to their time', async () => {

@@ -11,6 +11,13 @@ export interface Client {
   rates: Map<string, number>;
   /** Where it stands in a recording. */
   time: number;
+  /** The picture of each camera that was sent last. */
+  sent: Map<string, SentPicture>;
+}
+
+export interface SentPicture {
+  number: number;
+  pixels: Uint8Array;
 }
 
 type Request = Record<string, unknown> & { do: string };
@@ -103,9 +110,12 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     camera_of(session, request);
     client.rates.set(request.camera as string, request.rate as number);
   },
-  pixel: ({ session }, request) => {
-    const value = session.pixel(camera_of(session, request), request.u as number, request.v as number);
-    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: session.sequence };
+  pixel: ({ session }, request, client) => {
+    const { width } = session.rig.scene.cameras[camera_of(session, request)];
+    const sent = client.sent.get(request.camera as string);
+    if (!sent) throw new Error('no picture was sent yet');
+    const value = sent.pixels[(request.v as number) * width + (request.u as number)];
+    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: sent.number };
   },
   point: ({ session }, request) => ({ ...point_at(session.arm.samples(), request.s as number), section: 0 }),
   backbone: ({ session }, request) => ({ poses: session.arm.samples(request.bends as Bends) }),

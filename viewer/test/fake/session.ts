@@ -128,15 +128,16 @@ export class FakeSession {
     });
   }
 
-  picture(i: number, time = this.time): Buffer {
+  /** The grey values of a picture. */
+  pixels(i: number, time = this.time): Uint8Array {
     if (this.mode === 'recording') this.arm.bends = this.bends_at(time);
     const { width, height } = this.rig.scene.cameras[i];
-    return encode_png(width, height, draw_arm(width, height, this.seen(i)));
+    return draw_arm(width, height, this.seen(i));
   }
 
-  pixel(i: number, u: number, v: number): number {
+  picture(i: number, pixels = this.pixels(i)): Buffer {
     const { width, height } = this.rig.scene.cameras[i];
-    return draw_arm(width, height, this.seen(i))[v * width + u];
+    return encode_png(width, height, pixels);
   }
 
   private seen(i: number): PointInPicture[] {

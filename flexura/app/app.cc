@@ -149,7 +149,10 @@ void add_measure(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* measure =
       app.add_subcommand("measure", "Find the arm, its markers, a circle or the etalon in pictures");
-  measure->add_option("IMAGE", arguments->images, "Picture files, 8 or 16 bits, gray or colour")->required();
+  measure
+      ->add_option("IMAGE", arguments->images,
+                   "Pictures: PNG, JPEG, TIFF, PNM or BMP, up to 16 bits, gray or colour")
+      ->required();
   measure->add_option("--what", arguments->what, "arm, etalon, circle or markers")
       ->type_name("WHAT")
       ->capture_default_str();

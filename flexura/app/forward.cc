@@ -74,7 +74,7 @@ ForwardRequest read_request(const Arm& arm, std::string_view line) {
   if (request.at && reader.problems().empty()) {
     const double length = Backbone(arm, arm_state(arm, request.shape())).length();
     for (std::size_t i = 0; i < request.at->size(); ++i) {
-      if ((*request.at)[i] <= length) continue;
+      if ((*request.at)[i] <= length * (1 + 1e-12)) continue;  // as Backbone::pose
       reader.problem_at(fmt::format("at[{}]", i),
                         fmt::format("{} is beyond the tip: expected at most {} m", (*request.at)[i], length));
     }

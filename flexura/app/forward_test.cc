@@ -43,6 +43,42 @@ TEST(AnswerForward, GivesThePapersEndEffectorFromItsCordAngles) {
   EXPECT_EQ(answer.find("at"), nullptr);
 }
 
+TEST(AnswerForward, CountsCordAnglesFromTheBasesTangentAsItIsWritten) {
+  for (int degrees = -720; degrees <= 720; degrees += 10) {
+    const Arm arm =
+        parse_experiment(fmt::format("[arm]\nkind='planar'\nbase.tangent_deg={}\n[[arm.section]]\nlength=2\n"
+                                     "[[arm.section]]\nlength=1\n",
+                                     degrees),
+                         "x.toml")
+            .arm.arm();
+    const double angle = degrees * std::numbers::pi / 180;
+    const Node answer =
+        parse_json(answer_forward(arm, fmt::format(R"({{"cord_angles":[{},{}]}})", angle, angle)), "answer");
+    const auto tip = numbers(*answer.find("tip")->find("position"));
+    EXPECT_NEAR(tip[0], 3 * std::cos(angle), 1e-12) << degrees;
+    EXPECT_NEAR(tip[1], 3 * std::sin(angle), 1e-12) << degrees;
+  }
+}
+
+TEST(AnswerForward, TakesTheArmsOwnLengthForAPlaceOnIt) {
+  for (const double third : {0.1, 0.3, 0.7, 1.1}) {
+    const Arm arm =
+        parse_experiment(fmt::format("[arm]\nkind='spatial'\n[[arm.section]]\nlength={0}\n[[arm.section]]\n"
+                                     "length={0}\n[[arm.section]]\nlength={0}\n",
+                                     third),
+                         "x.toml")
+            .arm.arm();
+    const std::string bends = R"("bends":[[0,0],[0,0],[0,0]],"at":[)";
+    for (const double length : {3 * third, third + third + third})
+      EXPECT_EQ(
+          parse_json(answer_forward(arm, fmt::format("{{{}{}]}}", bends, length)), "answer").find("error"),
+          nullptr);
+    EXPECT_NE(parse_json(answer_forward(arm, fmt::format("{{{}{}]}}", bends, 3.001 * third)), "answer")
+                  .find("error"),
+              nullptr);
+  }
+}
+
 TEST(AnswerForward, AnswersAlongTheArmOnlyWhenAsked) {
   const Node answer = parse_json(
       answer_forward(spatial_arm(), R"({"bends":[[0,0],[0,0]],"stretches":[1,0.5],"at":[0,1.5,2]})"),

@@ -131,7 +131,7 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
 
 std::vector<std::string> pictures_in(const std::string& folder) {
   static const std::vector<std::string> kinds = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
-                                                 ".bmp", ".pgm", ".ppm",  ".webp"};
+                                                 ".bmp", ".pbm", ".pgm",  ".ppm", ".pnm"};
   std::error_code error;
   std::vector<std::string> files;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;

@@ -23,7 +23,7 @@
 #include "flexura/camera/zoom.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/so3.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"

@@ -17,7 +17,7 @@
 #include "flexura/base/problems.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"

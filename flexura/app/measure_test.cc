@@ -12,7 +12,7 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/base/source.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/temporary_folder.h"

@@ -17,8 +17,8 @@
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/truth_files.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/sim/simulated_camera.h"
-#include "flexura/store/image_file.h"
 #include "flexura/store/text_file.h"
 
 namespace flexura {

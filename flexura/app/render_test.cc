@@ -15,7 +15,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/experiment_files.h"

@@ -1,8 +1,11 @@
 #include "flexura/app/view.h"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -17,6 +20,7 @@
 #include "flexura/app/commands.h"
 #include "flexura/app/kept_token.h"
 #include "flexura/app/stop_signal.h"
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/results.h"
@@ -54,6 +58,12 @@ ViewStart start_of(const std::string& what) {
 
 std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments& arguments,
                                   std::span<const Asset> assets) {
+  std::array<unsigned char, sizeof(in6_addr)> parsed{};
+  if (::inet_pton(AF_INET, arguments.address.c_str(), parsed.data()) != 1 &&
+      ::inet_pton(AF_INET6, arguments.address.c_str(), parsed.data()) != 1)
+    throw input_error("--address",
+                      fmt::format("{}: expected an IP address of this machine, such as 127.0.0.1 or ::1",
+                                  text_node(arguments.address).brief()));
   ServerConfig config;
   config.address = arguments.address;
   config.names = arguments.names;

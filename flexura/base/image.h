@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace flexura {
@@ -49,5 +51,8 @@ class Image {
   int width_ = 0, height_ = 0, channels_ = 1;
   std::vector<T> values_;
 };
+
+/// What a sensor delivers, or a file holds: bytes up to 8 bits a value, words above.
+using Picture = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
 
 }  // namespace flexura

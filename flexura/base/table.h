@@ -88,12 +88,19 @@ class Table {
     Node::Table members;
     for (std::size_t i = 0; i < bindings_.size(); ++i) {
       Node node = bindings_[i].write(value);
-      if (!node.empty()) members.push_back({info_.fields[i].name, {}, std::move(node)});
+      if (!says_nothing(node, info_.fields[i].spec))
+        members.push_back({info_.fields[i].name, {}, std::move(node)});
     }
     return {std::move(members), {}};
   }
 
  private:
+  // An array that a file may not leave empty is so when the file leaves it out.
+  static bool says_nothing(const Node& node, const Spec& spec) {
+    const auto* entries = node.as<Node::Array>();
+    return node.empty() || (entries != nullptr && entries->empty() && spec.count.min > 0);
+  }
+
   struct Binding {
     std::function<bool(const Node&, const Spec&, Reader&, S&)> read;
     std::function<Node(const S&)> write;

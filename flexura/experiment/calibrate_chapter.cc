@@ -9,9 +9,9 @@
 #include "flexura/base/bytes.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
-#include "flexura/store/image_file.h"
 
 namespace flexura {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_writer.h"
 #include "flexura/store/schema.h"

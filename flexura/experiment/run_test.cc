@@ -61,6 +61,18 @@ class Run : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST(ExperimentAsRun, OfEveryExampleIsReadBackAsItIs) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FLEXURA_SOURCE_DIR "/examples")) {
+    const std::filesystem::path file = entry.path() / "experiment.toml";
+    if (!std::filesystem::exists(file)) continue;
+    const std::string written = experiment_toml(load_experiment(file));
+    EXPECT_EQ(experiment_toml(parse_experiment(written, "written.toml")), written) << file;
+    ++count;
+  }
+  EXPECT_GE(count, 5U);
+}
+
 TEST_F(Run, ReachesThePapersEndEffector) {
   const RunResult result = run(load_experiment(paper_arm));
   EXPECT_EQ(result.outcome, RunOutcome::done);

@@ -10,10 +10,10 @@
 
 #include "flexura/base/node.h"
 #include "flexura/experiment/messages.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/silhouette.h"
 #include "flexura/render/truth.h"
-#include "flexura/store/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 

@@ -1,6 +1,7 @@
 #include "flexura/kinematics/shape.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "flexura/kinematics/planar.h"
@@ -9,7 +10,9 @@ namespace flexura {
 
 double base_tangent_angle(const Arm& arm) {
   const Eigen::Vector3d tangent_W = arm.X_WB.rotation.col(2);
-  return std::atan2(tangent_W.y(), tangent_W.x());
+  const double angle = std::atan2(tangent_W.y(), tangent_W.x());
+  constexpr double turn = 2 * std::numbers::pi;
+  return angle + turn * std::round((arm.near_tangent - angle) / turn);
 }
 
 ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {

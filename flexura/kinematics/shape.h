@@ -8,7 +8,7 @@
 namespace flexura {
 
 /// Angle of the straight arm (the base's z axis) from +X in the XOY plane, counter-clockwise, rad: the
-/// paper's alpha_Ox^0 of eq. 5.
+/// paper's alpha_Ox^0 of eq. 5. Of those that differ by whole turns, the one nearest to Arm::near_tangent.
 [[nodiscard]] double base_tangent_angle(const Arm& arm);
 
 /// The state of `arm` that `shape` means; what is left out is straight and unstretched. `shape` fits the arm

@@ -43,6 +43,9 @@ struct Arm {
   ArmKind kind = ArmKind::planar;
   Pose X_WB = default_base_pose();
   std::vector<Section> sections;
+  /// Planar arms: cord angles count from the base's tangent, whose angle from +X is the one nearest to this,
+  /// rad. A file that says 270 degrees means 270 and not -90.
+  double near_tangent = 0;
 
   /// Sum of the unstretched section lengths, m.
   [[nodiscard]] double length() const;

@@ -179,6 +179,7 @@ Arm ArmConfig::arm() const {
     const double s = std::sin(*base.tangent);
     // The columns are B's axes: z along the tangent, x to its right in the plane, y along -Z.
     arm.X_WB.rotation << s, 0, c, -c, 0, s, 0, -1, 0;
+    arm.near_tangent = *base.tangent;
   } else if (base.rotation) {
     arm.X_WB.rotation = rotation_of(*base.rotation);
   }

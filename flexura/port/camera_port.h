@@ -3,15 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <variant>
 
 #include "flexura/base/image.h"
 #include "flexura/port/outcome.h"
 
 namespace flexura {
-
-/// What a sensor delivers: bytes up to 8 bits a value, words above.
-using Picture = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
 
 /// One image of a camera. Cheap to copy.
 struct Frame {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -29,8 +28,19 @@ struct CheckedMotion {
   [[nodiscard]] std::size_t last_step() const {
     return static_cast<std::size_t>(std::ceil(motion().duration() / step));
   }
-  [[nodiscard]] double time_of(std::size_t k) const {
-    return std::min(static_cast<double>(k) * step, motion().duration());
+  /// When the clock looks at the motion, in the motion's own time: its start, every step of the clock within
+  /// it, which need not be one after the start, and its end.
+  [[nodiscard]] std::vector<double> clock_times() const {
+    constexpr double part = 1e-9;  // of a step: nearer times are one
+    const double duration = motion().duration();
+    std::vector<double> times = {0};
+    for (double k = std::floor(timed.start / step + part) + 1;; ++k) {
+      const double time = k * step - timed.start;
+      if (time > duration - part * step) break;
+      times.push_back(time);
+    }
+    if (duration > 0) times.push_back(duration);
+    return times;
   }
 
   /// Adds a violation that says what and where; its times are the motion's own.

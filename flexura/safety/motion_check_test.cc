@@ -221,6 +221,23 @@ TEST(MotionCheck, SaysWhatItOnlySampled) {
   EXPECT_TRUE(check(short_section(), hold_motion(bent(0), 1)).caveats.empty());
 }
 
+TEST(MotionCheck, SamplesAFormulaWhenTheClockWillHoweverItsTaskBegins) {
+  Arm arm = short_section();
+  arm.sections[0].max_bend = 0.5;
+  // Narrower than a step, about 0.7 s of the clock.
+  const auto peak =
+      function_motion(0.6, [](double t) { return bent(std::exp(-std::pow((t - 0.15) / 0.015, 2))); });
+  const ArmState start = bent(0);
+  const SafetyReport found =
+      check_motions(arm, {}, start, {{hold_motion(start, 0.55), 0}, {peak, 0.55}}, 0.1);
+  ASSERT_FALSE(found.is_safe());
+  EXPECT_EQ(found.violations.front().hazard, Hazard::bend);
+  EXPECT_NEAR(found.violations.front().worst_time, 0.7, 1e-12);
+  EXPECT_NEAR(found.violations.front().value, 1, 1e-12);
+  // Nobody asks for the peak where no step of the clock falls upon it.
+  EXPECT_TRUE(check_motions(arm, {}, start, {{hold_motion(start, 0.5), 0}, {peak, 0.5}}, 0.1).is_safe());
+}
+
 TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   const auto nowhere = function_motion(2, [](double t) { return bent(std::sqrt(1 - t)); });
   const SafetyReport report = check(short_section(), nowhere, 0.1);

@@ -20,6 +20,7 @@ class SampledCheck {
  public:
   explicit SampledCheck(const CheckedMotion& checked)
       : checked_(checked),
+        times_(checked.clock_times()),
         watches_(limit_watches(checked.arm)),
         limits_(watches_.size()),
         rates_(checked.arm.sections.size()),
@@ -29,11 +30,10 @@ class SampledCheck {
     checked_.report.caveats.push_back(
         fmt::format("{}: sampled every {:.6g} s: the law has no bound on its rates",
                     span_text(checked_.whole(), checked_.timed.start), checked_.step));
-    const std::size_t last = checked_.last_step();
     std::optional<double> last_possible;
     std::optional<ArmState> before;
-    for (std::size_t k = 0; k <= last; ++k) {
-      const double time = checked_.time_of(k);
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const double time = times_[k];
       ArmState state = checked_.motion().at(time);
       if (!is_possible(state)) {
         checked_.add_impossible(time);
@@ -53,7 +53,7 @@ class SampledCheck {
 
  private:
   void look_at(std::size_t k, const ArmState& state) {
-    const double time = checked_.time_of(k);
+    const double time = times_[k];
     for (std::size_t w = 0; w < watches_.size(); ++w) {
       const double value = watches_[w].sign * watches_[w].value(state);
       if (value > watches_[w].threshold()) limits_[w].add(k, {time, time}, value);
@@ -66,7 +66,7 @@ class SampledCheck {
 
   // The mean rate since the step before.
   void look_at_rates(std::size_t k, const ArmState& before, const ArmState& state) {
-    const Span span{checked_.time_of(k - 1), checked_.time_of(k)};
+    const Span span{times_[k - 1], times_[k]};
     for (std::size_t i = 0; i < rates_.size(); ++i) {
       const double rate = (state.bends[i] - before.bends[i]).norm() / (span.end - span.start);
       if (rate > threshold_of_rate(checked_.arm.sections[i].max_bend_rate)) rates_[i].add(k, span, rate);
@@ -97,6 +97,7 @@ class SampledCheck {
   using Place = std::pair<std::size_t, std::optional<std::size_t>>;
 
   const CheckedMotion& checked_;
+  std::vector<double> times_;  // of the steps, in the motion's own time
   std::vector<LimitWatch> watches_;
   std::vector<SampledSpans> limits_;
   std::vector<SampledSpans> rates_;

@@ -110,6 +110,13 @@ TEST_F(ServerTest, ListensWhereItSaysAndNowhereElse) {
   Server& server = start();
   EXPECT_GT(server.port(), 0);
   EXPECT_EQ(server.url(), "http://127.0.0.1:" + std::to_string(server.port()) + "/#token=" + server.token());
+  // Of all of 127.0.0.0/8, which is this machine's own, the one address alone.
+  EXPECT_NO_THROW(RawClient(server.port()));
+  EXPECT_THROW(RawClient(server.port(), 0, "127.0.0.2"), std::runtime_error);
+  ServerConfig anywhere;
+  anywhere.address = "0.0.0.0";
+  const Server open_server(anywhere, page_assets, host_);
+  EXPECT_NO_THROW(RawClient(open_server.port(), 0, "127.0.0.2"));
   ServerConfig taken;
   taken.port = server.port();
   EXPECT_THROW(Server(taken, page_assets, host_), std::system_error);

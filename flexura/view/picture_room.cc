@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "flexura/experiment/photographer.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/state_message.h"
 

@@ -8,7 +8,7 @@
 
 #include "flexura/base/source.h"
 #include "flexura/experiment/results.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/view/answers.h"

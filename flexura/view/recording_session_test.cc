@@ -8,7 +8,7 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 #include "flexura/store/text_file.h"
 #include "flexura/view/series.h"
 #include "tests/support/experiment_files.h"

@@ -28,8 +28,9 @@ struct RawFrame {
 /// come within half a minute throws std::runtime_error.
 class RawClient {
  public:
-  /// `receive_buffer`: what the system holds for a client that does not read; 0 for its usual.
-  explicit RawClient(std::uint16_t port, int receive_buffer = 0);
+  /// `receive_buffer`: what the system holds for a client that does not read; 0 for its usual. `address`:
+  /// IPv4.
+  explicit RawClient(std::uint16_t port, int receive_buffer = 0, const char* address = "127.0.0.1");
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;

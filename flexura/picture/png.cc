@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 
 namespace flexura {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 
 namespace flexura {
 namespace {

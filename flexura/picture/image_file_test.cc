@@ -1,4 +1,4 @@
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

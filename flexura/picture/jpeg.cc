@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "flexura/store/image_file.h"
+#include "flexura/picture/image_file.h"
 
 namespace flexura {
 namespace {

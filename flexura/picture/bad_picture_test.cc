@@ -1,0 +1,206 @@
+// What is no picture, or a damaged one: one line each, nothing on stderr, and no memory for what is only
+// claimed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "flexura/base/source.h"
+#include "flexura/picture/image_file.h"
+#include "tests/support/picture_files.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::size_t most = 4096;
+
+// What is wrong with a file; nothing when it is read.
+std::string complaint(const std::string& file) {
+  try {
+    (void)read_picture(file_bytes(file), "file", most);
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 1U);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    EXPECT_THAT(error.what(), StartsWith("file: "));
+    return std::string(error.what()).substr(6);
+  }
+  return "";
+}
+
+// A file of each kind, and of each of the forms that take ways of their own.
+std::vector<std::string> good_files() {
+  TestRandom random(1);
+  const auto gray = random_values<std::uint8_t>(random, 21, 13, 1, 255),
+             colors = random_values<std::uint8_t>(random, 21, 13, 3, 255),
+             bits = random_values<std::uint8_t>(random, 21, 13, 1, 1);
+  const auto words = random_values<std::uint16_t>(random, 21, 13, 3, 65535);
+  std::vector<std::string> files = {png(gray),
+                                    png(words),
+                                    png_file(colors, {8, true}),
+                                    png_file(bits, {1, true, {{1, 2, 3}, {4, 5, 6}}}),
+                                    jpeg(gray),
+                                    jpeg(colors),
+                                    jpeg_file(colors, true),
+                                    bmp_file(colors, {}),
+                                    bmp_file(bits, {1, true, false, {{0, 0, 0}, {255, 255, 255}}}),
+                                    pbm_file(bits, true),
+                                    pbm_file(bits, false)};
+  for (const bool is_plain : {false, true})
+    files.insert(files.end(), {pnm_file(gray, 255, is_plain), pnm_file(words, 65535, is_plain)});
+  for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS, COMPRESSION_JPEG,
+                                COMPRESSION_ADOBE_DEFLATE, COMPRESSION_ZSTD, COMPRESSION_LZMA})
+    files.insert(
+        files.end(),
+        {tiff_file(gray, {.compression = compression, .rows = 16}),
+         tiff_file(
+             colors,
+             {.compression = compression, .photometric = PHOTOMETRIC_RGB, .tile = 16, .is_separate = true})});
+  files.push_back(tiff_file(words, {.bits = 16, .photometric = PHOTOMETRIC_RGB}));
+  files.push_back(tiff_file(bits, {.bits = 1, .compression = COMPRESSION_CCITTFAX4}));
+  return files;
+}
+
+TEST(BadPicture, OfNoKindIsCalledSo) {
+  EXPECT_EQ(complaint(""), "the file is empty");
+  const std::string none = "not a picture that can be read: expected PNG, JPEG, TIFF, PNM or BMP";
+  for (const char* text :
+       {"P", "P5", "P7\n", "Pnm", "GIF89a", "RIFF....WEBPVP8 ", "II*", "\xFF\xD8", "hello"})
+    EXPECT_EQ(complaint(text), none) << text;
+}
+
+TEST(BadPicture, CutShortIsCalledSo) {
+  for (const std::string& file : good_files()) {
+    ASSERT_EQ(complaint(file), "");
+    for (std::size_t size = 0; size < file.size(); size += one_case_of) {
+      const std::string line = complaint(file.substr(0, size));
+      // A plain number may be cut within; the last row of a BMP file need not be filled up; a TIFF file may
+      // show it by another sign.
+      const bool is_plain = file[0] == 'P' && file[1] <= '3', is_tiff = file[0] == 'I',
+                 is_filling = file[0] == 'B' && size + 3 >= file.size(),
+                 is_named = file[0] == 'P' || file[0] == 'B' ? size > 2 : size > 3;
+      if (is_plain || is_tiff || is_filling || !is_named) continue;
+      EXPECT_THAT(line, HasSubstr("file is cut short"))
+          << size << " of " << file.size() << " " << file.substr(0, 2);
+    }
+  }
+  const std::string tiff = tiff_file(Image<std::uint8_t>(21, 13), {});
+  for (const std::size_t size : {4U, 6U, 7U, 8U, 50U, 281U})
+    EXPECT_EQ(complaint(tiff.substr(0, size)), "the TIFF file is cut short");
+  EXPECT_EQ(complaint("P2 2 1 9 1 "), "the PNM file is cut short");
+}
+
+TEST(BadPicture, HugeOrWithoutPixelsIsCalledSo) {
+  const std::string line = ": expected at most 4096 px", none = ": expected one pixel at least";
+  const std::string png_claim = png(Image<std::uint8_t>(3, 3));
+  const auto claim = [](std::string file, std::size_t at, const std::string& size) {
+    return file.replace(at, size.size(), size);
+  };
+  using namespace std::string_literals;
+  EXPECT_EQ(complaint(claim(png_claim, 16, "\x7F\xFF\xFF\xFF\x7F\xFF\xFF\xFF"s)),
+            "2147483647 x 2147483647 px" + line);
+  EXPECT_EQ(complaint(claim(png_claim, 16, "\0\0\0\0"s)), "0 x 3 px" + none);
+  const std::string jpeg_claim = jpeg(Image<std::uint8_t>(3, 3));
+  const std::size_t frame = jpeg_claim.find("\xFF\xC0") + 5;
+  EXPECT_EQ(complaint(claim(jpeg_claim, frame, "\xF0\x00\xF0\x00"s)), "61440 x 61440 px" + line);
+  EXPECT_EQ(complaint(claim(jpeg_claim, frame, "\x00\x00\x00\x03"s)), "3 x 0 px" + none);
+  EXPECT_EQ(complaint("P5 100000 100000 255\n"), "100000 x 100000 px" + line);
+  EXPECT_EQ(complaint("P5 0 1 255\n"), "0 x 1 px" + none);
+  EXPECT_EQ(complaint("P6 99999999999999999999 1 255\n"), "2147483648 x 1 px" + line);
+  const std::string bmp_claim = bmp_file(Image<std::uint8_t>(3, 3, 3), {});
+  EXPECT_EQ(complaint(claim(bmp_claim, 18, "\0\0\1\0\0\0\1\0"s)), "65536 x 65536 px" + line);
+  EXPECT_EQ(complaint(claim(bmp_claim, 18, "\xFF\xFF\xFF\xFF"s)), "-1 x 3 px" + none);
+  EXPECT_EQ(complaint(claim(bmp_claim, 22, "\0\0\0\x80"s)), "3 x 2147483648 px" + line);
+  const std::string tiff_claim = tiff_file(Image<std::uint8_t>(3, 3), {});
+  const std::string width = "\x00\x01\x03\x00\x01\x00\x00\x00\x03\x00"s;
+  const std::size_t tag = tiff_claim.find(width);
+  ASSERT_NE(tag, std::string::npos);
+  EXPECT_EQ(complaint(claim(tiff_claim, tag + 8, "\xFF\xFF"s)), "65535 x 3 px" + line);
+  EXPECT_EQ(complaint(tiff_file(Image<std::uint8_t>(65, 64), {})), "65 x 64 px" + line);
+  EXPECT_EQ(complaint(png(Image<std::uint8_t>(65, 64))), "65 x 64 px" + line);
+}
+
+TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
+  EXPECT_EQ(complaint(jpeg_file(smooth_picture(8, 8, 4), false)),
+            "the JPEG file has 4 inks (CMYK): expected gray, or red, green and blue");
+  EXPECT_EQ(
+      complaint(tiff(Image<float>(3, 3))),
+      "the TIFF file has floating point values of 32 bits: expected whole ones of 1, 2, 4, 8 or 16 bits, "
+      "without a sign");
+  EXPECT_EQ(complaint(tiff_file(Image<std::uint8_t>(3, 3, 3), {.photometric = PHOTOMETRIC_CIELAB})),
+            "the TIFF file has colours of kind 8: expected gray, RGB or a palette");
+  EXPECT_EQ(complaint(tiff_file(Image<std::uint8_t>(9, 9),
+                                {.bits = 1, .compression = COMPRESSION_JBIG, .rows = 9})),
+            "the TIFF file has compression 34661: expected a usual one");
+  const std::string bmp = bmp_file(Image<std::uint8_t>(3, 3, 3), {});
+  EXPECT_EQ(complaint(std::string(bmp).replace(28, 1, "\x10")),
+            "the BMP file has 16 bits a pixel: expected 1, 4, 8, 24, 32");
+  EXPECT_EQ(complaint(std::string(bmp).replace(30, 1, "\1")),
+            "the BMP file is compressed, or has masks of its own: expected neither");
+  EXPECT_EQ(complaint("P5 1 1 65536\n"), "the PNM file says 65536 for white: expected 1 to 65535");
+}
+
+TEST(BadPicture, DamagedIsCalledSoWithWhatTheLibrarySays) {
+  const std::string is_damaged = "file is damaged, or of a sort that cannot be read: ";
+  std::string file = png(smooth_picture(21, 13, 1));
+  file[file.size() - 13] ^= 1;  // Of the checksum before the last chunk.
+  EXPECT_EQ(complaint(file), "the PNG " + is_damaged + "IDAT: CRC error");
+  EXPECT_THAT(complaint("\x89PNG\n\x1A\n but no more"), HasSubstr("the PNG " + is_damaged));
+  EXPECT_THAT(complaint("\xFF\xD8\xFF\xD8 twice"), HasSubstr("the JPEG " + is_damaged));
+  EXPECT_EQ(complaint("P2 2 1 9 1 x"), "the PNM " + is_damaged + "no number at byte 11");
+  EXPECT_EQ(complaint("P1 2 1 1 3"), "the PNM " + is_damaged + "bits that are neither 0 nor 1");
+  EXPECT_EQ(complaint("BM" + std::string(12, '\0') + "\x10" + std::string(40, '\0')),
+            "the BMP " + is_damaged + "a header of 16 bytes");
+  std::string tiff = tiff_file(smooth_picture(21, 13, 1), {.compression = COMPRESSION_ADOBE_DEFLATE});
+  tiff[8] = 'y';
+  EXPECT_THAT(complaint(tiff), HasSubstr("the TIFF " + is_damaged));
+}
+
+TEST(BadPicture, IsReadOrRefusedInSilenceWhateverItsBytes) {
+  const std::vector<std::string> files = good_files();
+  testing::internal::CaptureStderr();
+  for_random_cases(4000, [&](TestRandom& random) {
+    std::string file = files[static_cast<std::size_t>(random.integer(0, static_cast<int>(files.size()) - 1))];
+    for (int changes = random.integer(1, 4); changes > 0; --changes)
+      file[static_cast<std::size_t>(random.integer(0, static_cast<int>(file.size()) - 1))] =
+          static_cast<char>(random.integer(0, 255));
+    (void)complaint(file);
+  });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(BadPicture, OfOneThreadIsNothingToOthers) {
+  const std::vector<std::string> files = good_files();
+  std::vector<Picture> pictures;
+  pictures.reserve(files.size());
+  for (const std::string& file : files) pictures.push_back(read_picture(file_bytes(file), "file", most));
+  std::array<int, 8> wrong{};
+  std::vector<std::thread> threads;
+  threads.reserve(wrong.size());
+  for (int& mine : wrong)
+    threads.emplace_back([&] {
+      for (int turn = 0; turn < 20; ++turn)
+        for (std::size_t i = 0; i < files.size(); ++i) {
+          if (read_picture(file_bytes(files[i]), "file", most) != pictures[i]) ++mine;
+          try {
+            (void)read_picture(file_bytes(files[i]).first(files[i].size() / 2), "file", most);
+          } catch (const InputError&) {
+            continue;
+          }
+          ++mine;
+        }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(wrong, testing::Each(0));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,123 @@
+#include <cstddef>
+#include <cstdio>
+// jpeglib.h needs FILE and size_t before it.
+#include <jpeglib.h>
+// It needs jpeglib.h before it.
+#include <jerror.h>
+
+#include <csetjmp>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "flexura/picture/picture_kinds.h"
+
+namespace flexura {
+namespace {
+
+// libjpeg hands its errors to a function that must not return.
+struct JpegInput {
+  jpeg_error_mgr manager;  // first: libjpeg knows its address
+  std::jmp_buf back;
+  jpeg_progress_mgr progress;
+  char text[JMSG_LENGTH_MAX];
+};
+
+void stop_reading(j_common_ptr job) {
+  auto* input = reinterpret_cast<JpegInput*>(job->err);
+  (*job->err->format_message)(job, input->text);
+  std::longjmp(input->back, 1);
+}
+
+// After these libjpeg would go on with gray, or with rubbish. Others tell of oddities.
+void weigh_warning(j_common_ptr job, int level) {
+  if (level >= 0) return;
+  switch (job->err->msg_code) {
+    case JWRN_JPEG_EOF:
+    case JWRN_HIT_MARKER:
+    case JWRN_HUFF_BAD_CODE:
+    case JWRN_ARITH_BAD_CODE:
+    case JWRN_MUST_RESYNC:
+      stop_reading(job);
+      break;
+    default:
+      break;
+  }
+}
+
+void write_nothing(j_common_ptr /*job*/) {}
+
+// A scan of ten bytes makes libjpeg go over the whole picture; honest files have some ten scans.
+void bound_scans(j_common_ptr job) {
+  constexpr int most_scans = 500;
+  if (reinterpret_cast<j_decompress_ptr>(job)->input_scan_number <= most_scans) return;
+  auto* input = reinterpret_cast<JpegInput*>(job->err);
+  std::snprintf(input->text, sizeof input->text, "more than %d scans", most_scans);
+  std::longjmp(input->back, 1);
+}
+
+// These two are false when libjpeg gave up. It does so by a jump that runs no destructors: nothing here has
+// one.
+bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job, JpegInput* input) {
+  if (setjmp(input->back) != 0) return false;
+  jpeg_create_decompress(job);
+  job->progress = &input->progress;
+  jpeg_mem_src(job, file.data(), file.size());
+  jpeg_read_header(job, TRUE);
+  return true;
+}
+
+bool read_rows(jpeg_decompress_struct* job, JpegInput* input, Image<std::uint8_t>* image) {
+  if (setjmp(input->back) != 0) return false;
+  jpeg_start_decompress(job);
+  while (job->output_scanline < job->output_height) {
+    JSAMPROW row = image->row(static_cast<int>(job->output_scanline)).data();
+    jpeg_read_scanlines(job, &row, 1);
+  }
+  jpeg_finish_decompress(job);
+  return true;
+}
+
+struct JpegReader {
+  JpegReader() {
+    job.err = jpeg_std_error(&input.manager);
+    input.manager.error_exit = stop_reading;
+    input.manager.emit_message = weigh_warning;
+    input.manager.output_message = write_nothing;
+    input.progress.progress_monitor = bound_scans;
+  }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&job); }
+
+  [[nodiscard]] std::runtime_error problem() const {
+    const int code = input.manager.msg_code;
+    const bool has_ended = code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JERR_INPUT_EOF;
+    return has_ended ? cut_short("JPEG") : damaged("JPEG", input.text);
+  }
+
+  jpeg_decompress_struct job{};
+  JpegInput input{};
+};
+
+}  // namespace
+
+Picture read_jpeg(std::span<const std::uint8_t> file, std::size_t most_pixels) {
+  JpegReader reader;
+  const bool has_header = read_header(file, &reader.job, &reader.input);
+  if (has_header || reader.input.manager.msg_code == JERR_EMPTY_IMAGE)
+    check_picture_size(reader.job.image_width, reader.job.image_height, most_pixels);
+  if (!has_header) throw reader.problem();
+  const int channels = reader.job.num_components;
+  if (channels != 1 && channels != 3)
+    throw std::runtime_error("the JPEG file has " + std::to_string(channels) +
+                             (channels == 4 ? " inks (CMYK)" : " values a pixel") +
+                             ": expected gray, or red, green and blue");
+  reader.job.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  Image<std::uint8_t> image(static_cast<int>(reader.job.image_width),
+                            static_cast<int>(reader.job.image_height), channels);
+  if (!read_rows(&reader.job, &reader.input, &image)) throw reader.problem();
+  return image;
+}
+
+}  // namespace flexura

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+#include <tiffio.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "flexura/picture/picture_kinds.h"
+#include "flexura/picture/tiff_input.h"
+
+namespace flexura {
+namespace {
+
+// A TIFF picture is cut into blocks, strips as wide as the picture or tiles, in one plane or in one for each
+// channel.
+struct TiffLayout {
+  std::uint32_t width = 0, height = 0, block_width = 0, block_height = 0;
+  std::uint16_t bits = 1, samples = 1, photometric = 0;
+  bool is_tiled = false, is_separate = false;
+  std::size_t row_size = 0, block_size = 0;  // Bytes.
+
+  [[nodiscard]] std::size_t samples_in_block() const { return is_separate ? 1 : samples; }
+  [[nodiscard]] int channels() const { return photometric == PHOTOMETRIC_RGB ? 3 : 1; }
+};
+
+template <typename Number>
+Number field(TIFF* open, std::uint32_t tag, Number otherwise) {
+  Number value{};
+  return TIFFGetFieldDefaulted(open, tag, &value) == 1 ? value : otherwise;
+}
+
+[[noreturn]] void refuse_tiff(const std::string& what, const char* expected) {
+  throw std::runtime_error("the TIFF file has " + what + ": expected " + expected);
+}
+
+void read_values(TIFF* open, TiffLayout* layout) {
+  layout->bits = field<std::uint16_t>(open, TIFFTAG_BITSPERSAMPLE, 1);
+  layout->samples = field<std::uint16_t>(open, TIFFTAG_SAMPLESPERPIXEL, 1);
+  layout->is_separate =
+      layout->samples > 1 && field<std::uint16_t>(open, TIFFTAG_PLANARCONFIG, 0) == PLANARCONFIG_SEPARATE;
+  const auto format = field<std::uint16_t>(open, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+  const bool is_whole = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
+  constexpr std::array<std::uint16_t, 5> known = {1, 2, 4, 8, 16};
+  if (is_whole && std::ranges::count(known, layout->bits) == 1) return;
+  const char* name = is_whole ? "" : "signed ";
+  if (format == SAMPLEFORMAT_IEEEFP) name = "floating point ";
+  refuse_tiff(fmt::format("{}values of {} bits", name, layout->bits),
+              "whole ones of 1, 2, 4, 8 or 16 bits, without a sign");
+}
+
+// What the values are, and that they are what is read.
+void read_form(TIFF* open, TiffLayout* layout) {
+  const auto compression = field<std::uint16_t>(open, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+  // libjbig ends the whole program where it gets no memory; the old JPEG is a guess at what was meant.
+  if (TIFFIsCODECConfigured(compression) == 0 || compression == COMPRESSION_JBIG ||
+      compression == COMPRESSION_OJPEG)
+    refuse_tiff(fmt::format("compression {}", compression), "a usual one");
+  read_values(open, layout);
+  layout->photometric = field<std::uint16_t>(open, TIFFTAG_PHOTOMETRIC,
+                                             layout->samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
+  // JPEG's own colours: libtiff turns them into red, green and blue.
+  if (layout->photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG && !layout->is_separate &&
+      TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB) == 1)
+    layout->photometric = PHOTOMETRIC_RGB;
+  if (layout->photometric > PHOTOMETRIC_PALETTE)
+    refuse_tiff(fmt::format("colours of kind {}", layout->photometric), "gray, RGB or a palette");
+  constexpr int most_samples = 8;  // Red, green, blue, and what is passed over.
+  if (layout->samples < layout->channels() || layout->samples > most_samples ||
+      (layout->bits < 8 && layout->samples > 1) ||
+      (layout->bits > 8 && layout->photometric == PHOTOMETRIC_PALETTE))
+    refuse_tiff(fmt::format("{} values of {} bits a pixel", layout->samples, layout->bits),
+                "gray, RGB or a palette");
+}
+
+void read_blocks(TIFF* open, TiffLayout* layout, std::size_t most_pixels) {
+  layout->is_tiled = TIFFIsTiled(open) != 0;
+  layout->block_width = layout->is_tiled ? field<std::uint32_t>(open, TIFFTAG_TILEWIDTH, 0) : layout->width;
+  layout->block_height = layout->is_tiled
+                             ? field<std::uint32_t>(open, TIFFTAG_TILELENGTH, 0)
+                             : std::min(layout->height, field<std::uint32_t>(open, TIFFTAG_ROWSPERSTRIP, 0));
+  check_picture_size(layout->block_width, layout->block_height, most_pixels);
+  layout->row_size = (layout->block_width * layout->samples_in_block() * layout->bits + 7) / 8;
+  layout->block_size = layout->row_size * layout->block_height;
+  const auto size = static_cast<std::size_t>(layout->is_tiled ? TIFFTileSize64(open) : TIFFStripSize64(open));
+  if (size != layout->block_size) throw damaged("TIFF", "blocks of another size than their pixels");
+}
+
+// A value of 1, 2, 4 or 8 bits, or of 16 in this machine's byte order, which libtiff has made.
+template <typename Value>
+Value value_in(const std::uint8_t* row, std::size_t index, std::size_t bits) {
+  Value value{};
+  if (sizeof(Value) == 2 || bits == 8) {
+    std::memcpy(&value, row + index * sizeof(Value), sizeof(Value));
+  } else {
+    const std::size_t at = index * bits;
+    value = static_cast<Value>(row[at / 8] >> (8 - bits - at % 8) & ((1U << bits) - 1U));
+  }
+  return value;
+}
+
+template <typename Value>
+Image<Value> values_of(TIFF* open, const TiffLayout& layout, const TiffInput& input) {
+  Image<Value> image(static_cast<int>(layout.width), static_cast<int>(layout.height), layout.channels());
+  std::vector<std::uint8_t> block(layout.block_size);
+  const int planes = layout.is_separate ? layout.channels() : 1,
+            in_plane = layout.is_separate ? 1 : layout.channels();
+  const auto read_block = [&](std::uint32_t u, std::uint32_t v, std::uint16_t plane) {
+    const auto size = static_cast<tmsize_t>(block.size());
+    return layout.is_tiled
+               ? TIFFReadEncodedTile(open, TIFFComputeTile(open, u, v, 0, plane), block.data(), size)
+               : TIFFReadEncodedStrip(open, TIFFComputeStrip(open, v, plane), block.data(), size);
+  };
+  const auto copy_block = [&](std::uint32_t u0, std::uint32_t v0, std::uint32_t rows, int plane) {
+    const std::uint32_t columns = std::min(layout.block_width, layout.width - u0);
+    for (std::uint32_t v = 0; v < rows; ++v)
+      for (std::uint32_t u = 0; u < columns; ++u)
+        for (int c = 0; c < in_plane; ++c)
+          image.at(static_cast<int>(u0 + u), static_cast<int>(v0 + v), plane + c) =
+              value_in<Value>(block.data() + v * layout.row_size,
+                              u * layout.samples_in_block() + static_cast<std::size_t>(c), layout.bits);
+  };
+  for (int plane = 0; plane < planes; ++plane)
+    for (std::uint32_t v = 0; v < layout.height; v += std::min(layout.block_height, layout.height - v))
+      for (std::uint32_t u = 0; u < layout.width; u += std::min(layout.block_width, layout.width - u)) {
+        const std::uint32_t rows = std::min(layout.block_height, layout.height - v);
+        if (read_block(u, v, static_cast<std::uint16_t>(plane)) <
+            static_cast<tmsize_t>(rows * layout.row_size))
+          throw input.problem();
+        copy_block(u, v, rows, plane);
+      }
+  return image;
+}
+
+// Gray of 1 to 16 bits becomes bytes or words; 0 may be white.
+template <typename Value>
+void make_gray(Image<Value>* image, const TiffLayout& layout) {
+  const int most = (1 << layout.bits) - 1, scale = sizeof(Value) == 1 ? 255 / most : 1;
+  const bool is_turned = layout.photometric == PHOTOMETRIC_MINISWHITE;
+  for (Value& value : image->values()) value = static_cast<Value>((is_turned ? most - value : value) * scale);
+}
+
+Palette palette_of(TIFF* open, const TiffLayout& layout) {
+  const std::uint16_t *red = nullptr, *green = nullptr, *blue = nullptr;
+  if (TIFFGetField(open, TIFFTAG_COLORMAP, &red, &green, &blue) != 1) throw damaged("TIFF", "no palette");
+  Palette palette{};
+  for (std::size_t i = 0; i < std::size_t{1} << layout.bits; ++i)
+    palette[i] = {static_cast<std::uint8_t>(red[i] >> 8U), static_cast<std::uint8_t>(green[i] >> 8U),
+                  static_cast<std::uint8_t>(blue[i] >> 8U)};
+  return palette;
+}
+
+}  // namespace
+
+Picture read_tiff(std::span<const std::uint8_t> file, std::size_t most_pixels) {
+  // Tiles may reach beyond the picture; and libtiff keeps a block and its compressed bytes.
+  constexpr std::size_t usual_tile = std::size_t{1} << 20U, most_pixel_bytes = 16;
+  const std::size_t most_block = std::max(most_pixels, usual_tile);
+  TiffInput input{file};
+  const OpenTiff open = open_tiff(&input, most_block * most_pixel_bytes + file.size());
+  TiffLayout layout;
+  layout.width = field<std::uint32_t>(open.get(), TIFFTAG_IMAGEWIDTH, 0);
+  layout.height = field<std::uint32_t>(open.get(), TIFFTAG_IMAGELENGTH, 0);
+  check_picture_size(layout.width, layout.height, most_pixels);
+  read_form(open.get(), &layout);
+  read_blocks(open.get(), &layout, most_block);
+  if (layout.bits == 16) {
+    auto image = values_of<std::uint16_t>(open.get(), layout, input);
+    if (layout.channels() == 1) make_gray(&image, layout);
+    return image;
+  }
+  auto image = values_of<std::uint8_t>(open.get(), layout, input);
+  if (layout.photometric == PHOTOMETRIC_PALETTE)
+    return painted(std::move(image), palette_of(open.get(), layout));
+  if (layout.channels() == 1) make_gray(&image, layout);
+  return image;
+}
+
+}  // namespace flexura

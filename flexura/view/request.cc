@@ -8,6 +8,7 @@
 
 #include "flexura/base/problems.h"
 #include "flexura/store/json.h"
+#include "flexura/view/seen_arm.h"
 
 namespace flexura {
 namespace {
@@ -86,6 +87,7 @@ std::string read(Node document, Request& request) {
   const auto* text = name.as<std::string>();
   if (text == nullptr) return "do is missing: expected what to do";
   if (!request.id && (*text != "ack" || !id.empty())) return "id is missing: expected a whole number";
+  if (const Node* camera = document.find("camera")) request.camera = camera->where;
   Reader reader;
   if (!read_ask(*text, document, reader, request.ask)) {
     const auto names = all_names(static_cast<const Ask*>(nullptr));
@@ -189,6 +191,27 @@ const Table<PixelRequest>& fields_of(const PixelRequest*) {
           .check([](const PixelRequest& pixel, Reader& reader) { check_camera(pixel.camera, reader); });
   return table;
 }
+
+const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
+  static const auto table =
+      Table<MeasureRequest>("measure", "What a picture shows of the arm.")
+          .field("camera", &MeasureRequest::camera, {.required = true})
+          .field("layers", &MeasureRequest::layers,
+                 {.meaning = "what is to be drawn", .count = {0, layer_names().size()}})
+          .check([](const MeasureRequest& measure, Reader& reader) {
+            check_camera(measure.camera, reader);
+            for (std::size_t i = 0; measure.layers && i < measure.layers->size(); ++i) {
+              const std::string& name = (*measure.layers)[i];
+              if (std::ranges::count(layer_names(), name) == 0)
+                reader.problem_at(fmt::format("layers[{}]", i),
+                                  fmt::format("there is no layer {}: expected one of {}",
+                                              Node{name, {}}.brief(), fmt::join(layer_names(), ", ")));
+            }
+          });
+  return table;
+}
+
+const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeRequest>("shape"); }
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =

@@ -11,6 +11,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StrEq;
 
 // In what the zoom of a rig's last camera is said.
 std::string zoom_unit(const std::string& rig) {
@@ -89,7 +90,7 @@ TEST_F(ViewerTest, RepliesToEverythingUnderItsNumber) {
   EXPECT_THAT(error_of(bad), HasSubstr("expected one of"));
   EXPECT_TRUE(say("nonsense").find("id")->empty());
   EXPECT_THAT(error_of(say(R"({"id":5,"do":"head","camera":"back","pan":0})")),
-              HasSubstr("there is no camera"));
+              StrEq("column 30: camera: there is no camera \"back\": expected one of \"front\", \"side\""));
   EXPECT_THAT(error_of(say("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
 }
 

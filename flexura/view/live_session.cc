@@ -226,6 +226,7 @@ void LiveSession::halt() {
 void LiveSession::reset() {
   ++generation_;
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  ++leaps_;
   rig_.restart(clock_ - config_.start);
   head_targets_.clear();
   stage_targets_.clear();
@@ -268,7 +269,10 @@ void LiveSession::start_run(const Reply& reply) {
 
 void LiveSession::follow_run() {
   if (run_ == nullptr) return;
+  const bool was_shown = news_.time.has_value();
   news_ = run_->news();
+  // From the rig to the run's start, and from its end to the rig.
+  if (news_.time && (!was_shown || news_.end)) ++leaps_;
   if (!news_.end) {
     constexpr double to_be_seen = 0.002;
     if (std::abs(news_.fraction - told_fraction_) < to_be_seen) return;
@@ -322,6 +326,7 @@ void LiveSession::send_states() {
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
   state.is_unsafe = !is_running && is_touching_;
+  state.leaps = leaps_;
   state.sequence = sequence_++;
   const auto message = std::make_shared<const std::string>(state_message(state));
   for (const ClientId client : clients_) messenger().post(client, state_stream, message);

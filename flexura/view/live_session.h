@@ -89,6 +89,7 @@ class LiveSession : public PictureSession {
   std::vector<HeadState> head_targets_;  // what they were told last, by camera
   std::vector<StageState> stage_targets_;
   std::uint32_t sequence_ = 0;
+  std::uint16_t leaps_ = 0;
   std::set<ClientId> clients_;
   bool is_looking_ = false;
   std::optional<Move> waiting_;

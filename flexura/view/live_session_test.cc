@@ -172,6 +172,22 @@ TEST_F(LiveSessionTest, PutsEverythingBack) {
   EXPECT_GT(state.time, 2) << "time goes on";
 }
 
+TEST_F(LiveSessionTest, CountsWhereNoWayLeadsFromOneStateToTheNext) {
+  const int start = pass(0.1).leaps;
+  ask(bends({{-1, 0}, {0, 0}}));
+  EXPECT_EQ(pass(1).leaps, start) << "the arm went there";
+  ask(ResetRequest{});
+  EXPECT_EQ(pass(0.1).leaps, start + 1);
+  ask(bends({{-1, 0}, {0, 0}}));
+  pass(1);
+  background_.is_prompt = false;
+  ask(RunRequest{});
+  EXPECT_EQ(pass(0.1).leaps, start + 1) << "it has not begun";
+  background_.work();
+  pass(0.1);
+  EXPECT_EQ(pass(0.1).leaps, start + 2) << "to the run's start, or to its end where that was all";
+}
+
 TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
   EXPECT_EQ(ask(HeadRequest{"front", 0.2, {}, {}}).error, "");
   EXPECT_EQ(ask(HeadRequest{"front", {}, 0.1, {}}).error, "");

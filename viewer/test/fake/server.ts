@@ -186,7 +186,7 @@ export class FakeServer {
       client.open_pictures.set(name, ++this.pictures);
       client.last_picture.set(name, time);
       const pixels = this.session.pixels(i, time);
-      client.sent.set(name, { number: this.pictures, pixels });
+      client.sent.set(name, { number: this.pictures, pixels, points: this.session.seen(i) });
       client.push(encode_image(i, this.pictures, time, this.session.picture(i, pixels)));
     });
   }

@@ -13,6 +13,7 @@ export class FakeSession {
   arm: FakeArm;
   time = 0;
   sequence = 0;
+  leaps = 0;
   heads: { pan: number; tilt: number; zoom: number }[];
   stage = [0, 0, 0];
   mode: 'live' | 'recording';
@@ -30,6 +31,7 @@ export class FakeSession {
   }
 
   reset(): void {
+    ++this.leaps;
     this.arm = new FakeArm(this.rig);
     this.heads.forEach((head) => Object.assign(head, { pan: 0, tilt: 0, zoom: 1 }));
     this.stage = [0, 0, 0];
@@ -68,6 +70,7 @@ export class FakeSession {
     const recording = this.mode === 'recording';
     return encode_state({
       flags: (this.moving && !recording ? 1 : 0) | (this.running ? 2 : 0) | (recording ? 4 : 0),
+      leaps: this.leaps,
       sequence: ++this.sequence,
       time,
       bends: this.arm.bends.flat(),
@@ -140,7 +143,8 @@ export class FakeSession {
     return encode_png(width, height, pixels);
   }
 
-  private seen(i: number): PointInPicture[] {
+  /** Where the backbone is in a picture, as it was drawn last. */
+  seen(i: number): PointInPicture[] {
     const { width, height } = this.rig.scene.cameras[i];
     const samples = this.arm.samples();
     const pose = this.camera_pose(i);

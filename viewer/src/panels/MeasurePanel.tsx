@@ -1,0 +1,31 @@
+import { measures, shape, type Measure } from '../overlays/measures';
+import type { ShapeResult } from '../protocol/types';
+import { preferences, toggle_overlay } from '../state/preferences';
+import { use_app } from '../ui/app';
+
+/** What is to be drawn upon the pictures, and the shape that they tell together. */
+export function MeasurePanel({ cameras }: { cameras: number }) {
+  const { viewer } = use_app();
+  const wanted = preferences.overlays.value;
+  const all: Measure[] = cameras > 1 ? [...measures, shape] : measures;
+  return (
+    <div class="measures">
+      <div class="chips" role="group" aria-label="Measured in the pictures">
+        {all.map(({ id, label, title, color }) => (
+          <button key={id} type="button" class="chip" aria-pressed={wanted.includes(id)} title={title}
+            aria-label={`${label}: ${title}`} onClick={() => toggle_overlay(id)}>
+            <span class="swatch" style={{ background: color }} />{label}
+          </button>
+        ))}
+      </div>
+      {cameras > 1 && wanted.includes(shape.id) && <p class="shape-said" role="status">{said(viewer.measured.shape.value)}</p>}
+    </div>
+  );
+}
+
+function said(found: ShapeResult | null): string {
+  if (!found) return 'Shape: …';
+  if (!found.found) return `No shape: ${found.reason || found.notes.join('; ')}`;
+  const doubt = found.notes.length ? `; ${found.notes.join('; ')}` : '';
+  return `Shape: within ${(1000 * (found.sigma ?? 0)).toPrecision(2)} mm, images ${(found.rms_px ?? 0).toPrecision(2)} px off${doubt}`;
+}

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -197,7 +198,7 @@ TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
   EXPECT_NEAR(state.cameras[0].head.tilt, 0.1, 1e-6);
   EXPECT_NEAR(state.cameras[0].fx, 160, 1e-3);
   EXPECT_EQ(state.cameras[1].head.pan, 0);
-  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error, HasSubstr("there is no camera \"back\""));
+  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error, HasSubstr("camera = \"back\": there is no camera"));
 }
 
 TEST_F(LiveSessionTest, SaysThatACameraHasNoStage) {
@@ -511,7 +512,19 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
     EXPECT_EQ(layers_of(answer, "mask").size(), 1);
   }
   const ViewAnswer answer = ask(MeasureRequest{"front", {}});
-  EXPECT_EQ(points_of(*layers_of(answer, "markers").at(0)).size(), 6) << "three bands a section";
+  const auto markers = points_of(*layers_of(answer, "markers").at(0));
+  EXPECT_GE(markers.size(), 5) << "of three bands a section; one may be seen too much from its end";
+  EXPECT_LE(markers.size(), 6);
+  const Backbone backbone(rig_->truth, rig_->initial);
+  const CameraStance stance = rig_->first_stance(0);
+  const View view = rig_->cameras[0].view(stance.stage, stance.head);
+  const auto look = rig_->experiment.arm.look.markers(rig_->truth);
+  for (const Eigen::Vector2d& seen : markers) {
+    const bool is_one = std::ranges::any_of(look, [&](const Marker& marker) {
+      return (*view.project(backbone.pose(marker.at).position) - seen).norm() < 1;
+    });
+    EXPECT_TRUE(is_one) << seen.transpose();
+  }
   const ViewAnswer few = ask(MeasureRequest{"front", {{"axis"}}});
   EXPECT_EQ(few.result.find("layers")->as<Node::Array>()->size(), 1);
 }

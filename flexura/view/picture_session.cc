@@ -32,7 +32,8 @@ std::size_t PictureSession::place_of(const std::string& camera) const {
   for (const Camera& known : viewed_->cameras) names.push_back(Node{known.config().name, {}}.brief());
   const std::string expected =
       names.empty() ? "this rig has none" : fmt::format("expected one of {}", fmt::join(names, ", "));
-  throw UnknownCamera(fmt::format("camera: there is no camera {}: {}", Node{camera, {}}.brief(), expected));
+  throw ViewRefusal(
+      fmt::format("camera = {}: there is no camera of that name; {}", Node{camera, {}}.brief(), expected));
 }
 
 PictureSession::Look PictureSession::look_at_sent(const ImageStreams::Key& key) {

@@ -51,7 +51,7 @@ class PictureSession : public Session {
   [[nodiscard]] PictureRoom& room() { return room_; }
   /// Expires with this session: for jobs that come back later.
   [[nodiscard]] std::weak_ptr<const bool> alive() const { return alive_; }
-  /// The place of the camera of this name; UnknownCamera where there is none.
+  /// The place of the camera of this name; a ViewRefusal where there is none.
   [[nodiscard]] std::size_t place_of(const std::string& camera) const;
 
  private:

@@ -187,7 +187,7 @@ TEST_F(RecordingSessionTest, MeasuresThePicturesOfTheLog) {
        {"lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }\nsensor = { width = 64, height = 48, ",
         "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }\nsensor = { width = 64, height = 48, "})
     text = replaced(text, what, "sensor = { ");
-  record("[record]\ncameras = true\nevery = 10\n" + text);
+  record(text + "[record]\ncameras = true\nevery = 10\n");
   open();
   ask(AtRequest{1});
   const ViewAnswer answer = ask(MeasureRequest{"front", {{"axis"}}});

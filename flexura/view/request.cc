@@ -87,7 +87,6 @@ std::string read(Node document, Request& request) {
   const auto* text = name.as<std::string>();
   if (text == nullptr) return "do is missing: expected what to do";
   if (!request.id && (*text != "ack" || !id.empty())) return "id is missing: expected a whole number";
-  if (const Node* camera = document.find("camera")) request.camera = camera->where;
   Reader reader;
   if (!read_ask(*text, document, reader, request.ask)) {
     const auto names = all_names(static_cast<const Ask*>(nullptr));

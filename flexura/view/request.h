@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/source.h"
 #include "flexura/base/table.h"
 #include "flexura/model/arm_config.h"
 
@@ -94,8 +93,7 @@ using Ask =
 struct Request {
   std::optional<std::int64_t> id;  ///< What its reply shall bear; only `ack` may have none.
   Ask ask = PingRequest{};
-  SourcePosition camera;  ///< Where the camera's name stands, if there is one.
-  std::string error;      ///< One line; "" when `ask` is good.
+  std::string error;  ///< One line; "" when `ask` is good.
 };
 
 /// Reads a message. Never throws on its account; whether it fits a rig is the session's to say.

@@ -18,12 +18,6 @@ class ViewRefusal : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A request names a camera that the rig does not have; told at the name's place.
-class UnknownCamera : public ViewRefusal {
- public:
-  using ViewRefusal::ViewRefusal;
-};
-
 /// What comes of a request: a result, or where `error` is not "" the reason why there is none.
 struct ViewAnswer {
   Node result = {Node::Table{}, {}};

@@ -3,7 +3,6 @@
 #include <exception>
 #include <utility>
 
-#include "flexura/base/problems.h"
 #include "flexura/base/version.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
@@ -82,8 +81,6 @@ void Viewer::said(ClientId client, const std::string& said_text) {
   std::string error = request.error;
   try {
     if (error.empty()) take(client, request);
-  } catch (const UnknownCamera& refusal) {
-    error = joined({{request.camera, refusal.what()}});
   } catch (const std::exception& refusal) {
     error = refusal.what();
   }

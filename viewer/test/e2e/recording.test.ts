@@ -133,6 +133,22 @@ function recording_tests(a_state: number, interval: number, title: string): void
     await page.mouse.move(box.x - 200, box.y);
   });
 
+  test('no label lies upon a band of the timeline', async () => {
+    const rects = (selector: string) => page.locator(selector).evaluateAll((marks) => marks.map((mark) => {
+      const { left, right, top, bottom } = mark.getBoundingClientRect();
+      return { left, right, top, bottom };
+    }));
+    const labels = await rects('.mark[data-level="info"]');
+    const bands = await rects('.mark:not([data-level="info"])');
+    expect(labels.length).toBeGreaterThan(1);
+    for (const band of bands) {
+      for (const label of labels) expect(label.top >= band.bottom || band.top >= label.bottom).toBe(true);
+      expect(band.bottom).toBeLessThanOrEqual(720);
+      expect(band.right - band.left).toBeGreaterThanOrEqual(5);
+    }
+    if (title !== 'A recording') expect(bands.length).toBeGreaterThan(0);
+  });
+
   test('marks stand on the timeline and go to their time', async () => {
     const mark = page.locator('.mark').filter({ hasText: 'back' });
     await mark.click();
@@ -265,18 +281,25 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 });
 
 describe.skipIf(!program)('a run that is watched', () => {
+  /** Takes some seconds to be run. */
+  const watched_s = 4000;
+
   opened_before(async () => {
-    const run = new Program(['run', file, '--out', 'watched', '--set', 'task.0.duration=19000', '--view']);
+    const run = new Program(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']);
     await run.start();
     return run;
   }, 'live');
 
-  test('it is shown as it goes on, can be cancelled, and is a recording when it is over', async () => {
+  test('it is shown as it goes on, is not to be cancelled here, and is a recording when it is over', async () => {
     const { time } = await server_state(page);
     await until(async () => (await server_state(page)).time > time);
-    await page.getByRole('button', { name: 'Cancel' }).click();
-    await page.waitForSelector('.badge[data-kind="recording"]');
-    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeGreaterThan(time);
+    const cancel = page.getByRole('button', { name: 'Cancel' });
+    expect(await cancel.isDisabled()).toBe(true);
+    expect(await cancel.getAttribute('title')).toContain('belongs to the terminal');
+    await page.keyboard.press('c');
+    await page.waitForSelector('.badge[data-kind="recording"]', { timeout: 60_000 });
+    // To its end: nobody ended it early.
+    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeCloseTo(watched_s + 2, 6);
     expect(await page.getByRole('button', { name: 'To the rig' }).count()).toBe(0);
     expect(complaints).toEqual([]);
   });

@@ -23,6 +23,8 @@ export class FakeSession {
   /** As the program says it: a run that was watched leaves none. */
   has_rig = true;
   has_recording = false;
+  /** As a run that a terminal has started. */
+  is_watched = false;
 
   constructor(readonly rig: RigDescription, mode: 'live' | 'recording' = 'live') {
     this.arm = new FakeArm(rig);
@@ -97,7 +99,7 @@ export class FakeSession {
         ? ['x', 'y', 'z'].map((axis) => ({ name: `tip.${axis}`, unit: 'm' })).concat(
             this.arm.bends.map((_, i) => ({ name: `bend[${i + 1}].x`, unit: 'rad' })))
         : [],
-      report: recording, rig: this.has_rig, recording: this.has_recording || recording, readonly: recording,
+      report: recording, rig: this.has_rig, recording: this.has_recording || recording, readonly: recording || this.is_watched,
     };
   }
 

@@ -3,21 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <numbers>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "flexura/kinematics/spatial.h"
 #include "flexura/math/arrays.h"
-#include "flexura/model/backbone.h"
 #include "flexura/store/text_file.h"
-#include "tests/support/experiment_files.h"
+#include "tests/support/live_sessions.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
 
@@ -26,53 +21,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-// A session with a client, whose clock the test moves on.
-class LiveSessionTest : public ::testing::Test {
- protected:
-  explicit LiveSessionTest(const std::string& text = viewed_text)
-      : rig_(viewed_rig(text)),
-        session_(rig_, messenger_, background_, {.start = 100, .results = folder_.path() / "run"}) {
-    session_.opened(me);
-  }
-
-  // What comes of a request; its error, if there is one.
-  ViewAnswer ask(const Ask& ask, ClientId client = me) {
-    answer_.reset();
-    try {
-      session_.take(client, ask, [this](const ViewAnswer& answer) { answer_ = answer; });
-    } catch (const ViewRefusal& refusal) {
-      return {{}, refusal.what()};
-    }
-    return answer_.value_or(ViewAnswer{{}, "no answer yet"});
-  }
-  // Goes on by so many s, 60 times a second.
-  StateMessage pass(double seconds) {
-    for (const double end = clock_ + seconds; clock_ < end - 1e-9;) session_.advance(clock_ += 1.0 / 60);
-    return messenger_.state(me);
-  }
-  [[nodiscard]] std::string last_image(ClientId client, std::uint32_t stream) {
-    return *messenger_.posts[{client, stream}].back();
-  }
-  [[nodiscard]] std::string last_event() {
-    const Node event = messenger_.last(me, "event");
-    return event.empty() ? "" : *event.find("text")->as<std::string>();
-  }
-  static ArmRequest bends(const std::vector<std::array<double, 2>>& bends, double duration = 0) {
-    ArmRequest request;
-    request.bends = bends;
-    request.duration = duration;
-    return request;
-  }
-
-  TemporaryFolder folder_;
-  ViewedRigPtr rig_;
-  FakeMessenger messenger_;
-  FakeBackground background_;
-  LiveSession session_;
-  double clock_ = 100;
-  std::optional<ViewAnswer> answer_;
-};
 
 TEST_F(LiveSessionTest, SendsStatesAtTheRateOfItsClock) {
   const StateMessage state = pass(1);
@@ -198,7 +146,8 @@ TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
   EXPECT_NEAR(state.cameras[0].head.tilt, 0.1, 1e-6);
   EXPECT_NEAR(state.cameras[0].fx, 160, 1e-3);
   EXPECT_EQ(state.cameras[1].head.pan, 0);
-  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error, HasSubstr("camera = \"back\": there is no camera"));
+  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error,
+              HasSubstr("camera = \"back\": there is no camera"));
 }
 
 TEST_F(LiveSessionTest, SaysThatACameraHasNoStage) {
@@ -365,206 +314,6 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   watched.advance(100.2);
   EXPECT_TRUE(watched.is_over());
   EXPECT_EQ(*messenger_.last(other, "progress").find("text")->as<std::string>(), "section 1: bend");
-}
-
-// The second camera slides, and starts elsewhere than it is believed to.
-const std::string sliding_text =
-    replaced(viewed_text, "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0] }",
-             "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0], stage = { y = { limits = [-0.3, 0.3] "
-             "} } }") +
-    "[[truth.camera]]\nname = \"side\"\ninitial.pan_deg = 2\n";
-
-class SlidingCamera : public LiveSessionTest {
- protected:
-  SlidingCamera() : LiveSessionTest(sliding_text) {}
-};
-
-TEST_F(SlidingCamera, MovesAlongTheAxesThatItHas) {
-  EXPECT_EQ(ask(StageRequest{"side", {}, 0.2, {}}).error, "");
-  EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
-  EXPECT_EQ(ask(StageRequest{"side", {}, 0.1, 0.1}).error,
-            "the stage of camera \"side\" does not move along z");
-  EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
-}
-
-// What a run reads from its cameras is where the page sees them, and through them.
-TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
-  auto run = std::make_shared<RunLink>();
-  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
-  watched.opened(other);
-  const ArmState arm{{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}};
-  const auto picture = [&](std::span<const CameraReading> readings) {
-    run->state(7, arm, readings);
-    watched.advance(clock_ += 0.1);
-    HttpAnswer got;
-    watched.take(ImageAsk{"side", {}}, [&](const HttpAnswer& answer) { got = answer; });
-    return got.body;
-  };
-  const std::string at_start = picture({});
-  const StateMessage start = messenger_.state(other);
-  EXPECT_NEAR(start.cameras[1].head.pan, 2 * std::numbers::pi / 180, 1e-6) << "where it truly stands";
-  const CameraReading front{{0, 0, 1}, {}}, side{{0.05, -0.02, 1.5}, {{0, 0.25, 0}}};
-  const std::string moved = picture(std::array{front, side});
-  EXPECT_NE(moved, at_start);
-  const CameraSample shown = messenger_.state(other).cameras[1];
-  EXPECT_NEAR(shown.head.pan, 2 * std::numbers::pi / 180 + 0.05, 1e-6) << "from where it started";
-  EXPECT_NEAR(shown.head.tilt, -0.02, 1e-6);
-  EXPECT_NEAR(shown.head.zoom, 1.5, 1e-6);
-  EXPECT_NEAR(shown.stage.y(), 0.25, 1e-6);
-  EXPECT_NEAR((shown.X_WC.position - start.cameras[1].X_WC.position).norm(), 0.25, 0.01);
-  EXPECT_NEAR(shown.fx, 1.5 * start.cameras[1].fx, 1e-3);
-}
-
-TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
-  const CameraReading read{{0.1, 0.05, 1.2}, {{0, -0.1, 0}}};
-  const CameraReading again = rig_->reading(1, rig_->stance(1, read));
-  EXPECT_NEAR(again.head.pan, read.head.pan, 1e-12);
-  EXPECT_NEAR(again.head.tilt, read.head.tilt, 1e-12);
-  EXPECT_NEAR(again.head.zoom, read.head.zoom, 1e-12);
-  EXPECT_NEAR((again.stage.offset - read.stage.offset).norm(), 0, 1e-12);
-  EXPECT_FALSE(rig_->believed_view(1, read).X_WC.rotation.isApprox(
-      rig_->cameras[1].view(read.stage, rig_->stance(1, read).head).X_WC.rotation));
-  // Whoever wrote the log.
-  EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);
-}
-
-TEST_F(LiveSessionTest, MeasuresThePictureThatWasSent) {
-  EXPECT_THAT(ask(MeasureRequest{"front", {}}).error,
-              HasSubstr("no picture of the camera \"front\" was sent yet"));
-  EXPECT_THAT(ask(MeasureRequest{"back", {}}).error, HasSubstr("expected one of \"front\", \"side\""));
-  EXPECT_THAT(ask(ShapeRequest{}).error, HasSubstr("was sent yet"));
-}
-
-// An arm large enough to be measured, with bands, before cameras that see it well.
-const std::string measured_text = R"(
-[arm]
-kind = "spatial"
-initial = { bends = [[0.6, 0.4], [-0.8, 0.5]] }
-look = { bands = { per_section = 3, width = 0.014, colors = [[0.85, 0.1, 0.1], [0.1, 0.2, 0.85]] } }
-[[arm.section]]
-length = 0.5
-radius = 0.02
-[[arm.section]]
-length = 0.5
-radius = 0.02
-[[camera]]
-name = "front"
-mount = { position = [0, 0.5, 2.2], look_at = [0, 0.5, 0] }
-sensor = { psf = 0.7, pixels = "color" }
-[[camera]]
-name = "side"
-mount = { position = [-2.2, 0.5, 0], look_at = [0, 0.5, 0] }
-sensor = { psf = 0.7, bits = 12 }
-[[truth.camera]]
-name = "front"
-initial.pan_deg = 0
-)";
-
-class MeasuredArm : public LiveSessionTest {
- protected:
-  MeasuredArm() : LiveSessionTest(measured_text) {
-    for (const char* camera : {"front", "side"}) ask(ImagesRequest{camera, 30, 80});
-    pass(0.2);
-  }
-  static std::vector<Eigen::Vector2d> points_of(const Node& layer) {
-    std::vector<Eigen::Vector2d> points;
-    for (const Node& point : *layer.find("points")->as<Node::Array>()) {
-      const auto& pair = *point.as<Node::Array>();
-      points.emplace_back(*pair[0].as<double>(), *pair[1].as<double>());
-    }
-    return points;
-  }
-  static std::vector<const Node*> layers_of(const ViewAnswer& answer, const std::string& id) {
-    std::vector<const Node*> layers;
-    for (const Node& layer : *answer.result.find("layers")->as<Node::Array>())
-      if (*layer.find("id")->as<std::string>() == id) layers.push_back(&layer);
-    return layers;
-  }
-};
-
-// Held against where the arm truly is, through the camera that truly took the picture.
-TEST_F(MeasuredArm, LiesUnderItsLayers) {
-  for (const char* camera : {"front", "side"}) {
-    const ViewAnswer answer = ask(MeasureRequest{camera, {}});
-    ASSERT_EQ(answer.error, "");
-    ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
-    const std::size_t place = *rig_->camera(camera);
-    const std::string image = last_image(me, static_cast<std::uint32_t>(1 + place));
-    EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(), static_cast<unsigned char>(image[4]));
-    const CameraStance stance = rig_->first_stance(place);
-    const View view = rig_->cameras[place].view(stance.stage, stance.head);
-    const Backbone backbone(rig_->truth, rig_->initial);
-    std::vector<Eigen::Vector2d> truth;
-    for (int i = 0; i <= 1000; ++i)
-      truth.push_back(*view.project(backbone.pose(1e-3 * i * backbone.length()).position));
-    const auto distance = [&](const Eigen::Vector2d& pixel) {
-      double nearest = 1e9;
-      for (const Eigen::Vector2d& point : truth) nearest = std::min(nearest, (point - pixel).norm());
-      return nearest;
-    };
-    const auto axis = points_of(*layers_of(answer, "axis").at(0));
-    ASSERT_GT(axis.size(), 50);
-    for (const Eigen::Vector2d& point : axis)
-      EXPECT_LT(distance(point), 0.7) << camera << " " << point.transpose();
-    ASSERT_GE(layers_of(answer, "silhouette").size(), 2);
-    for (const Node* side : layers_of(answer, "silhouette"))
-      for (const Eigen::Vector2d& point : points_of(*side)) EXPECT_NEAR(distance(point), 7.3, 2.5);
-    EXPECT_EQ(layers_of(answer, "mask").size(), 1);
-  }
-  const ViewAnswer answer = ask(MeasureRequest{"front", {}});
-  const auto markers = points_of(*layers_of(answer, "markers").at(0));
-  EXPECT_GE(markers.size(), 5) << "of three bands a section; one may be seen too much from its end";
-  EXPECT_LE(markers.size(), 6);
-  const Backbone backbone(rig_->truth, rig_->initial);
-  const CameraStance stance = rig_->first_stance(0);
-  const View view = rig_->cameras[0].view(stance.stage, stance.head);
-  const auto look = rig_->experiment.arm.look.markers(rig_->truth);
-  for (const Eigen::Vector2d& seen : markers) {
-    const bool is_one = std::ranges::any_of(look, [&](const Marker& marker) {
-      return (*view.project(backbone.pose(marker.at).position) - seen).norm() < 1;
-    });
-    EXPECT_TRUE(is_one) << seen.transpose();
-  }
-  const ViewAnswer few = ask(MeasureRequest{"front", {{"axis"}}});
-  EXPECT_EQ(few.result.find("layers")->as<Node::Array>()->size(), 1);
-}
-
-TEST_F(MeasuredArm, IsFoundInTwoPicturesAsItStands) {
-  const ViewAnswer answer = ask(ShapeRequest{});
-  ASSERT_EQ(answer.error, "");
-  ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
-  EXPECT_EQ(answer.result.find("numbers")->as<Node::Array>()->size(), 2);
-  const Node::Array& tip = *answer.result.find("poses")->as<Node::Array>()->back().as<Node::Array>();
-  const Eigen::Vector3d truth = tip_pose(rig_->truth, rig_->initial).position;
-  for (Eigen::Index i = 0; i < 3; ++i)
-    EXPECT_NEAR(*tip[static_cast<std::size_t>(i)].as<double>(), truth[i], 2e-3);
-  EXPECT_LT(*answer.result.find("rms_px")->as<double>(), 0.5);
-}
-
-TEST_F(MeasuredArm, IsMeasuredInTheNewestOfManyPictures) {
-  background_.is_prompt = false;
-  std::vector<std::string> ends;
-  for (const char* name : {"first: ", "second: ", "third: "}) {
-    session_.take(me, MeasureRequest{"front", {}}, [&ends, name](const ViewAnswer& answer) {
-      ends.push_back(name + (answer.error.empty() ? std::string("done") : answer.error));
-    });
-  }
-  EXPECT_THAT(ends, ::testing::ElementsAre("second: overtaken by a newer one"));
-  EXPECT_EQ(background_.jobs[Lane::measures], 1);
-  background_.work();
-  EXPECT_EQ(background_.jobs[Lane::measures], 2);
-  EXPECT_EQ(ends.back(), "third: done");
-}
-
-TEST_F(MeasuredArm, IsNotThereWhereTheCameraLooksAway) {
-  ask(HeadRequest{"front", 1.2, {}, {}});
-  pass(4);
-  ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
-  pass(0.1);
-  const ViewAnswer answer = ask(MeasureRequest{"front", {}});
-  EXPECT_FALSE(*answer.result.find("found")->as<bool>());
-  EXPECT_NE(*answer.result.find("reason")->as<std::string>(), "");
-  EXPECT_TRUE(answer.result.find("layers")->as<Node::Array>()->empty());
 }
 
 // The arm is believed to stand where its way is free.

@@ -9,6 +9,9 @@ export const dist = process.env.FLEXURA_PAGE ?? fileURLToPath(new URL('../../dis
 /** Shows `dist` also where the program brings a page of its own: to work on the page without building the program. */
 const is_instead = process.env.FLEXURA_PAGE_INSTEAD !== undefined;
 
+/** A page that came from no address of the network may not speak with one of this machine: else. */
+const has_no_address = '--disable-features=LocalNetworkAccessChecks';
+
 /** By how much longer everything may take, on a machine that does much else. */
 const patience = Number(process.env.FLEXURA_PATIENCE ?? 1);
 
@@ -17,7 +20,7 @@ export async function launch(): Promise<Browser> {
   // The default software WebGL: it is what a headless machine has.
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--disable-dev-shm-usage'],
+    args: ['--no-sandbox', '--disable-dev-shm-usage', ...(is_instead ? [has_no_address] : [])],
   });
 }
 

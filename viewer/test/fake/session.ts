@@ -93,6 +93,7 @@ export class FakeSession {
             { time: 0, end: 4, level: 'info', name: 'reach', text: 'move' },
             { time: 2.5, end: 2.7, level: 'warning', name: 'near', text: 'near the post: 4 cm' },
             { time: 4, end: 6, level: 'info', name: 'back', text: 'move' },
+            { time: 5, end: 5, level: 'error', name: 'jump', text: 'section 1 jumps' },
           ]
         : [],
       quantities: recording

@@ -18,14 +18,25 @@ export function MeasurePanel({ cameras }: { cameras: number }) {
           </button>
         ))}
       </div>
-      {cameras > 1 && wanted.includes(shape.id) && <p class="shape-said" role="status">{said(viewer.measured.shape.value)}</p>}
+      {cameras > 1 && wanted.includes(shape.id) && <Shape found={viewer.measured.shape.value} />}
     </div>
+  );
+}
+
+/** One line, that the pixel inspector stays in sight: doubts are told to those who point at it or hear it. */
+function Shape({ found }: { found: ShapeResult | null }) {
+  const doubts = found?.notes.join('; ') ?? '';
+  return (
+    <p class="shape-said" role="status" title={doubts}>
+      {said(found)}
+      {doubts && <span class="sr">: {doubts}</span>}
+    </p>
   );
 }
 
 function said(found: ShapeResult | null): string {
   if (!found) return 'Shape: …';
-  if (!found.found) return `No shape: ${found.reason || found.notes.join('; ')}`;
-  const doubt = found.notes.length ? `; ${found.notes.join('; ')}` : '';
-  return `Shape: within ${(1000 * (found.sigma ?? 0)).toPrecision(2)} mm, images ${(found.rms_px ?? 0).toPrecision(2)} px off${doubt}`;
+  if (!found.found) return `No shape: ${found.reason || 'the arm is not seen'}`;
+  const doubtful = found.notes.length ? ', doubtful' : '';
+  return `Shape ±${(1000 * (found.sigma ?? 0)).toPrecision(2)} mm, images ${(found.rms_px ?? 0).toPrecision(2)} px off${doubtful}`;
 }

@@ -138,7 +138,7 @@ for (const dark of [true, false]) {
         await expect_usable(page, (await tab.textContent())!);
       }
       for (const chip of await page.locator('.chip').all()) await chip.click();
-      await until(async () => (await page.locator('.shape-said').textContent())!.startsWith('Shape: within'));
+      await until(async () => (await page.locator('.shape-said').textContent())!.startsWith('Shape ±'));
       await page.keyboard.press('k');
       server.tell_all({ type: 'event', time: 1, level: 'error', name: 'safety', text: 'stopped before section 2: contact with ball' });
       server.tell_all({ type: 'progress', what: 'a task with a name that is rather long', fraction: 0.4 });

@@ -91,7 +91,7 @@ function measured_tests(start: () => Promise<Served>, is_recording: boolean): vo
   test('the shape of both pictures stands in the view', async () => {
     const before = await stage_at_rest(page);
     await chip(page, 'Shape').click();
-    await until(async () => /^Shape: within [\d.]+ mm/.test((await page.locator('.shape-said').textContent()) ?? ''), 15000, 'no shape');
+    await until(async () => /^Shape ±[\d.]+ mm, images [\d.]+ px off/.test((await page.locator('.shape-said').textContent()) ?? ''), 15000, 'no shape');
     expect((await stage_at_rest(page)).equals(before)).toBe(false);
     await chip(page, 'Shape').click();
     await until(async () => (await page.locator('.shape-said').count()) === 0);

@@ -174,22 +174,33 @@ void check_whole(const Experiment& experiment, const Node& document) {
   }
 }
 
+// Puts the value of `set` (path=value) into `document`.
+void set_value(Node& document, const std::string& set) {
+  const std::string source = "--set " + set.substr(0, set.find('\n'));
+  const std::size_t equals = set.find('=');
+  if (equals == std::string::npos) throw input_error(source, "expected path=value");
+  if (set.find('\n') != std::string::npos) throw input_error(source, "expected one value on one line");
+  std::string_view path = std::string_view(set).substr(0, equals);
+  path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
+  path = path.substr(0, path.find_last_not_of(' ') + 1);
+  if (path.substr(0, path.find('.')) == "include")
+    throw input_error(source, "include: files are read before values are set; write it into the file", 1, 1);
+  Node value =
+      parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
+  const std::string error = set_at_path(document, path, std::move(value));
+  if (!error.empty()) throw input_error(source, error, 1, 1);
+}
+
 Node resolved_overrides(Node document, const Overrides& overrides) {
+  std::vector<Problem> problems;
   for (const std::string& set : overrides.sets) {
-    const std::string source = "--set " + set;
-    const std::size_t equals = set.find('=');
-    if (equals == std::string::npos) throw input_error(source, "expected path=value");
-    std::string_view path = std::string_view(set).substr(0, equals);
-    path.remove_prefix(std::min(path.find_first_not_of(' '), path.size()));
-    path = path.substr(0, path.find_last_not_of(' ') + 1);
-    if (path.substr(0, path.find('.')) == "include")
-      throw input_error(source, "include: files are read before values are set; write it into the file", 1,
-                        1);
-    Node value =
-        parse_toml_value(std::string_view(set).substr(equals + 1), source, 1, static_cast<int>(equals) + 2);
-    const std::string error = set_at_path(document, path, std::move(value));
-    if (!error.empty()) throw input_error(source, error, 1, 1);
+    try {
+      set_value(document, set);
+    } catch (const InputError& error) {
+      append(problems, error);
+    }
   }
+  if (!problems.empty()) throw InputError(std::move(problems));
   if (overrides.seed) {
     const auto source = std::make_shared<const std::string>("--seed");
     const std::string error = set_at_path(document, "seed", {*overrides.seed, {source, 0, 0}});

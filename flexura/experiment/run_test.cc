@@ -366,7 +366,17 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
   EXPECT_THAT(error("arm.section.0.length"), HasSubstr("expected path=value"));
   EXPECT_THAT(error("=1"), HasSubstr("is no path"));
-  EXPECT_THAT(error("seed=2\nx=1"), HasSubstr("expected one value"));
+  EXPECT_THAT(error("seed=2\nx=1"), HasSubstr("--set seed=2: expected one value on one line"));
+}
+
+TEST(Overrides, AreToldOfAllAtOnce) {
+  try {
+    (void)load_experiment(paper_arm, {.sets = {"arm.section.8.length=1", "seed=3", "nothing"}, .seed = {}});
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("index 8 is outside an array of 8"));
+    EXPECT_THAT(error.what(), HasSubstr("--set nothing: expected path=value"));
+  }
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));
   EXPECT_THAT(error("number.toml"), HasSubstr("expected file names in quotes"));
   EXPECT_THAT(error("word.toml"), HasSubstr("expected an array of file names"));
-  EXPECT_THAT(error("folder.toml"), HasSubstr("no file \".\""));
+  EXPECT_THAT(error("folder.toml"), HasSubstr("\".\" is no regular file"));
 }
 
 TEST_F(TomlFile, MustExistBeAFileAndOfBoundedSize) {

@@ -12,7 +12,7 @@ namespace flexura {
 namespace {
 
 // Blur, in samples, beyond which every other pixel and so on will do.
-constexpr double widest_blur = 1.6;
+constexpr double widest_blur = 1.2;
 
 }  // namespace
 

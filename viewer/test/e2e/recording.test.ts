@@ -314,3 +314,46 @@ describe.skipIf(!program)('a run that is watched', () => {
     expect(complaints).toEqual([]);
   });
 });
+
+describe.skipIf(!program)('a calibration, when it is over', () => {
+  const calibration = fileURLToPath(new URL('../../../examples/05_calibration/experiment.toml', import.meta.url));
+
+  opened_before(async () => {
+    const made = new Program();
+    const recorded = new Program(['view', made.record(calibration)]);
+    await recorded.start();
+    return {
+      url: recorded.url,
+      stop: async () => {
+        await recorded.stop();
+        await made.stop();
+      },
+    };
+  }, 'recording');
+
+  /** Position, pan, tilt and stage of the front camera, as the page has them. */
+  const front = () => page.evaluate(() => {
+    const { cameras } = (globalThis as unknown as { flexura: { shown(): { cameras: Float32Array } } }).flexura.shown();
+    return { position: [...cameras.subarray(0, 3)], head: [...cameras.subarray(7, 9)], stage: [...cameras.subarray(10, 13)] };
+  });
+
+  test('its cameras stand and look where it drove them', async () => {
+    await slide(page, '#scrub', 0);
+    await until(async () => (await shown_time()) === 0);
+    const [start, picture] = [await front(), await served_picture(page, 0)];
+    expect(start.head).toEqual([0, 0]);
+    expect(start.stage).toEqual([0, 0, 0]);
+    const end_time = Number(await page.locator('#scrub').getAttribute('max'));
+    await slide(page, '#scrub', end_time);
+    await until(async () => Math.abs((await shown_time()) - end_time) < 0.1);
+    const end = await front();
+    // They stood ten degrees askew, and half a metre off: the stage slides along its own axes.
+    expect(Math.hypot(...end.head)).toBeGreaterThan(0.05);
+    const way = Math.hypot(...end.position.map((x, i) => x - start.position[i]));
+    expect(way).toBeGreaterThan(0.05);
+    expect(way).toBeCloseTo(Math.hypot(...end.stage), 1);
+    const { values } = await served_picture(page, end_time);
+    expect(values.filter((value, i) => Math.abs(value - picture.values[i]) > 40).length).toBeGreaterThan(1000);
+    expect(complaints).toEqual([]);
+  });
+});

@@ -19,6 +19,7 @@
 #include "flexura/vision/markers.h"
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/runs.h"
+#include "flexura/vision/threshold.h"
 
 namespace flexura {
 namespace {
@@ -78,7 +79,8 @@ std::optional<std::uint32_t> component_of(const Components& components, const Ar
 
 void add_mask(const FoundArm& found, Node::Array& layers) {
   Components components;
-  (void)segment(gray_picture(found.bytes), {}, components);
+  BlockThresholds blocks;
+  (void)segment(gray_picture(found.bytes), {}, components, blocks);
   const auto component = component_of(components, found.arm);
   if (!component) return;
   Node::Array rows;

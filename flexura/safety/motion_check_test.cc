@@ -277,6 +277,13 @@ TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   EXPECT_NEAR(shrunk.violations.back().start, 1, 1e-9);
 }
 
+TEST(MotionCheck, RefusesThousandsOfTurns) {
+  const SafetyReport report =
+      check(short_section(), point_to_point_motion(bent(0), bent(5000), {Profile::linear(1)}), 0.1);
+  ASSERT_FALSE(report.is_safe());
+  EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
+}
+
 TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
   Arm arm;
   arm.sections.resize(2);

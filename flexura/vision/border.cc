@@ -93,7 +93,7 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
   border.clear();
   BlurredSteps steps;
   const int sign = threshold.figure == Figure::dark ? 1 : -1;
-  const EdgeFinder<std::uint8_t> edges(gray, sign, steps);
+  const EdgeFinder<std::uint8_t> edges(gray, sign, steps, lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
   // A pixel is passed twice where the figure is a pixel wide.
   std::set<std::pair<int, int>> passed;

@@ -12,6 +12,10 @@
 
 namespace flexura {
 
+/// EdgeFinder's `widest_blur` for one border alone, which shifts with the tails of its blur; of an arm's two
+/// the shifts cancel.
+inline constexpr double lone_border_blur = 1.2;
+
 /// A point of a figure's outer border.
 struct BorderPoint {
   Eigen::Vector2d pixel = {0, 0};

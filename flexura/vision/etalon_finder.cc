@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/vision/border.h"
 #include "flexura/vision/edge_finder.h"
 #include "flexura/vision/runs.h"
 
@@ -158,7 +159,8 @@ Crossings crossings_of(const Image<std::uint8_t>& picture, const Image<std::uint
                        const Threshold& threshold, const std::vector<std::array<int, 2>>& spans, int top,
                        int inset) {
   BlurredSteps steps;
-  const EdgeFinder<std::uint8_t> edges(gray, threshold.figure == Figure::dark ? 1 : -1, steps);
+  const EdgeFinder<std::uint8_t> edges(gray, threshold.figure == Figure::dark ? 1 : -1, steps,
+                                       lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
   const double bound = picture.channels() == 3 ? 25 : 0.06 * contrast + 4, least_contrast = 0.3 * contrast;
   const auto blur_among = [&](const BlurSeries& series, std::size_t count) {

@@ -60,7 +60,7 @@ TEST(CameraConfig, SaysWhatIsWrong) {
     EXPECT_THAT(error_of(front(), "name", name), HasSubstr("cannot name a file: expected")) << name;
   EXPECT_THAT(error_of(front(), "name", std::string(101, 'a')), HasSubstr("at most 100 letters"));
   EXPECT_EQ(error_of(front(), "name", std::string("Sony 2.B_left-1")), "no error");
-  EXPECT_THAT(error_of(front(), "lens.fx", 0.0), HasSubstr("lens.fx = 0: expected a number above 0"));
+  EXPECT_THAT(error_of(front(), "lens.fx", 0.0), HasSubstr("lens.fx = 0: expected a number from 0.001"));
   EXPECT_THAT(error_of(front(), "head.pan.limits", swapped),
               HasSubstr("head.pan.limits: expected the smaller"));
   EXPECT_THAT(error_of(front(), "head.zoom.limits", swapped),

@@ -26,7 +26,7 @@ TEST(ShapeEstimator, FindsAKnownArmExactlyWithoutNoise) {
 
 TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
   int count = 0, within = 0;
-  double worst = 0;
+  double worst = 0, squares = 0;
   for_random_cases(100, [&](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.5));
@@ -40,11 +40,14 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
           (backbone.pose(found.s[i]).position - truth.pose(std::min(found.s[i], truth.length())).position)
               .norm();
       ++count, within += off < 2 * found.sigma[i];
+      squares += off * off / (found.sigma[i] * found.sigma[i]);
     }
   });
   // Two sigmas of three coordinates hold 85 to 97 % as the errors lie in space.
   EXPECT_GT(within, 0.8 * count);
-  EXPECT_LT(within, 0.995 * count);
+  // Sigmas that are much too large would hold all of them easily.
+  EXPECT_GT(squares, 0.4 * count);
+  EXPECT_LT(squares, 1.6 * count);
   EXPECT_LT(worst, 3e-4);
 }
 

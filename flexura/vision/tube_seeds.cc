@@ -48,24 +48,32 @@ TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& fro
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds) {
   seeds.clear();
   const double limit = std::hypot(component.right - component.left + 1, component.bottom - component.top + 1);
-  // The runs in which every n-th of the component's pixels lies: a hair across it has many short runs.
-  const std::int64_t every = std::max<std::int64_t>(1, component.area / seed_count);
+  // The runs in which every n-th of the component's pixels lies, and every n-th run: a hair across an arm has
+  // many short runs, and where an arm lies on itself there are many pixels.
+  const std::int64_t pixels = std::max<std::int64_t>(1, component.area / seed_count);
+  const std::uint32_t every = std::max(1U, component.run_count / seed_count);
   const auto own = static_cast<std::uint32_t>(&component - components.list.data());
+  std::vector<TubeSeed> by_run;
+  const auto add = [&](const Run& run, std::vector<TubeSeed>& to) {
+    const TubeSeed seed = shortest_chord(components, {0.5 * (run.first + run.last - 1), run.v}, limit, 8);
+    if (seed.width < limit + 2) to.push_back(seed);
+  };
   std::uint32_t seen = 0;
-  std::int64_t area = 0, next = every / 2;
+  std::int64_t area = 0, next = pixels / 2;
   for (std::size_t i = component.first_run; i < components.runs.size() && seen < component.run_count; ++i) {
     const Run& run = components.runs[i];
     if (run.component != own) continue;
-    ++seen, area += run.last - run.first;
+    if (seen++ % every == every / 2) add(run, by_run);
+    area += run.last - run.first;
     if (area <= next) continue;
-    while (next < area) next += every;
-    const Vector2d middle(0.5 * (run.first + run.last - 1), run.v);
-    const TubeSeed seed = shortest_chord(components, middle, limit, 8);
-    if (seed.width < limit + 2) seeds.push_back(seed);
+    while (next < area) next += pixels;
+    add(run, seeds);
   }
+  if (seeds.empty()) seeds = by_run;
   if (seeds.empty()) return;
   std::ranges::sort(seeds, {}, &TubeSeed::width);
   const double median = seeds[seeds.size() / 2].width;
+  seeds.insert(seeds.end(), by_run.begin(), by_run.end());
   std::ranges::stable_sort(seeds, {}, [&](const TubeSeed& seed) { return std::abs(seed.width - median); });
 }
 

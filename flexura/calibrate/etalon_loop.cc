@@ -11,7 +11,6 @@
 
 #include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/offset_steps.h"
-#include "flexura/calibrate/rig_aim.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/pose.h"
 
@@ -58,14 +57,7 @@ LoopTrouble begin_with_etalon(LookLoop& loop) {
   if (auto trouble = loop.begin()) return trouble;
   loop.result().target = etalon_middle(loop.config().etalon);
   // Red lines are every 90 degrees: which one a camera sees is told by what is believed of the cameras.
-  const double beyond =
-      remainder(loop.believed(), {loop.start(0), loop.start(1)}, loop.result().target).angle;
-  constexpr double farthest = std::numbers::pi / 4;
-  if (std::abs(beyond) > farthest)
-    return fmt::format(
-        "both cameras look {}: their axes are believed to be {:.1f} deg apart, and lines every 90 deg tell "
-        "orthogonal axes only within 45 deg of these",
-        beyond < 0 ? "from one side" : "from opposite sides", 90 + beyond * degrees);
+  if (auto trouble = loop.look_from_one_side()) return trouble;
   for (std::size_t i = 0; i < 2; ++i) {
     RigStance stance = loop.stance(i);
     stance.head.zoom = zoom_ends(loop.camera(i))[0];

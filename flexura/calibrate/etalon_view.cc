@@ -74,6 +74,12 @@ void find_climb(const EtalonSighting& seen, const Lens& lens, EtalonView& view) 
 
 }  // namespace
 
+std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture) {
+  EtalonView view;
+  find_centroid(picture.channels() == 1 ? picture : gray_picture(picture), view);
+  return view.centroid;
+}
+
 EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& intrinsics, double radius) {
   EtalonView view;
   const Image<std::uint8_t> gray = picture.channels() == 1 ? picture : gray_picture(picture);

@@ -35,6 +35,9 @@ struct EtalonView {
   double climb_by_px = 0;    ///< d climb / d taper.
 };
 
+/// The middle of the largest dark figure's pixels, as far as it is in the picture; none where there is none.
+[[nodiscard]] std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture);
+
 /// What the picture tells of a cylinder of this radius, by a lens as it is believed to be.
 [[nodiscard]] EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& lens,
                                      double radius);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
+#include "flexura/calibrate/rig_aim.h"
 #include "flexura/camera/axis_config.h"
 
 namespace flexura {
@@ -43,6 +45,15 @@ LookLoop::Trouble LookLoop::begin() {
   }
   has_begun_ = true;
   return std::nullopt;
+}
+
+LookLoop::Trouble LookLoop::look_from_one_side() const {
+  const double beyond = remainder(believed_, {start(0), start(1)}, Eigen::Vector3d::Zero()).angle;
+  constexpr double farthest = std::numbers::pi / 4;
+  if (std::abs(beyond) <= farthest) return std::nullopt;
+  return fmt::format(
+      "both cameras look from {}: their axes are believed to be {:.1f} deg apart, expected 45 to 135",
+      beyond < 0 ? "one side" : "opposite sides", 90 + beyond * 180 / std::numbers::pi);
 }
 
 LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {

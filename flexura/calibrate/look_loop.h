@@ -27,6 +27,8 @@ class LookLoop {
 
   /// Waits for rest, and remembers where everything stands.
   Trouble begin();
+  /// Why the axes can be believed to make no right angle: they are more than 45 degrees from one.
+  [[nodiscard]] Trouble look_from_one_side() const;
   /// A fresh picture of what stands; trouble when there were too many.
   Trouble look(std::size_t i, const Measure& measure);
   /// What was made of a picture, and what follows.

@@ -1,5 +1,7 @@
 #include "flexura/calibrate/loop_session.h"
 
+#include "flexura/calibrate/arcs_loop.h"
+#include "flexura/calibrate/arcs_paper_loop.h"
 #include "flexura/calibrate/etalon_loop.h"
 #include "flexura/calibrate/etalon_paper_loop.h"
 #include "flexura/calibrate/look_loop.h"
@@ -15,6 +17,10 @@ LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed, co
         return EtalonLoop(loop).run();
       case LoopMethod::etalon_paper:
         return EtalonPaperLoop(loop).run();
+      case LoopMethod::arcs:
+        return ArcsLoop(loop).run();
+      case LoopMethod::arcs_paper:
+        return ArcsPaperLoop(loop).run();
     }
     return "no such method";
   };

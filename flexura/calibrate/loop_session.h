@@ -3,12 +3,16 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "flexura/base/image.h"
+#include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/rig_session.h"
+#include "flexura/camera/view.h"
 #include "flexura/model/stand.h"
 
 namespace flexura {
@@ -17,6 +21,8 @@ namespace flexura {
 enum class LoopMethod {
   etalon,        ///< With the calibration cylinder: borders to a part of a pixel, steps that shrink.
   etalon_paper,  ///< The same as printed: pixels are counted, steps are all alike.
+  arcs,          ///< With the simulator: both cameras see arcs of the arm in two planes, by its markers.
+  arcs_paper,    ///< The same as printed: each sees one arc, and tests whether it is a circle's.
 };
 
 /// What a loop does, and what it knows of the rig beforehand.
@@ -30,8 +36,12 @@ struct LoopConfig {
   double slide = 0.005;                         ///< and each way of a stage, m,
   double zoom_step = 0.02;                      ///< and the share by which a zoom changes.
   EtalonConfig etalon;                          ///< Where it stands, and how large it is.
-  int white = 255;                              ///< The largest value of a picture.
-  double move_duration = 2;                     ///< Of the arm to a shape or back, s.
+  double arc = 2.0943951023931953;              ///< By which the arm is bent into an arc, rad: 120 degrees.
+  ArmPictureConfig picture;                     ///< With the arm's markers.
+  /// The simulator's picture of the arm in a state, gray: the ideal image.
+  std::function<Image<std::uint8_t>(const View&, const ArmState&)> draw;
+  int white = 255;           ///< The largest value of a picture.
+  double move_duration = 2;  ///< Of the arm to a shape or back, s.
   RigPatience patience;
 };
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
+#include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_loop.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
@@ -53,7 +55,7 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
 }  // namespace
 
 const std::vector<std::string>& names_of(const CalibrateMethod*) {
-  static const std::vector<std::string> names = {"bundle", "etalon", "etalon-paper"};
+  static const std::vector<std::string> names = {"bundle", "etalon", "etalon-paper", "arcs", "arcs-paper"};
   return names;
 }
 
@@ -100,7 +102,7 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
           .field("accepted", &CalibrateLoopConfig::accepted,
                  {.meaning = "What is accepted of every offset in a picture, px.",
                   .range = above_up_to(0, 1000),
-                  .default_text = "0.05; 3 as printed"})
+                  .default_text = "0.05 with etalon, 0.5 with arcs, 3 as printed"})
           .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
                  {.meaning = "Share by which the cameras may show the target unlike.",
                   .range = above_up_to(0, 1),
@@ -114,7 +116,11 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
                   .unit = Unit::metre,
                   .range = above_up_to(0, 10)})
           .field("zoom_step", &CalibrateLoopConfig::zoom_step,
-                 {.meaning = "As printed: every change of a zoom, a share.", .range = above_up_to(0, 1)});
+                 {.meaning = "As printed: every change of a zoom, a share.", .range = above_up_to(0, 1)})
+          .field("arc", &CalibrateLoopConfig::arc,
+                 {.meaning = "By how much the arm is bent into an arc.",
+                  .unit = Unit::radian,
+                  .range = between(0.2, 6)});
   return table;
 }
 
@@ -133,7 +139,9 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
               {.meaning =
                    "How: bundle is by least squares over everything at once, from pictures of the arm; "
                    "etalon is the paper's loop before the calibration cylinder, corrected, and etalon-paper "
-                   "the same as printed."})
+                   "the same as printed; arcs is the paper's loop with arcs of the arm in two planes, "
+                   "corrected, "
+                   "and arcs-paper the same as printed."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field(
@@ -146,7 +154,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
           .field("images", &CalibrateTask::images,
                  {.meaning = "Pictures a camera, at most; with bundle the last one verifies.",
                   .range = between(3, image_limit),
-                  .default_text = "12 with bundle, 60 with etalon, 400 with etalon-paper"})
+                  .default_text = "12 with bundle, 60 with etalon and arcs, 400 as printed"})
           .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
           .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
           .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})
@@ -182,7 +190,9 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
 
 bool is_loop(const CalibrateTask& task) { return task.method != CalibrateMethod::bundle; }
 
-bool is_as_printed(const CalibrateTask& task) { return task.method == CalibrateMethod::etalon_paper; }
+bool is_as_printed(const CalibrateTask& task) {
+  return task.method == CalibrateMethod::etalon_paper || task.method == CalibrateMethod::arcs_paper;
+}
 
 bool is_before_etalon(const CalibrateTask& task) {
   return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper;
@@ -197,6 +207,11 @@ std::size_t most_images(const CalibrateTask& task) {
 std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm) {
   std::vector<ArmState> poses;
   if (is_before_etalon(task)) return poses;
+  if (is_loop(task)) {
+    for (const Eigen::Vector3d& towards : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
+      if (auto arc = arc_state(arm, task.loop.arc, towards)) poses.push_back(std::move(*arc));
+    return poses;
+  }
   poses.reserve(std::max(task.pose.size(), patterns.size()));
   for (const ShapeConfig& shape : task.pose) poses.push_back(arm_state(arm, shape));
   if (!poses.empty()) return poses;
@@ -233,18 +248,24 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   return config;
 }
 
-LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& /*arm*/,
+LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                        const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
+  constexpr std::array<LoopMethod, 5> methods = {LoopMethod::etalon, LoopMethod::etalon,
+                                                 LoopMethod::etalon_paper, LoopMethod::arcs,
+                                                 LoopMethod::arcs_paper};
   LoopConfig config;
+  config.method = methods.at(static_cast<std::size_t>(task.method));
   config.cameras = calibrated_cameras(task, cameras);
   config.images = most_images(task);
-  config.method =
-      task.method == CalibrateMethod::etalon_paper ? LoopMethod::etalon_paper : LoopMethod::etalon;
-  constexpr double printed = 3, printed_zoom = 0.01, corrected = 0.05, corrected_zoom = 0.001;
-  config.accepted = task.loop.accepted.value_or(is_as_printed(task) ? printed : corrected);
-  config.zoom_accepted =
-      task.loop.zoom_accepted.value_or(is_as_printed(task) ? printed_zoom : corrected_zoom);
+  constexpr double printed = 3, printed_zoom = 0.01, of_etalon = 0.05, of_arcs = 0.5, corrected_zoom = 0.001;
+  const bool is_printed = is_as_printed(task);
+  config.accepted =
+      task.loop.accepted.value_or(is_printed ? printed : (is_before_etalon(task) ? of_etalon : of_arcs));
+  config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : corrected_zoom);
   config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
+  config.arc = task.loop.arc;
+  for (const Marker& marker : arm.look.markers(arm.arm()))
+    config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
   config.etalon = stand.etalon.value_or(EtalonConfig{});
   config.white = (1 << cameras.at(config.cameras[0]).sensor.bits) - 1;
   config.move_duration = task.move_duration;
@@ -313,6 +334,18 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
         path, "has no pose, no target and moves stages with this method: expected none of these keys");
 }
 
+void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  constexpr std::size_t arcs = 2;
+  if (calibration_poses(task, arm.arm()).size() < arcs)
+    reader.problem_at(
+        path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
+                          "spatial one that stands upright, or a smaller loop.arc",
+                          task.loop.arc * 180 / std::numbers::pi));
+  if (!task.pose.empty() || task.target || !task.stages)
+    reader.problem_at(
+        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+}
+
 }  // namespace
 
 void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
@@ -321,7 +354,9 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   check_names(task, cameras, path, reader);
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
-  if (task.method == CalibrateMethod::bundle) check_markers(arm, path, reader);
+  if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
+    check_markers(arm, path, reader);
+  if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
   if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
   if (!task.save.empty() && !is_plain_file(task.save))
     reader.problem_at(path + ".save",

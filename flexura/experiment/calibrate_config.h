@@ -22,6 +22,8 @@ enum class CalibrateMethod {
                  ///< (calibrate/rig_session.h).
   etalon,        ///< The paper's, with the cylinder, as corrected (calibrate/loop_session.h).
   etalon_paper,  ///< The same as printed.
+  arcs,          ///< The paper's, with the simulator, as corrected.
+  arcs_paper,    ///< The same as printed.
 };
 
 /// How well the rig shall be known: standard deviations.
@@ -47,6 +49,7 @@ struct CalibrateLoopConfig {
   double turn = 0.0034906585039886592;  ///< As printed: every turn of a head, rad: 0.2 degrees,
   double slide = 0.005;                 ///< every way of a stage, m,
   double zoom_step = 0.02;              ///< and every change of a zoom, a share.
+  double arc = 2.0943951023931953;      ///< By which the arm is bent into an arc, rad: 120 degrees.
 };
 
 /// `kind = "calibrate"`: the arm is shown to two cameras, which are then sent to the wanted configuration.
@@ -94,7 +97,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
                                               const std::vector<CameraConfig>& cameras);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed);
 
-/// What a task by one of the paper's methods asks of its loop.
+/// What a task by one of the paper's methods asks of its loop; the simulator's pictures are left out.
 [[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                                      const std::vector<CameraConfig>& cameras, const StandConfig& stand);
 

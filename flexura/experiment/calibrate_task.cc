@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/experiment/ideal_picture.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {
@@ -185,8 +186,9 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
   ports.clock = &clock;
   LoggedSession log(experiment, run.name, run.believed, session.images, witness, progress, motion);
   if (is_loop(config)) {
-    run.loop = calibrate_by_loop(ports, run.believed,
-                                 loop_config(config, experiment.arm, cameras, experiment.stand), log);
+    LoopConfig loop = loop_config(config, experiment.arm, cameras, experiment.stand);
+    loop.draw = ideal_pictures(experiment);
+    run.loop = calibrate_by_loop(ports, run.believed, loop, log);
   } else {
     run.result =
         calibrate_rig_in_session(ports, run.believed, session_prior(config, run.believed), session, log);

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/ideal_picture.h"
 #include "flexura/experiment/photographer.h"
 #include "flexura/sim/simulated_rig.h"
 
@@ -40,17 +45,26 @@ class LoopBench {
   LoopResult calibrate(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment_.task.front());
     const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
-    const LoopConfig config = loop_config(task, experiment_.arm, experiment_.cameras(), experiment_.stand);
+    LoopConfig config = loop_config(task, experiment_.arm, experiment_.cameras(), experiment_.stand);
+    config.draw = ideal_pictures(experiment_);
     return calibrate_by_loop(ports, believed, config, watcher);
   }
+  RigSessionResult calibrate_bundle(const RigPorts& ports) {
+    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
+    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
+    NobodyWatches nobody;
+    return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
+                                    session_config(task, experiment_.arm, experiment_.cameras()), nobody);
+  }
   /// What truly remains where the cameras stand.
-  RigRemainder truth(const LoopResult& result) {
+  RigRemainder truth(const LoopResult& result) { return truth(result.target); }
+  RigRemainder truth(const Eigen::Vector3d& target) {
     const RigConfig truth = experiment_.true_rig();
     const double now = rig_.clock().now();
     std::array<RigStance, 2> stances;
     for (std::size_t i = 0; i < 2; ++i)
       stances[i] = {i, rig_.camera(i).head().truth(now), rig_.camera(i).stage().truth(now)};
-    return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, result.target);
+    return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, target);
   }
   /// Whether heads and stages are where the file starts them.
   void expect_back() {
@@ -66,6 +80,29 @@ class LoopBench {
   Experiment experiment_;
   Photographer photographer_;
   SimulatedRig rig_;
+};
+
+/// An arm whose sections bend by other shares of what they are told, and do not know it.
+class WrongArm : public ArmPort {
+ public:
+  WrongArm(ArmPort& arm, std::vector<double> gains) : arm_(arm), gains_(std::move(gains)) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    ArmState bent = state;
+    for (std::size_t i = 0; i < bent.bends.size(); ++i) bent.bends[i] *= gains_[i];
+    return arm_.command(bent, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    auto reading = arm_.read();
+    if (reading.fault()) return reading;
+    ArmReading told = reading.value();
+    for (std::size_t i = 0; i < told.state.bends.size(); ++i) told.state.bends[i] /= gains_[i];
+    return told;
+  }
+
+ private:
+  ArmPort& arm_;
+  std::vector<double> gains_;
 };
 
 /// A head whose pan motor takes commands and does not turn.

@@ -29,56 +29,87 @@ inline WrongStart wrong_start(TestRandom& random, double size = 1) {
   return start;
 }
 
-/// A camera of `loop_rig`, as believed or, with `wrong`, as it truly is: its head and stage count from there.
-inline std::string loop_camera(const std::string& name, double distance, bool is_side,
-                               const WrongStart* wrong, const std::string& sensor) {
-  const double middle = 0.5;
-  std::array<double, 3> at = {0, middle, 0};
-  const double c = is_side ? 1 : 0, s = is_side ? 0 : 1;  // Looks along c X - s Z.
-  at[0] -= c * distance, at[2] += s * distance;
-  std::array<double, 3> look = {0, 0, 0};
-  const double pan = wrong != nullptr ? wrong->pan : 0, tilt = wrong != nullptr ? wrong->tilt : 0;
-  const double heading = (is_side ? 0 : std::numbers::pi / 2) + pan;  // Of the sight from +X, to the left.
-  look = {std::cos(tilt) * std::cos(heading), std::sin(tilt), -std::cos(tilt) * std::sin(heading)};
-  if (wrong != nullptr)
-    for (std::size_t i = 0; i < 3; ++i) at[i] += wrong->shift[i];
+/// A rig for the paper's methods: two cameras at 640 x 480 px, or smaller.
+struct LoopRig {
+  std::array<WrongStart, 2> wrong = {};  ///< How they truly start.
+  std::array<std::array<double, 3>, 2> at = {
+      {{0, 0.5, 1.5}, {-1.5, 0.5, 0}}};  ///< Where they are believed to be, m.
+  double size = 1;                       ///< Of the pictures.
+  double travel = 0.6;                   ///< Of the stages, to both sides, m.
+  std::string sensor = {};               ///< More of it: ", drop = 1".
+};
+
+/// A camera of it, as believed or as it truly is: its head and stage count from there.
+inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) {
+  const std::size_t i = is_side ? 1 : 0;
+  const WrongStart wrong = is_truth ? rig.wrong[i] : WrongStart{};
+  std::array<double, 3> at = rig.at[i];
+  for (std::size_t j = 0; j < 3; ++j) at[j] += wrong.shift[j];
+  const double heading =
+      (is_side ? 0 : std::numbers::pi / 2) + wrong.pan;  // Of the sight from +X, to the left.
+  const std::array<double, 3> look = {at[0] + std::cos(wrong.tilt) * std::cos(heading),
+                                      at[1] + std::sin(wrong.tilt),
+                                      at[2] - std::cos(wrong.tilt) * std::sin(heading)};
+  const std::string slide = fmt::format("{{ limits = [{}, {}] }}", -rig.travel, rig.travel);
   std::string text = fmt::format(
-      "name = \"{}\"\nmount = {{ position = [{}, {}, {}], look_at = [{}, {}, {}], roll = {}, "
-      "stage = {{ x = {{ limits = [-0.6, 0.6] }}, y = {{ limits = [-0.6, 0.6] }}, z = {{ limits = [-0.6, "
-      "0.6] }} }} }}\n",
-      name, at[0], at[1], at[2], at[0] + look[0], at[1] + look[1], at[2] + look[2],
-      wrong != nullptr ? wrong->roll : 0.0);
-  text +=
-      fmt::format("lens = {{ fx = 800, cx = {}, cy = {} }}\n", 319.5 + (wrong != nullptr ? wrong->cx : 0.0),
-                  239.5 + (wrong != nullptr ? wrong->cy : 0.0));
-  if (wrong != nullptr) return "[[truth.camera]]\n" + text;
-  text +=
-      "head = { pan = { limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }, tilt = { "
+      "name = \"{}\"\nmount = {{ position = [{}, {}, {}], look_at = [{}, {}, {}], roll = {}, stage = {{ x = "
+      "{}, y = {}, "
+      "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {} }}\n",
+      is_side ? "side" : "front", at[0], at[1], at[2], look[0], look[1], look[2], wrong.roll, slide, slide,
+      slide, 800 * rig.size, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy);
+  if (is_truth) return "[[truth.camera]]\n" + text;
+  text += fmt::format(
+      "head = {{ pan = {{ limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }}, tilt = {{ "
       "limits_deg = "
-      "[-45, 45], max_rate_deg = 200, resolution_deg = 0.075 } }\n"
-      "sensor = { width = 640, height = 480, pixels = \"color\", frame_rate = 20, psf = 0.7, read_noise = 2, "
-      "full_well = 20000" +
-      sensor + " }\n";
+      "[-45, 45], max_rate_deg = 200, resolution_deg = 0.075 }} }}\n"
+      "sensor = {{ width = {}, height = {}, pixels = \"color\", frame_rate = 20, psf = 0.7, read_noise = 2, "
+      "full_well = "
+      "20000{} }}\ninitial = {{ zoom = {} }}\n",
+      static_cast<int>(640 * rig.size), static_cast<int>(480 * rig.size), rig.sensor, rig.wrong[i].zoom);
   return "[[camera]]\n" + text;
 }
 
-/// Two cameras before the calibration cylinder, wrong as said, whose task calibrates them.
-inline std::string etalon_rig(const std::string& task, const std::array<WrongStart, 2>& wrong,
-                              const std::string& stand = "", const std::string& sensor = "",
-                              double distance = 1.5) {
+inline std::string loop_rig(const LoopRig& rig, const std::string& task) {
   std::string text =
-      "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.03\n"
-      "[stand]\narm = false\n[stand.etalon]\nposition = [0, 0.3, 0]\n" +
-      stand +
       "[[stand.screen]]\ncenter = [0, 0.5, -1.5]\nnormal = [0, 0, 1]\nwidth = 9\nheight = 9\n"
       "[[stand.screen]]\ncenter = [1.5, 0.5, 0]\nnormal = [-1, 0, 0]\nwidth = 9\nheight = 9\n";
-  for (const bool is_side : {false, true}) {
-    std::string camera = loop_camera(is_side ? "side" : "front", distance, is_side, nullptr, sensor);
-    text += camera + fmt::format("initial = {{ zoom = {} }}\n", wrong[is_side ? 1 : 0].zoom);
-  }
-  for (const bool is_side : {false, true})
-    text += loop_camera(is_side ? "side" : "front", distance, is_side, &wrong[is_side ? 1 : 0], sensor);
+  for (const bool is_truth : {false, true})
+    for (const bool is_side : {false, true}) text += loop_camera(rig, is_side, is_truth);
   return text + "\n[[task]]\nkind = \"calibrate\"\n" + task;
+}
+
+/// Before the calibration cylinder.
+inline std::string etalon_rig(const std::string& task, const LoopRig& rig, const std::string& etalon = "") {
+  return "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.03\n"
+         "[stand]\narm = false\n[stand.etalon]\nposition = [0, 0.3, 0]\n" +
+         etalon + loop_rig(rig, task);
+}
+
+/// Before an arm of three sections, with bands of three colours; it bends into arcs of 120 degrees. `truth`:
+/// of its lengths.
+inline std::string arcs_rig(const std::string& task, const LoopRig& rig,
+                            const std::array<double, 3>& longer = {}) {
+  std::string text = "[arm]\nkind = \"spatial\"\n", truth;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = i < 2 ? 0.35 : 0.3;
+    text += fmt::format("[[arm.section]]\nlength = {}\nradius = 0.02\nmax_bend_deg = 120\n", length);
+    truth += fmt::format("[[truth.arm.section]]\nlength = {}\n", length * (1 + longer[i]));
+  }
+  return text +
+         "[arm.look]\nbands = { per_section = 4, width = 0.02, colors = [[0.85, 0.1, 0.1], [0.1, 0.6, 0.15], "
+         "[0.1, 0.2, "
+         "0.85]] }\n" +
+         truth + loop_rig(rig, task);
+}
+
+/// Where cameras look straight at the middle of both arcs, or at their circles' centres, 2.5 m away.
+inline LoopRig arcs_cameras(const std::array<WrongStart, 2>& wrong, bool is_at_centers = false) {
+  const double radius = 1 / (2 * std::numbers::pi / 3);
+  const double aside = is_at_centers ? radius : 0.5 * radius,
+               up = is_at_centers ? 0 : radius * std::sqrt(0.75);
+  LoopRig rig;
+  rig.wrong = wrong, rig.at = {{{aside, up, 2.5}, {-2.5, up, aside}}};
+  return rig;
 }
 
 }  // namespace flexura

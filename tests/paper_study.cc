@@ -1,5 +1,5 @@
-// Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study [TRIALS]
-// [SEED]. docs/studies/calibration.md
+// Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study
+// [TRIALS] [SEED]. docs/studies/calibration.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,9 +28,10 @@ struct Ending {
 
 // The reason without its numbers and names, to be counted.
 std::string kind_of(const std::string& reason) {
-  static const std::vector<std::string> kinds = {
-      "back and forth", "runs away", "two red axes", "limit of",      "out of view",      "cannot have all",
-      "no red axis",    "not verified", "no circle's arc", "does not see", "correlation is", "ends"};
+  static const std::vector<std::string> kinds = {"back and forth", "runs away",      "two red axes",
+                                                 "limit of",       "out of view",    "cannot have all",
+                                                 "no red axis",    "not verified",   "no circle's arc",
+                                                 "does not see",   "correlation is", "ends"};
   for (const std::string& kind : kinds)
     if (reason.find(kind) != std::string::npos) return kind;
   return reason.substr(0, reason.find(';'));
@@ -98,7 +99,8 @@ void print_row(const std::string& method, std::size_t trials, std::uint64_t seed
       ++failures[method][kind_of(one.reason)];
       continue;
     }
-    pictures.push_back(one.pictures), angle.push_back(one.angle), aim.push_back(one.aim), zoom.push_back(one.zoom);
+    pictures.push_back(one.pictures), angle.push_back(one.angle), aim.push_back(one.aim),
+        zoom.push_back(one.zoom);
   }
   fmt::print("| `{}` | {} of {} |", method, pictures.size(), trials);
   if (pictures.empty()) {
@@ -120,7 +122,8 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
   std::map<std::string, std::map<std::string, int>> failures;
   fmt::print(
-      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | aim, mm, median | 95 % | zoom "
+      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | aim, mm, median | 95 "
+      "% | zoom "
       "ratio from 1, %, 95 % |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (const char* method : {"bundle", "etalon", "arcs", "etalon-paper", "arcs-paper"})
     print_row(method, trials, seed, failures);

@@ -21,7 +21,7 @@ Eigen::Matrix3d cross_of(const Eigen::Vector3d& p) {
   return m;
 }
 
-// x: of each camera a motion [v; w] in its own frame since the pose held here, then each section's bend gain
+// x: of each mount a motion [v; w] in its own frame since the pose held here, then each section's bend gain
 // and length, less 1.
 class ArcProblem {
  public:
@@ -56,7 +56,8 @@ class ArcProblem {
       for (const SeenMarker& marker : picture.markers) {
         const Eigen::Vector3d p_W = point(picture.state, marker.s, wrong_);
         const Pose& pose = poses_[picture.camera];
-        const Eigen::Vector3d p_C = pose.inverse() * p_W;
+        const Eigen::Vector3d p_M = pose.inverse() * p_W;
+        const Eigen::Vector3d p_C = picture.X_MC.inverse() * p_M;
         const auto seen = lenses_[picture.camera].project_with_derivatives(p_C);
         constexpr double nowhere = 1e3;  // px
         if (!seen) {
@@ -69,7 +70,8 @@ class ArcProblem {
         const double weight = size_of <= bound ? 1 : bound / size_of;
         total += size_of <= bound ? 0.5 * size_of * size_of : bound * (size_of - 0.5 * bound);
         if (gradient == nullptr) continue;
-        const Eigen::MatrixXd row = derivative(picture, marker.s, pose, p_C, seen->by_point);
+        const Eigen::MatrixXd row =
+            derivative(picture, marker.s, pose, p_M, seen->by_point * picture.X_MC.rotation.transpose());
         *gradient += weight * row.transpose() * miss;
         *normal += weight * row.transpose() * row;
       }
@@ -100,12 +102,12 @@ class ArcProblem {
     return Backbone(arm, state).pose(arc_length_of(arm, state, place)).position;
   }
   [[nodiscard]] Eigen::MatrixXd derivative(const ArcPicture& picture, double s, const Pose& pose,
-                                           const Eigen::Vector3d& p_C,
+                                           const Eigen::Vector3d& p_M,
                                            const Eigen::Matrix<double, 2, 3>& by_point) const {
     Eigen::MatrixXd row = Eigen::MatrixXd::Zero(2, size());
     const auto first = 6 * static_cast<Eigen::Index>(picture.camera);
     row.middleCols<3>(first) = -by_point;
-    row.middleCols<3>(first + 3) = by_point * cross_of(p_C);
+    row.middleCols<3>(first + 3) = by_point * cross_of(p_M);
     constexpr double step = 1e-6;
     for (Eigen::Index j = 0; j < 2 * sections(); ++j) {
       Eigen::VectorXd more = wrong_, less = wrong_;
@@ -184,13 +186,13 @@ ArcFit fit_arcs(const Arm& arm, const std::array<Intrinsics, 2>& lenses,
   if (median_of(misses) > wrong)
     fit.reason = fmt::format("no two cameras explain the markers: half of them are more than {:.1f} px off",
                              median_of(misses));
-  fit.X_WC = problem.poses();
+  fit.X_WM = problem.poses();
   const Eigen::MatrixXd covariance =
       normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())) *
       (ArcProblem::marker_sigma * ArcProblem::marker_sigma);
   for (std::size_t i = 0; i < 2; ++i) {
-    // A turn about W's Y is the camera's own about that axis in its frame.
-    const Eigen::Vector3d axis = fit.X_WC[i].rotation.transpose() * Eigen::Vector3d::UnitY();
+    // A turn about W's Y is the mount's own about that axis in its frame.
+    const Eigen::Vector3d axis = fit.X_WM[i].rotation.transpose() * Eigen::Vector3d::UnitY();
     const auto block =
         covariance.block<3, 3>(6 * static_cast<Eigen::Index>(i) + 3, 6 * static_cast<Eigen::Index>(i) + 3);
     fit.turn_sigma[i] = std::sqrt(axis.dot(block * axis));

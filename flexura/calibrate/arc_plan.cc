@@ -36,12 +36,12 @@ View view_along(const Camera& camera, double zoom, const Eigen::Vector3d& from,
 }
 
 // The smallest magnification that both cameras have, and something to spare for making it smaller still.
-double common_magnification(const LookLoop& loop, const std::array<double, 2>& distances) {
+double common_magnification(const LookLoop& loop, const std::array<double, 2>& depths) {
   constexpr double spare = 1.15;
   double least = 0;
   for (std::size_t i = 0; i < 2; ++i) {
     const Camera& camera = loop.camera(i);
-    least = std::max(least, camera.lens().at(zoom_ends(camera)[0]).fx / distances[i]);
+    least = std::max(least, camera.lens().at(zoom_ends(camera)[0]).fx / depths[i]);
   }
   return spare * least;
 }
@@ -69,8 +69,13 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
   const Arm& arm = loop.believed().arm;
   const double bend = loop.config().arc;
   plan.radius = arm.length() / bend;
-  const std::array<Eigen::Vector3d, 2> towards = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()};
   plan.normals = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()};
+  // Towards the side from which each camera is believed to look; the arcs bend away from the other camera.
+  for (std::size_t i = 0; i < 2; ++i)
+    if (vector(loop.model(i).config.mount.position).dot(plan.normals[i]) <
+        arm.X_WB.position.dot(plan.normals[i]))
+      plan.normals[i] = -plan.normals[i];
+  const std::array<Eigen::Vector3d, 2> towards = {-plan.normals[1], -plan.normals[0]};
   std::array<Eigen::Vector3d, 2> middles;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto state = arc_state(arm, bend, towards[i]);
@@ -84,21 +89,21 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
   plan.target = {middles[0].x(), 0.5 * (middles[0].y() + middles[1].y()), middles[1].z()};
   std::array<double, 2> distances;
   for (std::size_t i = 0; i < 2; ++i) {
-    // From the side on which the camera is believed to stand.
-    const double along = (vector(loop.model(i).config.mount.position) - plan.centers[i]).dot(plan.normals[i]);
-    if (along < 0) plan.normals[i] = -plan.normals[i];
-    distances[i] = std::abs(along);
+    distances[i] = (vector(loop.model(i).config.mount.position) - plan.centers[i]).dot(plan.normals[i]);
     if (distances[i] < 2 * plan.radius)
       return fmt::format(
           "camera {} is believed to stand {:.3g} m from the plane {}: expected twice the arc's radius "
           "at least",
           loop.name(i), distances[i], i == 0 ? "XOY" : "ZOY");
   }
-  const double magnification = common_magnification(loop, distances);
+  std::array<double, 2> depths;
+  for (std::size_t i = 0; i < 2; ++i)
+    depths[i] = distances[i] - (plan.target - plan.centers[i]).dot(plan.normals[i]);
+  const double magnification = common_magnification(loop, depths);
   for (std::size_t i = 0; i < 2; ++i) {
     const Camera& camera = loop.camera(i);
     const double least = zoom_ends(camera)[0];
-    plan.zoom[i] = zoom_by(camera, least, magnification * distances[i] / camera.lens().at(least).fx);
+    plan.zoom[i] = zoom_by(camera, least, magnification * depths[i] / camera.lens().at(least).fx);
     const Eigen::Vector3d onto =
         plan.target - plan.normals[i].dot(plan.target - plan.centers[i]) * plan.normals[i];
     plan.ideal[i] = view_along(camera, plan.zoom[i], onto + distances[i] * plan.normals[i], -plan.normals[i]);

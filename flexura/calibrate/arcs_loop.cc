@@ -31,20 +31,30 @@ ArcsLoop::ArcsLoop(LookLoop& loop) : loop_(loop) {
   for (std::size_t i = 0; i < 2; ++i) eyes_.emplace_back(picture), X_WM_[i] = loop.camera(i).mount();
 }
 
+Pose ArcsLoop::pose(std::size_t i) const { return X_WM_[i] * in_mount(loop_.camera(i), loop_.stance(i)); }
+
 View ArcsLoop::expected_view(std::size_t i) const {
   View view = plan_.ideal[i];
   view.lens = Lens(loop_.lens(i));
-  view.X_WC = X_WM_[i] * in_mount(loop_.camera(i), loop_.stance(i));
+  view.X_WC = pose(i);
   return view;
 }
 
-LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc, std::vector<ArcPicture>& pictures) {
+LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
   const Arm& arm = loop_.believed().arm;
-  ArcPicture seen{i, plan_.arcs[arc], {}};
+  ArcPicture seen{i, in_mount(loop_.camera(i), loop_.stance(i)), plan_.arcs[arc], {}};
   auto trouble = loop_.look(i, [&](RigSight& sight) {
     const View view = expected_view(i);
     sight.seen = eyes_[i].see(*sight.frame.picture, view.lens,
                               expected_markers(arm, plan_.arcs[arc], loop_.config().picture.markers, view));
+    // What is recognised far from where it is known to be by now is something else.
+    constexpr double far = 15;  // px
+    if (is_located_)
+      std::erase_if(sight.seen.markers, [&](const SeenMarker& marker) {
+        const auto place =
+            expected_markers(arm, plan_.arcs[arc], {KnownMarker{.s = marker.s}}, view).markers[0];
+        return !place || (place->pixel - marker.pixel).norm() > far;
+      });
     if (sight.seen.markers.size() < fewest_markers && sight.seen.reason.empty())
       sight.seen.reason =
           fmt::format("{} markers are recognised, fewer than {}", sight.seen.markers.size(), fewest_markers);
@@ -52,13 +62,13 @@ LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc, std::vector<Arc
     seen.markers = sight.seen.markers;
   });
   if (trouble) return trouble;
-  if (!loop_.sight().seen.reason.empty()) return into_view(i, arc, pictures);
-  pictures.push_back(std::move(seen));
+  if (!loop_.sight().seen.reason.empty()) return into_view(i, arc);
+  pictures_.push_back(std::move(seen));
   return std::nullopt;
 }
 
 // Turns towards what is dark in the picture until enough markers are seen.
-LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc, std::vector<ArcPicture>& pictures) {
+LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
   const RigSight& sight = loop_.sight();
   const Intrinsics lens = loop_.lens(i);
   const auto middle = dark_centroid(eight_bits(*sight.frame.picture, loop_.config().white));
@@ -74,34 +84,30 @@ LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc, std::vecto
     return fmt::format("camera {} does not see enough of the arm: {}", loop_.name(i), sight.seen.reason);
   loop_.decide(i, "into view", off, 0, "px", "turn towards what is seen: " + sight.seen.reason);
   if (auto trouble = loop_.go(i, next)) return trouble;
-  std::erase_if(pictures, [i](const ArcPicture& picture) { return picture.camera == i; });
-  return look(i, arc, pictures);
+  return look(i, arc);
 }
 
 // Both arcs, seen by both cameras, and where the cameras are by that.
 LookLoop::Trouble ArcsLoop::locate() {
-  std::vector<ArcPicture> pictures;
   for (const std::size_t arc : {std::size_t{0}, std::size_t{1}}) {
     if (auto trouble = loop_.show(plan_.arcs[arc])) return trouble;
     for (std::size_t i = 0; i < 2; ++i)
-      if (auto trouble = look(i, arc, pictures)) return trouble;
+      if (auto trouble = look(i, arc)) return trouble;
   }
-  const std::array<Pose, 2> start = {expected_view(0).X_WC, expected_view(1).X_WC};
-  fit_ = fit_arcs(loop_.believed().arm, {loop_.lens(0), loop_.lens(1)}, pictures, start);
+  fit_ = fit_arcs(loop_.believed().arm, {loop_.lens(0), loop_.lens(1)}, pictures_, X_WM_);
   if (!fit_.reason.empty()) return fit_.reason;
-  for (std::size_t i = 0; i < 2; ++i) {
-    X_WM_[i] = fit_.X_WC[i] * in_mount(loop_.camera(i), loop_.stance(i)).inverse();
-    loop_.result().roll[i] = roll_of(fit_.X_WC[i].rotation);
-  }
+  is_located_ = true;
+  X_WM_ = fit_.X_WM;
+  for (std::size_t i = 0; i < 2; ++i) loop_.result().roll[i] = roll_of(pose(i).rotation);
   loop_.result().angle =
-      std::acos(std::clamp(fit_.X_WC[0].rotation.col(2).dot(fit_.X_WC[1].rotation.col(2)), -1.0, 1.0)) -
+      std::acos(std::clamp(pose(0).rotation.col(2).dot(pose(1).rotation.col(2)), -1.0, 1.0)) -
       std::numbers::pi / 2;
   return std::nullopt;
 }
 
 // How far a camera's picture is from the simulator's, as the larger of turn and shift, px.
 double ArcsLoop::offset(std::size_t i) const {
-  const Pose& is = fit_.X_WC[i];
+  const Pose is = pose(i);
   const Pose& ideal = plan_.ideal[i].X_WC;
   const double turn = std::acos(std::clamp(is.rotation.col(2).dot(ideal.rotation.col(2)), -1.0, 1.0));
   const Eigen::Vector3d shift = ideal.rotation.transpose() * (is.position - ideal.position);
@@ -161,8 +167,9 @@ LookLoop::Trouble ArcsLoop::run() {
       const bool goes = !is_accepted && !is_noise;
       loop_.decide(
           i, "orientation and positioning", off, loop_.config().accepted, "px",
-          goes ? fmt::format("pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
-                             next[i].head.pan, next[i].head.tilt, next[i].stage.offset.x(),
+          goes ? fmt::format("{:.2f} px are left of the markers; pan to {:.5g} rad, tilt to {:.5g} rad, "
+                             "stage to {:.4g}, {:.4g}, {:.4g} m",
+                             fit_.rms, next[i].head.pan, next[i].head.tilt, next[i].stage.offset.x(),
                              next[i].stage.offset.y(), next[i].stage.offset.z())
                : (is_accepted ? "holds, or nothing finer can be commanded"
                               : "holds: the pictures tell nothing finer"));

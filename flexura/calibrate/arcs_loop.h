@@ -22,8 +22,8 @@ class ArcsLoop {
 
  private:
   using Trouble = LookLoop::Trouble;
-  [[nodiscard]] Trouble look(std::size_t i, std::size_t arc, std::vector<ArcPicture>& pictures);
-  [[nodiscard]] Trouble into_view(std::size_t i, std::size_t arc, std::vector<ArcPicture>& pictures);
+  [[nodiscard]] Trouble look(std::size_t i, std::size_t arc);
+  [[nodiscard]] Trouble into_view(std::size_t i, std::size_t arc);
   [[nodiscard]] Trouble locate();
   [[nodiscard]] std::array<RigStance, 2> wanted() const;
   [[nodiscard]] double offset(std::size_t i) const;
@@ -32,8 +32,12 @@ class ArcsLoop {
   LookLoop& loop_;
   ArcPlan plan_;
   std::vector<ArmPicture> eyes_;
-  std::array<Pose, 2> X_WM_;  // Of the mounts at stage offset 0, as they are known.
+  std::array<Pose, 2> X_WM_;                     // Of the mounts at stage offset 0, as they are known.
+  [[nodiscard]] Pose pose(std::size_t i) const;  // Of a camera where it stands, as it is known.
+
+  std::vector<ArcPicture> pictures_;  // All of them.
   ArcFit fit_;
+  bool is_located_ = false;
 };
 
 }  // namespace flexura

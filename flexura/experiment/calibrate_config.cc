@@ -120,7 +120,8 @@ const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
           .field("arc", &CalibrateLoopConfig::arc,
                  {.meaning = "By how much the arm is bent into an arc.",
                   .unit = Unit::radian,
-                  .range = between(0.2, 6)});
+                  .range = between(0.2, 6),
+                  .default_text = "90 degrees with arcs, 120 as printed"});
   return table;
 }
 
@@ -198,6 +199,12 @@ bool is_before_etalon(const CalibrateTask& task) {
   return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper;
 }
 
+// Beyond a quarter of a circle an arm seen from within its plane lies before itself.
+double arc_bend(const CalibrateTask& task) {
+  constexpr double corrected = 1.57079632679489661923, printed = 2.0943951023931953;
+  return task.loop.arc.value_or(is_as_printed(task) ? printed : corrected);
+}
+
 std::size_t most_images(const CalibrateTask& task) {
   constexpr std::int64_t of_bundle = 12, of_corrected = 60, of_printed = 400;
   return static_cast<std::size_t>(
@@ -208,8 +215,10 @@ std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& ar
   std::vector<ArmState> poses;
   if (is_before_etalon(task)) return poses;
   if (is_loop(task)) {
-    for (const Eigen::Vector3d& towards : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
-      if (auto arc = arc_state(arm, task.loop.arc, towards)) poses.push_back(std::move(*arc));
+    // To which sides, depends on where the cameras stand.
+    for (const double side : {1.0, -1.0})
+      for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
+        if (auto arc = arc_state(arm, arc_bend(task), side * axis)) poses.push_back(std::move(*arc));
     return poses;
   }
   poses.reserve(std::max(task.pose.size(), patterns.size()));
@@ -263,7 +272,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
       task.loop.accepted.value_or(is_printed ? printed : (is_before_etalon(task) ? of_etalon : of_arcs));
   config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : corrected_zoom);
   config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
-  config.arc = task.loop.arc;
+  config.arc = arc_bend(task);
   for (const Marker& marker : arm.look.markers(arm.arm()))
     config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
   config.etalon = stand.etalon.value_or(EtalonConfig{});
@@ -335,12 +344,12 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
 }
 
 void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
-  constexpr std::size_t arcs = 2;
+  constexpr std::size_t arcs = 4;
   if (calibration_poses(task, arm.arm()).size() < arcs)
     reader.problem_at(
         path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
                           "spatial one that stands upright, or a smaller loop.arc",
-                          task.loop.arc * 180 / std::numbers::pi));
+                          arc_bend(task) * 180 / std::numbers::pi));
   if (!task.pose.empty() || task.target || !task.stages)
     reader.problem_at(
         path, "has no pose, no target and moves stages with this method: expected none of these keys");

@@ -49,7 +49,7 @@ struct CalibrateLoopConfig {
   double turn = 0.0034906585039886592;  ///< As printed: every turn of a head, rad: 0.2 degrees,
   double slide = 0.005;                 ///< every way of a stage, m,
   double zoom_step = 0.02;              ///< and every change of a zoom, a share.
-  double arc = 2.0943951023931953;      ///< By which the arm is bent into an arc, rad: 120 degrees.
+  std::optional<double> arc;            ///< By which the arm is bent into an arc, rad.
 };
 
 /// `kind = "calibrate"`: the arm is shown to two cameras, which are then sent to the wanted configuration.
@@ -82,6 +82,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 /// Whether it is one of those as printed, or one that looks at the calibration cylinder.
 [[nodiscard]] bool is_as_printed(const CalibrateTask& task);
 [[nodiscard]] bool is_before_etalon(const CalibrateTask& task);
+/// By how much the arm is bent into an arc, rad.
+[[nodiscard]] double arc_bend(const CalibrateTask& task);
 /// Pictures a camera, at most.
 [[nodiscard]] std::size_t most_images(const CalibrateTask& task);
 

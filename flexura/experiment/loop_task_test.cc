@@ -205,6 +205,50 @@ TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
   bench.expect_back();
 }
 
+TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
+  for_random_cases(1, [](TestRandom& random) {
+    const LoopRig rig = arcs_cameras({wrong_start(random), wrong_start(random)});
+    LoopBench bench(arcs_rig("method = \"arcs\"\n", rig, {0.003, -0.003, 0.004}));
+    RigPorts ports = bench.ports();
+    WrongArm arm(*ports.arm, {1.006, 0.995, 1.008});
+    ports.arm = &arm;
+    const LoopResult result = bench.calibrate(ports);
+    ASSERT_TRUE(result.is_done) << result.reason;
+    const RigRemainder left = bench.truth(result);
+    EXPECT_LT(std::abs(left.angle), 0.6 * a_degree);
+    EXPECT_NEAR(left.angle, *result.angle, 0.6 * a_degree);
+    EXPECT_NEAR(left.zoom_ratio, 1, 0.01);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_LT(left.aim[i].norm(), 0.02);
+      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.3 * a_degree);
+    }
+  });
+}
+
+TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
+  const LoopRig rig =
+      arcs_cameras({WrongStart{.pan = 0.03, .tilt = 0.02}, WrongStart{.shift = {0, 0, 0.05}}}, true);
+  LoopBench bench(arcs_rig("method = \"arcs-paper\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  ASSERT_EQ(result.notes.size(), 2U);
+  EXPECT_THAT(result.notes[0],
+              HasSubstr("the circle's equation is verified, which proves no more than a tilt below"));
+  EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.05);
+}
+
+TEST(ArcsLoop, StopsWhereTheArmIsOutOfView) {
+  for (const char* method : {"arcs", "arcs-paper"}) {
+    LoopRig rig = arcs_cameras({WrongStart{}, WrongStart{.pan = 1.2}}, std::string(method) == "arcs-paper");
+    rig.size = 0.5;
+    LoopBench bench(arcs_rig(std::string("method = \"") + method + "\"\n", rig));
+    const LoopResult result = bench.calibrate();
+    EXPECT_FALSE(result.is_done);
+    EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));
+    bench.expect_back();
+  }
+}
+
 TEST(EtalonLoop, RefusesWhatItCannotDo) {
   const auto problem_of = [](const std::string& text) {
     try {

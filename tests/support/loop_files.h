@@ -108,7 +108,7 @@ inline LoopRig arcs_cameras(const std::array<WrongStart, 2>& wrong, bool is_at_c
   const double aside = is_at_centers ? radius : 0.5 * radius,
                up = is_at_centers ? 0 : radius * std::sqrt(0.75);
   LoopRig rig;
-  rig.wrong = wrong, rig.at = {{{aside, up, 2.5}, {-2.5, up, aside}}};
+  rig.wrong = wrong, rig.at = {{{aside, up, 2.5}, {-2.5, up, -aside}}};
   return rig;
 }
 

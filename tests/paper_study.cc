@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <numbers>
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
       "% | zoom "
       "ratio from 1, %, 95 % |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (const char* method : {"bundle", "etalon", "arcs", "etalon-paper", "arcs-paper"})
-    print_row(method, trials, seed, failures);
+    print_row(method, trials, seed, failures), std::fflush(stdout);
   fmt::print("\n");
   for (const auto& [method, kinds] : failures) {
     fmt::print("`{}` stopped:", method);

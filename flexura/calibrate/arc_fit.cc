@@ -22,7 +22,7 @@ Eigen::Matrix3d cross_of(const Eigen::Vector3d& p) {
 }
 
 // x: of each mount a motion [v; w] in its own frame since the pose held here, then each section's bend gain
-// and length, less 1.
+// and length: the logarithms of their factors.
 class ArcProblem {
  public:
   ArcProblem(const Arm& arm, const std::array<Intrinsics, 2>& lenses, const std::vector<ArcPicture>& pictures,
@@ -95,11 +95,16 @@ class ArcProblem {
     ArmState state = commanded;
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       const auto j = static_cast<Eigen::Index>(i);
-      state.bends[i] *= 1 + wrong[j];
-      arm.sections[i].length *= 1 + wrong[sections() + j];
+      state.bends[i] *= factor(wrong[j]);
+      arm.sections[i].length *= factor(wrong[sections() + j]);
     }
     const MaterialPoint place = material_point(arm_, s);
     return Backbone(arm, state).pose(arc_length_of(arm, state, place)).position;
+  }
+  // Steps of a descent may be wild; an arm that is wrong by more is none that was asked about.
+  static double factor(double wrong) {
+    constexpr double most = 0.3;
+    return std::exp(std::clamp(wrong, -most, most));
   }
   [[nodiscard]] Eigen::MatrixXd derivative(const ArcPicture& picture, double s, const Pose& pose,
                                            const Eigen::Vector3d& p_M,
@@ -167,18 +172,20 @@ ArcFit fit_arcs(const Arm& arm, const std::array<Intrinsics, 2>& lenses,
   ArcFit fit;
   ArcProblem problem(arm, lenses, pictures, start);
   Eigen::MatrixXd normal;
+  constexpr std::size_t fewest = 8;  // Markers that make two poses.
   // What is far off at first is not wrong; later on it is.
   for (const double least : {20.0, 3.0, 1.0}) {
     std::vector<double> misses;
     (void)problem.sum(least, nullptr, nullptr, &misses);
-    if (misses.size() < 8) {
-      fit.reason = fmt::format("only {} markers are seen in all pictures", misses.size());
-      return fit;
-    }
+    if (misses.size() < fewest) break;
     (void)descend(problem, std::max(least, 2 * median_of(std::move(misses))), normal);
   }
   std::vector<double> misses;
   (void)problem.sum(1, nullptr, nullptr, &misses);
+  if (misses.size() < fewest || normal.size() == 0) {
+    fit.reason = fmt::format("only {} markers are seen in all pictures", misses.size());
+    return fit;
+  }
   double squares = 0;
   for (const double miss : misses) squares += miss * miss;
   fit.rms = std::sqrt(squares / static_cast<double>(misses.size()));

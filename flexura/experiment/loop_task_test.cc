@@ -196,9 +196,9 @@ TEST(EtalonPaperLoop, StopsWhereTheZoomRunsAway) {
 }
 
 TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
-  const WrongStart front{.pan = 0.0513};
-  LoopBench bench(
-      etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n", small({front, WrongStart{}})));
+  const WrongStart front{.pan = 0.0436};  // Two steps and a half.
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n",
+                             small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("horizontal orientation of camera front goes back and forth"));

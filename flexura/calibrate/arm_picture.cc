@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/calibrate/eight_bits.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
 #include "flexura/vision/backbone_image.h"
@@ -17,17 +18,6 @@ namespace {
 // Of where bands are found along the arm, whatever the noise, px: nine of ten within 0.36
 // (docs/studies/seeing.md).
 constexpr double least_marker_sigma = 0.2;
-
-// A picture in 8 bits, whatever it had.
-Image<std::uint8_t> bytes_of(const Picture& picture, int white) {
-  if (const auto* bytes = std::get_if<Image<std::uint8_t>>(&picture)) return *bytes;
-  const auto& words = std::get<Image<std::uint16_t>>(picture);
-  Image<std::uint8_t> bytes(words.width(), words.height(), words.channels());
-  for (std::size_t i = 0; i < words.values().size(); ++i)
-    bytes.values()[i] =
-        static_cast<std::uint8_t>(std::min(255, (255 * int{words.values()[i]} + white / 2) / white));
-  return bytes;
-}
 
 MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& markers) {
   MarkerScene scene;
@@ -92,7 +82,7 @@ SeenArm ArmPicture::see(const Picture& picture, const Lens& lens, const MarkerSc
     return seen;
   }
   to_backbone_image(lens, arm.axis);
-  const Image<std::uint8_t> bytes = bytes_of(picture, config_.white);
+  const Image<std::uint8_t> bytes = eight_bits(picture, config_.white);
   const std::vector<MarkerSighting> markers = find_markers(bytes, arm).markers;
   const MarkerMatch match = match_markers(expected, scene_of(arm, markers), {bytes.width(), bytes.height()});
   for (std::size_t i = 0; i < markers.size(); ++i) {

@@ -167,7 +167,8 @@ class Session {
               .stance = std::get<RigStance>(stance),
               .pose = pose,
               .frame = frame,
-              .seen = eyes_[i].see(*frame.picture, view.lens, expected)};
+              .seen = eyes_[i].see(*frame.picture, view.lens, expected),
+              .values = {}};
     ++result_.pictures[i];
     const bool is_of_use = sight_.seen.markers.size() >= config_.fewest;
     if (!is_of_use && sight_.seen.reason.empty())

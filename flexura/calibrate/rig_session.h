@@ -41,6 +41,12 @@ struct RigSessionConfig {
   RigPatience patience;
 };
 
+/// A number that was read off a picture.
+struct SeenValue {
+  std::string name;  ///< With its unit: "white left, px".
+  double value = 0;
+};
+
 /// One picture and what was seen in it.
 struct RigSight {
   std::size_t look = 0;  ///< From 1; 0 while the arm is looked for.
@@ -48,6 +54,7 @@ struct RigSight {
   ArmState pose;         ///< As the drives say.
   Frame frame;
   SeenArm seen;
+  std::vector<SeenValue> values;  ///< What the methods of the paper measure (loop_session.h).
 };
 
 /// What was known after a look.
@@ -67,6 +74,17 @@ struct RigStep {
   std::string next;  ///< What is looked at next, and why.
 };
 
+/// What a method of the paper makes of a picture (loop_session.h).
+struct LoopDecision {
+  double time = 0;                  ///< s
+  std::size_t looks = 0;            ///< Pictures of all cameras up to now.
+  std::size_t camera = 0;           ///< Whose, a place among the rig's.
+  std::string step;                 ///< "horizontal orientation", ...
+  double offset = 0, accepted = 0;  ///< How far off it is, and how much of that is accepted.
+  std::string unit;                 ///< Of both.
+  std::string next;                 ///< What is done, in words.
+};
+
 /// Sees a session as it goes. What it does with that changes nothing of the session.
 class RigSessionWatcher {
  public:
@@ -79,6 +97,7 @@ class RigSessionWatcher {
   virtual void camera_sent(double time, const RigStance& stance) = 0;
   virtual void seen(const RigSight& sight) = 0;
   virtual void known(const RigStep& step) = 0;
+  virtual void decided(const LoopDecision& /*decision*/) {}
   /// Whether the session shall end early.
   virtual bool is_cancelled() { return false; }
 };

@@ -7,8 +7,10 @@
 #include <variant>
 
 #include "flexura/base/bytes.h"
+#include "flexura/calibrate/eight_bits.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
+#include "flexura/experiment/loop_chapter.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
@@ -83,15 +85,6 @@ NamedDrawing sigmas(const CalibrationRun& run, std::size_t number) {
       .drawing(number);
 }
 
-Image<std::uint8_t> bytes_of(const Picture& picture, std::int64_t bits) {
-  if (const auto* bytes = std::get_if<Image<std::uint8_t>>(&picture)) return *bytes;
-  const auto& words = std::get<Image<std::uint16_t>>(picture);
-  Image<std::uint8_t> bytes(words.width(), words.height(), words.channels());
-  for (std::size_t i = 0; i < bytes.values().size(); ++i)
-    bytes.values()[i] = static_cast<std::uint8_t>(words.values()[i] >> (bits - 8));
-  return bytes;
-}
-
 ImageOutline::Line cross(const Eigen::Vector2d& at, double size) {
   const Eigen::Vector2d x(size, 0), y(0, size);
   return {{at - x, at + x, at, at - y, at + y}, ""};
@@ -101,7 +94,7 @@ ImageOutline::Line cross(const Eigen::Vector2d& at, double size) {
 NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_after, std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
   const CameraConfig& believed = run.believed.cameras[sight.stance.camera].config;
-  const Image<std::uint8_t> picture = bytes_of(*sight.frame.picture, believed.sensor.bits);
+  const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << believed.sensor.bits) - 1);
   ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"),
                  .legend = "",
                  .width = picture.width(),
@@ -141,15 +134,6 @@ std::string text_of(const CalibrationRun& run) {
       result.verified[0], result.verified[1]);
 }
 
-std::string remainder_text(const std::string& when, const RigRemainder& left) {
-  return fmt::format(
-      "{}: the axes are {:.3f} deg apart, pass the target by {:.2f} mm and {:.2f} mm, zoom ratio {:.4f}; "
-      "roll about "
-      "the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
-      when, 90 + left.angle / degree, 1e3 * left.aim[0].norm(), 1e3 * left.aim[1].norm(), left.zoom_ratio,
-      left.roll[0] / degree, left.roll[1] / degree);
-}
-
 std::vector<std::string> points_of(const CalibrationRun& run) {
   const RigSessionResult& result = run.result;
   std::vector<std::string> points;
@@ -175,7 +159,17 @@ std::vector<std::string> points_of(const CalibrationRun& run) {
 
 }  // namespace
 
+std::string remainder_text(const std::string& when, const RigRemainder& left) {
+  return fmt::format(
+      "{}: the axes are {:.3f} deg apart, pass the target by {:.2f} mm and {:.2f} mm, zoom ratio {:.4f}; "
+      "roll about "
+      "the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
+      when, 90 + left.angle / degree, 1e3 * left.aim[0].norm(), 1e3 * left.aim[1].norm(), left.zoom_ratio,
+      left.roll[0] / degree, left.roll[1] / degree);
+}
+
 Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
+  if (run.loop) return loop_chapter(run, number);
   Chapter chapter{"Calibration: " + run.name, text_of(run), {}, points_of(run), false};
   for (std::size_t i = 0; i < 2; ++i) {
     if (run.result.before[i]) chapter.drawings.push_back(photograph(run, i, false, number));

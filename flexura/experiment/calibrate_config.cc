@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
+#include "flexura/calibrate/arc_plan.h"
+#include "flexura/calibrate/etalon_loop.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
 
 namespace flexura {
 namespace {
 
-constexpr std::int64_t most_images = 200;
+constexpr std::int64_t image_limit = 1000;
 constexpr double longest = 1e4;  // s
 
 // Bends of the arm's lower, middle and upper third, rad: mild ones first, of which rough guesses recognise
@@ -52,7 +55,7 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
 }  // namespace
 
 const std::vector<std::string>& names_of(const CalibrateMethod*) {
-  static const std::vector<std::string> names = {"bundle"};
+  static const std::vector<std::string> names = {"bundle", "etalon", "etalon-paper", "arcs", "arcs-paper"};
   return names;
 }
 
@@ -93,6 +96,35 @@ const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
   return table;
 }
 
+const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
+  static const auto table =
+      Table<CalibrateLoopConfig>("loop", "How the paper's methods go about it.")
+          .field("accepted", &CalibrateLoopConfig::accepted,
+                 {.meaning = "What is accepted of every offset in a picture, px.",
+                  .range = above_up_to(0, 1000),
+                  .default_text = "0.05 with etalon, 0.5 with arcs, 3 as printed"})
+          .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
+                 {.meaning = "Share by which the cameras may show the target unlike.",
+                  .range = above_up_to(0, 1),
+                  .default_text = "0.001; 0.01 as printed"})
+          .field("turn", &CalibrateLoopConfig::turn,
+                 {.meaning = "As printed: every turn of a head.",
+                  .unit = Unit::radian,
+                  .range = above_up_to(0, 1)})
+          .field("slide", &CalibrateLoopConfig::slide,
+                 {.meaning = "As printed: every way of a stage.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 10)})
+          .field("zoom_step", &CalibrateLoopConfig::zoom_step,
+                 {.meaning = "As printed: every change of a zoom, a share.", .range = above_up_to(0, 1)})
+          .field("arc", &CalibrateLoopConfig::arc,
+                 {.meaning = "By how much the arm is bent into an arc.",
+                  .unit = Unit::radian,
+                  .range = between(0.2, 6),
+                  .default_text = "90 degrees with arcs, 120 as printed"});
+  return table;
+}
+
 const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   static const auto table =
       Table<CalibrateTask>("calibrate",
@@ -103,8 +135,14 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                            "is; heads, stages and zooms are moved as well. It takes as long as it takes.")
           .field("name", &CalibrateTask::name,
                  {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field("method", &CalibrateTask::method,
-                 {.meaning = "How: by least squares over everything at once."})
+          .field(
+              "method", &CalibrateTask::method,
+              {.meaning =
+                   "How: bundle is by least squares over everything at once, from pictures of the arm; "
+                   "etalon is the paper's loop before the calibration cylinder, corrected, and etalon-paper "
+                   "the same as printed; arcs is the paper's loop with arcs of the arm in two planes, "
+                   "corrected, "
+                   "and arcs-paper the same as printed."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field(
@@ -115,10 +153,12 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                .count = {1, 100},
                .default_text = "six, that bend every part of the arm to every side"})
           .field("images", &CalibrateTask::images,
-                 {.meaning = "Pictures a camera, at most; the last one verifies.",
-                  .range = between(3, most_images)})
+                 {.meaning = "Pictures a camera, at most; with bundle the last one verifies.",
+                  .range = between(3, image_limit),
+                  .default_text = "12 with bundle, 60 with etalon and arcs, 400 as printed"})
           .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
           .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
+          .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})
           .field("target", &CalibrateTask::target,
                  {.meaning = "What the cameras shall look at in the end.",
                   .unit = Unit::metre,
@@ -149,8 +189,38 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   return table;
 }
 
+bool is_loop(const CalibrateTask& task) { return task.method != CalibrateMethod::bundle; }
+
+bool is_as_printed(const CalibrateTask& task) {
+  return task.method == CalibrateMethod::etalon_paper || task.method == CalibrateMethod::arcs_paper;
+}
+
+bool is_before_etalon(const CalibrateTask& task) {
+  return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper;
+}
+
+// Beyond a quarter of a circle an arm seen from within its plane lies before itself.
+double arc_bend(const CalibrateTask& task) {
+  constexpr double corrected = 1.57079632679489661923, printed = 2.0943951023931953;
+  return task.loop.arc.value_or(is_as_printed(task) ? printed : corrected);
+}
+
+std::size_t most_images(const CalibrateTask& task) {
+  constexpr std::int64_t of_bundle = 12, of_corrected = 60, of_printed = 400;
+  return static_cast<std::size_t>(
+      task.images.value_or(!is_loop(task) ? of_bundle : (is_as_printed(task) ? of_printed : of_corrected)));
+}
+
 std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm) {
   std::vector<ArmState> poses;
+  if (is_before_etalon(task)) return poses;
+  if (is_loop(task)) {
+    // To which sides, depends on where the cameras stand.
+    for (const double side : {1.0, -1.0})
+      for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
+        if (auto arc = arc_state(arm, arc_bend(task), side * axis)) poses.push_back(std::move(*arc));
+    return poses;
+  }
   poses.reserve(std::max(task.pose.size(), patterns.size()));
   for (const ShapeConfig& shape : task.pose) poses.push_back(arm_state(arm, shape));
   if (!poses.empty()) return poses;
@@ -175,13 +245,38 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   config.poses = calibration_poses(task, arm.arm());
   for (const Marker& marker : arm.look.markers(arm.arm()))
     config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
-  config.images = static_cast<std::size_t>(task.images);
+  config.images = most_images(task);
   config.first = std::min<std::size_t>(3, config.images - 1);
   config.fewest = std::min<std::size_t>(5, config.picture.markers.size());
   config.wanted = {task.wanted.angle, {task.wanted.focal, task.wanted.focal}, task.wanted.zoom_ratio};
   if (task.target) config.target = vector(*task.target);
   config.may_use_stages = task.stages;
   config.zooms = task.zooms;
+  config.move_duration = task.move_duration;
+  config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
+  return config;
+}
+
+LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
+                       const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
+  constexpr std::array<LoopMethod, 5> methods = {LoopMethod::etalon, LoopMethod::etalon,
+                                                 LoopMethod::etalon_paper, LoopMethod::arcs,
+                                                 LoopMethod::arcs_paper};
+  LoopConfig config;
+  config.method = methods.at(static_cast<std::size_t>(task.method));
+  config.cameras = calibrated_cameras(task, cameras);
+  config.images = most_images(task);
+  constexpr double printed = 3, printed_zoom = 0.01, of_etalon = 0.05, of_arcs = 0.5, corrected_zoom = 0.001;
+  const bool is_printed = is_as_printed(task);
+  config.accepted =
+      task.loop.accepted.value_or(is_printed ? printed : (is_before_etalon(task) ? of_etalon : of_arcs));
+  config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : corrected_zoom);
+  config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
+  config.arc = arc_bend(task);
+  for (const Marker& marker : arm.look.markers(arm.arm()))
+    config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  config.etalon = stand.etalon.value_or(EtalonConfig{});
+  config.white = (1 << cameras.at(config.cameras[0]).sensor.bits) - 1;
   config.move_duration = task.move_duration;
   config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
   return config;
@@ -228,19 +323,57 @@ bool is_plain_file(const std::string& name) {
   return is_plain && name.size() > 5 && name.ends_with(".toml") && name.front() != '.';
 }
 
-}  // namespace
-
-void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
-                       const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader) {
-  check_names(task, cameras, path, reader);
-  for (std::size_t i = 0; i < task.pose.size(); ++i)
-    check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
+void check_markers(const ArmConfig& arm, const std::string& path, Reader& reader) {
   constexpr std::size_t fewest = 4;
   if (arm.look.markers(arm.arm()).size() < fewest)
     reader.problem_at(path,
                       fmt::format("needs at least {} markers to recognise places along the arm: expected "
                                   "arm.look.bands or arm.look.marker",
                                   fewest));
+}
+
+// The cylinder stands there alone, and upright.
+void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std::string& path,
+                  Reader& reader) {
+  if (!stand.etalon) {
+    reader.problem_at(path, "needs the calibration cylinder: expected [stand.etalon]");
+    return;
+  }
+  if (stand.arm) reader.problem_at(path, "needs the cylinder alone: expected stand.arm = false");
+  constexpr double upright = 0.01;  // m, of half a height of 1 m.
+  EtalonConfig unit = *stand.etalon;
+  unit.position = {0, 0, 0}, unit.height = 2;
+  if ((etalon_middle(unit) - Eigen::Vector3d::UnitY()).norm() > upright)
+    reader.problem_at(path, "needs a cylinder that stands upright: expected a stand.etalon.rotation about Y");
+  if (!task.pose.empty() || task.target || !task.stages)
+    reader.problem_at(
+        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+}
+
+void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  constexpr std::size_t arcs = 4;
+  if (calibration_poses(task, arm.arm()).size() < arcs)
+    reader.problem_at(
+        path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
+                          "spatial one that stands upright, or a smaller loop.arc",
+                          arc_bend(task) * 180 / std::numbers::pi));
+  if (!task.pose.empty() || task.target || !task.stages)
+    reader.problem_at(
+        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+}
+
+}  // namespace
+
+void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
+                       const std::vector<CameraConfig>& cameras, const StandConfig& stand,
+                       const std::string& path, Reader& reader) {
+  check_names(task, cameras, path, reader);
+  for (std::size_t i = 0; i < task.pose.size(); ++i)
+    check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
+  if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
+    check_markers(arm, path, reader);
+  if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
+  if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
   if (!task.save.empty() && !is_plain_file(task.save))
     reader.problem_at(path + ".save",
                       fmt::format("{}: expected a file's name of letters, digits, -, _ and ., "

@@ -8,16 +8,22 @@
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/model/arm_config.h"
+#include "flexura/model/stand.h"
 
 namespace flexura {
 
 /// How a task calibrates.
 enum class CalibrateMethod {
-  bundle,  ///< All poses, lenses and the arm's own errors at once, by least squares
-           ///< (calibrate/rig_session.h).
+  bundle,        ///< All poses, lenses and the arm's own errors at once, by least squares
+                 ///< (calibrate/rig_session.h).
+  etalon,        ///< The paper's, with the cylinder, as corrected (calibrate/loop_session.h).
+  etalon_paper,  ///< The same as printed.
+  arcs,          ///< The paper's, with the simulator, as corrected.
+  arcs_paper,    ///< The same as printed.
 };
 
 /// How well the rig shall be known: standard deviations.
@@ -36,15 +42,26 @@ struct CalibrateGuessConfig {
   bool exact_heads = false;               ///< Heads stand where they count, not within half a step of it.
 };
 
+/// How the paper's methods go about it (calibrate/loop_session.h).
+struct CalibrateLoopConfig {
+  std::optional<double> accepted;       ///< Of every offset in a picture, px.
+  std::optional<double> zoom_accepted;  ///< Of the zoom ratio, a share.
+  double turn = 0.0034906585039886592;  ///< As printed: every turn of a head, rad: 0.2 degrees,
+  double slide = 0.005;                 ///< every way of a stage, m,
+  double zoom_step = 0.02;              ///< and every change of a zoom, a share.
+  std::optional<double> arc;            ///< By which the arm is bent into an arc, rad.
+};
+
 /// `kind = "calibrate"`: the arm is shown to two cameras, which are then sent to the wanted configuration.
 struct CalibrateTask {
   std::string name;
   CalibrateMethod method = CalibrateMethod::bundle;
-  std::vector<std::string> cameras;  ///< Two names; empty: the first two.
-  std::vector<ShapeConfig> pose;     ///< What the arm shows; empty: default_poses.
-  std::int64_t images = 12;          ///< A camera, at most.
+  std::vector<std::string> cameras;    ///< Two names; empty: the first two.
+  std::vector<ShapeConfig> pose;       ///< What the arm shows; empty: default_poses.
+  std::optional<std::int64_t> images;  ///< A camera, at most.
   CalibrateWantedConfig wanted;
   CalibrateGuessConfig guess;
+  CalibrateLoopConfig loop;
   std::optional<std::array<double, 3>> target;  ///< What the cameras shall look at, m.
   bool stages = true;
   std::vector<double> zooms = {1, 2.5};
@@ -57,7 +74,18 @@ struct CalibrateTask {
 const std::vector<std::string>& names_of(const CalibrateMethod*);
 const Table<CalibrateWantedConfig>& fields_of(const CalibrateWantedConfig*);
 const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*);
+const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*);
 const Table<CalibrateTask>& fields_of(const CalibrateTask*);
+
+/// Whether a task's method is one of the paper's loops.
+[[nodiscard]] bool is_loop(const CalibrateTask& task);
+/// Whether it is one of those as printed, or one that looks at the calibration cylinder.
+[[nodiscard]] bool is_as_printed(const CalibrateTask& task);
+[[nodiscard]] bool is_before_etalon(const CalibrateTask& task);
+/// By how much the arm is bent into an arc, rad.
+[[nodiscard]] double arc_bend(const CalibrateTask& task);
+/// Pictures a camera, at most.
+[[nodiscard]] std::size_t most_images(const CalibrateTask& task);
 
 /// The poses of a task, as states of the arm.
 [[nodiscard]] std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm);
@@ -71,8 +99,14 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
                                               const std::vector<CameraConfig>& cameras);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed);
 
-/// Reports what keeps the calibration at `path` ("task[2]") from being made with this arm and these cameras.
+/// What a task by one of the paper's methods asks of its loop; the simulator's pictures are left out.
+[[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
+                                     const std::vector<CameraConfig>& cameras, const StandConfig& stand);
+
+/// Reports what keeps the calibration at `path` ("task[2]") from being made with this arm, these cameras and
+/// what stands around.
 void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
-                       const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader);
+                       const std::vector<CameraConfig>& cameras, const StandConfig& stand,
+                       const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -68,7 +68,49 @@ Node stance_node(const std::string& name, const RigStance& stance) {
           {}};
 }
 
+Node decision_nodes(const LoopResult& result, const CalibrationRun& run) {
+  Node::Array list;
+  for (const LoopDecision& step : result.steps)
+    list.push_back({Node::Table{{"time", {}, number_node(step.time)},
+                                {"looks", {}, whole(step.looks)},
+                                {"camera", {}, {run.believed.cameras[step.camera].config.name, {}}},
+                                {"step", {}, {step.step, {}}},
+                                {"offset", {}, number_node(step.offset)},
+                                {"accepted", {}, number_node(step.accepted)},
+                                {"unit", {}, {step.unit, {}}},
+                                {"next", {}, {step.next, {}}}},
+                    {}});
+  return {std::move(list), {}};
+}
+
+// Of one of the paper's methods.
+Node::Table loop_members(const CalibrationRun& run) {
+  const LoopResult& result = *run.loop;
+  Node::Table members{
+      {"name", {}, {run.name, {}}},
+      {"done", {}, {result.is_done, {}}},
+      {"pictures", {}, {Node::Array{whole(result.pictures[0]), whole(result.pictures[1])}, {}}}};
+  const auto add = [&](const char* key, Node node) { members.push_back({key, {}, std::move(node)}); };
+  if (!result.is_done) add("reason", {result.reason, {}});
+  add("steps", decision_nodes(result, run));
+  Node::Array notes;
+  for (const std::string& note : result.notes) notes.push_back({note, {}});
+  add("notes", {std::move(notes), {}});
+  if (!result.is_done) return members;
+  add("target", point_node(result.target));
+  if (result.angle) add("angle_from_square_as_seen", number_node(*result.angle));
+  if (result.zoom_ratio) add("zoom_ratio_as_seen", number_node(*result.zoom_ratio));
+  if (result.roll[0] && result.roll[1])
+    add("roll_as_seen", {Node::Array{number_node(*result.roll[0]), number_node(*result.roll[1])}, {}});
+  if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
+  add("commanded", {Node::Array{stance_node(run.cameras[0], result.stances[0]),
+                                stance_node(run.cameras[1], result.stances[1])},
+                    {}});
+  return members;
+}
+
 Node::Table run_members(const CalibrationRun& run) {
+  if (run.loop) return loop_members(run);
   const RigSessionResult& result = run.result;
   Node::Table members{
       {"name", {}, {run.name, {}}},
@@ -128,7 +170,37 @@ const Table<FoundRigFile>& fields_of(const FoundRigFile*) {
   return table;
 }
 
+namespace {
+
+void start_at(const std::array<RigStance, 2>& stances, FoundRigFile& file) {
+  for (const RigStance& stance : stances) {
+    CameraStartConfig& start = file.camera[stance.camera].initial;
+    start.pan = stance.head.pan, start.tilt = stance.head.tilt, start.zoom = stance.head.zoom;
+    const Eigen::Vector3d& offset = stance.stage.offset;
+    start.stage = {offset.x(), offset.y(), offset.z()};
+  }
+}
+
+std::string file_text(const FoundRigFile& file) {
+  return write_toml(Codec<FoundRigFile>::write(file), fields_of(&file).info());
+}
+
+// A loop finds no rig: the file's own, whose cameras start where they were sent.
+std::string loop_rig_toml(const Experiment& experiment, const LoopResult& result) {
+  FoundRigFile file{experiment.arm, experiment.cameras()};
+  start_at(result.stances, file);
+  return fmt::format(
+             "# The rig as the file has it; a calibration with {} pictures sent its cameras to where they "
+             "start "
+             "here.\n",
+             result.pictures[0] + result.pictures[1]) +
+         file_text(file);
+}
+
+}  // namespace
+
 std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& run) {
+  if (run.loop) return loop_rig_toml(experiment, *run.loop);
   FoundRigFile file;
   file.arm = experiment.arm;
   const RigModel& found = run.result.found.model;
@@ -145,26 +217,21 @@ std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& r
   for (std::size_t i = 0; i < file.arm.section.size(); ++i)
     file.arm.section[i].length = found.arm.sections[i].length;
   for (const RigCamera& camera : found.cameras) file.camera.push_back(camera.config);
-  for (const RigStance& stance : run.result.wanted.stances) {
-    CameraStartConfig& start = file.camera[stance.camera].initial;
-    start.pan = stance.head.pan, start.tilt = stance.head.tilt, start.zoom = stance.head.zoom;
-    const Eigen::Vector3d& offset = stance.stage.offset;
-    start.stage = {offset.x(), offset.y(), offset.z()};
-  }
+  start_at(run.result.wanted.stances, file);
   const RigSigmas& sigmas = run.result.steps.back().sigmas;
   return fmt::format(
              "# Found by a calibration with {} pictures: angle between the axes known within {:.3g} deg, "
              "focal lengths within {:.2g} %\n# and {:.2g} % (standard deviations).\n",
              run.result.pictures[0] + run.result.pictures[1], sigmas.angle * 180 / std::numbers::pi,
              100 * sigmas.focal[0], 100 * sigmas.focal[1]) +
-         write_toml(Codec<FoundRigFile>::write(file), fields_of(&file).info());
+         file_text(file);
 }
 
 void write_rig_files(const Experiment& experiment, const std::vector<CalibrationRun>& runs,
                      const std::filesystem::path& folder) {
   int written = 0;
   for (const CalibrationRun& run : runs) {
-    if (!run.result.is_done) continue;
+    if (!run.is_done()) continue;
     const std::string text = found_rig_toml(experiment, run);
     ++written;
     const std::filesystem::path file = folder / rig_file_name;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "flexura/base/node.h"
@@ -30,6 +31,9 @@ void write_rig_files(const Experiment& experiment, const std::vector<Calibration
 
 /// The list `calibrations` of a summary.
 [[nodiscard]] Node calibration_nodes(const std::vector<CalibrationRun>& runs);
+
+/// What remains, in a sentence that begins with `when`.
+[[nodiscard]] std::string remainder_text(const std::string& when, const RigRemainder& left);
 
 /// A calibration in a report: how far off the rig was and became, how well it is known, what the cameras saw
 /// before and after. `number` from 0, for the names of figures.

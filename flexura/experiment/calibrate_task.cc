@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/experiment/ideal_picture.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {
@@ -119,6 +120,10 @@ class LoggedSession : public RigSessionWatcher {
       message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
     message.unknown = static_cast<std::int64_t>(sight.seen.unknown);
     if (!sight.seen.reason.empty()) message.reason = sight.seen.reason;
+    for (const SeenValue& value : sight.values) {
+      if (!message.values) message.values.emplace();
+      message.values->push_back({value.name, value.value});
+    }
     witness_.recorder().calibration(message, sight.frame.received);
     progress_.update(std::min(1.0, static_cast<double>(sight.look) / static_cast<double>(images_)), name_);
   }
@@ -137,6 +142,17 @@ class LoggedSession : public RigSessionWatcher {
                                            : step.reason;
     witness_.event(step.time, Recorder::Level::info, name_,
                    fmt::format("after {} looks: {}", step.looks, what));
+  }
+  void decided(const LoopDecision& decision) override {
+    CalibrationDecisionMessage message;
+    message.time = decision.time, message.looks = static_cast<std::int64_t>(decision.looks);
+    message.camera = name_of(decision.camera), message.step = decision.step;
+    message.offset = decision.offset, message.accepted = decision.accepted, message.unit = decision.unit;
+    message.next = decision.next;
+    witness_.recorder().calibration(message);
+    witness_.event(decision.time, Recorder::Level::info, name_,
+                   fmt::format("{} of {}: {:.4g} {} off; {}", decision.step, name_of(decision.camera),
+                               decision.offset, decision.unit, decision.next));
   }
   bool is_cancelled() override { return progress_.cancelled(); }
 
@@ -169,19 +185,25 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
   RecordedClock clock(*ports.clock, record_steps, motion);
   ports.clock = &clock;
   LoggedSession log(experiment, run.name, run.believed, session.images, witness, progress, motion);
-  run.result =
-      calibrate_rig_in_session(ports, run.believed, session_prior(config, run.believed), session, log);
+  if (is_loop(config)) {
+    LoopConfig loop = loop_config(config, experiment.arm, cameras, experiment.stand);
+    loop.draw = ideal_pictures(experiment);
+    run.loop = calibrate_by_loop(ports, run.believed, loop, log);
+  } else {
+    run.result =
+        calibrate_rig_in_session(ports, run.believed, session_prior(config, run.believed), session, log);
+  }
   // Time passes in a camera that is waited for as well, unseen by the clock.
   const double end = clock.now();
   record_steps(end, [&motion](double at) { return motion.at(at); });
   run.motion = motion.motion(end);
-  witness.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
-                run.result.is_done ? "calibrated" : run.result.reason);
-  if (!run.result.is_done) return run;
+  witness.event(end, run.is_done() ? Recorder::Level::info : Recorder::Level::error, run.name,
+                run.is_done() ? "calibrated" : run.reason());
+  if (!run.is_done()) return run;
   const RigConfig truth = experiment.true_rig();
   run.truth = remainder(rig_model(truth.arm.arm(), truth.cameras),
                         {filming.true_stance(session.cameras[0]), filming.true_stance(session.cameras[1])},
-                        run.result.target);
+                        run.loop ? run.loop->target : run.result.target);
   return run;
 }
 

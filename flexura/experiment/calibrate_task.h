@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "flexura/base/progress.h"
+#include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/filming.h"
@@ -20,10 +22,14 @@ struct CalibrationRun {
   std::size_t task = 0;                ///< Its number.
   std::array<std::string, 2> cameras;  ///< Their names.
   RigModel believed;                   ///< Before.
-  RigSessionResult result;
-  MotionPtr motion;  ///< Of the arm, as commanded, from the task's start.
+  RigSessionResult result;             ///< Of the method "bundle".
+  std::optional<LoopResult> loop;      ///< Of one of the paper's methods, instead.
+  MotionPtr motion;                    ///< Of the arm, as commanded, from the task's start.
   /// What truly remains where the cameras stand, of which the session knows nothing: simulated rigs tell.
   std::optional<RigRemainder> truth;
+
+  [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
+  [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
 /// Records the clock's steps before a time, given the arm's state at every time since the task's start.

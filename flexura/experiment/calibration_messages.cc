@@ -37,6 +37,14 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*) {
   return table;
 }
 
+const Table<SeenValueMessage>& fields_of(const SeenValueMessage*) {
+  using M = SeenValueMessage;
+  static const auto table = Table<M>("flexura.SeenValue", "A number that was read off a picture.")
+                                .field("name", &M::name, {.meaning = "What it is, with its unit."})
+                                .field("value", &M::value, {.meaning = "The number."});
+  return table;
+}
+
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*) {
   using M = CalibrationSightingMessage;
   static const auto table =
@@ -53,7 +61,8 @@ const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMess
           .field("markers", &M::markers, {.meaning = "The markers that were recognised."})
           .field("points", &M::points, {.meaning = "Independent points of the median axis, base to tip."})
           .field("unknown", &M::unknown, {.meaning = "How many markers were not recognised."})
-          .field("reason", &M::reason, {.meaning = "Why the picture is of no use."});
+          .field("reason", &M::reason, {.meaning = "Why the picture is of no use."})
+          .field("values", &M::values, {.meaning = "What the paper's methods measured."});
   return table;
 }
 
@@ -74,7 +83,13 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("focal_sigma", &M::focal_sigma, {.meaning = "Their standard deviations, shares."})
           .field("zoom_ratio_sigma", &M::zoom_ratio_sigma,
                  {.meaning = "Of how much larger one camera shows the arm than the other, a share."})
-          .field("next", &M::next, {.meaning = "What is done next, and why."});
+          .field("next", &M::next, {.meaning = "What is done next, and why."})
+          .field("camera", &M::camera,
+                 {.meaning = "The paper's methods, which find no rig: the camera that they move."})
+          .field("step", &M::step, {.meaning = "Likewise: the step that they are in."})
+          .field("offset", &M::offset, {.meaning = "Likewise: how far off it is."})
+          .field("accepted", &M::accepted, {.meaning = "Likewise: how far off it may be."})
+          .field("unit", &M::unit, {.meaning = "Of the last two."});
   return table;
 }
 

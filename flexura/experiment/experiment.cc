@@ -35,8 +35,8 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
     if (const auto* study = std::get_if<StudyTask>(&experiment.task[i]))
       check_study(*study, experiment.cameras(), fmt::format("task[{}]", i), reader);
     if (const auto* calibration = std::get_if<CalibrateTask>(&experiment.task[i]))
-      check_calibration(*calibration, experiment.arm, experiment.cameras(), fmt::format("task[{}]", i),
-                        reader);
+      check_calibration(*calibration, experiment.arm, experiment.cameras(), experiment.stand,
+                        fmt::format("task[{}]", i), reader);
   }
 }
 

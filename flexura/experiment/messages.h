@@ -115,6 +115,11 @@ struct AxisPointMessage {
   double sigma = 0;     ///< px
 };
 
+struct SeenValueMessage {
+  std::string name;  ///< With its unit.
+  double value = 0;
+};
+
 /// flexura.CalibrationSighting, on /calibration/sightings: what was measured in one picture.
 struct CalibrationSightingMessage {
   double time = 0;        ///< Middle of the exposure, s.
@@ -126,9 +131,10 @@ struct CalibrationSightingMessage {
   std::array<double, 3> stage = {0, 0, 0};   ///< Likewise, m.
   std::vector<std::array<double, 2>> bends;  ///< Likewise, rad.
   std::vector<MarkerMessage> markers;
-  std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
-  std::int64_t unknown = 0;              ///< Markers seen that were not recognised.
-  std::optional<std::string> reason;     ///< Why the picture is of no use.
+  std::vector<AxisPointMessage> points;                 ///< Of the median axis, from base to tip.
+  std::int64_t unknown = 0;                             ///< Markers seen that were not recognised.
+  std::optional<std::string> reason;                    ///< Why the picture is of no use.
+  std::optional<std::vector<SeenValueMessage>> values;  ///< Of the paper's methods.
 };
 
 /// flexura.CalibrationDecision, on /calibration/decisions: what is known after a look, and what follows.
@@ -145,6 +151,9 @@ struct CalibrationDecisionMessage {
   std::array<double, 2> focal_sigma = {0, 0};  ///< Shares.
   double zoom_ratio_sigma = 0;                 ///< Share.
   std::string next;                            ///< In words.
+  std::optional<std::string> camera, step;     ///< Of the paper's methods: whose offset, and in which step.
+  std::optional<double> offset, accepted;      ///< Likewise: how large it is, and may be.
+  std::optional<std::string> unit;             ///< Of both.
 };
 
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
@@ -179,6 +188,7 @@ const Table<ImageMessage>& fields_of(const ImageMessage*);
 const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);
 const Table<MarkerMessage>& fields_of(const MarkerMessage*);
 const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
+const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 

@@ -142,11 +142,11 @@ bool Player::calibrate(std::size_t task) {
   const double end = schedule_.legs()[task].end();
   plan(end);
   filming_->skip_to_now();
-  const bool is_done = run.result.is_done;
+  const bool is_done = run.is_done();
   if (!is_done) {
     // The run ends here: with the state at the end, which belongs to no step.
     played_ = {step_, end, run.motion->at(run.motion->duration()), progress_.cancelled(),
-               fmt::format("{}: {}", run.name, run.result.reason)};
+               fmt::format("{}: {}", run.name, run.reason())};
     witness_.expect(step_);
     witness_.state(step_, end, played_.last);
     witness_.readings(filming_->ports());

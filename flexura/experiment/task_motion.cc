@@ -53,6 +53,7 @@ MotionPtr motion_of(const StudyTask&, const Arm&, const ArmState& from) { return
 
 // Every way that a calibration may take, once: out to each pose and back.
 MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& from) {
+  if (is_before_etalon(task)) return hold_motion(from, 0);  // The arm is not there.
   std::vector<double> times = {0};
   std::vector<ArmState> states = {from};
   for (const ArmState& pose : calibration_poses(task, arm)) {

@@ -125,6 +125,31 @@ std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u,
   return Vector2d(u, v);
 }
 
+// The border of an upright figure's end, `way` 1 for the lower one: the mean of the columns a quarter of its
+// width beside its middle, where no line is if one is in the middle.
+std::optional<double> end_edge(const EdgeFinder<std::uint8_t>& edges, const Image<std::uint8_t>& gray,
+                               const EtalonSighting& seen, int way) {
+  const double quarter = 0.25 * (seen.right.at - seen.left.at), room = 0.25 * (seen.bottom - seen.top);
+  const double least_contrast = 0.3 * (seen.threshold.bright - seen.threshold.dark);
+  double sum = 0;
+  for (const double side : {-1.0, 1.0}) {
+    int v = way > 0 ? seen.bottom : seen.top;
+    const int u = static_cast<int>(std::lround(seen.middle(v) + side * quarter));
+    if (u < 0 || u >= gray.width()) return std::nullopt;
+    // An end seen from above or below is round, and a camera may be rolled.
+    while (v > seen.top - 1 && v < seen.bottom + 1 && gray.at(u, v) > seen.threshold.level) v -= way;
+    double at = v + 0.5 * way;
+    for (int i = 0; i < 4; ++i) {
+      const auto fit = edges.look({u, at}, {0, way}, 0.8, room);
+      if (!fit || fit->contrast < least_contrast) return std::nullopt;
+      at += way * std::clamp(fit->offset, -1.0, 1.0);
+      if (std::abs(fit->offset) < 0.05) break;
+    }
+    sum += 0.5 * at;
+  }
+  return sum;
+}
+
 // Where the rows between the ends' ellipses cross both sides, and what stands out between these.
 struct Crossings {
   std::array<std::vector<Vector2d>, 2> sides;
@@ -231,6 +256,10 @@ EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::
         left->rms, right->rms);
     return seen;
   }
+  BlurredSteps steps;
+  const EdgeFinder<std::uint8_t> edges(gray, 1, steps);
+  seen.upper_edge = end_edge(edges, gray, seen, -1);
+  seen.lower_edge = end_edge(edges, gray, seen, 1);
   seen.lines = lines_through(found.peaks, seen.middle_row, height - 2 * inset);
   return seen;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct EtalonSighting {
   double middle_row = 0;
   UprightLine left, right;  ///< The silhouette's sides.
   double width_above = 0,
-         width_below = 0;          ///< Of the silhouette a tenth of its height in, px (docs/vision.md).
-  std::vector<UprightLine> lines;  ///< The red ones, left to right.
+         width_below = 0;  ///< Of the silhouette a tenth of its height in, px (docs/vision.md).
+  std::optional<double> upper_edge, lower_edge;  ///< Of the silhouette, near its middle, px.
+  std::vector<UprightLine> lines;                ///< The red ones, left to right.
   bool touches_border = false;
 
   /// Its middle at a row.

@@ -1,0 +1,126 @@
+#include "flexura/calibrate/arcs_paper_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flexura {
+namespace {
+
+constexpr double by_degrees = 180 / std::numbers::pi;
+
+}  // namespace
+
+ArcsPaperLoop::ArcsPaperLoop(LookLoop& loop) : loop_(loop) {
+  ArmPictureConfig picture = loop.config().picture;
+  picture.white = loop.config().white;
+  for (int i = 0; i < 2; ++i) eyes_.emplace_back(picture);
+}
+
+// Steps 3 to 5: a picture, its median axis, a circle through it.
+LookLoop::Trouble ArcsPaperLoop::look(std::size_t i) {
+  auto trouble = loop_.look(i, [&](RigSight& sight) {
+    const View& view = plan_.ideal[i];
+    sight.seen = eyes_[i].see(
+        *sight.frame.picture, Lens(loop_.lens(i)),
+        expected_markers(loop_.believed().arm, plan_.arcs[i], loop_.config().picture.markers, view));
+    if (!sight.seen.points.empty()) sight.seen.reason.clear();  // Markers are not asked for.
+    points_.clear();
+    for (const CurvePoint& point : sight.seen.points) points_.push_back(point.pixel);
+    circle_ = fit_circle(points_);
+    if (!circle_) return;
+    sight.values = {{"radius, px", circle_->radius},
+                    {"rms, px", circle_->rms},
+                    {"verified", circle_->is_verified ? 1.0 : 0.0},
+                    {"detectable tilt, deg", circle_->detectable_tilt * by_degrees}};
+  });
+  if (trouble) return trouble;
+  if (!circle_)
+    return fmt::format("the arm is out of view of camera {}: {}", loop_.name(i),
+                       loop_.sight().seen.reason.empty() ? "no arc is seen" : loop_.sight().seen.reason);
+  return std::nullopt;
+}
+
+LookLoop::Trouble ArcsPaperLoop::verify(std::size_t i) {
+  Orbit orbit;
+  if (auto trouble = loop_.show(plan_.arcs[i])) return trouble;
+  for (;;) {
+    if (auto trouble = look(i)) return trouble;
+    const Intrinsics ideal = plan_.ideal[i].lens.intrinsics(), lens = loop_.lens(i);
+    const auto wanted = plan_.ideal[i].project(plan_.centers[i]);
+    const Eigen::Vector2d off =
+        circle_->center - Eigen::Vector2d(lens.cx, lens.cy) -
+        (wanted.value_or(Eigen::Vector2d(ideal.cx, ideal.cy)) - Eigen::Vector2d(ideal.cx, ideal.cy));
+    if (circle_->is_verified) {
+      loop_.decide(i, "circle", circle_->rms, 0, "px",
+                   fmt::format("the circle's equation is verified; the test would see a tilt of {:.2f} deg",
+                               circle_->detectable_tilt * by_degrees));
+      loop_.result().notes.push_back(
+          fmt::format("camera {}: the circle's equation is verified, which proves no more than a tilt below "
+                      "{:.2f} deg, and nothing "
+                      "of where the camera looks: the circle's centre is {:.1f} px from where it should be",
+                      loop_.name(i), circle_->detectable_tilt * by_degrees, off.norm()));
+      return std::nullopt;
+    }
+    auto trouble = off.norm() > loop_.config().accepted ? centre(i, off) : go_around(i, orbit);
+    if (trouble) return trouble;
+  }
+}
+
+// Of the two kinds of motion that make a circle of it, the head's.
+LookLoop::Trouble ArcsPaperLoop::centre(std::size_t i, const Eigen::Vector2d& off) {
+  const Intrinsics lens = loop_.lens(i);
+  RigStance next = loop_.stance(i);
+  next.head.pan -= std::atan(off.x() / lens.fx), next.head.tilt -= std::atan(off.y() / lens.fy);
+  next = loop_.commandable_stance(i, next);
+  loop_.decide(i, "centre", off.norm(), loop_.config().accepted, "px",
+               "turn until the circle's centre is where the simulator has it");
+  if (loop_.stands_there(i, next))
+    return fmt::format("the head of camera {} ends {:.1f} px before the circle's centre", loop_.name(i),
+                       off.norm());
+  return loop_.go(i, next);
+}
+
+// And the stage's: around the centre by what the ratio of the axes says, which does not say to which side.
+LookLoop::Trouble ArcsPaperLoop::go_around(std::size_t i, Orbit& orbit) {
+  const auto ellipse = fit_ellipse(points_);
+  if (!ellipse)
+    return fmt::format("what camera {} sees is no circle's arc, and no ellipse's either", loop_.name(i));
+  const double ratio = ellipse->semi_axes.y() / ellipse->semi_axes.x();
+  if (ratio < orbit.last_ratio) orbit.side = -orbit.side, orbit.share = std::max(0.125, 0.7 * orbit.share);
+  orbit.last_ratio = ratio;
+  constexpr double steepest = 0.35;  // rad
+  const double tilt = orbit.share * std::min(steepest, std::acos(std::clamp(ratio, 0.0, 1.0)));
+  const double distance = loop_.lens(i).fx * plan_.radius / ellipse->semi_axes.x();
+  const Eigen::Vector3d way(-std::sin(ellipse->angle), std::cos(ellipse->angle),
+                            0);  // Along the shorter axis.
+  RigStance next = loop_.stance(i);
+  const Eigen::Matrix3d R_MC = pan_rotation(next.head.pan) * tilt_rotation(next.head.tilt);
+  const Eigen::Vector3d slide = orbit.side * distance * std::tan(tilt) * (R_MC * way);
+  next.stage.offset += Eigen::Vector3d(slide.x(), slide.y(), 0);
+  // It keeps looking at the centre: what goes right turns left.
+  next.head.pan += slide.x() / distance, next.head.tilt += slide.y() / distance;
+  next = loop_.commandable_stance(i, next);
+  loop_.decide(i, "ratio of axes", 1 - ratio, 0, "share",
+               fmt::format("around the centre by {:.3f} deg", orbit.side * tilt * by_degrees));
+  if (loop_.stands_there(i, next))
+    return fmt::format(
+        "the circle's equation is not verified by camera {}, and the stage goes no farther: the ratio of "
+        "the axes is {:.4f}",
+        loop_.name(i), ratio);
+  return loop_.go(i, next);
+}
+
+LookLoop::Trouble ArcsPaperLoop::run() {
+  if (auto trouble = begin_with_arm(loop_)) return trouble;
+  if (const auto why = plan_arcs(loop_, true, plan_)) return *why;
+  loop_.result().target = plan_.target;
+  if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (auto trouble = verify(i)) return trouble;
+  return equalize_zooms(loop_, plan_);
+}
+
+}  // namespace flexura

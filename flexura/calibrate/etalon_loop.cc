@@ -1,0 +1,262 @@
+#include "flexura/calibrate/etalon_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "flexura/calibrate/eight_bits.h"
+#include "flexura/calibrate/offset_steps.h"
+#include "flexura/math/arrays.h"
+#include "flexura/math/pose.h"
+
+namespace flexura {
+namespace {
+
+using LoopTrouble = LookLoop::Trouble;
+constexpr double degrees = 180 / std::numbers::pi;
+
+// For the report: where sides, lines and ends were seen.
+void add_points(const EtalonSighting& seen, std::vector<CurvePoint>& points) {
+  constexpr double sigma = 0.05;
+  const double half = 0.4 * (seen.bottom - seen.top);
+  const auto add = [&](const UprightLine& line) {
+    for (const double v : {-half, 0.0, half})
+      points.push_back({{line.at + line.slope * v, seen.middle_row + v}, sigma});
+  };
+  add(seen.left), add(seen.right);
+  for (const UprightLine& line : seen.lines) add(line);
+  for (const auto& edge : {seen.upper_edge, seen.lower_edge})
+    if (edge) points.push_back({{seen.middle(*edge), *edge}, sigma});
+}
+
+void tell(const EtalonView& view, RigSight& sight) {
+  sight.seen.reason = view.reason;
+  if (!view.reason.empty()) return;
+  add_points(view.sighting, sight.seen.points);
+  sight.values = {{"silhouette right of the middle, px", view.middle},
+                  {"line right of the silhouette's middle, px", view.line},
+                  {"silhouette below the middle, px", view.height},
+                  {"width above less below, px", view.taper},
+                  {"width, px", view.width}};
+}
+
+}  // namespace
+
+Eigen::Vector3d etalon_middle(const EtalonConfig& etalon) {
+  const auto& [w, x, y, z] = etalon.rotation;
+  return vector(etalon.position) +
+         0.5 * etalon.height * (Eigen::Quaterniond(w, x, y, z).normalized() * Eigen::Vector3d::UnitY());
+}
+
+LoopTrouble begin_with_etalon(LookLoop& loop) {
+  if (auto trouble = loop.begin()) return trouble;
+  loop.result().target = etalon_middle(loop.config().etalon);
+  // Red lines are every 90 degrees: which one a camera sees is told by what is believed of the cameras.
+  if (auto trouble = loop.look_from_one_side()) return trouble;
+  for (std::size_t i = 0; i < 2; ++i) {
+    RigStance stance = loop.stance(i);
+    stance.head.zoom = zoom_ends(loop.camera(i))[0];
+    stance = loop.commandable_stance(i, stance);
+    if (loop.stands_there(i, stance)) continue;
+    loop.decide(i, "zoom to x1", 0, 0, "px", "the shortest focal length, to see all of the cylinder");
+    if (auto trouble = loop.go(i, stance)) return trouble;
+  }
+  return std::nullopt;
+}
+
+// Something to be nulled, and the motion that does it by the behaviour of the image that is believed.
+struct EtalonLoop::Offset {
+  const char* step;
+  double px;                         // As measured.
+  double want;                       // As a motion: rad, or m.
+  double accepted;                   // Likewise.
+  const char* how;                   // In words.
+  Eigen::Vector<double, 4> by_want;  // Of pan, tilt, stage x and y, for each unit of `want`.
+};
+
+std::array<EtalonLoop::Offset, 4> EtalonLoop::offsets(std::size_t i) const {
+  const EtalonView& view = views_[i];
+  const double by_px = 1 / loop_.lens(i).fx, accepted = loop_.config().accepted;
+  const double distance = view.distance, turn = 1 / distance;
+  // A camera that slides keeps looking at the cylinder: position and orientation do not undo each other.
+  return {Offset{"horizontal orientation", view.middle, view.sight, accepted * by_px, "pan", {-1, 0, 0, 0}},
+          Offset{"horizontal positioning",
+                 view.line,
+                 distance * view.bearing,
+                 accepted * distance * view.bearing_by_px,
+                 "slide to the left",
+                 {-turn, 0, -1, 0}},
+          Offset{"vertical orientation", view.height, view.drop, accepted * by_px, "tilt", {0, -1, 0, 0}},
+          Offset{"vertical positioning",
+                 view.taper,
+                 distance * view.climb,
+                 accepted * distance * view.climb_by_px,
+                 "slide downwards",
+                 {0, turn, 0, 1}}};
+}
+
+LoopTrouble EtalonLoop::look(std::size_t i) {
+  return loop_.look(i, [this, i](RigSight& sight) {
+    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white), loop_.lens(i),
+                            loop_.config().etalon.radius);
+    tell(views_[i], sight);
+  });
+}
+
+// Turns towards what is seen of the cylinder until all of it is.
+LoopTrouble EtalonLoop::into_view(std::size_t i) {
+  constexpr int most = 8;
+  for (int turn = 0; !views_[i].reason.empty(); ++turn) {
+    const EtalonView& view = views_[i];
+    if (!view.centroid)
+      return fmt::format("the cylinder is out of view of camera {}: {}", loop_.name(i), view.reason);
+    const Intrinsics lens = loop_.lens(i);
+    RigStance next = loop_.stance(i);
+    next.head.pan -= std::atan((view.centroid->x() - lens.cx) / lens.fx);
+    next.head.tilt -= std::atan((view.centroid->y() - lens.cy) / lens.fy);
+    next = loop_.commandable_stance(i, next);
+    if (view.is_too_large || turn == most || loop_.stands_there(i, next))
+      return fmt::format("camera {} cannot have all of the cylinder in its picture: {}", loop_.name(i),
+                         view.reason);
+    loop_.decide(i, "into view", (*view.centroid - Eigen::Vector2d(lens.cx, lens.cy)).norm(), 0, "px",
+                 "turn towards what is seen: " + view.reason);
+    if (auto trouble = loop_.go(i, next)) return trouble;
+    if (auto trouble = look(i)) return trouble;
+  }
+  return std::nullopt;
+}
+
+LoopTrouble EtalonLoop::align(std::size_t i) {
+  constexpr double half_turn = 0.5, half_way = 0.5;  // rad; m for each m of distance.
+  std::vector<ShrinkingSteps> steps;
+  if (auto trouble = look(i)) return trouble;
+  for (;;) {
+    if (auto trouble = into_view(i)) return trouble;
+    const auto all = offsets(i);
+    bool is_moved = false;
+    for (std::size_t j = 0; j < all.size() && !is_moved; ++j) {
+      const Offset& offset = all[j];
+      if (steps.size() == j)
+        steps.emplace_back(offset.accepted, j % 2 == 0 ? half_turn : half_way * views_[i].distance);
+      if (std::abs(offset.want) <= offset.accepted) continue;
+      ShrinkingSteps tried = steps[j];
+      if (tried.take(offset.want) == LoopState::stuck)
+        return fmt::format("{} of camera {} {}", offset.step, loop_.name(i), tried.reason());
+      RigStance asked = loop_.stance(i);
+      const Eigen::Vector4d by = tried.move() * offset.by_want;
+      asked.head.pan += by[0], asked.head.tilt += by[1];
+      asked.stage.offset += Eigen::Vector3d(by[2], by[3], 0);
+      const RigStance next = loop_.commandable_stance(i, asked);
+      const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
+      const bool is_short = std::abs(next.head.pan - asked.head.pan) > pan.resolution + 1e-9 ||
+                            std::abs(next.head.tilt - asked.head.tilt) > tilt.resolution + 1e-9 ||
+                            std::abs(next.stage.offset.x() - asked.stage.offset.x()) >
+                                loop_.camera(i).stage_axes()[0].resolution + 1e-9 ||
+                            std::abs(next.stage.offset.y() - asked.stage.offset.y()) >
+                                loop_.camera(i).stage_axes()[1].resolution + 1e-9;
+      if (is_short)
+        return fmt::format("{} of camera {}: what can be commanded ends {:.4g} px before it holds",
+                           offset.step, loop_.name(i), std::abs(offset.px));
+      if (loop_.stands_there(i, next)) continue;  // Nothing finer can be commanded.
+      steps[j] = tried;
+      loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px",
+                   fmt::format("{} by {:.5g} {}", offset.how, tried.move(), j % 2 == 0 ? "rad" : "m"));
+      if (auto trouble = loop_.go(i, next)) return trouble;
+      is_moved = true;
+    }
+    if (!is_moved) break;
+    if (auto trouble = look(i)) return trouble;
+  }
+  loop_.decide(i, "orientation and positioning", std::abs(views_[i].middle) + std::abs(views_[i].line), 0,
+               "px", "all four offsets hold in one picture, or nothing finer can be commanded");
+  loop_.result().roll[i] = views_[i].roll;
+  return std::nullopt;
+}
+
+LoopTrouble EtalonLoop::zoom() {
+  for (;;) {
+    const double ratio = views_[0].magnification / views_[1].magnification;
+    loop_.result().zoom_ratio = ratio;
+    const double accepted = loop_.config().zoom_accepted;
+    const bool is_alike = std::abs(std::log(ratio)) <= accepted;
+    const std::size_t smaller = ratio < 1 ? 0 : 1;
+    std::optional<std::pair<std::size_t, RigStance>> next;
+    // The smaller one is enlarged; where its lens ends, the other one is made smaller.
+    for (const std::size_t i : {smaller, 1 - smaller}) {
+      if (is_alike) break;
+      RigStance stance = loop_.stance(i);
+      const double by = i == 0 ? 1 / ratio : ratio;
+      stance.head.zoom = zoom_by(loop_.camera(i), stance.head.zoom, by);
+      stance = loop_.commandable_stance(i, stance);
+      if (loop_.stands_there(i, stance)) continue;
+      next.emplace(i, stance);
+      break;
+    }
+    loop_.decide(smaller, "zoom", ratio - 1, accepted, "share",
+                 next ? fmt::format("zoom of {} to {:.5g}", loop_.name(next->first), next->second.head.zoom)
+                      : "both show the cylinder alike, or nothing nearer can be commanded");
+    if (!next) break;
+    if (auto trouble = loop_.go(next->first, next->second)) return trouble;
+    if (auto trouble = look(next->first)) return trouble;
+    if (!views_[next->first].reason.empty())
+      return fmt::format("zoom of camera {}: {}", loop_.name(next->first), views_[next->first].reason);
+  }
+  constexpr double visible = 0.01;
+  if (std::abs(*loop_.result().zoom_ratio - 1) > visible)
+    return fmt::format("no zoom that both cameras have shows the cylinder alike: the ratio stays at {:.4f}",
+                       *loop_.result().zoom_ratio);
+  return std::nullopt;
+}
+
+// Of the positions around, the pans whose axes are the most nearly orthogonal; of equals those that look at
+// the cylinder. Then one more picture each, which says how it is.
+LoopTrouble EtalonLoop::square() {
+  std::array<int, 2> best = {0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  const auto step = [&](std::size_t i) { return loop_.camera(i).head_axes()[0].resolution; };
+  for (const int a : {0, -1, 1}) {
+    for (const int b : {0, -1, 1}) {
+      const double off = across(0) + a * step(0) - across(1) - b * step(1);
+      constexpr double aim = 0.01;
+      const double cost = std::abs(off) + aim * (std::abs(views_[0].sight + a * step(0)) +
+                                                 std::abs(views_[1].sight + b * step(1)));
+      if (cost < least) least = cost, best = {a, b};
+    }
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    RigStance next = loop_.stance(i);
+    next.head.pan += best[i] * step(i);
+    next = loop_.commandable_stance(i, next);
+    if (!loop_.stands_there(i, next)) {
+      loop_.decide(i, "orthogonal axes", (across(0) - across(1)) * degrees, 0, "deg",
+                   "pan by a step: together the axes are more nearly orthogonal");
+      if (auto trouble = loop_.go(i, next)) return trouble;
+    }
+    if (auto trouble = look(i)) return trouble;
+    if (!views_[i].reason.empty())
+      return fmt::format("camera {} after its last move: {}", loop_.name(i), views_[i].reason);
+  }
+  // Which way around they stand: the angle between the axes is less or more.
+  const Eigen::Vector3d a = loop_.camera(0).pose(loop_.stance(0).stage, loop_.stance(0).head).rotation.col(2),
+                        b = loop_.camera(1).pose(loop_.stance(1).stage, loop_.stance(1).head).rotation.col(2);
+  const double hand = a.cross(b).y() < 0 ? 1 : -1;
+  loop_.result().angle = hand * (across(0) - across(1));
+  loop_.result().zoom_ratio = views_[0].magnification / views_[1].magnification;
+  loop_.decide(1, "orthogonal axes", *loop_.result().angle * degrees, 0, "deg", "");
+  return std::nullopt;
+}
+
+LoopTrouble EtalonLoop::run() {
+  if (auto trouble = begin_with_etalon(loop_)) return trouble;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (auto trouble = align(i)) return trouble;
+  if (auto trouble = zoom()) return trouble;
+  return square();
+}
+
+}  // namespace flexura

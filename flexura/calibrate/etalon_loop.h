@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "flexura/calibrate/etalon_view.h"
+#include "flexura/calibrate/look_loop.h"
+
+namespace flexura {
+
+/// What both ways with the cylinder begin with: the paper's special starting conditions, as far as commands
+/// can set them up. Refuses cameras that look from one side, zooms to x1, and knows where the target is.
+[[nodiscard]] LookLoop::Trouble begin_with_etalon(LookLoop& loop);
+
+/// The middle of the cylinder, in W, m.
+[[nodiscard]] Eigen::Vector3d etalon_middle(const EtalonConfig& etalon);
+
+/// Calibrates with the calibration cylinder (section 3.4): of both cameras horizontal orientation and
+/// positioning, then vertical, until all four hold in one picture; zoom; then, of the heads' positions
+/// around, those whose axes are the most nearly orthogonal. Steps are in proportion to what is missing, and
+/// shrink.
+class EtalonLoop {
+ public:
+  explicit EtalonLoop(LookLoop& loop) : loop_(loop) {}
+  [[nodiscard]] LookLoop::Trouble run();
+
+ private:
+  struct Offset;
+  [[nodiscard]] LookLoop::Trouble look(std::size_t i);
+  [[nodiscard]] LookLoop::Trouble align(std::size_t i);
+  [[nodiscard]] LookLoop::Trouble into_view(std::size_t i);
+  [[nodiscard]] std::array<Offset, 4> offsets(std::size_t i) const;
+  [[nodiscard]] LookLoop::Trouble zoom();
+  [[nodiscard]] LookLoop::Trouble square();
+  [[nodiscard]] double across(std::size_t i) const { return views_[i].bearing + views_[i].sight; }
+
+  LookLoop& loop_;
+  std::array<EtalonView, 2> views_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,184 @@
+#include "flexura/calibrate/look_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "flexura/calibrate/rig_aim.h"
+#include "flexura/camera/axis_config.h"
+
+namespace flexura {
+namespace {
+
+const CameraConfig& camera_of(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+                              std::size_t i) {
+  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
+    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
+  return believed.cameras.at(config.cameras[i]).config;
+}
+
+}  // namespace
+
+LookLoop::LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+                   RigSessionWatcher& watcher)
+    : believed_(believed),
+      config_(config),
+      watcher_(watcher),
+      hands_(ports, believed, config.patience),
+      cameras_{Camera(camera_of(ports, believed, config, 0)), Camera(camera_of(ports, believed, config, 1))} {
+}
+
+LookLoop::Trouble LookLoop::begin() {
+  if (auto trouble = hands_.settle()) return trouble;
+  const auto arm = hands_.arm();
+  if (const auto* why = std::get_if<std::string>(&arm)) return *why;
+  home_ = std::get<ArmState>(arm), shown_ = home_;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto stance = hands_.stance(config_.cameras[i]);
+    if (const auto* why = std::get_if<std::string>(&stance)) return *why;
+    result_.start[i] = std::get<RigStance>(stance), stands_[i] = result_.start[i];
+  }
+  has_begun_ = true;
+  return std::nullopt;
+}
+
+LookLoop::Trouble LookLoop::look_from_one_side() const {
+  const double beyond = remainder(believed_, {start(0), start(1)}, Eigen::Vector3d::Zero()).angle;
+  constexpr double farthest = std::numbers::pi / 4;
+  if (std::abs(beyond) <= farthest) return std::nullopt;
+  return fmt::format(
+      "both cameras look from {}: their axes are believed to be {:.1f} deg apart, expected 45 to 135",
+      beyond < 0 ? "one side" : "opposite sides", 90 + beyond * 180 / std::numbers::pi);
+}
+
+LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {
+  if (watcher_.is_cancelled()) return "cancelled";
+  if (result_.pictures[i] >= config_.images)
+    return fmt::format("the limit of {} pictures of camera {} is reached, during {}", config_.images, name(i),
+                       result_.steps.empty() ? "the first step" : result_.steps.back().step);
+  const auto taken = hands_.frame(config_.cameras[i], hands_.now());
+  if (const auto* why = std::get_if<std::string>(&taken)) return *why;
+  const auto stance = hands_.stance(config_.cameras[i]);
+  if (const auto* why = std::get_if<std::string>(&stance)) return *why;
+  const auto arm = hands_.arm();
+  if (const auto* why = std::get_if<std::string>(&arm)) return *why;
+  sight_ = {.look = ++result_.pictures[i],
+            .stance = std::get<RigStance>(stance),
+            .pose = std::get<ArmState>(arm),
+            .frame = std::get<Frame>(taken),
+            .seen = {},
+            .values = {}};
+  measure(sight_);
+  watcher_.seen(sight_);
+  if (!result_.before[i]) result_.before[i] = sight_;
+  result_.after[i] = sight_;
+  return std::nullopt;
+}
+
+void LookLoop::decide(std::size_t i, const std::string& step, double offset, double accepted,
+                      const std::string& unit, const std::string& next) {
+  result_.steps.push_back({.time = hands_.now(),
+                           .looks = result_.pictures[0] + result_.pictures[1],
+                           .camera = config_.cameras[i],
+                           .step = step,
+                           .offset = offset,
+                           .accepted = accepted,
+                           .unit = unit,
+                           .next = next});
+  watcher_.decided(result_.steps.back());
+}
+
+LookLoop::Trouble LookLoop::go(std::size_t i, const RigStance& stance) {
+  watcher_.camera_sent(hands_.now(), stance);
+  stands_[i] = stance;
+  if (auto trouble = hands_.go(stance)) return trouble;
+  return hands_.settle();
+}
+
+LookLoop::Trouble LookLoop::bend(const ArmState& state) {
+  watcher_.arm_sent(hands_.now(), state, config_.move_duration);
+  if (auto trouble = hands_.bend(state, config_.move_duration)) return trouble;
+  shown_ = state;
+  return hands_.settle();
+}
+
+LookLoop::Trouble LookLoop::show(const ArmState& pose) {
+  const auto is_same = [](const ArmState& a, const ArmState& b) {
+    return a.bends == b.bends && a.stretches == b.stretches;
+  };
+  if (is_same(pose, shown_)) return std::nullopt;
+  if (!is_same(home_, shown_))
+    if (auto trouble = bend(home_)) return trouble;
+  return is_same(home_, pose) ? std::nullopt : bend(pose);
+}
+
+RigStance LookLoop::commandable_stance(std::size_t i, const RigStance& stance) const {
+  RigStance drawn = stance;
+  const auto& [pan, tilt, zoom] = cameras_[i].head_axes();
+  drawn.head = {commandable(pan, stance.head.pan), commandable(tilt, stance.head.tilt),
+                commandable(zoom, stance.head.zoom)};
+  for (Eigen::Index j = 0; j < 3; ++j)
+    drawn.stage.offset[j] =
+        commandable(cameras_[i].stage_axes()[static_cast<std::size_t>(j)], stance.stage.offset[j]);
+  return drawn;
+}
+
+bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
+  constexpr double rounding = 1e-9;
+  const RigStance& is = stands_[i];
+  return std::abs(stance.head.pan - is.head.pan) < rounding &&
+         std::abs(stance.head.tilt - is.head.tilt) < rounding &&
+         std::abs(stance.head.zoom - is.head.zoom) < rounding * (1 + std::abs(is.head.zoom)) &&
+         (stance.stage.offset - is.stage.offset).norm() < rounding;
+}
+
+std::string LookLoop::retreat() {
+  if (!has_begun_) return "; nothing was moved";
+  Trouble trouble;
+  const auto keep = [&trouble](Trouble another) {
+    if (!trouble) trouble = std::move(another);
+  };
+  for (const RigStance& stance : result_.start) {
+    watcher_.camera_sent(hands_.now(), stance);
+    keep(hands_.go(stance));
+  }
+  watcher_.arm_sent(hands_.now(), home_, config_.move_duration);
+  keep(hands_.bend(home_, config_.move_duration));
+  keep(hands_.settle());
+  if (trouble) return "; on the way back: " + *trouble;
+  return "; heads, stages and arm are back where they began";
+}
+
+LoopResult LookLoop::finish(const Trouble& trouble) {
+  result_.is_done = !trouble;
+  if (trouble) result_.reason = *trouble + retreat();
+  result_.stances = trouble ? result_.start : stands_;
+  return std::move(result_);
+}
+
+std::array<double, 2> zoom_ends(const Camera& camera) {
+  auto [low, high] = camera.head_axes()[2].limits;
+  low = std::max(low, camera.lens().first()), high = std::min(high, camera.lens().last());
+  if (camera.lens().ratio(low) > camera.lens().ratio(high)) std::swap(low, high);
+  return {low, high};
+}
+
+double zoom_by(const Camera& camera, double from, double ratio) {
+  auto [low, high] = zoom_ends(camera);
+  const double wanted = camera.lens().ratio(from) * ratio;
+  if (!(wanted > camera.lens().ratio(low))) return low;
+  if (!(wanted < camera.lens().ratio(high))) return high;
+  constexpr int halvings = 60;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (camera.lens().ratio(middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace flexura

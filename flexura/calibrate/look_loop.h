@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/calibrate/loop_session.h"
+#include "flexura/calibrate/rig_hands.h"
+#include "flexura/camera/camera.h"
+
+namespace flexura {
+
+/// What the paper's loops have in common: look, tell, decide, move, within a number of pictures; and the way
+/// back when something is wrong. Cameras are counted 0 and 1 here, as in LoopConfig::cameras.
+class LookLoop {
+ public:
+  using Trouble = RigHands::Trouble;
+  /// Fills in what is seen.
+  using Measure = std::function<void(RigSight&)>;
+
+  /// std::invalid_argument: ports for other cameras than the model's.
+  LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+           RigSessionWatcher& watcher);
+
+  /// Waits for rest, and remembers where everything stands.
+  Trouble begin();
+  /// Why the axes can be believed to make no right angle: they are more than 45 degrees from one.
+  [[nodiscard]] Trouble look_from_one_side() const;
+  /// A fresh picture of what stands; trouble when there were too many.
+  Trouble look(std::size_t i, const Measure& measure);
+  /// What was made of a picture, and what follows.
+  void decide(std::size_t i, const std::string& step, double offset, double accepted, const std::string& unit,
+              const std::string& next);
+  /// Sends a camera, or the arm by way of the shape in which it began, and waits.
+  Trouble go(std::size_t i, const RigStance& stance);
+  Trouble show(const ArmState& pose);
+  /// What the camera can be sent to that is nearest, and whether that is where it was sent already.
+  [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const;
+  [[nodiscard]] bool stands_there(std::size_t i, const RigStance& stance) const;
+  /// Sends everything back; says how that went.
+  std::string retreat();
+  /// The result, with how things stand at the end.
+  LoopResult finish(const Trouble& trouble);
+
+  [[nodiscard]] const LoopConfig& config() const { return config_; }
+  [[nodiscard]] const RigModel& believed() const { return believed_; }
+  [[nodiscard]] const Camera& camera(std::size_t i) const { return cameras_[i]; }
+  [[nodiscard]] const RigCamera& model(std::size_t i) const { return believed_.cameras[config_.cameras[i]]; }
+  [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).config.name; }
+  /// As sent.
+  [[nodiscard]] const RigStance& stance(std::size_t i) const { return stands_[i]; }
+  [[nodiscard]] const RigStance& start(std::size_t i) const { return result_.start[i]; }
+  /// The believed lens at the zoom as it stands.
+  [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stands_[i].head.zoom); }
+  [[nodiscard]] LoopResult& result() { return result_; }
+  [[nodiscard]] const RigSight& sight() const { return sight_; }
+
+ private:
+  Trouble bend(const ArmState& state);
+
+  const RigModel& believed_;
+  const LoopConfig& config_;
+  RigSessionWatcher& watcher_;
+  RigHands hands_;
+  std::array<Camera, 2> cameras_;
+  LoopResult result_;
+  RigSight sight_;
+  ArmState home_, shown_;
+  std::array<RigStance, 2> stands_;
+  bool has_begun_ = false;
+};
+
+/// The lens's position at which the focal length is `ratio` times that at position `from`, or comes nearest
+/// to it within the head's limits.
+[[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
+/// Its shortest focal length, and its longest.
+[[nodiscard]] std::array<double, 2> zoom_ends(const Camera& camera);
+
+}  // namespace flexura

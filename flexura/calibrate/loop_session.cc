@@ -1,0 +1,30 @@
+#include "flexura/calibrate/loop_session.h"
+
+#include "flexura/calibrate/arcs_loop.h"
+#include "flexura/calibrate/arcs_paper_loop.h"
+#include "flexura/calibrate/etalon_loop.h"
+#include "flexura/calibrate/etalon_paper_loop.h"
+#include "flexura/calibrate/look_loop.h"
+
+namespace flexura {
+
+LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+                             RigSessionWatcher& watcher) {
+  LookLoop loop(ports, believed, config, watcher);
+  const auto run = [&]() -> LookLoop::Trouble {
+    switch (config.method) {
+      case LoopMethod::etalon:
+        return EtalonLoop(loop).run();
+      case LoopMethod::etalon_paper:
+        return EtalonPaperLoop(loop).run();
+      case LoopMethod::arcs:
+        return ArcsLoop(loop).run();
+      case LoopMethod::arcs_paper:
+        return ArcsPaperLoop(loop).run();
+    }
+    return "no such method";
+  };
+  return loop.finish(run());
+}
+
+}  // namespace flexura

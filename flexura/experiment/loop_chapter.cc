@@ -1,0 +1,129 @@
+#include "flexura/experiment/loop_chapter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/bytes.h"
+#include "flexura/calibrate/eight_bits.h"
+#include "flexura/experiment/calibrate_results.h"
+#include "flexura/picture/image_file.h"
+#include "flexura/report/chart.h"
+#include "flexura/report/image_picture.h"
+
+namespace flexura {
+namespace {
+
+// The offsets of one camera over its loop's pictures, each as long as it is worked on.
+NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
+  LineChart chart{.name = fmt::format("offsets-{}", run.cameras[i]),
+                  .heading = fmt::format("offsets of camera {}", run.cameras[i]),
+                  .value_label = "size, power of ten",
+                  .legend = "",
+                  .least = 1,
+                  .series = {},
+                  .x_label = "pictures of both cameras"};
+  std::vector<const LoopDecision*> steps;
+  std::vector<double> looks;
+  for (const LoopDecision& step : run.loop->steps) {
+    if (run.cameras[i] != run.believed.cameras[step.camera].config.name || step.looks == 0) continue;
+    steps.push_back(&step);
+    const auto at = static_cast<double>(step.looks);
+    if (looks.empty() || looks.back() < at) looks.push_back(at);
+  }
+  for (const LoopDecision* first : steps) {
+    const std::string name = fmt::format("{} ({})", first->step, first->unit);
+    if (std::ranges::find(chart.series, name, &ChartSeries::name) != chart.series.end()) continue;
+    ChartSeries& series =
+        chart.series.emplace_back(ChartSeries{name, fmt::format("s{}", chart.series.size()), {}, {}});
+    series.values.assign(looks.size(), std::numeric_limits<double>::quiet_NaN());
+    std::size_t last = looks.size();
+    for (const LoopDecision* step : steps) {
+      if (step->step != first->step || step->unit != first->unit) continue;
+      const auto place = static_cast<std::size_t>(std::ranges::find(looks, static_cast<double>(step->looks)) -
+                                                  looks.begin());
+      // Between two of its decisions an offset is what it was: others were worked on.
+      for (std::size_t j = last; j < place; ++j) series.values[j] = series.values[last];
+      constexpr double least = 1e-6;
+      series.values[place] = std::log10(std::max(std::abs(step->offset), least));
+      last = place;
+    }
+  }
+  return {fmt::format("calibration-{}-{}", number + 1, chart.name), chart_picture(chart, looks, {})};
+}
+
+NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
+  const RigSight& sight = is_after ? *run.loop->after[i] : *run.loop->before[i];
+  const char* when = is_after ? "after" : "before";
+  const std::int64_t bits = run.believed.cameras[sight.stance.camera].config.sensor.bits;
+  const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << bits) - 1);
+  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
+                 .legend = "",
+                 .width = picture.width(),
+                 .height = picture.height(),
+                 .outlines = {},
+                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
+  const auto plus = [](const Eigen::Vector2d& at, double size) {
+    const Eigen::Vector2d x(size, 0), y(0, size);
+    return ImageOutline::Line{{at - x, at + x, at, at - y, at + y}, ""};
+  };
+  const double size = 0.01 * picture.width();
+  ImageOutline seen{"measured", "s2", {}}, middle{"picture's middle", "s5", {}};
+  for (const CurvePoint& point : sight.seen.points) seen.lines.push_back(plus(point.pixel, size));
+  for (const SeenMarker& marker : sight.seen.markers) seen.lines.push_back(plus(marker.pixel, size));
+  middle.lines.push_back(plus({0.5 * (picture.width() - 1), 0.5 * (picture.height() - 1)}, 3 * size));
+  plot.outlines = {seen, middle};
+  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
+}
+
+std::vector<std::string> loop_points(const CalibrationRun& run) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  const LoopResult& result = *run.loop;
+  std::vector<std::string> points;
+  if (result.angle)
+    points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle * degrees));
+  if (result.zoom_ratio)
+    points.push_back(
+        fmt::format("As seen, the first camera shows the target {:.4f} times as large as the second.",
+                    *result.zoom_ratio));
+  for (std::size_t i = 0; i < 2; ++i)
+    if (result.roll[i])
+      points.push_back(
+          fmt::format("Camera {} is turned by {:.2f} deg about its axis, which no head can correct.",
+                      run.cameras[i], *result.roll[i] * degrees));
+  if (run.truth) points.push_back(remainder_text("In the simulated truth", *run.truth));
+  for (const std::string& note : result.notes) points.push_back(note);
+  return points;
+}
+
+}  // namespace
+
+Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
+  const LoopResult& result = *run.loop;
+  const std::size_t pictures = result.pictures[0] + result.pictures[1];
+  Chapter chapter{"Calibration: " + run.name,
+                  result.is_done ? fmt::format("Done with {} pictures.", pictures)
+                                 : fmt::format("Not calibrated: {}. ({} pictures.)", result.reason, pictures),
+                  {},
+                  loop_points(run),
+                  false};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (result.before[i]) chapter.drawings.push_back(loop_photograph(run, i, false, number));
+    if (result.after[i]) chapter.drawings.push_back(loop_photograph(run, i, true, number));
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool has_steps = std::ranges::any_of(result.steps, [&](const LoopDecision& step) {
+      return step.looks > 0 && run.believed.cameras[step.camera].config.name == run.cameras[i];
+    });
+    if (has_steps) chapter.drawings.push_back(falling_offsets(run, i, number));
+  }
+  return chapter;
+}
+
+}  // namespace flexura

@@ -1,0 +1,276 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "flexura/base/progress.h"
+#include "flexura/experiment/calibrate_results.h"
+#include "flexura/experiment/calibrate_task.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/mcap_reader.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/experiment_files.h"
+#include "tests/support/loop_bench.h"
+#include "tests/support/loop_files.h"
+#include "tests/support/quiet.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr double a_degree = std::numbers::pi / 180;
+
+// With pictures of half the size, which are quickly drawn.
+LoopRig small(const std::array<WrongStart, 2>& wrong, const std::string& sensor = "") {
+  LoopRig rig;
+  rig.wrong = wrong, rig.size = 0.5, rig.sensor = sensor;
+  return rig;
+}
+
+TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
+  for_random_cases(1, [](TestRandom& random) {
+    LoopBench bench(
+        etalon_rig("method = \"etalon\"\n", {.wrong = {wrong_start(random), wrong_start(random)}}));
+    const LoopResult result = bench.calibrate();
+    ASSERT_TRUE(result.is_done) << result.reason;
+    const RigRemainder left = bench.truth(result);
+    // Half a step of the head, and what a principal point 1 px off does.
+    EXPECT_LT(std::abs(left.angle), 0.25 * a_degree);
+    EXPECT_NEAR(left.angle, *result.angle, 0.2 * a_degree);
+    EXPECT_NEAR(left.zoom_ratio, 1, 0.003);
+    EXPECT_LT(left.aim[0].norm() + left.aim[1].norm(), 0.02);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.1 * a_degree);
+      EXPECT_LE(result.pictures[i], 25U);
+    }
+  });
+}
+
+TEST(EtalonLoop, StopsWhereTheCylinderIsOutOfView) {
+  WrongStart away;
+  away.pan = 1.2;
+  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, away})));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("the cylinder is out of view of camera side"));
+  EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+  bench.expect_back();
+}
+
+TEST(EtalonLoop, StopsWhereBothCamerasLookFromOneSide) {
+  LoopRig rig = small({WrongStart{}, WrongStart{}});
+  rig.at[1] = {1.5, 0.5, 0.3};
+  std::string text = etalon_rig("method = \"etalon\"\n", rig);
+  // Beside the first one, and looking as it does.
+  for (std::size_t at = text.find("2.5, 0.5, 0.3"); at != std::string::npos; at = text.find("2.5, 0.5, 0.3"))
+    text.replace(at, 13, "1.5, 0.5, -10");
+  LoopBench bench(text);
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side"));
+  bench.expect_back();
+}
+
+TEST(EtalonLoop, StopsWhereTheCylinderTouchesTheBorder) {
+  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, WrongStart{}}),
+                             "radius = 0.4\nheight = 1.2\n"));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("cannot have all of the cylinder in its picture"));
+  bench.expect_back();
+}
+
+TEST(EtalonLoop, StopsWhereAHeadDoesNotFollow) {
+  WrongStart turned;
+  turned.pan = 0.1;
+  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, turned})));
+  RigPorts ports = bench.ports();
+  StuckPan stuck(*ports.cameras[1].head);
+  ports.cameras[1].head = &stuck;
+  const LoopResult result = bench.calibrate(ports);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("the head of camera side does not follow: pan was sent to"));
+  bench.expect_back();
+}
+
+TEST(EtalonLoop, StopsWhereAStageDoesNotReach) {
+  LoopRig rig = small({WrongStart{.shift = {0.3, 0, 0}}, WrongStart{}});
+  rig.travel = 0.1;
+  LoopBench bench(etalon_rig("method = \"etalon\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("horizontal positioning of camera front: what can be commanded ends"));
+  bench.expect_back();
+}
+
+TEST(EtalonLoop, StopsWhereNoFrameComesAndWhereTooManyAreNeeded) {
+  LoopBench lost(etalon_rig("method = \"etalon\"\nframe_timeout = 1\n",
+                            small({WrongStart{}, WrongStart{}}, ", drop = 1")));
+  EXPECT_THAT(lost.calibrate().reason, HasSubstr("camera front gave no frame for 1 s"));
+  lost.expect_back();
+  TestRandom random(5);
+  LoopBench many(
+      etalon_rig("method = \"etalon\"\nimages = 3\n", small({wrong_start(random), wrong_start(random)})));
+  EXPECT_THAT(many.calibrate().reason, HasSubstr("the limit of 3 pictures of camera front is reached"));
+  many.expect_back();
+}
+
+TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
+  TestRandom random(7);
+  const std::string text = etalon_rig("method = \"etalon\"\nname = \"cylinder\"\n",
+                                      small({wrong_start(random, 0.3), wrong_start(random, 0.3)}));
+  const Experiment experiment = parse_experiment(text, "x.toml");
+  const TemporaryFolder folder, again;
+  Quiet quiet;
+  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+  const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
+  EXPECT_TRUE(*calibration.find("done")->as<bool>());
+  EXPECT_NE(calibration.find("remainder_in_truth"), nullptr);
+  McapReader log(folder.path() / log_file_name);
+  std::map<std::string, std::size_t> counts;
+  for (const McapMessage& message : log.messages()) ++counts[message.channel->topic];
+  const auto& pictures = *calibration.find("pictures")->as<Node::Array>();
+  EXPECT_EQ(counts["/calibration/sightings"],
+            static_cast<std::size_t>(*pictures[0].as<std::int64_t>() + *pictures[1].as<std::int64_t>()));
+  EXPECT_EQ(counts["/calibration/decisions"], calibration.find("steps")->as<Node::Array>()->size());
+  EXPECT_GE(counts["/calibration/moves"], 4U);
+  EXPECT_THAT(read_text_file(folder.path() / report_file_name, 1 << 26), HasSubstr("Calibration: cylinder"));
+  const Experiment found = load_experiment(folder.path() / rig_file_name);
+  EXPECT_NE(found.cameras()[0].initial.pan, 0);
+  (void)run_experiment(experiment, again.path(), quiet);
+  for (const char* name : {"log.mcap", "summary.json", "rig.toml", "report.html"})
+    EXPECT_EQ(read_text_file(folder.path() / name, 1U << 30), read_text_file(again.path() / name, 1U << 30))
+        << name;
+}
+
+// As printed, without a bearing and with cylinders that are equally large, all procedures stop where they
+// should.
+TEST(EtalonPaperLoop, CentresTheCylinderWhereNothingElseIsWrong) {
+  const WrongStart front{.pan = 0.05, .tilt = -0.03}, side{.pan = -0.04, .tilt = 0.05};
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, side})));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  const RigRemainder left = bench.truth(result);
+  // 3 px of whites to the left less those to the right are 1.5 px, or 0.11 deg, of a camera that turns by
+  // 0.2.
+  EXPECT_LT(std::abs(left.angle), 0.5 * a_degree);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(left.aim[i].norm(), 0.02);
+  EXPECT_FALSE(result.notes.empty());
+}
+
+TEST(EtalonPaperLoop, DoesNotSeeThatACameraStandsBesideTheLine) {
+  const WrongStart front{.pan = 0.03, .shift = {0.05, 0, 0}};
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  // 0.05 m at 1.5 m.
+  EXPECT_NEAR(std::abs(bench.truth(result).angle), 1.91 * a_degree, 0.5 * a_degree);
+}
+
+TEST(EtalonPaperLoop, StopsWhereTwoAxesShowForEver) {
+  const WrongStart front{.pan = 0.26, .shift = {0.4, 0, 0}};
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\nloop.slide = 0.04\nloop.accepted = 25\n",
+                             small({front, WrongStart{}})));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("two red axes"));
+  bench.expect_back();
+}
+
+TEST(EtalonPaperLoop, StopsWhereTheZoomRunsAway) {
+  const WrongStart front{.shift = {0, 0, -0.15}};
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("zoom runs away"));
+  EXPECT_LT(result.pictures[0], 60U);
+  bench.expect_back();
+}
+
+TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
+  const WrongStart front{.pan = 0.0436};  // Two steps and a half.
+  LoopBench bench(etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n",
+                             small({front, WrongStart{}})));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("horizontal orientation of camera front goes back and forth"));
+  bench.expect_back();
+}
+
+TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
+  for_random_cases(1, [](TestRandom& random) {
+    const LoopRig rig = arcs_cameras({wrong_start(random), wrong_start(random)});
+    LoopBench bench(arcs_rig("method = \"arcs\"\n", rig, {0.003, -0.003, 0.004}));
+    RigPorts ports = bench.ports();
+    WrongArm arm(*ports.arm, {1.006, 0.995, 1.008});
+    ports.arm = &arm;
+    const LoopResult result = bench.calibrate(ports);
+    ASSERT_TRUE(result.is_done) << result.reason;
+    const RigRemainder left = bench.truth(result);
+    EXPECT_LT(std::abs(left.angle), 0.6 * a_degree);
+    EXPECT_NEAR(left.angle, *result.angle, 0.6 * a_degree);
+    EXPECT_NEAR(left.zoom_ratio, 1, 0.01);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_LT(left.aim[i].norm(), 0.02);
+      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.3 * a_degree);
+    }
+  });
+}
+
+TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
+  const LoopRig rig =
+      arcs_cameras({WrongStart{.pan = 0.03, .tilt = 0.02}, WrongStart{.shift = {0, 0, 0.05}}}, true);
+  LoopBench bench(arcs_rig("method = \"arcs-paper\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  ASSERT_EQ(result.notes.size(), 2U);
+  EXPECT_THAT(result.notes[0],
+              HasSubstr("the circle's equation is verified, which proves no more than a tilt below"));
+  EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.05);
+}
+
+TEST(ArcsLoop, StopsWhereTheArmIsOutOfView) {
+  for (const char* method : {"arcs", "arcs-paper"}) {
+    LoopRig rig = arcs_cameras({WrongStart{}, WrongStart{.pan = 1.2}}, std::string(method) == "arcs-paper");
+    rig.size = 0.5;
+    LoopBench bench(arcs_rig(std::string("method = \"") + method + "\"\n", rig));
+    const LoopResult result = bench.calibrate();
+    EXPECT_FALSE(result.is_done);
+    EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));
+    bench.expect_back();
+  }
+}
+
+TEST(EtalonLoop, RefusesWhatItCannotDo) {
+  const auto problem_of = [](const std::string& text) {
+    try {
+      (void)parse_experiment(text, "x.toml");
+    } catch (const InputError& error) {
+      return error.problems().front().what;
+    }
+    return std::string("none");
+  };
+  std::string text = etalon_rig("method = \"etalon\"\n", small({WrongStart{}, WrongStart{}}));
+  EXPECT_THAT(problem_of(text + "[[task]]\nkind = \"calibrate\"\nmethod = \"etalons\"\n"),
+              HasSubstr("etalons"));
+  std::string with_arm = text;
+  with_arm.replace(with_arm.find("arm = false"), 11, "arm = true ");
+  EXPECT_THAT(problem_of(with_arm), HasSubstr("expected stand.arm = false"));
+  EXPECT_THAT(problem_of(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, WrongStart{}}),
+                                    "rotation = [0.8, 0.6, 0, 0]\n")),
+              HasSubstr("stands upright"));
+  EXPECT_THAT(
+      problem_of("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
+      HasSubstr("expected [stand.etalon]"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "flexura/calibrate/rig_aim.h"
+#include "flexura/experiment/calibrate_config.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/ideal_picture.h"
+#include "flexura/experiment/photographer.h"
+#include "flexura/sim/simulated_rig.h"
+
+namespace flexura {
+
+class NobodyWatches : public RigSessionWatcher {
+ public:
+  void arm_sent(double, const ArmState&, double) override {}
+  void camera_sent(double, const RigStance&) override {}
+  void seen(const RigSight&) override {}
+  void known(const RigStep&) override {}
+};
+
+/// One of the paper's methods at the ports alone, with nothing of a run around it: the file's first task.
+class LoopBench {
+ public:
+  explicit LoopBench(const std::string& text)
+      : experiment_(parse_experiment(text, "x.toml")),
+        photographer_(experiment_),
+        rig_(
+            experiment_.model_rig(), experiment_.true_rig(),
+            [this](const Shot& shot) { return photographer_.take(shot); }, 1) {}
+
+  SimulatedRig& rig() { return rig_; }
+  RigPorts ports() { return rig_.ports(); }
+  LoopResult calibrate() { return calibrate(ports()); }
+  LoopResult calibrate(const RigPorts& ports) {
+    NobodyWatches nobody;
+    return calibrate(ports, nobody);
+  }
+  LoopResult calibrate(const RigPorts& ports, RigSessionWatcher& watcher) {
+    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
+    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
+    LoopConfig config = loop_config(task, experiment_.arm, experiment_.cameras(), experiment_.stand);
+    config.draw = ideal_pictures(experiment_);
+    return calibrate_by_loop(ports, believed, config, watcher);
+  }
+  RigSessionResult calibrate_bundle(const RigPorts& ports) {
+    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
+    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
+    NobodyWatches nobody;
+    return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
+                                    session_config(task, experiment_.arm, experiment_.cameras()), nobody);
+  }
+  /// What truly remains where the cameras stand.
+  RigRemainder truth(const LoopResult& result) { return truth(result.target); }
+  RigRemainder truth(const Eigen::Vector3d& target) {
+    const RigConfig truth = experiment_.true_rig();
+    const double now = rig_.clock().now();
+    std::array<RigStance, 2> stances;
+    for (std::size_t i = 0; i < 2; ++i)
+      stances[i] = {i, rig_.camera(i).head().truth(now), rig_.camera(i).stage().truth(now)};
+    return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, target);
+  }
+  /// Whether heads and stages are where the file starts them.
+  void expect_back() {
+    for (std::size_t i = 0; i < rig_.camera_count(); ++i) {
+      const auto head = rig_.camera(i).head().read().value().state;
+      EXPECT_NEAR(head.pan, 0, 1e-9);
+      EXPECT_NEAR(head.tilt, 0, 1e-9);
+      EXPECT_NEAR(rig_.camera(i).stage().read().value().state.offset.norm(), 0, 1e-9);
+    }
+  }
+
+ private:
+  Experiment experiment_;
+  Photographer photographer_;
+  SimulatedRig rig_;
+};
+
+/// An arm whose sections bend by other shares of what they are told, and do not know it.
+class WrongArm : public ArmPort {
+ public:
+  WrongArm(ArmPort& arm, std::vector<double> gains) : arm_(arm), gains_(std::move(gains)) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    ArmState bent = state;
+    for (std::size_t i = 0; i < bent.bends.size(); ++i) bent.bends[i] *= gains_[i];
+    return arm_.command(bent, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    auto reading = arm_.read();
+    if (reading.fault()) return reading;
+    ArmReading told = reading.value();
+    for (std::size_t i = 0; i < told.state.bends.size(); ++i) told.state.bends[i] /= gains_[i];
+    return told;
+  }
+
+ private:
+  ArmPort& arm_;
+  std::vector<double> gains_;
+};
+
+/// A head whose pan motor takes commands and does not turn.
+class StuckPan : public HeadPort {
+ public:
+  explicit StuckPan(HeadPort& head) : head_(head) {}
+  CommandOutcome command(const HeadState& state) override {
+    HeadState reached = state;
+    reached.pan = 0;
+    return head_.command(reached);
+  }
+  CommandOutcome halt() override { return head_.halt(); }
+  Outcome<HeadReading> read() override { return head_.read(); }
+
+ private:
+  HeadPort& head_;
+};
+
+}  // namespace flexura

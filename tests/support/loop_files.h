@@ -1,0 +1,115 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+
+/// How a camera truly starts, beside where it is believed to be: angles in rad, the stage in m.
+struct WrongStart {
+  double pan = 0, tilt = 0, roll = 0, zoom = 1, cx = 0, cy = 0;
+  std::array<double, 3> shift = {0, 0, 0};
+};
+
+/// Evenly over what the paper's methods shall start from: pan and tilt 10 degrees off, roll 1, the stage 0.2
+/// m in each direction, zoom 1 to 2.5, the principal point 1 px; `size` is a share of all that.
+inline WrongStart wrong_start(TestRandom& random, double size = 1) {
+  constexpr double degree = std::numbers::pi / 180;
+  WrongStart start;
+  start.pan = size * random.uniform(-10, 10) * degree, start.tilt = size * random.uniform(-10, 10) * degree;
+  start.roll = size * random.uniform(-1, 1) * degree, start.zoom = 1 + size * random.uniform(0, 1.5);
+  start.cx = size * random.uniform(-1, 1), start.cy = size * random.uniform(-1, 1);
+  for (double& way : start.shift) way = size * random.uniform(-0.2, 0.2);
+  return start;
+}
+
+/// A rig for the paper's methods: two cameras at 640 x 480 px, or smaller.
+struct LoopRig {
+  std::array<WrongStart, 2> wrong = {};  ///< How they truly start.
+  std::array<std::array<double, 3>, 2> at = {
+      {{0, 0.5, 1.5}, {-1.5, 0.5, 0}}};  ///< Where they are believed to be, m.
+  double size = 1;                       ///< Of the pictures.
+  double travel = 0.6;                   ///< Of the stages, to both sides, m.
+  std::string sensor = {};               ///< More of it: ", drop = 1".
+};
+
+/// A camera of it, as believed or as it truly is: its head and stage count from there.
+inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) {
+  const std::size_t i = is_side ? 1 : 0;
+  const WrongStart wrong = is_truth ? rig.wrong[i] : WrongStart{};
+  std::array<double, 3> at = rig.at[i];
+  for (std::size_t j = 0; j < 3; ++j) at[j] += wrong.shift[j];
+  const double heading =
+      (is_side ? 0 : std::numbers::pi / 2) + wrong.pan;  // Of the sight from +X, to the left.
+  const std::array<double, 3> look = {at[0] + std::cos(wrong.tilt) * std::cos(heading),
+                                      at[1] + std::sin(wrong.tilt),
+                                      at[2] - std::cos(wrong.tilt) * std::sin(heading)};
+  const std::string slide = fmt::format("{{ limits = [{}, {}] }}", -rig.travel, rig.travel);
+  std::string text = fmt::format(
+      "name = \"{}\"\nmount = {{ position = [{}, {}, {}], look_at = [{}, {}, {}], roll = {}, stage = {{ x = "
+      "{}, y = {}, "
+      "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {} }}\n",
+      is_side ? "side" : "front", at[0], at[1], at[2], look[0], look[1], look[2], wrong.roll, slide, slide,
+      slide, 800 * rig.size, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy);
+  if (is_truth) return "[[truth.camera]]\n" + text;
+  text += fmt::format(
+      "head = {{ pan = {{ limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }}, tilt = {{ "
+      "limits_deg = "
+      "[-45, 45], max_rate_deg = 200, resolution_deg = 0.075 }} }}\n"
+      "sensor = {{ width = {}, height = {}, pixels = \"color\", frame_rate = 20, psf = 0.7, read_noise = 2, "
+      "full_well = "
+      "20000{} }}\ninitial = {{ zoom = {} }}\n",
+      static_cast<int>(640 * rig.size), static_cast<int>(480 * rig.size), rig.sensor, rig.wrong[i].zoom);
+  return "[[camera]]\n" + text;
+}
+
+inline std::string loop_rig(const LoopRig& rig, const std::string& task) {
+  std::string text =
+      "[[stand.screen]]\ncenter = [0, 0.5, -1.5]\nnormal = [0, 0, 1]\nwidth = 9\nheight = 9\n"
+      "[[stand.screen]]\ncenter = [1.5, 0.5, 0]\nnormal = [-1, 0, 0]\nwidth = 9\nheight = 9\n";
+  for (const bool is_truth : {false, true})
+    for (const bool is_side : {false, true}) text += loop_camera(rig, is_side, is_truth);
+  return text + "\n[[task]]\nkind = \"calibrate\"\n" + task;
+}
+
+/// Before the calibration cylinder.
+inline std::string etalon_rig(const std::string& task, const LoopRig& rig, const std::string& etalon = "") {
+  return "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.03\n"
+         "[stand]\narm = false\n[stand.etalon]\nposition = [0, 0.3, 0]\n" +
+         etalon + loop_rig(rig, task);
+}
+
+/// Before an arm of three sections, with bands of three colours; it bends into arcs of 120 degrees. `truth`:
+/// of its lengths.
+inline std::string arcs_rig(const std::string& task, const LoopRig& rig,
+                            const std::array<double, 3>& longer = {}) {
+  std::string text = "[arm]\nkind = \"spatial\"\n", truth;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = i < 2 ? 0.35 : 0.3;
+    text += fmt::format("[[arm.section]]\nlength = {}\nradius = 0.02\nmax_bend_deg = 120\n", length);
+    truth += fmt::format("[[truth.arm.section]]\nlength = {}\n", length * (1 + longer[i]));
+  }
+  return text +
+         "[arm.look]\nbands = { per_section = 4, width = 0.02, colors = [[0.85, 0.1, 0.1], [0.1, 0.6, 0.15], "
+         "[0.1, 0.2, "
+         "0.85]] }\n" +
+         truth + loop_rig(rig, task);
+}
+
+/// Where cameras look straight at the middle of both arcs, or at their circles' centres, 2.5 m away.
+inline LoopRig arcs_cameras(const std::array<WrongStart, 2>& wrong, bool is_at_centers = false) {
+  const double radius = 1 / (2 * std::numbers::pi / 3);
+  const double aside = is_at_centers ? radius : 0.5 * radius,
+               up = is_at_centers ? 0 : radius * std::sqrt(0.75);
+  LoopRig rig;
+  rig.wrong = wrong, rig.at = {{{aside, up, 2.5}, {-2.5, up, -aside}}};
+  return rig;
+}
+
+}  // namespace flexura

@@ -1,5 +1,7 @@
 #include "flexura/experiment/witness.h"
 
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "flexura/experiment/report_safety.h"
@@ -55,7 +57,9 @@ void Witness::image(const std::string& camera, const Frame& frame) {
 
 void Witness::readings(const RigPorts& rig) {
   // While a task waits for the rig, several steps of the clock are recorded at one time of the rig's.
-  if (std::exchange(read_at_, rig.clock->now()) == rig.clock->now()) return;
+  // Times that the log cannot tell apart are one.
+  const std::int64_t now = std::llround(rig.clock->now() * 1e9);
+  if (std::exchange(read_at_, now) == now) return;
   recorder_.reading(rig.arm->read().value());
   for (const CameraPorts& camera : rig.cameras) {
     recorder_.reading(camera.name, camera.head->read().value());

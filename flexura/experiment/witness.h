@@ -49,7 +49,7 @@ class Witness {
   std::optional<ColorConfig> drawn_color_;  // none: the scene is not kept
   SceneTimes scene_times_;
   std::map<std::string, std::int64_t> frames_;  // by camera
-  std::optional<double> read_at_;               // when devices were read last, s
+  std::optional<std::int64_t> read_at_;         // when devices were read last, ns
   Arm arm_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;

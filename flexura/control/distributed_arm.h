@@ -101,9 +101,10 @@ class DistributedArm {
 /// Drives the arm through time: x and v as one vector (x; v), a force that may depend on all.
 class DistributedMotion {
  public:
-  /// force(t, arm, Q): the generalized forces Q (to be overwritten) on `arm`, which is set to its state.
-  using Force = std::function<void(double t, const DistributedArm& arm, const Eigen::VectorXd& x,
-                                   const Eigen::VectorXd& v, Eigen::VectorXd& Q)>;
+  /// Writes the generalized forces Q on `arm`, which is set to its state (x, v), and returns a power (W) of
+  /// which the sum is kept: what a law's damping takes.
+  using Force = std::function<double(double t, const DistributedArm& arm, const Eigen::VectorXd& x,
+                                     const Eigen::VectorXd& v, Eigen::VectorXd& Q)>;
   DistributedMotion(DistributedArm arm, Force force, const OdeTolerance& tolerance = {});
 
   /// From rest at x at time 0.
@@ -116,6 +117,9 @@ class DistributedMotion {
   [[nodiscard]] const Eigen::VectorXd& v() const { return v_; }
   /// The arm, set to its state now.
   [[nodiscard]] const DistributedArm& arm() const { return arm_; }
+  /// J since the start: what the arm's own damping took, and the sum of the powers that the force returned.
+  [[nodiscard]] double damped() const { return y_[2 * arm_.size()]; }
+  [[nodiscard]] double summed() const { return y_[2 * arm_.size() + 1]; }
 
  private:
   void slope(double t, const Eigen::VectorXd& y, Eigen::VectorXd& slope);

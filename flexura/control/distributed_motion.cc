@@ -59,7 +59,7 @@ Eigen::MatrixXd DistributedArm::stiffness() const {
 }
 
 DistributedMotion::DistributedMotion(DistributedArm arm, Force force, const OdeTolerance& tolerance)
-    : arm_(std::move(arm)), force_(std::move(force)), ode_(2 * arm_.size(), tolerance) {
+    : arm_(std::move(arm)), force_(std::move(force)), ode_(2 * arm_.size() + 2, tolerance) {
   Q_.setZero(arm_.size()), acceleration_.setZero(arm_.size());
   start(Eigen::VectorXd::Zero(arm_.size()));
 }
@@ -67,25 +67,26 @@ DistributedMotion::DistributedMotion(DistributedArm arm, Force force, const OdeT
 void DistributedMotion::start(const Eigen::VectorXd& x) {
   time_ = 0;
   x_ = x, v_ = Eigen::VectorXd::Zero(x.size());
-  y_.resize(2 * x.size());
-  y_ << x_, v_;
+  y_.setZero(2 * x.size() + 2);
+  y_.head(x.size()) = x;
   arm_.set(x_, v_);
 }
 
 void DistributedMotion::slope(double t, const Eigen::VectorXd& y, Eigen::VectorXd& slope) {
   const Eigen::Index n = arm_.size();
-  x_ = y.head(n), v_ = y.tail(n);
+  x_ = y.head(n), v_ = y.segment(n, n);
   arm_.set(x_, v_);
-  force_(t, arm_, x_, v_, Q_);
+  const double power = force_(t, arm_, x_, v_, Q_);
   if (!arm_.accelerate(Q_, acceleration_))  // The step is taken back.
     acceleration_.setConstant(std::numeric_limits<double>::quiet_NaN());
-  slope.head(n) = v_, slope.tail(n) = acceleration_;
+  slope.head(n) = v_, slope.segment(n, n) = acceleration_;
+  slope[2 * n] = arm_.damping_power(), slope[2 * n + 1] = power;
 }
 
 bool DistributedMotion::advance(double until) {
   const auto progress = ode_.advance(
       [this](double t, const Eigen::VectorXd& y, Eigen::VectorXd& to) { slope(t, y, to); }, time_, y_, until);
-  x_ = y_.head(arm_.size()), v_ = y_.tail(arm_.size());
+  x_ = y_.head(arm_.size()), v_ = y_.segment(arm_.size(), arm_.size());
   arm_.set(x_, v_);
   return progress.is_there;
 }

@@ -52,9 +52,10 @@ inline Eigen::VectorXd random_rates(TestRandom& random, const DistributedArm& ar
 }
 
 /// No drives.
-inline void no_force(double, const DistributedArm&, const Eigen::VectorXd&, const Eigen::VectorXd&,
+inline double no_force(double, const DistributedArm&, const Eigen::VectorXd&, const Eigen::VectorXd&,
                      Eigen::VectorXd& Q) {
   Q.setZero();
+  return 0;
 }
 
 }  // namespace flexura

@@ -50,24 +50,27 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
 
 std::vector<std::string> PotentialLaw::violations() const {
   std::vector<std::string> found;
-  const auto say = [&](std::string what) { found.push_back(std::move(what)); };
   const bool has_lengths =
       stiffness_.rows() > 0 && stiffness_.diagonal().tail(1)[0] == gains_.length_stiffness;
   if (gains_.sign != 1)
-    say(fmt::format("the potential's force has the sign {:+g}, not +1: it leads away", gains_.sign));
+    found.push_back(
+        fmt::format("the potential's force has the sign {:+g}, not +1: it leads away", gains_.sign));
   if (gains_.stiffness.minCoeff() <= 0 || (has_lengths && gains_.length_stiffness <= 0))
-    say("the potential has no minimum at the target: a stiffness k is not above 0");
+    found.emplace_back("the potential has no minimum at the target: a stiffness k is not above 0");
   const Eigen::Matrix2d K = 0.5 * (gains_.damping + gains_.damping.transpose());
   if (least_eigenvalue(K) <= 0 || (has_lengths && gains_.length_damping <= 0))
-    say(fmt::format("the damping K is not positive: its least eigenvalue is {:.3g}", least_eigenvalue(K)));
+    found.push_back(
+        fmt::format("the damping K is not positive: its least eigenvalue is {:.3g}", least_eigenvalue(K)));
   if (gains_.gravity_share != 1)
-    say(fmt::format("gravity is compensated to {:.3g} %, not to 100 %", 100 * gains_.gravity_share));
+    found.push_back(
+        fmt::format("gravity is compensated to {:.3g} %, not to 100 %", 100 * gains_.gravity_share));
   if (gains_.elasticity == ElasticityRule::ignored && elastic_at_target_.cwiseAbs().maxCoeff() > 1e-12)
-    say("the arm's elasticity is neither cancelled nor part of the potential, and pulls away from the "
+    found.emplace_back(
+        "the arm's elasticity is neither cancelled nor part of the potential, and pulls away from the "
         "target");
   if (gains_.elasticity == ElasticityRule::shaped &&
       least_eigenvalue(stiffness_ + stiffness_at_target_ - gravity_stiffness_) <= 0)
-    say("potential and elasticity together have no minimum at the target");
+    found.emplace_back("potential and elasticity together have no minimum at the target");
   return found;
 }
 

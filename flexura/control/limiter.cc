@@ -47,7 +47,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   const ArmState braked = way_to_rest_.empty() ? sent_ : way_to_rest_.front();
   double low = 0, high = 1;
   Plan best;
-  for (int i = 0; i < 20 && high - low > 1e-3; ++i) {
+  for (int i = 0; i < 40 && high - low > 1e-3 * high; ++i) {
     const double middle = 0.5 * (low + high);
     Plan trial = plan(between(braked, wanted, middle), false);
     (trial.is_allowed ? low : high) = middle;

@@ -65,9 +65,9 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
   for (std::size_t i = 1; i < samples_.size(); ++i)
     least_taken = std::min(least_taken, samples_[i].taken - samples_[i - 1].taken);
   if (least_taken < -tolerance_ * scale)
-    verdict.reasons.push_back("the damping K is not positive: it gave the arm energy");
+    verdict.reasons.emplace_back("the damping K is not positive: it gave the arm energy");
   else if (end.taken - start.taken + end.damped - start.damped <= tolerance_ * scale && !verdict.is_settled)
-    verdict.reasons.push_back("nothing takes the arm's energy: the damping K is 0");
+    verdict.reasons.emplace_back("nothing takes the arm's energy: the damping K is 0");
   if (lyapunov_value(end) < -tolerance_ * scale && end.potential < 0)
     verdict.reasons.emplace_back("the potential has no minimum at the target: it fell below its value there");
   if (!verdict.is_balanced) {
@@ -89,20 +89,20 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
              std::abs(shares[i]) * courses.col(i).cwiseAbs().maxCoeff() > 0.02 * verdict.imbalance;
     };
     if (explains(0))
-      verdict.reasons.push_back(
+      verdict.reasons.emplace_back(
           fmt::format("gravity is not compensated: {:.0f} % of it is left", 100 * shares[0]));
     if (explains(1))
-      verdict.reasons.push_back(
+      verdict.reasons.emplace_back(
           fmt::format("the arm's elasticity is not compensated: {:.0f} % of it is left", 100 * shares[1]));
     if (explains(2))
       verdict.reasons.push_back(fmt::format("the force does not follow the potential: {:.2f} of it, not 1{}",
                                             1 - shares[2],
                                             shares[2] > 1 ? " (it leads away from the target)" : ""));
     if ((imbalance - courses * shares).cwiseAbs().maxCoeff() > 0.05 * verdict.imbalance)
-      verdict.reasons.push_back("the forces on the arm are not those of the law");
+      verdict.reasons.emplace_back("the forces on the arm are not those of the law");
   }
-  if (!verdict.is_monotone && verdict.reasons.empty()) verdict.reasons.push_back("W rises");
-  if (!verdict.is_settled && verdict.reasons.empty()) verdict.reasons.push_back("W has not settled yet");
+  if (!verdict.is_monotone && verdict.reasons.empty()) verdict.reasons.emplace_back("W rises");
+  if (!verdict.is_settled && verdict.reasons.empty()) verdict.reasons.emplace_back("W has not settled yet");
 }
 
 }  // namespace flexura

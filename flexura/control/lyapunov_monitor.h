@@ -31,7 +31,7 @@ struct LyapunovVerdict {
   [[nodiscard]] bool is_good() const { return reasons.empty(); }
 };
 
-/// Watches W = T + Pi along a run, however long.
+/// Watches W = T + Pi along a run; keeps every sample.
 class LyapunovMonitor {
  public:
   /// `tolerance`: of W's balance, and of W at the end, share of the energies in play.

@@ -34,6 +34,7 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
     stiffness_.block(i * n, i * n, n, n) = gains.stiffness[i] * products;
     for (Eigen::Index k = 0; k < 2; ++k) damping_.block(i * n, k * n, n, n) = gains.damping(i, k) * products;
   }
+  has_lengths_ = lengths > 0;
   stiffness_.diagonal().tail(lengths).setConstant(gains.length_stiffness);
   damping_.diagonal().tail(lengths).setConstant(gains.length_damping);
   DistributedArm there = arm;
@@ -50,15 +51,13 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
 
 std::vector<std::string> PotentialLaw::violations() const {
   std::vector<std::string> found;
-  const bool has_lengths =
-      stiffness_.rows() > 0 && stiffness_.diagonal().tail(1)[0] == gains_.length_stiffness;
   if (gains_.sign != 1)
     found.push_back(
         fmt::format("the potential's force has the sign {:+g}, not +1: it leads away", gains_.sign));
-  if (gains_.stiffness.minCoeff() <= 0 || (has_lengths && gains_.length_stiffness <= 0))
+  if (gains_.stiffness.minCoeff() <= 0 || (has_lengths_ && gains_.length_stiffness <= 0))
     found.emplace_back("the potential has no minimum at the target: a stiffness k is not above 0");
   const Eigen::Matrix2d K = 0.5 * (gains_.damping + gains_.damping.transpose());
-  if (least_eigenvalue(K) <= 0 || (has_lengths && gains_.length_damping <= 0))
+  if (least_eigenvalue(K) <= 0 || (has_lengths_ && gains_.length_damping <= 0))
     found.push_back(
         fmt::format("the damping K is not positive: its least eigenvalue is {:.3g}", least_eigenvalue(K)));
   if (gains_.gravity_share != 1)

@@ -63,6 +63,7 @@ class PotentialLaw {
 
   PotentialGains gains_;
   Eigen::VectorXd target_;
+  bool has_lengths_ = false;
   Eigen::MatrixXd stiffness_, damping_;  // Of the coordinates.
   Eigen::VectorXd elastic_at_target_;    // dV_e/dx there, N m
   double elastic_energy_at_target_ = 0;  // J

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "flexura/control/driven_law.h"
 #include "flexura/control/lyapunov_monitor.h"
 #include "flexura/control/plane_errors.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/distributed_arms.h"
+#include "tests/support/watched_runs.h"
 
 namespace flexura {
 namespace {
@@ -25,36 +25,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr OdeTolerance fine = {.relative = 1e-9, .absolute = 1e-11};
-
-DistributedMotion::Force forces_of(const PotentialLaw& law) {
-  return [&law](double, const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
-                Eigen::VectorXd& Q) {
-    law.force(arm, x, v, Q);
-    return law.dissipation(v);
-  };
-}
-
-// A run from rest, watched; it ends early where the arm reaches the coordinates' end.
-LyapunovVerdict watched_run(const DistributedArm& arm, const PotentialLaw& law,
-                            const DistributedMotion::Force& force, const Eigen::VectorXd& start, double until,
-                            Eigen::VectorXd* end = nullptr) {
-  DistributedMotion motion(arm, force, fine);
-  motion.start(start);
-  LyapunovMonitor monitor;
-  for (int i = 0; i <= 100; ++i) {
-    if (i > 0 && !motion.advance(until * i / 100)) break;
-    // With a shaped elasticity V_e is part of Pi.
-    const bool is_shaped = law.gains().elasticity == ElasticityRule::shaped;
-    monitor.add({motion.time(), motion.arm().kinetic_energy(), law.potential(motion.arm(), motion.x()),
-                 motion.arm().gravity_energy(), is_shaped ? 0 : motion.arm().elastic_energy(),
-                 motion.summed(), motion.damped()});
-    if (motion.arm().q().cwiseAbs().maxCoeff() > 1.45) break;
-  }
-  if (end != nullptr) *end = motion.x();
-  return monitor.verdict();
-}
 
 DistributedArm small_arm(std::optional<double> bending = {}) {
   return DistributedArm({.bending_stiffness = bending.value_or(0.5), .nodes = 3, .points = 8});
@@ -283,159 +253,6 @@ TEST(PotentialLaw, RefusesNumbersThatAreNone) {
   EXPECT_THROW(PotentialLaw(arm, target, {.gravity_share = std::nan("")}), std::invalid_argument);
   EXPECT_THAT(PotentialLaw(arm, target, {.stiffness = {1, 0}}).violations(),
               Contains(HasSubstr("no minimum")));
-}
-
-TEST(DrivenLaw, ProjectsExactlyWhereTheDrivesMoveAllThatMoves) {
-  for_random_cases(6, [](TestRandom& random) {
-    const DistributedArm arm({.lengths = {0.3, 0.4, 0.3},
-                              .has_variable_lengths = true,
-                              .bending_stiffness = 0.3,
-                              .axial_stiffness = 40,
-                              .basis = AngleBasis::sections,
-                              .nodes = 1,
-                              .points = 5});
-    for (const Eigen::MatrixXd& G : {section_moments(arm), section_torques(arm)}) {
-      ASSERT_EQ(G.rows(), 9);
-      ASSERT_EQ(G.cols(), 9);
-      const PotentialLaw law(arm, random_coordinates(random, arm, 0.8), {});
-      double left_over = 0;
-      const auto driven = [&](double, const DistributedArm& now, const Eigen::VectorXd& x,
-                              const Eigen::VectorXd& v, Eigen::VectorXd& Q) {
-        law.force(now, x, v, Q);
-        const ProjectedForce projected = project_on_drives(G, Q);
-        left_over = std::max(left_over, projected.left_over);
-        Q = projected.force;
-        return law.dissipation(v);
-      };
-      const LyapunovVerdict verdict = watched_run(arm, law, driven, random_coordinates(random, arm, 0.8), 3);
-      EXPECT_THAT(verdict.reasons, IsEmpty());
-      EXPECT_LE(left_over, 1e-10);
-    }
-  });
-}
-
-TEST(DrivenLaw, HasNumbersThatAreWhatItsDrivesMove) {
-  for_random_cases(20, [](TestRandom& random) {
-    DistributedArmModel model = random_distributed_arm(random);
-    model.clamp = {0.2, -0.1};
-    DistributedArm arm(model);
-    const Eigen::VectorXd x = random_coordinates(random, arm);
-    arm.set(x, Eigen::VectorXd::Zero(arm.size()));
-    const AngleShapes& shapes = arm.shapes();
-    const Eigen::VectorXd sums = section_torques(arm).transpose() * x,
-                          turns = section_moments(arm).transpose() * x;
-    const Eigen::VectorXd base_part = 0.2 * shapes.base;
-    double start = 0;
-    for (std::size_t k = 0; k < model.lengths.size(); ++k) {
-      double integral = 0;
-      for (Eigen::Index j = 0; j < shapes.s.size(); ++j)
-        if (shapes.section[static_cast<std::size_t>(j)] == k)
-          integral += shapes.weights[j] * (arm.theta()[j] - base_part[j]);
-      const auto column = static_cast<Eigen::Index>(2 * k);
-      EXPECT_NEAR(sums[column], integral, 1e-12);
-      const double end = start + model.lengths[k];
-      EXPECT_NEAR(
-          turns[column + 1],
-          (shapes.at(end) - shapes.at(start)).head(arm.nodes()).dot(x.segment(arm.nodes(), arm.nodes())),
-          1e-12);
-      start = end;
-    }
-  });
-}
-
-TEST(DrivenLaw, FallsOnAnArmThatHasMoreThanItsDrivesMove) {
-  // Two drives an angle, six numbers: the law's force cut down to the drives does not let W fall; the
-  // potential on the drives' own numbers does.
-  DistributedArm arm(
-      {.lengths = {0.5, 0.5}, .bending_stiffness = 2, .damping = 0.5, .nodes = 4, .points = 8});
-  const Eigen::MatrixXd G = section_moments(arm);
-  Eigen::VectorXd hold(4);
-  hold << 1.2, 0.5, -0.6, 0.4;
-  const auto target = equilibrium(arm, Eigen::VectorXd::Zero(arm.size()), G * hold);
-  ASSERT_TRUE(target.has_value());
-  const Eigen::VectorXd start = bent(arm, -0.3, 0.2);
-
-  const PotentialLaw full(arm, *target, {});
-  const LyapunovVerdict cut = watched_run(
-      arm, full,
-      [&](double, const DistributedArm& now, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
-          Eigen::VectorXd& Q) {
-        full.force(now, x, v, Q);
-        Q = project_on_drives(G, Q).force;
-        return full.dissipation(v);
-      },
-      start, 3);
-  EXPECT_FALSE(cut.is_balanced);
-  EXPECT_THAT(cut.reasons, Contains(HasSubstr("not those of the law")));
-
-  const DrivenLaw law(arm, G, *target, 4, 1);
-  EXPECT_THAT(law.violations(), IsEmpty());
-  EXPECT_LE((law.holding() - hold).cwiseAbs().maxCoeff(), 1e-9);
-  DistributedMotion motion(
-      arm,
-      [&](double, const DistributedArm&, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
-          Eigen::VectorXd& Q) {
-        law.force(x, v, Q);
-        return law.dissipation(v);
-      },
-      fine);
-  motion.start(start);
-  LyapunovMonitor monitor;
-  for (int i = 1; i <= 100; ++i) {
-    monitor.add({motion.time(), motion.arm().kinetic_energy(), law.potential(motion.arm(), motion.x()), 0, 0,
-                 motion.summed(), motion.damped()});
-    ASSERT_TRUE(motion.advance(0.05 * i));
-  }
-  EXPECT_THAT(monitor.verdict().reasons, IsEmpty());
-  EXPECT_LE((motion.x() - *target).cwiseAbs().maxCoeff(), 2e-2);
-
-  EXPECT_THAT(DrivenLaw(arm, G, bent(arm, 1, 1), 4, 1).violations(), Contains(HasSubstr("cannot hold")));
-  EXPECT_THAT(DrivenLaw(arm, G, *target, 4, -1).violations(), Contains(HasSubstr("not positive")));
-  EXPECT_THAT(DrivenLaw(arm, G, *target, -40, 1).violations(), Contains(HasSubstr("no minimum")));
-}
-
-TEST(PlaneErrors, AreTheDerivativesOfTheViewsReading) {
-  for_random_cases(200, [](TestRandom& random) {
-    const double theta = random.uniform(-1.3, 1.3), q = random.uniform(-1.3, 1.3);
-    const PlaneView view = plane_view(theta, q);
-    const Eigen::Vector2d at(view.alpha_1, view.alpha_2);
-    const auto reading = numerical_jacobian(
-        [](const Eigen::VectorXd& a) -> Eigen::VectorXd {
-          return Eigen::VectorXd::Constant(1, std::atan(std::tan(a[1]) * std::cos(a[0])));
-        },
-        at, 0.01);
-    const PlaneView by_1{at[0] - 1, at[1]}, by_2{at[0], at[1] - 1};
-    EXPECT_NEAR(plane_error(view, by_1).e_q, reading.value(0, 0), 1e-8);
-    EXPECT_NEAR(plane_error(view, by_2).e_q, reading.value(0, 1), 1e-8);
-    EXPECT_NEAR(plane_error(view, by_1).e_theta, 1, 1e-15);
-    const PlaneError none = plane_error(view, view);
-    EXPECT_EQ(none.spatial, 0);
-    EXPECT_NEAR(none.theta, theta, 1e-12);
-    EXPECT_NEAR(none.q, q, 1e-9);
-    EXPECT_NEAR(none.gain, reading.value(0, 0), 1e-8);
-    // The spatial error of neighbours is the angle between their directions.
-    const double dt = random.uniform(-1e-4, 1e-4), dq = random.uniform(-1e-4, 1e-4);
-    const PlaneView near = plane_view(theta + dt, q + dq);
-    const auto e = [](double a, double b) {
-      return Eigen::Vector3d(std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b));
-    };
-    const double angle = (e(theta + dt, q + dq) - e(theta, q)).norm();
-    EXPECT_NEAR(exact_plane_error(near, view).spatial, angle, 1e-7);
-    EXPECT_NEAR(plane_error(near, view).spatial, angle, 5e-7);
-  });
-}
-
-TEST(PlaneErrors, GrowWithoutBoundTowardsTheQuarterTurn) {
-  constexpr double degree = 3.14159265358979323846 / 180;
-  const auto at = [](double theta) { return plane_error(plane_view(theta * degree, 20 * degree), {}); };
-  EXPECT_NEAR(at(30).gain, -0.19, 0.005);
-  EXPECT_NEAR(at(80).gain, -1.8, 0.05);
-  EXPECT_NEAR(at(89).gain, -18.4, 0.05);
-  EXPECT_FALSE(at(79.9).is_singular);
-  EXPECT_TRUE(at(80.1).is_singular);
-  EXPECT_TRUE(at(-95).is_singular);
-  EXPECT_FALSE(at(120).is_singular);
-  EXPECT_TRUE(exact_plane_error({0, 0}, plane_view(89 * degree, 0)).is_singular);
 }
 
 TEST(LyapunovMonitor, RefusesSamplesThatAreNone) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/kdl_chain.h"
 #include "flexura/kinematics/batch.h"
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/kinematics/planar.h"
@@ -219,50 +220,14 @@ void jacobian_batch(benchmark::State& state, SimdPath path, bool stretches) {
 // --- The same curve in Orocos KDL
 // ------------------------------------------------------------------------------
 
-// 72 revolute joints: each section as equal rigid links with a joint in the middle of each, of 8 planar
-// sections 9, of 3 spatial ones 12 universal joints. Their two axes change places from one to the next, else
-// the arm would twist.
 struct KdlCase {
   KDL::Chain chain;
   std::vector<KDL::JntArray> states;
 };
 
 KdlCase kdl_case(const Case& c) {
-  const std::vector<Section>& sections = c.arm.sections;
-  const bool is_planar = c.arm.kind == ArmKind::planar;
-  const unsigned axes = is_planar ? 1 : 2;
-  const auto links = static_cast<unsigned>(72 / (axes * sections.size()));
-  KdlCase result;
-  const auto link = [](double length) { return KDL::Frame(KDL::Vector(0.0, 0.0, length)); };
-  result.chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), link(sections[0].length / (2 * links))));
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    const double own = sections[i].length / links;
-    const double next = i + 1 < sections.size() ? sections[i + 1].length / links : 0.0;
-    for (unsigned k = 0; k < links; ++k) {
-      const double length = k + 1 < links ? own : 0.5 * (own + next);
-      const KDL::Joint about_x(KDL::Joint::RotX), about_y(KDL::Joint::RotY);
-      if (is_planar) {
-        result.chain.addSegment(KDL::Segment(about_y, link(length)));
-        continue;
-      }
-      const bool is_x_first = k % 2 == 1;
-      result.chain.addSegment(KDL::Segment(is_x_first ? about_x : about_y));
-      result.chain.addSegment(KDL::Segment(is_x_first ? about_y : about_x, link(length)));
-    }
-  }
-  for (const ArmState& s : c.states) {
-    KDL::JntArray& q = result.states.emplace_back(result.chain.getNrOfJoints());
-    for (unsigned joint = 0; joint < q.rows(); joint += axes) {
-      const Eigen::Vector2d& bend = s.bends[joint / (axes * links)];
-      if (is_planar) {
-        q(joint) = bend.x() / links;
-        continue;
-      }
-      const unsigned x_first = joint / 2 % 2;
-      q(joint + x_first) = bend.x() / links;
-      q(joint + 1 - x_first) = -bend.y() / links;
-    }
-  }
+  KdlCase result{.chain = kdl_chain(c.arm), .states = {}};
+  for (const ArmState& s : c.states) result.states.push_back(kdl_joints(c.arm, s));
   return result;
 }
 
@@ -317,6 +282,22 @@ void jacobian_kdl(benchmark::State& state) {
   count_items(state, 1);
 }
 BENCHMARK(jacobian_kdl);
+
+// The frames of all links: the points that KDL has along the same arm, beside sampling_3_sections.
+void sampling_kdl(benchmark::State& state) {
+  const KdlCase kdl = kdl_case(spatial_case(false));
+  KDL::ChainFkSolverPos_recursive solver(kdl.chain);
+  std::vector<KDL::Frame> frames(kdl.chain.getNrOfSegments());
+  std::size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solver.JntToCart(kdl.states[next], frames));
+    benchmark::ClobberMemory();
+    next = (next + 1) % count;
+  }
+  count_items(state, 1);
+  state.counters["points"] = static_cast<double>(frames.size());
+}
+BENCHMARK(sampling_kdl);
 
 // --- Sampling: poses along one spatial arm of 3 sections, polyline within 1e-4 m
 // --------------------------------

@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <cstdint>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainiksolverpos_lma.hpp>
 #include <numbers>
 #include <vector>
 
+#include "bench/kdl_chain.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/spatial.h"
 
@@ -17,6 +20,7 @@ namespace {
 enum Kind : std::int64_t { position, direction, pose };
 
 struct Question {
+  ArmState wanted, near;
   TipTarget target;
   InverseOptions cold;
   InverseOptions warm;
@@ -58,6 +62,8 @@ std::vector<Question> questions(const Arm& arm, std::int64_t kind) {
     if (kind == direction) question.target.direction = X_WT.rotation.col(2);
     if (kind == pose) question.target.rotation = X_WT.rotation;
     question.warm.start = near;
+    question.wanted = state;
+    question.near = near;
   }
   return result;
 }
@@ -84,6 +90,49 @@ void inverse_cold(benchmark::State& state) { solve(state, false); }
 void inverse_warm(benchmark::State& state) { solve(state, true); }
 BENCHMARK(inverse_cold)->ArgName("kind")->Arg(position)->Arg(direction)->Arg(pose);
 BENCHMARK(inverse_warm)->ArgName("kind")->Arg(position)->Arg(direction)->Arg(pose);
+
+// Full poses by Orocos KDL's Levenberg-Marquardt on the same arm as a chain of 72 joints, beside the third
+// kind above: targets where the chain itself has its tip in the same states, from straight but for 0.1 rad a
+// section (cold: exactly straight is singular) and from the same near states (warm), to 1e-9 of the arm's
+// length and 1e-9 rad. It has no limits and makes one descent, of up to 500 iterations as by default; ours
+// keeps to limits, and tries again. What KDL does not solve is counted, not hidden.
+void solve_by_kdl(benchmark::State& state, bool is_warm) {
+  const Arm arm = three_sections();
+  const std::vector<Question> all = questions(arm, pose);
+  const KDL::Chain chain = kdl_chain(arm);
+  KDL::ChainFkSolverPos_recursive forward(chain);
+  ArmState bent = ArmState::straight(3);
+  for (Eigen::Vector2d& bend : bent.bends) bend = {0.08, 0.06};
+  std::vector<KDL::Frame> targets;
+  std::vector<KDL::JntArray> starts;
+  for (const Question& question : all) {
+    forward.JntToCart(kdl_joints(arm, question.wanted), targets.emplace_back());
+    starts.push_back(kdl_joints(arm, is_warm ? question.near : bent));
+  }
+  // Weights of positions and angles: both in the tolerance's unit.
+  Eigen::Matrix<double, 6, 1> weights;
+  weights << Eigen::Vector3d::Constant(1.0 / arm.length()), Eigen::Vector3d::Ones();
+  KDL::ChainIkSolverPos_LMA solver(chain, weights, 1e-9);
+  KDL::JntArray found(chain.getNrOfJoints());
+  std::size_t next = 0;
+  double iterations = 0.0;
+  double unsolved = 0.0;
+  for (auto _ : state) {
+    const int error = solver.CartToJnt(starts[next], targets[next], found);
+    next = (next + 1) % all.size();
+    iterations += solver.lastNrOfIter;
+    unsolved += error == KDL::SolverI::E_NOERROR ? 0.0 : 1.0;
+    benchmark::DoNotOptimize(found.data.data());
+  }
+  state.counters["joints"] = chain.getNrOfJoints();
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["unsolved"] = benchmark::Counter(unsolved, benchmark::Counter::kAvgIterations);
+}
+
+void inverse_kdl_cold(benchmark::State& state) { solve_by_kdl(state, false); }
+void inverse_kdl_warm(benchmark::State& state) { solve_by_kdl(state, true); }
+BENCHMARK(inverse_kdl_cold);
+BENCHMARK(inverse_kdl_warm);
 
 }  // namespace
 }  // namespace flexura

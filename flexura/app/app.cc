@@ -145,6 +145,15 @@ void add_schema(CLI::App& app, Command& chosen) {
   command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
 }
 
+void add_threshold_options(CLI::App& command, ThresholdArguments& threshold) {
+  command.add_option("--threshold", threshold.method, "otsu, two_mode, by_block or fixed")
+      ->type_name("METHOD")
+      ->capture_default_str();
+  command.add_option("--level", threshold.level, "The fixed threshold, 0 to 255")->type_name("LEVEL");
+  command.add_option("--figure", threshold.figure, "dark or bright (default: what is not at the border)")
+      ->type_name("SIDE");
+}
+
 void add_measure(CLI::App& app, Command& chosen) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* measure =
@@ -161,10 +170,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->type_name("FILE");
   measure->add_option("--radius", arguments->radius, "The arm's radius, m: then depths are told too")
       ->type_name("R");
-  measure->add_option("--threshold", arguments->threshold, "otsu, two_mode, by_block or fixed")
-      ->type_name("METHOD")
-      ->capture_default_str();
-  measure->add_option("--level", arguments->level, "The fixed threshold, 0 to 255")->type_name("LEVEL");
+  add_threshold_options(*measure, arguments->threshold);
   measure->add_option("--base", arguments->base, "A place near the arm's base, px: U,V")
       ->type_name("U,V")
       ->delimiter(',')
@@ -195,6 +201,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
                    "Where the arm's bands are: m, or shares of its length, 25%")
       ->delimiter(',')
       ->type_name("S,...");
+  add_threshold_options(*estimate, arguments->threshold);
   estimate->add_option("--points", arguments->points, "Of the backbone that is printed")
       ->capture_default_str();
   estimate->callback(

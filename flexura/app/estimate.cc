@@ -48,8 +48,24 @@ void check(const EstimateArguments& arguments) {
     throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
 }
 
+// A lens alone is enough to measure a picture, but not for two to meet.
+void check_poses(const Node& file) {
+  std::vector<Problem> problems;
+  for (const Node& camera : *file.find("camera")->as<Node::Array>()) {
+    for (const std::string key : {"position", "rotation"}) {
+      const auto is_it = [&](const Node::Member& member) { return without_unit(member.key) == key; };
+      if (std::ranges::any_of(*camera.as<Node::Table>(), is_it)) continue;
+      problems.push_back(
+          {camera.where, fmt::format("camera: {} is missing: expected where each camera stands", key)});
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 std::vector<MeasuredCamera> cameras_of(const EstimateArguments& arguments) {
-  auto cameras = read_as<MeasuredCameras>(read_toml_file(arguments.cameras)).camera;
+  const Node file = read_toml_file(arguments.cameras);
+  auto cameras = read_as<MeasuredCameras>(file).camera;
+  check_poses(file);
   if (cameras.size() != arguments.images.size()) {
     throw input_error(arguments.cameras, fmt::format("{} cameras for {} pictures: expected one for each",
                                                      cameras.size(), arguments.images.size()));
@@ -121,13 +137,16 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
   return finder.find(gray_picture(photograph.bytes));
 }
 
-Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapePrior& prior) {
+Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapePrior& prior,
+             const ThresholdConfig& threshold) {
   Look look;
   const std::string file = read_text_file(name, most_picture_bytes);
   const Photograph photograph =
       decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
   ArmFinderConfig config;
+  config.threshold = threshold;
+  if (photograph.is_mask) config.least_sigma = mask_sigma;
   if (prior.is_base_position_known) config.base = view.project(prior.arm.X_WB.position);
   ArmFinder finder(config);
   const ArmSighting found = sighted(photograph, finder);
@@ -150,6 +169,21 @@ double root_mean_square(const std::vector<double>& values) {
   double square = 0;
   for (const double value : values) square += value * value / static_cast<double>(values.size());
   return std::sqrt(square);
+}
+
+// The standard deviation at so many places evenly along the backbone, linear between where it is known.
+Node::Array sigmas_at(const ShapeEstimate& found, std::size_t count, double length) {
+  Node::Array sigmas;
+  std::size_t after = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double s = length * static_cast<double>(i) / static_cast<double>(count - 1);
+    while (after + 1 < found.s.size() && found.s[after] < s) ++after;
+    const double from = found.s[after - 1], to = found.s[after];
+    const double share = to > from ? std::clamp((s - from) / (to - from), 0.0, 1.0) : 0;
+    sigmas.push_back(
+        number_node(found.sigma[after - 1] + share * (found.sigma[after] - found.sigma[after - 1])));
+  }
+  return sigmas;
 }
 
 void add_angles(const std::vector<DirectionAngles>& angles, const std::string& before, Node::Table& answer) {
@@ -208,6 +242,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
   add_plane_angles(sightings, count, answer);
   answer.push_back({"length", {}, number_node(backbone.length())});
   answer.push_back({"sigma", {}, number_node(root_mean_square(found.sigma))});
+  answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
   answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);
   if (arguments.arm.empty()) return;
@@ -223,10 +258,11 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   check(arguments);
   const std::vector<MeasuredCamera> cameras = cameras_of(arguments);
   const ShapePrior prior = prior_of(arguments);
+  const ThresholdConfig threshold = threshold_config(arguments.threshold);
   std::vector<Sighting> sightings;
   Node::Array images;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Look look = look_at(arguments.images[i], cameras[i], prior);
+    Look look = look_at(arguments.images[i], cameras[i], prior, threshold);
     images.push_back(image_node(arguments.images[i], cameras[i], look));
     sightings.push_back(std::move(look.sighting));
   }

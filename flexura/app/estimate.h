@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/app/threshold_arguments.h"
+
 namespace flexura {
 
 /// What `flexura estimate` is told.
@@ -17,6 +19,7 @@ struct EstimateArguments {
   std::string arm;                  ///< A file with the arm's sections; "" for none.
   /// Where the arm's bands are: arc lengths, m ("0.25"), or shares of its length ("25%"); empty: not known.
   std::vector<std::string> markers;
+  ThresholdArguments threshold;
   std::int64_t points = 101;  ///< Of the backbone, as it is printed.
 };
 

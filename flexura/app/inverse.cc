@@ -32,6 +32,7 @@ struct InverseRequest {
   std::optional<Triple> direction;
   std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z).
   std::optional<std::vector<Triple>> curve;       ///< m.
+  std::optional<double> tolerance;                ///< m, of a curve.
   InverseWish wish = InverseWish::none;
   bool all = false;
   std::optional<ShapeConfig> start;
@@ -53,6 +54,10 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                   .unit = Unit::metre,
                   .range = between(-farthest, farthest),
                   .count = {2, 10000}})
+          .field("tolerance", &InverseRequest::tolerance,
+                 {.meaning = "how far the arm may be from the curve",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, farthest)})
           .field("wish", &InverseRequest::wish, {.meaning = "what to do with freedom that is left"})
           .field("all", &InverseRequest::all, {.meaning = "whether all distinct solutions are wanted"})
           .field("start", &InverseRequest::start, {.meaning = "the shape from which the search begins"});
@@ -72,6 +77,7 @@ void check_target(const InverseRequest& request, Reader& reader) {
       reader.problem_at("curve", "has no length");
     }
   }
+  if (request.tolerance && !request.curve) reader.problem_at("tolerance", "is for a curve");
   if (request.direction && request.rotation) {
     reader.problem("says the orientation twice: expected direction or rotation, not both");
   }
@@ -149,6 +155,7 @@ Node answer(const Arm& arm, const InverseRequest& request) {
   InverseOptions options;
   options.wish = request.wish;
   if (request.start) options.start = arm_state(arm, *request.start);
+  options.position_tolerance = request.tolerance;
   if (request.curve) {
     CurveTarget target;
     for (const Triple& point : *request.curve) target.points.push_back(vector(point));

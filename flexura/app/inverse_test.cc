@@ -112,6 +112,23 @@ TEST(AnswerInverse, LaysTheArmAlongACurve) {
   EXPECT_EQ(text(longer, "reason"), "not_reachable");
 }
 
+TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWhatIsAsked) {
+  // A sixth of a circle of the arm's length, by five points.
+  const std::string points =
+      R"("curve":[[0.0,0.0,0],[0.02936,0.22242,0],[0.11544,0.42961,0],[0.25233,0.60736,0],[0.43065,0.74351,0]])";
+  const Node plain = parsed(answer_inverse(limited_arm(), "{" + points + "}"));
+  EXPECT_TRUE(flag(plain, "converged")) << number(plain, "position_error");
+  const Node strict = parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":1e-9})"));
+  EXPECT_FALSE(flag(strict, "converged"));
+  const Node loose = parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":0.05})"));
+  EXPECT_TRUE(flag(loose, "converged"));
+  EXPECT_EQ(text(parsed(answer_inverse(limited_arm(), R"({"position":[0,0.8,0],"tolerance":0.1})")), "error"),
+            "tolerance: is for a curve");
+  EXPECT_NE(text(parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":0})")), "error")
+                .find("tolerance"),
+            std::string::npos);
+}
+
 TEST(AnswerInverse, SaysWhatIsNearestInEveryAnswerThatDidNotConverge) {
   const Arm arm = limited_arm();
   for (const char* line :

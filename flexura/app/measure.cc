@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "flexura/app/commands.h"
+#include "flexura/app/words.h"
 #include "flexura/base/problems.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
@@ -26,28 +27,10 @@
 namespace flexura {
 namespace {
 
-template <typename E>
-E named(const std::string& option, const std::string& word) {
-  const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));
-  const auto found = std::ranges::find(names, word);
-  if (found == names.end())
-    throw input_error(option,
-                      fmt::format("\"{}\": expected one of \"{}\"", word, fmt::join(names, "\", \"")));
-  return static_cast<E>(found - names.begin());
-}
-
 MeasureSettings settings_of(const MeasureArguments& arguments) {
   MeasureSettings settings;
   settings.what = named<MeasureTarget>("--what", arguments.what);
-  settings.finder.threshold.method = named<ThresholdMethod>("--threshold", arguments.threshold);
-  if (arguments.level) {
-    const bool is_level = *arguments.level >= 0 && *arguments.level <= 255;
-    if (!is_level) throw input_error("--level", fmt::format("{}: expected 0 to 255", *arguments.level));
-    settings.finder.threshold.method = ThresholdMethod::fixed;
-    settings.finder.threshold.level = *arguments.level;
-  } else if (settings.finder.threshold.method == ThresholdMethod::fixed) {
-    throw input_error("--threshold", "\"fixed\" needs --level, from 0 to 255");
-  }
+  settings.finder.threshold = threshold_config(arguments.threshold);
   if (arguments.base.size() == 2) {
     if (!std::isfinite(arguments.base[0]) || !std::isfinite(arguments.base[1]))
       throw input_error("--base", "expected two finite numbers u,v");

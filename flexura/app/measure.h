@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/app/threshold_arguments.h"
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
 #include "flexura/camera/intrinsics.h"
@@ -45,8 +46,7 @@ struct MeasureArguments {
   std::string what = "arm";
   std::string camera;  ///< A file of measured cameras; "" for none.
   std::optional<double> radius;
-  std::string threshold = "otsu";
-  std::optional<double> level;
+  ThresholdArguments threshold;
   std::vector<double> base;  ///< Two numbers, or none.
   std::string overlay;       ///< A file to write; "" for none.
 };

@@ -76,21 +76,24 @@ void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSamp
 }  // namespace
 
 bool measure_arm(const Job& job) {
-  ArmFinder finder(job.settings.finder);
+  ArmFinderConfig config = job.settings.finder;
+  if (job.photograph.is_mask) config.least_sigma = mask_sigma;
+  ArmFinder finder(config);
   const bool has_words = job.photograph.words.width() > 0;
   const ArmSighting& arm = has_words ? finder.find(gray_picture(job.photograph.words), job.photograph.white)
                                      : finder.find(job.gray);
   add_threshold(arm.threshold, job.answer);
-  job.answer.add("found", {arm.is_found(), {}});
-  if (!arm.is_found()) {
-    job.answer.add("reason", text_node(arm.reason));
-    return false;
-  }
   std::vector<AxisSample> axis = arm.axis;
   if (job.settings.lens) to_backbone_image(*job.settings.lens, axis);
   ArmSighting corrected = arm;
   corrected.axis = axis;
-  MarkerSightings markers = find_markers(job.photograph.bytes, corrected);
+  MarkerSightings markers;
+  if (arm.is_found()) markers = find_markers(job.photograph.bytes, corrected);
+  const bool is_found =
+      arm.is_found() && (job.settings.what == MeasureTarget::arm || !markers.markers.empty());
+  job.answer.add("found", {is_found, {}});
+  if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
+  if (!arm.is_found()) return false;
   std::vector<std::string> notes = arm.notes;
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   job.answer.add("notes", texts_node(notes))
@@ -113,7 +116,7 @@ bool measure_arm(const Job& job) {
     job.answer.add("markers", {std::move(marker_nodes), {}});
   }
   if (job.canvas != nullptr) draw_arm(*job.canvas, arm, axis, markers.markers);
-  return job.settings.what == MeasureTarget::arm || !markers.markers.empty();
+  return is_found;
 }
 
 }  // namespace flexura

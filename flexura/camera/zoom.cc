@@ -12,7 +12,7 @@ namespace flexura {
 namespace {
 
 constexpr std::size_t max_rows = 1000;
-constexpr NumberRange focal_length_range = {.min = 0, .max = 1e7, .open_min = true};
+constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};
 constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
 constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
 

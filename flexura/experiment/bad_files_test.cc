@@ -10,6 +10,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* good_file = R"([arm]
 kind = "planar"
@@ -125,6 +126,22 @@ TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
       "x.toml:5:10: arm.section[0].radius = 0: expected a number above 0 m and at most 1000000 m\n"
       "x.toml:6:1: arm.section[1].length: missing: expected a number above 0 m and at most 1000000 m "
       "(Arc length of the section's centreline when not stretched.)");
+}
+
+TEST(BadFiles, WhatTheTruthInheritsIsToldOnce) {
+  const std::string text = error_of_file(
+      "[arm]\n[[arm.section]]\nlength = 1\n[[camera]]\nname = 'front'\n"
+      "mount = { position = [0, 0, 2], look_at = [0, 0, 0] }\nlens = { fx = -3 }\n"
+      "[[truth.camera]]\nname = 'front'\nmount.roll_deg = 1\n[[task]]\nkind = 'hold'\nduration = 1\n");
+  EXPECT_THAT(text, HasSubstr("camera[0].lens.fx = -3"));
+  EXPECT_THAT(text, Not(HasSubstr("truth.camera[0].lens.fx")));
+}
+
+TEST(BadFiles, ThousandsOfBandsAreTooMany) {
+  std::string text = "[arm]\nlook.bands.per_section = 1000\n";
+  for (int i = 0; i < 6; ++i) text += "[[arm.section]]\nlength = 1\n";
+  EXPECT_THAT(error_of_file(text + "[[task]]\nkind = 'hold'\nduration = 1\n"),
+              HasSubstr("makes 6000 bands: expected at most 4096"));
 }
 
 TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {

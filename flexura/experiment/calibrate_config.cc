@@ -199,6 +199,12 @@ RigPrior session_prior(const CalibrateTask& task, const RigModel& believed) {
 
 namespace {
 
+std::vector<std::string> quoted(const std::vector<CameraConfig>& cameras) {
+  std::vector<std::string> names;
+  for (const CameraConfig& camera : cameras) names.push_back(Node{camera.name, {}}.brief());
+  return names;
+}
+
 void check_names(const CalibrateTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                  Reader& reader) {
   if (task.cameras.empty() && cameras.size() < 2)
@@ -207,7 +213,8 @@ void check_names(const CalibrateTask& task, const std::vector<CameraConfig>& cam
     const std::string& name = task.cameras[i];
     if (std::ranges::find(cameras, name, &CameraConfig::name) == cameras.end())
       reader.problem_at(fmt::format("{}.cameras[{}]", path, i),
-                        fmt::format("there is no camera {}", Node{name, {}}.brief()));
+                        fmt::format("there is no camera {}: expected one of {}", Node{name, {}}.brief(),
+                                    fmt::join(quoted(cameras), ", ")));
   }
   if (task.cameras.size() == 2 && task.cameras[0] == task.cameras[1])
     reader.problem_at(path + ".cameras", "names one camera twice: expected two");

@@ -9,6 +9,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -169,6 +171,21 @@ TEST(CalibrateTask, WaitsForAnotherFrameWhereSomeAreLost) {
   EXPECT_GT(some.rig().clock().now(), all.rig().clock().now());
 }
 
+// Keeps what a watcher is told of the cameras.
+class LastCameras : public RunWatcher {
+ public:
+  void state(double, const ArmState&, std::span<const CameraReading> cameras) override {
+    cameras_.assign(cameras.begin(), cameras.end());
+    if (!cameras_.empty()) pans_.insert(cameras_.front().head.pan);
+  }
+  [[nodiscard]] const std::vector<CameraReading>& cameras() const { return cameras_; }
+  [[nodiscard]] const std::set<double>& pans() const { return pans_; }
+
+ private:
+  std::vector<CameraReading> cameras_;
+  std::set<double> pans_;
+};
+
 TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   const TemporaryFolder folder;
   const Experiment experiment =
@@ -176,7 +193,8 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
                            "\n[[task]]\nkind = \"hold\"\nduration = 0.5\n[record]\ncameras = true\n",
                        "x.toml");
   Quiet quiet;
-  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  LastCameras seen;
+  const RunResult result = run_experiment(experiment, folder.path(), quiet, &seen);
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
   const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
   EXPECT_TRUE(*calibration.find("done")->as<bool>());
@@ -186,8 +204,17 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   McapReader log(folder.path() / log_file_name);
   std::map<std::string, int> counts;
   std::uint64_t last = 0;
+  HeadReadingMessage head;
+  StageReadingMessage stage;
+  std::set<std::uint64_t> times_of_heads;
   for (const McapMessage& message : log.messages()) {
     ++counts[message.channel->topic];
+    const auto node = [&] { return parse_json(message.text(), "log"); };
+    if (message.channel->topic == "/head/front") {
+      head = read_as<HeadReadingMessage>(node());
+      times_of_heads.insert(message.log_time);
+    }
+    if (message.channel->topic == "/stage/front") stage = read_as<StageReadingMessage>(node());
     if (message.channel->topic == "/arm/state") {
       EXPECT_GE(message.log_time, last);
       last = message.log_time;
@@ -198,6 +225,15 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   EXPECT_EQ(counts["/calibration/decisions"], 2);
   EXPECT_GE(counts["/camera/front"], 4);
   EXPECT_NEAR(static_cast<double>(last) * 1e-9, *result.summary.find("duration")->as<double>(), 1e-6);
+
+  // Those who watch, and the log, have the cameras where they went.
+  ASSERT_EQ(seen.cameras().size(), 2U);
+  EXPECT_NE(seen.cameras()[0].head.pan, 0);
+  EXPECT_GT(seen.pans().size(), 2U);
+  EXPECT_EQ(head.pan, seen.cameras()[0].head.pan);
+  EXPECT_EQ(Eigen::Vector3d(stage.offset.data()), seen.cameras()[0].stage.offset);
+  EXPECT_EQ(counts["/stage/front"], counts["/head/front"]);
+  EXPECT_EQ(static_cast<int>(times_of_heads.size()), counts["/head/front"]) << "once for each time";
 
   // The rig as found is an experiment's arm and cameras, and starts where it was sent.
   const Experiment found = load_experiment(folder.path() / rig_file_name);

@@ -113,6 +113,20 @@ void append(std::vector<Problem>& problems, const InputError& error) {
   problems.insert(problems.end(), error.problems().begin(), error.problems().end());
 }
 
+// What the truth has from the rest of the file is wrong there too, and told once.
+void drop_inherited(std::vector<Problem>& problems) {
+  constexpr std::string_view truth = "truth.";
+  const std::vector<Problem> all = problems;
+  std::erase_if(problems, [&](const Problem& problem) {
+    if (!problem.what.starts_with(truth)) return false;
+    const std::string_view inherited = std::string_view(problem.what).substr(truth.size());
+    return std::ranges::any_of(all, [&](const Problem& other) {
+      return other.what == inherited && other.where.line == problem.where.line &&
+             other.where.column == problem.where.column;
+    });
+  });
+}
+
 // The document's experiment. Whatever is wrong with it is told at once, after the problems there were before.
 Experiment read_document(const Node& document, std::vector<Problem> problems) {
   Experiment experiment;
@@ -120,6 +134,7 @@ Experiment read_document(const Node& document, std::vector<Problem> problems) {
     experiment = read_as<Experiment>(with_whole_truth(document));
   } catch (const InputError& error) {
     append(problems, error);
+    drop_inherited(problems);
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   return experiment;

@@ -58,6 +58,13 @@ RigStance Filming::true_stance(std::size_t camera) {
   return {camera, rig_.camera(camera).head().truth(now), rig_.camera(camera).stage().truth(now)};
 }
 
+std::vector<CameraReading> Filming::camera_readings() {
+  std::vector<CameraReading> readings;
+  for (const CameraPorts& camera : ports().cameras)
+    readings.push_back({camera.head->read().value().state, camera.stage->read().value().state});
+  return readings;
+}
+
 double Filming::play_to(double until, const Schedule& schedule) {
   const RigPorts ports = rig_.ports();
   double played = 0;

@@ -9,6 +9,7 @@
 #include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/photographer.h"
+#include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/truth_files.h"
 #include "flexura/port/camera_port.h"
@@ -39,6 +40,9 @@ class Filming {
 
   /// The rig that plays; its clock is at the last call's time.
   [[nodiscard]] RigPorts ports() { return rig_.ports(); }
+
+  /// Where the cameras say that they stand now.
+  [[nodiscard]] std::vector<CameraReading> camera_readings();
 
   /// Plays `schedule` from its start to its first step at `until` s or later, to its end, or to the last step
   /// before a state that no arm can take, and renders nothing. Returns the time of that step, s.

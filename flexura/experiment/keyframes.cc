@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -98,6 +99,19 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
         {-1, 0, "no columns for the bends: expected arching_1, cord_angle_1 or bend_x_1, ..."});
 }
 
+// `last`: the time of the row before, s.
+std::string time_problem(double time, std::optional<double> last) {
+  constexpr double longest = 1e6;
+  if (!last) return time == 0 ? "" : fmt::format("time {}: expected 0 in the first row", time);
+  if (time > longest) return fmt::format("time {} s: expected at most {} s", time, longest);
+  if (!(time > *last)) return fmt::format("time {}: expected more than the {} before it", time, *last);
+  // Nearer ones have no rates that are numbers.
+  constexpr double least_apart = 1e-9;
+  return time - *last >= least_apart ? ""
+                                     : fmt::format("time {}: expected at least {} s after the {} before it",
+                                                   time, least_apart, *last);
+}
+
 void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
                 std::vector<KeyframeProblem>& problems) {
   if (task.rows.size() < 2)
@@ -113,12 +127,8 @@ void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const double value = task.rows[r][c] * columns[c].factor;
       if (columns[c].quantity == "time") {
-        const bool fits = r == 0 ? value == 0 : value > last && value <= 1e6;
-        if (!fits)
-          problems.push_back(
-              {row, c,
-               r == 0 ? fmt::format("time {}: expected 0 in the first row", value)
-                      : fmt::format("time {}: expected more than the {} before it", value, last)});
+        const std::string problem = time_problem(value, r == 0 ? std::nullopt : std::optional(last));
+        if (!problem.empty()) problems.push_back({row, c, problem});
         last = value;
       } else if (columns[c].quantity == "stretch") {
         const bool is_possible = value > 0 && value <= 100;

@@ -107,6 +107,15 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   return table;
 }
 
+const Table<StageReadingMessage>& fields_of(const StageReadingMessage*) {
+  static const auto table =
+      Table<StageReadingMessage>("flexura.StageReading", "Where a camera's stage says that it stands.")
+          .field("time", &StageReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("offset", &StageReadingMessage::offset, {.meaning = "Right, down, forward, m."})
+          .field("moving", &StageReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+  return table;
+}
+
 const Table<ImageMessage>& fields_of(const ImageMessage*) {
   static const auto table =
       Table<ImageMessage>("foxglove.CompressedImage", "A frame of a camera.")
@@ -120,6 +129,7 @@ const Table<ImageMessage>& fields_of(const ImageMessage*) {
 std::string image_topic(std::string_view camera) { return "/camera/" + std::string(camera); }
 
 std::string head_topic(std::string_view camera) { return "/head/" + std::string(camera); }
+std::string stage_topic(std::string_view camera) { return "/stage/" + std::string(camera); }
 
 std::uint64_t nanoseconds(double time) { return static_cast<std::uint64_t>(std::llround(time * 1e9)); }
 

@@ -68,7 +68,8 @@ struct DriveCommandsMessage {
   std::vector<double> rates;            ///< Microsteps/s, the mean since the command before.
 };
 
-/// flexura.ArmReading, on /arm/reading in filmed runs: what the simulated drives say of themselves.
+/// flexura.ArmReading, on /arm/reading where a run plays the rig: what the simulated drives say of
+/// themselves.
 struct ArmReadingMessage {
   double time = 0;                                     ///< s
   std::vector<std::array<double, 2>> bends;            ///< rad, as the model makes of the motors.
@@ -77,11 +78,18 @@ struct ArmReadingMessage {
   bool moving = false;
 };
 
-/// flexura.HeadReading, on /head/NAME in filmed runs: where a camera's head says that it stands.
+/// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.
 struct HeadReadingMessage {
   double time = 0;           ///< s
   double pan = 0, tilt = 0;  ///< rad
   double zoom = 1;           ///< A position of the lens's table.
+  bool moving = false;
+};
+
+/// flexura.StageReading, on /stage/NAME beside it: where a camera's stage says that it stands.
+struct StageReadingMessage {
+  double time = 0;                           ///< s
+  std::array<double, 3> offset = {0, 0, 0};  ///< Along its axes (right, down, forward), m.
   bool moving = false;
 };
 
@@ -166,6 +174,7 @@ const Table<EventMessage>& fields_of(const EventMessage*);
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
+const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);
 const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);
 const Table<MarkerMessage>& fields_of(const MarkerMessage*);
@@ -173,9 +182,10 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 
-/// The topics of a camera's images, and of its head's readings.
+/// The topics of a camera's images, and of its head's and its stage's readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);
 [[nodiscard]] std::string head_topic(std::string_view camera);
+[[nodiscard]] std::string stage_topic(std::string_view camera);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);

@@ -104,10 +104,11 @@ void Player::film_to(double time, const ArmState& state) {
 void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     witness_.state(step_, time, state);
-    if (filming_ && experiment_.record.cameras) witness_.readings(filming_->ports());
+    if (filming_) witness_.readings(filming_->ports());
   }
   witness_.command(time, state);
-  if (watcher_ != nullptr) watcher_->state(time, state);
+  if (watcher_ != nullptr)
+    watcher_->state(time, state, filming_ ? filming_->camera_readings() : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
 }
@@ -148,6 +149,7 @@ bool Player::calibrate(std::size_t task) {
                fmt::format("{}: {}", run.name, run.result.reason)};
     witness_.expect(step_);
     witness_.state(step_, end, played_.last);
+    witness_.readings(filming_->ports());
   }
   calibrations_.push_back(std::move(run));
   return is_done;

@@ -49,6 +49,7 @@ struct Recorder::Channels {
   std::optional<std::uint16_t> arm_reading;
   std::optional<std::uint16_t> calibration_moves, calibration_sightings, calibration_decisions;
   std::map<std::string, std::uint16_t> heads;   // by camera
+  std::map<std::string, std::uint16_t> stages;  // by camera
   std::map<std::string, std::uint16_t> images;  // by camera
 };
 
@@ -114,6 +115,14 @@ void Recorder::reading(const std::string& camera, const HeadReading& reading) {
   const HeadState& state = reading.state;
   channels_->write(channel->second, nanoseconds(reading.time),
                    HeadReadingMessage{reading.time, state.pan, state.tilt, state.zoom, reading.moving});
+}
+
+void Recorder::reading(const std::string& camera, const StageReading& reading) {
+  const auto [channel, is_new] = channels_->stages.try_emplace(camera);
+  if (is_new) channel->second = channels_->add<StageReadingMessage>(stage_topic(camera));
+  const Eigen::Vector3d& offset = reading.state.offset;
+  channels_->write(channel->second, nanoseconds(reading.time),
+                   StageReadingMessage{reading.time, {offset.x(), offset.y(), offset.z()}, reading.moving});
 }
 
 void Recorder::calibration(const CalibrationMoveMessage& message) {

@@ -39,6 +39,7 @@ class Recorder {
   /// What a rig's devices say of themselves. The first reading opens the channel.
   void reading(const ArmReading& reading);
   void reading(const std::string& camera, const HeadReading& reading);
+  void reading(const std::string& camera, const StageReading& reading);
 
   /// What a calibration does, sees and decides. The first message of each kind opens its channel.
   void calibration(const CalibrationMoveMessage& message);

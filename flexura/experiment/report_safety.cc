@@ -14,6 +14,7 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
   for (const Violation& violation : safety.violations) {
     auto& told = shown.violations.emplace_back();
     told.start = violation.start, told.end = violation.end, told.text = violation.text();
+    told.target = violation.target;
     for (const auto& section : {violation.section, violation.other_section})
       if (section) told.sections.push_back(*section);
   }
@@ -40,7 +41,10 @@ void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData
   data.safety = shown_safety(safety);
   for (const std::size_t i : most_telling(safety, max_pictured_violations)) {
     const double when = safety.violations[i].worst_time;
-    data.safety->violations[i].pictured_at = when;
+    // What else is at its worst then stands in the same picture.
+    for (std::size_t k = 0; k < safety.violations.size(); ++k) {
+      if (safety.violations[k].worst_time == when) data.safety->violations[k].pictured_at = when;
+    }
     add_state(when, schedule, data);
   }
 }

@@ -2,11 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "flexura/base/node.h"
 #include "flexura/base/progress.h"
+#include "flexura/camera/head.h"
+#include "flexura/camera/mount.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/model/arm.h"
 
@@ -31,6 +34,12 @@ struct RunResult {
   Node summary;  ///< As in summary.json.
 };
 
+/// Where a camera's head and stage say that they stand.
+struct CameraReading {
+  HeadState head;
+  StageState stage;
+};
+
 /// Sees a run as it plays, on the run's thread. What it does with that changes nothing of the run.
 class RunWatcher {
  public:
@@ -39,8 +48,9 @@ class RunWatcher {
   RunWatcher(const RunWatcher&) = delete;
   RunWatcher& operator=(const RunWatcher&) = delete;
 
-  /// The arm's state at every step of the clock, s.
-  virtual void state(double time, const ArmState& state) = 0;
+  /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
+  /// of none where the run plays no rig, whose cameras stand still.
+  virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
 };
 
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/experiment/messages.h"
 #include "flexura/safety/violation_groups.h"
 
 namespace flexura {
@@ -33,6 +34,9 @@ Node::Table violation_table(const Violation& violation, const std::string& text)
   const bool has_value = violation.hazard != Hazard::not_finite && std::isfinite(violation.value);
   if (has_value) table.push_back({"value", {}, {violation.value, {}}});
   if (has_value && violation.hazard != Hazard::jump) table.push_back({"limit", {}, {violation.limit, {}}});
+  if (violation.hazard == Hazard::jump)
+    table.push_back({"of", {}, {std::string(violation.is_of_stretch ? "stretch" : "bend"), {}}});
+  if (violation.target) table.push_back({"target", {}, point_node(*violation.target)});
   table.push_back({"text", {}, {text, {}}});
   return table;
 }

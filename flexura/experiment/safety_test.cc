@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -9,9 +10,11 @@
 
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/report_safety.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
+#include "flexura/report/report.h"
 #include "flexura/safety/violation.h"
 #include "flexura/store/json.h"
 #include "tests/support/experiment_files.h"
@@ -119,6 +122,38 @@ TEST(TipTargets, BesideAShapeAreRefused) {
   EXPECT_THAT(error_of_rest("[[task]]\nkind = 'move'\nto.position = [0, 1]\n"), HasSubstr("x.toml:9:"));
 }
 
+TEST(Report, ShowsWhatIsMissedAndTheSectionThatAMotorBends) {
+  const Experiment experiment = parse(
+      "[drive]\nmotor = { max_position = 100 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, "
+      "angle_deg = 90 "
+      "},\n{ section = 2, angle_deg = 45 }, { section = 2, angle_deg = 135 }]\n"
+      "[[task]]\nkind = 'move'\nto.position = [2, 0, 0]\n");
+  const Schedule schedule(experiment);
+  ReportData data;
+  data.arm = experiment.arm.arm();
+  for (const double time : {0.0, 0.5, 1.0}) {
+    data.times.push_back(time);
+    data.states.push_back(schedule.state_at(time));
+  }
+  add_safety(schedule.check(), schedule, data);
+  bool has_target = false;
+  bool has_motor = false;
+  for (const auto& violation : data.safety->violations) {
+    if (violation.target) {
+      has_target = true;
+      EXPECT_EQ(*violation.target, Eigen::Vector3d(2, 0, 0));
+      EXPECT_EQ(violation.pictured_at, 1.0) << "though the motors are at their worst then, too";
+    }
+    if (violation.text.find("axis 1.3") != std::string::npos) {
+      has_motor = true;
+      EXPECT_EQ(violation.sections, std::vector<std::size_t>{1});
+    }
+  }
+  EXPECT_TRUE(has_target);
+  EXPECT_TRUE(has_motor);
+  EXPECT_THAT(write_json(safety_node(schedule.check())), HasSubstr("\"target\":[2"));
+}
+
 TEST(MotorLimits, OfAFileAreChecked) {
   const std::string drive =
       "[drive]\nmotor = { max_speed = 20 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, angle_deg = "
@@ -129,6 +164,7 @@ TEST(MotorLimits, OfAFileAreChecked) {
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_EQ(report.violations[0].hazard, Hazard::motor_position);
   EXPECT_EQ(report.violations[0].name, "1.4");
+  EXPECT_EQ(report.violations[0].section, 1U) << "where its tendon ends";
   EXPECT_THAT(error_of_rest("[drive]\nmotor = { max_position = 0 }\ntendon = []\n"),
               HasSubstr("max_position = 0"));
 }

@@ -52,7 +52,9 @@ TEST(RunsLog, OpensElsewhereUnderFoxglovesNames) {
                                                     {"/camera/front", "foxglove.CompressedImage"},
                                                     {"/camera/side", "foxglove.CompressedImage"},
                                                     {"/head/front", "flexura.HeadReading"},
-                                                    {"/head/side", "flexura.HeadReading"}};
+                                                    {"/head/side", "flexura.HeadReading"},
+                                                    {"/stage/front", "flexura.StageReading"},
+                                                    {"/stage/side", "flexura.StageReading"}};
   EXPECT_EQ(schemas, expected);
 }
 

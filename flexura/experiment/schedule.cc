@@ -46,7 +46,8 @@ void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
                              .end = duration_,
                              .worst_time = duration_,
                              .name = legs_.back().name,
-                             .value = missed});
+                             .value = missed,
+                             .target = *target});
 }
 
 double Schedule::time_of_step(std::size_t step) const {
@@ -63,6 +64,23 @@ ArmState Schedule::state_at(double time) const {
   return leg.motion->at(std::clamp(time - leg.start, 0.0, leg.motion->duration()));
 }
 
+std::optional<std::vector<SectionRates>> Schedule::rates(double start, double end) const {
+  std::vector<SectionRates> most(arm_.sections.size());
+  for (std::size_t k = leg_at(start); k < legs_.size() && legs_[k].start <= end; ++k) {
+    const Leg& leg = legs_[k];
+    const double duration = leg.motion->duration();
+    const double from = std::clamp(start - leg.start, 0.0, duration);
+    const double to = std::clamp(end - leg.start, 0.0, duration);
+    for (std::size_t i = 0; i < most.size(); ++i) {
+      const auto rates = leg.motion->rates(i, from, to);
+      if (!rates) return std::nullopt;
+      most[i].bend = std::max(most[i].bend, rates->bend);
+      most[i].stretch = std::max(most[i].stretch, rates->stretch);
+    }
+  }
+  return most;
+}
+
 SafetyReport Schedule::check(Progress* progress) const {
   std::vector<TimedMotion> motions;
   motions.reserve(legs_.size());
@@ -73,7 +91,9 @@ SafetyReport Schedule::check(Progress* progress) const {
     std::vector<double> times;
     times.reserve(steps_ + 1);
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
-    check_drive(arm_, *drive_, [this](double time) { return state_at(time); }, times, report);
+    check_drive(
+        arm_, *drive_, [this](double time) { return state_at(time); }, times,
+        [this](double start, double end) { return rates(start, end); }, report);
   }
   report.sort();
   return report;

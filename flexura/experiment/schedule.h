@@ -44,6 +44,8 @@ class Schedule {
   [[nodiscard]] const ArmState& initial() const { return initial_; }
   /// The arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
+  /// Bounds on how fast each section changes in [start, end] s; empty where a leg knows none.
+  [[nodiscard]] std::optional<std::vector<SectionRates>> rates(double start, double end) const;
   /// What would harm the arm or be too much for its motors, and targets out of reach; known before anything
   /// moves. `progress` may be null, and may end the check early.
   [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;

@@ -34,7 +34,8 @@ double number(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-// A chart of some features; lines by the first source, some dots by the second.
+// A chart of some features; lines by the first source, some dots by the second, crosses by the third if there
+// is one.
 NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const std::size_t> features) {
   constexpr std::size_t most_dots = 24;
   const UnitSpelling unit = shown_unit(study.variation);
@@ -49,9 +50,14 @@ NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const 
     ChartSeries& series = chart.series.emplace_back(
         ChartSeries{plain_name(feature_names[feature]), fmt::format("s{}", chart.series.size()), {}});
     for (std::size_t i = 0; i < count; ++i) {
+      const auto some_of = [&](std::size_t column, std::size_t shift) {
+        return i % pitch == shift ? number(study.columns[column].features[i][feature])
+                                  : std::numeric_limits<double>::quiet_NaN();
+      };
       series.values.push_back(number(study.columns[0].features[i][feature]));
-      series.dots.push_back(i % pitch == 0 ? number(study.columns[1].features[i][feature])
-                                           : std::numeric_limits<double>::quiet_NaN());
+      series.dots.push_back(some_of(1, 0));
+      // Between the dots, where there is room.
+      if (study.columns.size() > 2) series.crosses.push_back(some_of(2, pitch / 2));
     }
   }
   if (x.front() > x.back()) {
@@ -59,6 +65,7 @@ NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const 
     for (ChartSeries& series : chart.series) {
       std::ranges::reverse(series.values);
       std::ranges::reverse(series.dots);
+      std::ranges::reverse(series.crosses);
     }
   }
   return {fmt::format("{}-{}", study.name, chart.name), chart_picture(chart, x, {})};
@@ -103,9 +110,10 @@ std::string text_of(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
   const auto [measured, rms] = study.measured_difference();
   const std::string pictures =
-      measured == 0 ? ""
-                    : fmt::format(" {} lengths measured in pictures of the square are {:.3f} px rms off.",
-                                  measured, rms);
+      measured == 0
+          ? ""
+          : fmt::format(" Crosses: {} lengths measured in pictures of the square, {:.3f} px rms off.",
+                        measured, rms);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(

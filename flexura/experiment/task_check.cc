@@ -47,6 +47,9 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
   }
   if (!task.max_rate) reader.problem_at(path + ".max_rate", "missing: a trapezoid needs it");
   if (!task.max_acceleration) reader.problem_at(path + ".max_acceleration", "missing: a trapezoid needs it");
+  if (task.max_rate) check_one_or_each(task.max_rate->size(), sections, path + ".max_rate", reader);
+  if (task.max_acceleration)
+    check_one_or_each(task.max_acceleration->size(), sections, path + ".max_acceleration", reader);
   if (task.duration) reader.problem_at(path + ".duration", "is found by the trapezoid: expected no duration");
 }
 

@@ -51,7 +51,8 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
       Table<MoveTask>(
           "move",
           "The arm goes from where it is to another shape, each section on a straight line in bend and "
-          "stretch. In a plane that is a straight line in cord angles and archings, too.")
+          "stretch. Where the shape is given by cord angles and each section has its own law, that is the "
+          "law of its cord angle.")
           .field("name", &MoveTask::name, name_spec)
           .field("duration", &MoveTask::duration,
                  {.meaning = "How long the motion takes; a trapezoid finds its own.",
@@ -65,17 +66,19 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
                    "`max_acceleration` allow. One for all sections, or one each.",
                .one_for_all = true})
           .field("max_rate", &MoveTask::max_rate,
-                 {.meaning = "Trapezoid: the fastest change of the bend of the section that bends most (a "
-                             "change of 1 in "
-                             "stretch counts as 1 rad).",
+                 {.meaning = "Trapezoid: the fastest change of a section's bend (a change of 1 in stretch "
+                             "counts as 1 rad). One for all sections, or one each; they arrive together.",
                   .unit = Unit::radian_per_second,
                   .range = above_up_to(0, 1e6),
+                  .one_for_all = true,
                   .default_text = "not set"})
-          .field("max_acceleration", &MoveTask::max_acceleration,
-                 {.meaning = "Trapezoid: the same section's largest acceleration.",
-                  .unit = Unit::radian_per_second_squared,
-                  .range = above_up_to(0, 1e6),
-                  .default_text = "not set"})
+          .field(
+              "max_acceleration", &MoveTask::max_acceleration,
+              {.meaning = "Trapezoid: a section's largest acceleration. One for all sections, or one each.",
+               .unit = Unit::radian_per_second_squared,
+               .range = above_up_to(0, 1e6),
+               .one_for_all = true,
+               .default_text = "not set"})
           .field("to", &MoveTask::to,
                  {.meaning = "The shape to reach, as `to.archings_deg = [...]`, or the tip's place, as "
                              "`to.position = [x, y, z]`.",

@@ -24,16 +24,16 @@ struct MoveTarget : ShapeConfig {
   std::optional<std::array<double, 3>> position;  ///< p_WT, m.
 };
 
-/// `kind = "move"`: the arm goes from where it is to another shape, each section on a straight line in bend
-/// and stretch. In a plane that is a straight line in cord angles and archings too, which depend linearly on
-/// the bends. A place for the tip is made a shape by inverse kinematics from where the arm is; out of reach,
-/// the nearest one.
+/// `kind = "move"`: the arm goes from where it is to another shape, each section on a straight line in
+/// bend and stretch; where sections have laws of their own and the shape is given by cord angles, each
+/// section's cord angle by its own law. A place for the tip is made a shape by inverse kinematics from where
+/// the arm is; out of reach, the nearest one.
 struct MoveTask {
   std::string name;
-  std::optional<double> duration;                ///< s; 1 when left out. A trapezoid finds its own.
-  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One for all sections, or one each.
-  std::optional<double> max_rate;                ///< rad/s, of the section that bends most; trapezoid.
-  std::optional<double> max_acceleration;        ///< rad/s^2; trapezoid.
+  std::optional<double> duration;                       ///< s; 1 when left out. A trapezoid finds its own.
+  std::vector<MoveLaw> law = {MoveLaw::linear};         ///< One for all sections, or one each.
+  std::optional<std::vector<double>> max_rate;          ///< rad/s; trapezoid. One for all, or one each.
+  std::optional<std::vector<double>> max_acceleration;  ///< rad/s^2; trapezoid. One for all, or one each.
   MoveTarget to;
 };
 

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/task_config.h"
+#include "flexura/kinematics/cord_motion.h"
 #include "flexura/kinematics/expression.h"
 #include "flexura/kinematics/inverse.h"
-#include "flexura/kinematics/planar.h"
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {
@@ -21,14 +23,26 @@ const T& of_section(const std::vector<T>& values, std::size_t section) {
   return values.size() == 1 ? values.front() : values[section];
 }
 
-// How far the section goes that goes farthest: rad of bend, and stretch as if 1 were 1 rad.
-double distance(const ArmState& from, const ArmState& to) {
-  double farthest = 0;
+// How far a section goes: rad of bend, and stretch as if 1 were 1 rad.
+double distance(const ArmState& from, const ArmState& to, std::size_t section) {
+  return std::max((to.bends[section] - from.bends[section]).norm(),
+                  std::abs(to.stretches[section] - from.stretches[section]));
+}
+
+// The fastest trapezoid, one for all sections, with which none exceeds its own rate and acceleration; none
+// where there is no way to go.
+std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& from, const ArmState& to) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  double rate = unlimited;  // of the whole way, 1/s
+  double acceleration = unlimited;
   for (std::size_t i = 0; i < from.bends.size(); ++i) {
-    farthest = std::max(
-        {farthest, (to.bends[i] - from.bends[i]).norm(), std::abs(to.stretches[i] - from.stretches[i])});
+    const double way = distance(from, to, i);
+    if (way == 0) continue;
+    rate = std::min(rate, of_section(*task.max_rate, i) / way);
+    acceleration = std::min(acceleration, of_section(*task.max_acceleration, i) / way);
   }
-  return farthest;
+  if (rate == unlimited) return std::nullopt;
+  return Profile::trapezoid(1.0, rate, acceleration);
 }
 
 MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
@@ -61,39 +75,35 @@ ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& fr
 
 MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const ArmState to = state_to_reach(task, arm, from);
+  if (task.law.front() == MoveLaw::trapezoid) {
+    const auto trapezoid = shared_trapezoid(task, from, to);
+    if (!trapezoid) return hold_motion(from, 0);
+    return point_to_point_motion(from, to, std::vector<Profile>(arm.sections.size(), *trapezoid));
+  }
   std::vector<Profile> profiles;
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    switch (of_section(task.law, i)) {
-      case MoveLaw::linear:
-        profiles.push_back(Profile::linear(task.duration.value_or(1.0)));
-        break;
-      case MoveLaw::minimum_jerk:
-        profiles.push_back(Profile::minimum_jerk(task.duration.value_or(1.0)));
-        break;
-      case MoveLaw::trapezoid: {
-        const double farthest = distance(from, to);
-        if (farthest == 0) return hold_motion(from, 0);
-        profiles.push_back(Profile::trapezoid(farthest, *task.max_rate, *task.max_acceleration));
-        break;
-      }
-    }
+    const double duration = task.duration.value_or(1.0);
+    const bool is_linear = of_section(task.law, i) == MoveLaw::linear;
+    profiles.push_back(is_linear ? Profile::linear(duration) : Profile::minimum_jerk(duration));
+  }
+  // With one law for all, cords and bends both go on straight lines.
+  if (task.to.cord_angles && task.law.size() > 1) {
+    std::vector<double> changes = *task.to.cord_angles;
+    const std::vector<double> first = cord_angles(arm, from);
+    for (std::size_t i = 0; i < changes.size(); ++i) changes[i] -= first[i];
+    return cord_point_to_point_motion(from, to, std::move(changes), std::move(profiles));
   }
   return point_to_point_motion(from, to, std::move(profiles));
 }
 
 MotionPtr motion_of(const SineTask& task, const Arm& arm, const ArmState& from) {
-  std::vector<Eigen::Vector2d> amplitudes(arm.sections.size(), Eigen::Vector2d::Zero());
-  if (task.amplitude.cord_angles) {
-    // Swings of cord angles follow eq. 5 without its constant, the base's tangent angle.
-    const auto archings = archings_from_cord_angles(*task.amplitude.cord_angles, 0.0);
-    for (std::size_t i = 0; i < amplitudes.size(); ++i) amplitudes[i] = bend_from_arching(archings[i]);
-  } else {
-    amplitudes = arm_state(arm, task.amplitude).bends;
-  }
   std::vector<double> phases;
   phases.reserve(arm.sections.size());
   for (std::size_t i = 0; i < arm.sections.size(); ++i) phases.push_back(of_section(task.phase, i));
-  return sine_motion(from, std::move(amplitudes), std::move(phases), task.period, task.duration);
+  if (task.amplitude.cord_angles)
+    return cord_sine_motion(from, *task.amplitude.cord_angles, phases, task.period, task.duration);
+  return sine_motion(from, arm_state(arm, task.amplitude).bends, std::move(phases), task.period,
+                     task.duration);
 }
 
 MotionPtr motion_of(const KeyframesTask& task, const Arm& arm, const ArmState&) {

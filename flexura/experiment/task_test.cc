@@ -57,6 +57,20 @@ TEST(Tasks, ATrapezoidFindsItsTime) {
   EXPECT_DOUBLE_EQ(schedule.legs()[0].motion->rates(0, 0, 4.5)->bend, 0.5);
 }
 
+TEST(Tasks, ATrapezoidKeepsTheLimitsOfEachSectionAndAllArriveTogether) {
+  // Section 1 bends by 2 rad at 1 rad/s, section 2 by 1 rad at 0.25 rad/s: the second decides on the rate.
+  // The first may speed up by 1 rad/s^2, the second by 2 rad/s^2: the first decides on that.
+  const Experiment experiment = experiment_of_task(
+      "kind='move'\nlaw='trapezoid'\nmax_rate=[1, 0.25]\nmax_acceleration=[1, 2]\nto.archings=[1, -0.5]\n");
+  const Schedule schedule(experiment);
+  EXPECT_DOUBLE_EQ(schedule.duration(), 4.5);  // 0.5 s up, 3.5 s even, 0.5 s down
+  const MotionPtr motion = schedule.legs()[0].motion;
+  EXPECT_DOUBLE_EQ(motion->rates(0, 0, 4.5)->bend, 0.5);
+  EXPECT_DOUBLE_EQ(motion->rates(1, 0, 4.5)->bend, 0.25);
+  const double bend_after_speeding_up = schedule.state_at(0.5).bends[0].norm();
+  EXPECT_DOUBLE_EQ(bend_after_speeding_up, 0.5 * 1 * 0.5 * 0.5);
+}
+
 TEST(Tasks, ATrapezoidWithNowhereToGoTakesNoTime) {
   EXPECT_EQ(Schedule(experiment_of_task(
                          "kind='move'\nlaw='trapezoid'\nmax_rate=1\nmax_acceleration=1\nto.archings=[0,0]\n"))
@@ -69,10 +83,19 @@ TEST(Tasks, ASineSwingsCordAnglesAsAsked) {
       "kind='sine'\nduration=3\nperiod=2\namplitude.cord_angles_deg=[10, 20]\nphase_deg=[0, 90]\n");
   const ArmState state = Schedule(experiment).state_at(0.5);
   const std::vector<double> cords = cord_angles(experiment.arm.arm(), state);
-  // At a quarter of the period section 1 stands at its full swing of 10 deg. Cords that swing by 10 and 20
-  // deg leave section 2 an arching of 20 - 2 * 10 = 0 deg.
+  // At a quarter of the period section 1 stands at its full swing of 10 deg, and section 2, which started at
+  // its own, in the middle: 20 deg lower.
   EXPECT_NEAR(cords[0] * 180 / std::numbers::pi, 100, 1e-12);
-  EXPECT_NEAR(archings(state)[1], 0, 1e-15);
+  EXPECT_NEAR(cords[1] * 180 / std::numbers::pi, 70, 1e-12);
+}
+
+TEST(Tasks, ALawForOneSectionIsALawOfTheCordAngleItNames) {
+  const Experiment experiment = experiment_of_task(
+      "kind='move'\nduration=4\nto.cord_angles_deg=[100, 60]\nlaw=['minimum_jerk', 'linear']\n");
+  const std::vector<double> cords = cord_angles(experiment.arm.arm(), Schedule(experiment).state_at(1));
+  EXPECT_NEAR(cords[0] * 180 / std::numbers::pi, 90 + 0.103515625 * 10, 1e-12);
+  EXPECT_NEAR(cords[1] * 180 / std::numbers::pi, 90 - 0.25 * 30, 1e-12);
+  EXPECT_TRUE(Schedule(experiment).check().is_safe());
 }
 
 TEST(Tasks, KeyframesArePassedInTheirUnits) {
@@ -127,6 +150,8 @@ TEST(Tasks, BadOnesGetAClearLine) {
        "x.toml:10:1: task[0].duration: is found by the trapezoid"},
       {"kind='move'\nlaw='trapezoid'\nmax_rate=0\nmax_acceleration=1\nto.archings=[0,0]\n",
        "max_rate = 0: expected a number above 0 rad/s"},
+      {"kind='move'\nlaw='trapezoid'\nmax_rate=[1,1,1]\nmax_acceleration=1\nto.archings=[0,0]\n",
+       "x.toml:8:1: task[0].max_rate: 3 given: expected 1 for all sections, or 2, one each"},
       {"kind='move'\nmax_rate=1\nto.archings=[0,0]\n", "task[0].max_rate: is for law = \"trapezoid\""},
       {"kind='move'\nlaw=['trapezoid','linear']\nmax_rate=1\nmax_acceleration=1\nto.archings=[0,0]\n",
        "mixes trapezoid with other laws"},
@@ -142,6 +167,10 @@ TEST(Tasks, BadOnesGetAClearLine) {
        "0 rows: expected at least 2"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0,0],[1,0,0]]\n",
        "task[0].rows[2][0]: time 1: expected more than the 2 before it"},
+      {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[1e-320,1,0]]\n",
+       "time 1e-320: expected at least 1e-09 s after the 0 before it"},
+      {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2e6,0,0]]\n",
+       "task[0].rows[1][0]: time 2000000 s: expected at most 1000000 s"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[1,0,0],[2,0,0]]\n",
        "time 1: expected 0 in the first row"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0]]\n",
@@ -195,7 +224,7 @@ TEST(Tasks, ALawThatStartsElsewhereJumps) {
   const Experiment experiment = experiment_of_task("kind='expression'\narchings='0.2+t'\n");
   const SafetyReport report = Schedule(experiment).check();
   ASSERT_EQ(report.violations.size(), 1U);
-  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 0.4");
+  EXPECT_EQ(report.violations[0].text(), "at 0 s: expression: section 1: jump 22.9183 deg");
   EXPECT_THAT(report.caveats.at(0), HasSubstr("sampled every 0.02 s"));
 }
 
@@ -232,6 +261,9 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
               HasSubstr("wave.csv:5:1: column time: time 1: expected more"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1,0,x\n"),
               HasSubstr("wave.csv:3:5: \"x\": expected a finite number"));
+  EXPECT_THAT(
+      error_with("wave.csv", "time;arching_1;arching_2\n0;0,0;0\n1;0,5;0\n"),
+      HasSubstr("wave.csv:1:5: columns are separated by ';': expected commas, and points in numbers"));
   EXPECT_THAT(error_with("none.csv", ""), HasSubstr("x.toml:7:8: task[0].file: no file \"none.csv\""));
   EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("lies outside the experiment's folder"));
 }

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "flexura/base/node.h"
+#include "flexura/camera/mount.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/render/renderer.h"
@@ -34,6 +37,7 @@ Node pixel_node(const std::optional<Eigen::Vector2d>& pixel) {
 Node camera_node(const View& view) {
   const Intrinsics& lens = view.lens.intrinsics();
   const auto [k1, k2, p1, p2, k3] = lens.distortion;
+  const std::optional<double> roll = roll_of(view.X_WC.rotation);
   return {Node::Table{{"width", {}, {std::int64_t{view.width}, {}}},
                       {"height", {}, {std::int64_t{view.height}, {}}},
                       {"fx", {}, {lens.fx, {}}},
@@ -41,7 +45,8 @@ Node camera_node(const View& view) {
                       {"cx", {}, {lens.cx, {}}},
                       {"cy", {}, {lens.cy, {}}},
                       {"distortion", {}, numbers({k1, k2, p1, p2, k3})},
-                      {"pose", {}, pose_node(view.X_WC)}},
+                      {"pose", {}, pose_node(view.X_WC)},
+                      {"roll", {}, roll ? number_node(*roll) : Node{}}},
           {}};
 }
 
@@ -132,7 +137,13 @@ std::vector<std::filesystem::path> write_truth(const ShownScene& shown, const st
   write("_depth.tiff", tiff(maps.depth));
   write("_s.tiff", tiff(maps.s));
   write("_labels.png", png(maps.label));
-  if (next) write("_flow.tiff", tiff(optical_flow(renderer, next->scene, next->view)));
+  if (next) {
+    write("_flow.tiff", tiff(optical_flow(renderer, next->scene, next->view)));
+  } else {
+    // That of another instant would lie beside this one's files.
+    std::filesystem::path file = image;
+    std::filesystem::remove(file.replace_filename(image.stem().string() + "_flow.tiff"));
+  }
   const Node truth{Node::Table{{"camera", {}, camera_node(shown.view)},
                                {"labels", {}, labels_node(maps.label)},
                                {"axis", {}, axis_node(renderer, shown.scene.arm.tube)},

@@ -54,8 +54,13 @@ void Witness::image(const std::string& camera, const Frame& frame) {
 }
 
 void Witness::readings(const RigPorts& rig) {
+  // While a task waits for the rig, several steps of the clock are recorded at one time of the rig's.
+  if (std::exchange(read_at_, rig.clock->now()) == rig.clock->now()) return;
   recorder_.reading(rig.arm->read().value());
-  for (const CameraPorts& camera : rig.cameras) recorder_.reading(camera.name, camera.head->read().value());
+  for (const CameraPorts& camera : rig.cameras) {
+    recorder_.reading(camera.name, camera.head->read().value());
+    recorder_.reading(camera.name, camera.stage->read().value());
+  }
 }
 
 void Witness::write_commands(const Drive& drive, const std::filesystem::path& file) {

@@ -30,7 +30,7 @@ class Witness {
   void draw_scene(const Experiment& experiment);
   void state(std::size_t step, double time, const ArmState& state);
   void image(const std::string& camera, const Frame& frame);
-  /// What the devices of the rig say of themselves.
+  /// What the devices of the rig say of themselves, once for each time of its clock.
   void readings(const RigPorts& rig);
   /// Of each camera that gave any.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
@@ -49,6 +49,7 @@ class Witness {
   std::optional<ColorConfig> drawn_color_;  // none: the scene is not kept
   SceneTimes scene_times_;
   std::map<std::string, std::int64_t> frames_;  // by camera
+  std::optional<double> read_at_;               // when devices were read last, s
   Arm arm_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;

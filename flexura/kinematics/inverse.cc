@@ -4,8 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "flexura/kinematics/inverse_check.h"
+#include "flexura/kinematics/inverse_distinct.h"
+#include "flexura/kinematics/inverse_minimum.h"
 #include "flexura/kinematics/inverse_search.h"
 #include "flexura/kinematics/inverse_wish.h"
 #include "flexura/kinematics/reach.h"
@@ -122,7 +125,7 @@ InverseResult answer(const Question& q) {
     if (q.is_orientation_out_of_reach()) return answer_out_of_reach<Rows>(q);
     search(problem, q.variables, starts, q.options.max_starts, memory, found);
   }
-  if (!found.is_met()) settle(problem, q.variables, found, memory);
+  if (!found.is_met()) settle(problem, q.variables, settling_iterations, found, memory);
   if (found.is_met() && q.options.wish != InverseWish::none) {
     follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.options.wish), found.x, memory);
   }
@@ -137,34 +140,89 @@ InverseResult answer(const Question& q) {
   return result;
 }
 
-// Nearer than this to a known solution (rad; factors of stretch) is the same one.
-constexpr double same_solution = 1e-4;
+// Whether the target, a point on the base's axis with at most a direction along it, looks the same from all
+// around: then so do its solutions, each a whole ring of them.
+bool is_round(const Question& q) {
+  constexpr double on_axis = 1e-9;
+  if (q.arm.kind != ArmKind::spatial || q.target.rotation) return false;
+  if (q.target.direction && q.X_BT.rotation.col(2).head<2>().norm() > on_axis) return false;
+  return q.X_BT.position.head<2>().norm() <= on_axis * q.length;
+}
+
+/// A solution among others.
+struct Solution {
+  Found found;
+  double wish = 0.0;
+  std::vector<Eigen::Vector3d> points;
+};
+
+// The solutions that are apart from each other, each the least of its wish nearby.
+template <int Rows>
+class SolutionList {
+ public:
+  SolutionList(const Question& q, TipProblem<Rows>& problem, DescentMemory<TipProblem<Rows>>& memory)
+      : q_(q),
+        problem_(problem),
+        memory_(memory),
+        scale_(q.variables,
+               q.options.wish == InverseWish::none ? InverseWish::least_bending : q.options.wish),
+        is_round_(is_round(q)) {}
+
+  void add(Found found) {
+    follow_wish(problem_, q_.variables.bounds(), scale_, found.x, memory_);
+    // Most starts come to the same few solutions: no need to run down to those again.
+    if (is_known(solution(found))) return;
+    WishMinimum<TipProblem<Rows>>(problem_, q_.variables.bounds(), scale_, memory_).run_down(found.x);
+    Solution lowest = solution(std::move(found));
+    if (!is_known(lowest)) solutions_.push_back(std::move(lowest));
+  }
+
+  [[nodiscard]] std::vector<Solution> in_order() && {
+    std::ranges::stable_sort(solutions_, [](const Solution& a, const Solution& b) {
+      return comes_first(a.wish, a.found.x, b.wish, b.found.x);
+    });
+    return std::move(solutions_);
+  }
+
+ private:
+  [[nodiscard]] Solution solution(Found found) const {
+    if (is_round_) turn_to_x(q_.variables, found.x);
+    const double wish = scale_.relative(found.x).squaredNorm();
+    std::vector<Eigen::Vector3d> points = backbone_points(q_.variables, found.x);
+    return {std::move(found), wish, std::move(points)};
+  }
+  [[nodiscard]] bool is_known(const Solution& other) const {
+    constexpr double same_arm = 1e-4;  // Of its length.
+    return std::ranges::any_of(solutions_, [&](const Solution& known) {
+      return backbone_distance(known.points, other.points) < same_arm * q_.length;
+    });
+  }
+
+  const Question& q_;
+  TipProblem<Rows>& problem_;
+  DescentMemory<TipProblem<Rows>>& memory_;
+  WishScale scale_;
+  bool is_round_;
+  std::vector<Solution> solutions_;
+};
 
 template <int Rows>
 std::vector<InverseResult> all_answers(const Question& q) {
   if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
   TipProblem<Rows> problem = problem_of<Rows>(q);
   DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
-  const InverseWish wish = q.options.wish == InverseWish::none ? InverseWish::least_bending : q.options.wish;
-  const WishScale scale(q.variables, wish);
   InverseStarts starts = q.starts();
-  std::vector<Found> distinct;
+  SolutionList<Rows> list(q, problem, memory);
   for (int i = 0; i < q.options.max_starts; ++i) {
     // As patient with the i-th start as a search for one answer is, which is then among all.
     Found found;
     found.starts = i;
     search(problem, q.variables, starts, i + 1, memory, found);
-    if (!found.is_met()) continue;
-    follow_wish(problem, q.variables.bounds(), scale, found.x, memory);
-    const bool is_known = std::ranges::any_of(distinct, [&](const Found& other) {
-      return (other.x - found.x).template lpNorm<Eigen::Infinity>() < same_solution;
-    });
-    if (!is_known) distinct.push_back(std::move(found));
+    if (found.is_met()) list.add(std::move(found));
   }
-  std::ranges::stable_sort(distinct, {}, [&](const Found& f) { return scale.relative(f.x).squaredNorm(); });
   std::vector<InverseResult> results;
-  for (const Found& found : distinct) {
-    results.push_back(describe(q, found));
+  for (const Solution& solution : std::move(list).in_order()) {
+    results.push_back(describe(q, solution.found));
     results.back().outcome = InverseOutcome::converged;
   }
   return results;

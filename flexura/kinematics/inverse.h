@@ -34,11 +34,18 @@ enum class InverseWish {
                   ///< half its range about the middle of it.
 };
 
+/// How far a polyline may be from the smooth curve that its points are taken from, m: the largest height of
+/// an arc above its chord, and by how much arcs are longer than their chords in all (which moves the points
+/// at a part of the length along the curve), each arc turning by as much as the polyline does at its ends.
+/// Turns of 60 degrees and more are corners and mean what they say.
+[[nodiscard]] double polyline_error(const std::vector<Eigen::Vector3d>& points);
+
 struct InverseOptions {
   /// Where the search begins; one arc towards the target when left out.
   std::optional<ArmState> start = {};
   InverseWish wish = InverseWish::none;
-  /// m; when left out 1e-9 of the arm's greatest length, and 1e-3 of it for curves.
+  /// m; when left out 1e-9 of the arm's greatest length, and for curves 1e-3 of it and twice
+  /// polyline_error().
   std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< rad.
   int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.
@@ -78,8 +85,10 @@ struct InverseResult {
                                           const InverseOptions& options = {});
 
 /// The distinct solutions that options.max_starts descents find, least bent first; empty when there is none.
-/// Where the target leaves freedom each is first led to the wish (least_bending when it is none), so that
-/// one is found for each valley of the wish; where a valley is a continuum, samples of it.
+/// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
+/// that one is found for each valley of the wish. Two are the same when their backbones are nowhere further
+/// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
+/// stands for its turns about that: the first section that is bent bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseOptions& options = {});
 

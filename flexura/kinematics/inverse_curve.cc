@@ -1,4 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include "flexura/kinematics/curve_problem.h"
 #include "flexura/kinematics/inverse.h"
@@ -24,11 +29,11 @@ std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Ve
 
 // Of all starts together: an iteration of hundreds of sections takes a good part of a second, and an answer
 // that never comes is worse than one that says no_convergence.
-int affordable_iterations(const CurveProblem& problem, const ArmVariables& variables) {
+int affordable_iterations(const CurveProblem& problem, const ArmVariables& variables, int most) {
   constexpr double most_products = 5e9;
   const auto size = static_cast<double>(variables.size());
   const double products = static_cast<double>(problem.row_count()) * size * size;
-  return static_cast<int>(std::clamp(most_products / products, 40.0, 1.0 * most_starts * most_iterations));
+  return static_cast<int>(std::clamp(most_products / products, 40.0, static_cast<double>(most)));
 }
 
 // What no state can do for the curve's two ends is not to be had for the whole.
@@ -40,12 +45,36 @@ bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points,
 
 }  // namespace
 
+// What a polyline turns by at a point, the curve that it stands for turns by from the middle of one piece to
+// that of the next.
+double polyline_error(const std::vector<Eigen::Vector3d>& points) {
+  constexpr double corner = std::numbers::pi / 3;
+  std::vector<Eigen::Vector3d> pieces;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i] != points[i - 1]) pieces.emplace_back(points[i] - points[i - 1]);
+  }
+  const auto turn = [&](std::size_t i) {  // between the pieces i - 1 and i
+    if (i == 0 || i >= pieces.size()) return 0.0;
+    const double angle = std::atan2(pieces[i - 1].cross(pieces[i]).norm(), pieces[i - 1].dot(pieces[i]));
+    return angle < corner ? angle : 0.0;
+  };
+  double bulge = 0.0;
+  double missing = 0.0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double angle = std::max(turn(i), turn(i + 1));
+    const double chord = pieces[i].norm();
+    bulge = std::max(bulge, 0.5 * chord * std::tan(angle / 4));
+    missing += angle > 0.0 ? chord * (0.5 * angle / std::sin(0.5 * angle) - 1.0) : 0.0;
+  }
+  return bulge + missing;
+}
+
 InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseOptions& options) {
   check_question(target, options);
   const ArmVariables variables(arm);
   const double length = variables.max_length();
-  const double tolerance = options.position_tolerance.value_or(1e-3 * length);
   const std::vector<Eigen::Vector3d> points = in_base(arm, target.points);
+  const double tolerance = options.position_tolerance.value_or(1e-3 * length + 2.0 * polyline_error(points));
   CurveProblem problem(variables, points, length);
   DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
   std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
@@ -55,7 +84,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   Found found;
   Eigen::VectorXd x(variables.size());
   double error = 0.0;
-  const int affordable = affordable_iterations(problem, variables);
+  const int affordable = affordable_iterations(problem, variables, most_starts * most_iterations);
   while (found.starts < std::min(options.max_starts, most_starts) && memory.iterations < affordable) {
     if (options.start && found.starts == 1) {
       x = problem.start_along_tangents();
@@ -70,6 +99,13 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     problem.linearise(found.x, memory.r, memory.J);
     error = problem.largest_error(memory.r);
     if (error <= tolerance) break;
+  }
+
+  if (error > tolerance && found.ended == Descent::exhausted) {
+    const int settling = affordable_iterations(problem, variables, settling_iterations);
+    settle(problem, variables, settling, found, memory);
+    problem.linearise(found.x, memory.r, memory.J);
+    error = problem.largest_error(memory.r);
   }
 
   InverseResult result;

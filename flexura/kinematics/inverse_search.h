@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 
 #include "flexura/kinematics/bounded_least_squares.h"
@@ -11,6 +12,9 @@ namespace flexura {
 
 /// A bound whose pressure is above this part of the residual's norm counts as what holds a state.
 inline constexpr double least_pressure = 1e-6;
+
+/// What a state may take to come to the bottom of its valley.
+inline constexpr int settling_iterations = 6000;
 
 /// The best that a search has found.
 struct Found {
@@ -47,15 +51,42 @@ void search(Problem& problem, const ArmVariables& variables, InverseStarts& star
   }
 }
 
-/// Brings what was not met to the bottom of its valley.
+/// Whether x is the bottom of a valley but for its last digits: along the slope that the bounds leave, |r|
+/// changes by no more than a millionth of itself a radian.
 template <class Problem>
-void settle(Problem& problem, const ArmVariables& variables, Found& found, DescentMemory<Problem>& memory) {
-  constexpr DescentLimits limits{.iterations = 1000, .slope = 1e-9};
-  Eigen::VectorXd x = found.x;
-  const Descent ended = descend_gradient(problem, variables.bounds(), limits, x, memory);
-  found.keep_better(x, memory.r.squaredNorm(), ended);
-  // Not better and yet at the bottom: it was there already.
-  if (found.ended != Descent::met) found.ended = ended;
+bool is_level(Problem& problem, const ArmVariables& variables, const Eigen::VectorXd& x,
+              DescentMemory<Problem>& memory) {
+  constexpr double least_slope = 1e-6;
+  problem.linearise(x, memory.r, memory.J);
+  ++memory.iterations;
+  Eigen::VectorXd lower = x - memory.J.transpose() * memory.r;
+  project(variables.bounds(), lower);
+  return (lower - x).norm() <= least_slope * memory.r.norm();
+}
+
+/// Brings what was not met to the bottom of its valley, within some `iterations`. Gradients and
+/// Gauss-Newton's steps take turns: in a long valley the ones creep, in a valley whose bottom is far from the
+/// target the others.
+template <class Problem>
+void settle(Problem& problem, const ArmVariables& variables, int iterations, Found& found,
+            DescentMemory<Problem>& memory) {
+  constexpr double slope = 1e-9;
+  constexpr int most_turns = 10;
+  const DescentLimits by_gradient{.iterations = std::max(iterations / most_turns, 10), .slope = slope};
+  const DescentLimits by_newton{.iterations = std::max(iterations / (2 * most_turns), 5), .slope = slope};
+  for (int turn = 0; turn < most_turns; ++turn) {
+    Eigen::VectorXd x = found.x;
+    const Descent ended = descend_gradient(problem, variables.bounds(), by_gradient, x, memory);
+    found.keep_better(x, memory.r.squaredNorm(), ended);
+    // Not better and yet at the bottom: it was there already.
+    if (found.ended != Descent::met) found.ended = ended;
+    if (ended != Descent::exhausted) return;
+    x = found.x;
+    const Descent newton = descend(problem, variables.bounds(), by_newton, x, memory);
+    found.keep_better(x, memory.r.squaredNorm(), newton);
+    if (newton == Descent::met) return;
+  }
+  if (is_level(problem, variables, found.x, memory)) found.ended = Descent::stationary;
 }
 
 /// The nearest state to a problem known not to be met: the best of the valleys below a few starts.
@@ -73,7 +104,7 @@ Found nearest(Problem& problem, const ArmVariables& variables, InverseStarts& st
     found.keep_better(x, memory.r.squaredNorm(), ended);
     ++found.starts;
   }
-  settle(problem, variables, found, memory);
+  settle(problem, variables, settling_iterations, found, memory);
   return found;
 }
 

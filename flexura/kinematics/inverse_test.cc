@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
@@ -257,6 +260,69 @@ TEST(Inverse, LaysTheArmAlongACurve) {
     EXPECT_TRUE(result.converged()) << result.position_error / arm.length();
     EXPECT_TRUE(is_within_limits(arm, result.state));
   });
+}
+
+TEST(Inverse, APolylineIsAsFarFromItsCurveAsThisSays) {
+  // A quarter of a circle of radius 1 in n pieces, against the circle itself.
+  for (const int n : {2, 3, 10, 100}) {
+    std::vector<Eigen::Vector3d> points;
+    const double turn = 0.5 * std::numbers::pi / n;
+    for (int k = 0; k <= n; ++k) points.emplace_back(std::cos(k * turn), std::sin(k * turn), 0.0);
+    const double bulge = 1 - std::cos(turn / 2);
+    const double missing = n * (turn - 2 * std::sin(turn / 2));
+    EXPECT_NEAR(polyline_error(points), bulge + missing, 1e-12) << n;
+  }
+  EXPECT_EQ(polyline_error({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {3, 0, 0}}), 0.0) << "straight";
+  EXPECT_EQ(polyline_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}), 0.0) << "a corner";
+}
+
+TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
+  int coarse = 0;
+  for_random_cases(200, [&](TestRandom& random) {
+    Arm arm = random_arm(random);
+    arm.kind = random.integer(0, 1) == 0 ? ArmKind::planar : ArmKind::spatial;
+    for (Section& section : arm.sections) section.max_bend = 1.5;
+    const Backbone backbone(arm, random_state_within(random, arm));
+    CurveTarget target;
+    const int pieces = 3 * static_cast<int>(arm.sections.size());
+    for (int k = 0; k <= pieces; ++k)
+      target.points.push_back(backbone.pose(backbone.length() * k / pieces).position);
+    const InverseResult result = solve_inverse(arm, target);
+    EXPECT_TRUE(result.converged()) << result.position_error / arm.length() << " and "
+                                    << polyline_error(target.points) / arm.length();
+    coarse += result.position_error > 1e-3 * arm.length() ? 1 : 0;
+    // What the caller allows is what counts.
+    const double error = result.position_error;
+    if (error < 1e-6) return;
+    EXPECT_TRUE(solve_inverse(arm, target, {.position_tolerance = 1.01 * error}).converged());
+    EXPECT_FALSE(solve_inverse(arm, target, {.position_tolerance = 0.3 * error}).converged());
+  });
+  EXPECT_GE(coarse, 10) << "no polyline was coarse enough to matter";
+}
+
+TEST(Inverse, DecidesOnCurvesThatTheArmCannotFollow) {
+  // Curves of other arms: a minimum is found, and said to be one, but for the odd case.
+  int asked = 0;
+  int undecided = 0;
+  for_random_cases(150, [&](TestRandom& random) {
+    Arm arm = random_arm(random);
+    for (Section& section : arm.sections) section.max_bend = random.uniform(0.5, 4);
+    Arm other = arm;
+    for (Section& section : other.sections) {
+      section.length *= random.uniform(0.7, 1.2);
+      section.max_bend = 3;
+    }
+    const Backbone backbone(other, random_state_within(random, other));
+    CurveTarget target;
+    for (int k = 0; k <= 20; ++k) target.points.push_back(backbone.pose(backbone.length() * k / 20).position);
+    const InverseResult result = solve_inverse(arm, target);
+    ++asked;
+    undecided += result.outcome == InverseOutcome::no_convergence ? 1 : 0;
+    EXPECT_TRUE(is_within_limits(arm, result.state));
+    EXPECT_GE(result.position_error, 0.0);
+    EXPECT_EQ(result.tip, tip_pose(arm, result.state).position);
+  });
+  EXPECT_LE(undecided, 0.02 * asked);
 }
 
 TEST(Inverse, SaysHowFarAnImpossibleCurveIs) {

@@ -50,9 +50,15 @@ TEST(Profile, BoundsItsRateExactly) {
       const double start = random.uniform(0, profile.duration());
       const double end = random.uniform(start, profile.duration());
       double most = 0;
-      for (int k = 0; k <= 2000; ++k) most = std::max(most, profile.rate(start + (end - start) * k / 2000));
+      double least = std::min(profile.rate(start), profile.rate(end));
+      for (int k = 0; k <= 2000; ++k) {
+        const double rate = profile.rate(std::min(end, start + (end - start) * k / 2000));
+        most = std::max(most, rate);
+        least = std::min(least, rate);
+      }
       EXPECT_LE(most, profile.max_rate(start, end) * (1 + 1e-14));
       EXPECT_GE(most, profile.max_rate(start, end) * (1 - 1e-2));
+      EXPECT_DOUBLE_EQ(least, profile.min_rate(start, end));  // taken at one of the ends
     }
   });
 }

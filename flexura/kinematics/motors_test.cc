@@ -3,9 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "flexura/kinematics/tendons.h"
 #include "tests/support/arms.h"
@@ -98,6 +106,69 @@ TEST(Motors, RoundTripWithMoreTendonsThanNeededStaysWithinTheRounding) {
     EXPECT_LE(std::sqrt(error), std::sqrt(rounding) + 1e-6);
     EXPECT_LE(std::sqrt(error / static_cast<double>(exact.size())), 0.5 + 1e-6);
   });
+}
+
+// Tendons of a section at `angles`, on motors of 30000 microsteps a turn of a 10 mm spool.
+Drive drive_at(const std::vector<double>& angles, std::size_t sections) {
+  Drive drive;
+  for (std::size_t section = 0; section < sections; ++section) {
+    for (const double angle : angles) {
+      drive.tendons.push_back({section, 0.02, angle + 0.3 * static_cast<double>(section)});
+      drive.axes.push_back({.motor = {}, .spool = {.radius = 0.01, .gear = 10}, .reversed = angle > 3});
+    }
+  }
+  return drive;
+}
+
+// The pseudo-inverse of what the tendons of a section do with a sum of bends, by the normal equations.
+Eigen::MatrixXd bends_of_cables(const Drive& drive, std::size_t section) {
+  Eigen::MatrixXd offsets(0, 2);
+  for (const Tendon& tendon : drive.tendons) {
+    if (tendon.section != section) continue;
+    offsets.conservativeResize(offsets.rows() + 1, 2);
+    offsets.bottomRows(1) = tendon.offset().transpose();
+  }
+  return (offsets.transpose() * offsets).inverse() * offsets.transpose();
+}
+
+// Bends to cables, spools, whole microsteps and back, with as many tendons as real arms have. What comes back
+// is the least-squares fit to the rounded cables, here computed without the code under test, and no further
+// from the bends than all roundings together can carry it.
+TEST(Motors, RoundTripWithThreeFourOrFiveTendonsEvenAndUneven) {
+  const double turn = 2 * std::numbers::pi;
+  const std::vector<std::vector<double>> placements{{0, turn / 3, 2 * turn / 3},
+                                                    {0, turn / 4, turn / 2, 3 * turn / 4},
+                                                    {0, turn / 5, 2 * turn / 5, 3 * turn / 5, 4 * turn / 5},
+                                                    {0, 0.4, 1.1, 3.5},
+                                                    {0.1, 0.2, 2.0, 2.1, 4.4}};
+  for (const auto& angles : placements) {
+    SCOPED_TRACE(std::to_string(angles.size()) + " tendons, the second at " + std::to_string(angles[1]));
+    for_random_cases(100, [&](TestRandom& random) {
+      Arm arm;
+      arm.kind = ArmKind::spatial;
+      arm.sections.resize(static_cast<std::size_t>(random.integer(1, 3)));
+      const Drive drive = drive_at(angles, arm.sections.size());
+      ArmState state = ArmState::straight(arm.sections.size());
+      for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-2, 2);
+      const MotorCommander commander(drive, tendon_displacements(arm, drive, state));
+      const TendonDisplacements rounded = displacements_at(drive, reals(commander.positions()));
+      const TendonFit fit = fit_state(arm, drive, rounded);
+      const double half_step = 0.5 / drive.axes[0].microsteps_a_metre();
+      Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
+      Eigen::Vector2d found = Eigen::Vector2d::Zero();
+      for (std::size_t k = 0; k < arm.sections.size(); ++k) {
+        wanted += state.bends[k];
+        found += fit.state.bends[k];
+        const Eigen::MatrixXd inverse = bends_of_cables(drive, k);
+        Eigen::VectorXd cables(inverse.cols());
+        for (Eigen::Index i = 0; i < cables.size(); ++i)
+          cables[i] = rounded.pulled[k * angles.size() + static_cast<std::size_t>(i)];
+        EXPECT_LT((found - inverse * cables).norm(), 1e-9);
+        const double most = inverse.colwise().norm().sum() * half_step;
+        EXPECT_LE((found - wanted).norm(), most * (1 + 1e-6) + 1e-9);
+      }
+    });
+  }
 }
 
 TEST(Motors, WithPlayTakenUpFollowToHalfAMicrostepWhateverTheWay) {

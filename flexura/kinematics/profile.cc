@@ -66,4 +66,6 @@ double Profile::max_rate(double start, double end) const {
   return rate(std::clamp(duration_ / 2, std::min(start, end), std::max(start, end)));
 }
 
+double Profile::min_rate(double start, double end) const { return std::min(rate(start), rate(end)); }
+
 }  // namespace flexura

@@ -23,6 +23,8 @@ class Profile {
   [[nodiscard]] double rate(double time) const;
   /// The largest rate in [start, end], 1/s. Exact.
   [[nodiscard]] double max_rate(double start, double end) const;
+  /// The least rate in [start, end], 1/s. Exact.
+  [[nodiscard]] double min_rate(double start, double end) const;
 
  private:
   enum class Kind { linear, minimum_jerk, trapezoid };

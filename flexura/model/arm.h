@@ -10,6 +10,9 @@
 
 namespace flexura {
 
+/// No section bends by as much, rad: thousands of turns are a mistake.
+inline constexpr double largest_bend = 1000;
+
 /// Planar: bends in one plane only, the world's XOY plane for the paper's arm. Spatial: in any direction.
 enum class ArmKind { planar, spatial };
 

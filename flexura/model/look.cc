@@ -9,7 +9,8 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t max_marks = 10000;
+// As many as a picture is drawn with.
+constexpr std::size_t max_marks = 4096;
 
 Spec color_of(const char* what) {
   return {.meaning = fmt::format("Shares of red, green and blue light that {} gives back.", what),
@@ -126,6 +127,10 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
     if (off_arm(look.disk[i].at, look.disk[i].thickness)) report("disk", i), all_on_arm = false;
   if (!all_on_arm) return;
   const std::vector<Marker> markers = look.markers(arm);
+  if (markers.size() > max_marks) {
+    reader.problem_at(path, fmt::format("makes {} bands: expected at most {}", markers.size(), max_marks));
+    return;
+  }
   for (std::size_t i = 0; i + 1 < markers.size(); ++i) {
     if (markers[i].at + markers[i].width / 2 <= markers[i + 1].at - markers[i + 1].width / 2 + slack)
       continue;

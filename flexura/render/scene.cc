@@ -10,6 +10,8 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/model/arm.h"
+
 namespace flexura {
 namespace {
 
@@ -73,8 +75,8 @@ void check_arm(const ArmLook& arm) {
     for (const double radius : at.radius) require_positive(radius, place("radius"));
     require_finite(at.arc.s, place("s"));
     for (const double bend : at.arc.bend) require_finite(bend, place("bend"));
-    // Thousands of turns are a mistake, and would be as many pieces.
-    if (!(at.arc.bend.norm() < 1000)) refuse("{}: a bend of {} rad", place().text(), at.arc.bend.norm());
+    if (!(at.arc.bend.norm() < largest_bend))
+      refuse("{}: a bend of {} rad", place().text(), at.arc.bend.norm());
     if (at.section >= most_parts) refuse("{}: section {}", place().text(), at.section);
     if (i == 0) continue;
     const Arc& before = arm.tube[i - 1].arc;

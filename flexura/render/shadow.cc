@@ -26,6 +26,17 @@ double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen
   return 1 - share_over_edge(((way - along * light).norm() - radius) / (width * along));
 }
 
+// The share of the light past the disc that closes a flat end, for a point beyond the disc's plane; all of it
+// for others. The disc's edge is taken for straight.
+double share_past_disc(const Eigen::Vector3d& center, const Eigen::Vector3d& outward, double radius,
+                       const Eigen::Vector3d& p_CQ, const Eigen::Vector3d& light, double width) {
+  const double height = (p_CQ - center).dot(outward), slope = -light.dot(outward);
+  if (!(height > 0) || !(slope > 0)) return 1;
+  const double along = height / slope;
+  const double gap = (p_CQ + along * light - center).norm() - radius;
+  return 1 - share_over_edge(gap / (width * along));
+}
+
 // How much of the light reaches the point past the arm: where the way to the light's middle comes nearest to
 // the tube, the tube's edge is taken for straight. The shadow's ends are round.
 double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
@@ -36,11 +47,17 @@ double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
     const LocalRay way = local_ray(piece, p_CQ, stage.light);
     const double farthest = (piece.bound_center - way.origin).norm() + piece.bound_radius;
     const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
-    if (piece.before < 0)
+    if (piece.before < 0) {
       share = std::min(share, share_past_ball(piece.p_CP, piece.radius, p_CQ, stage.light, width));
-    if (piece.after < 0)
-      share = std::min(share, share_past_ball(end, piece.radius + piece.widening * piece.length, p_CQ,
-                                              stage.light, width));
+      share = std::min(
+          share, share_past_disc(piece.p_CP, -piece.R_CP.col(2), piece.radius, p_CQ, stage.light, width));
+    }
+    if (piece.after < 0) {
+      const double radius = piece.radius + piece.widening * piece.length;
+      const Eigen::Vector3d tangent = piece.R_CP * piece.end_tangent;
+      share = std::min(share, share_past_ball(end, radius, p_CQ, stage.light, width));
+      share = std::min(share, share_past_disc(end, tangent, radius, p_CQ, stage.light, width));
+    }
     const DepthRange range = range_of(piece, way, piece.bound_radius + width * farthest);
     if (range.is_empty()) continue;
     const double lowest = first_minimum(piece, way, range.from, range);

@@ -139,6 +139,18 @@ TEST(Shadow, OfADiskReachesBeyondThatOfItsArm) {
   });
 }
 
+TEST(Shadow, OfAnArmThatStandsJustOverTheFloor) {
+  Arm arm;
+  arm.X_WB.position = {0, 0.02, 0};
+  arm.sections.push_back({.length = 0.4, .radius = {0.08, 0.08}});
+  Scene scene = plain_scene();
+  const Backbone backbone(arm, ArmState::straight(1));
+  scene.arm.tube = tube_of(arm, backbone);
+  expect_shadow(scene, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& d) {
+    return meets_cylinder(backbone.pose(0), 0.4, 0.08, p, d);
+  });
+}
+
 // An arm in an arch, under a light that its end keeps from its base.
 TEST(Shadow, OfTheArmFallsOnItself) {
   Arm arm;

@@ -150,9 +150,53 @@ std::vector<std::pair<std::size_t, std::string>> named_tips(const ReportMotion& 
   return names;
 }
 
-// The arm at state i, with a warning around these sections and those that are unsafe then.
+bool is_inside(const PlotFrame& frame, const Eigen::Vector2d& page) {
+  const Eigen::Vector2d in = page - frame.corner;
+  return in.minCoeff() >= 0 && in.x() <= frame.size.x() && in.y() <= frame.size.y();
+}
+
+// Where the way from a point in the plot to another leaves it, if it does.
+Eigen::Vector2d cut_off(const PlotFrame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  double part = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double way = to[axis] - from[axis];
+    const double border = frame.corner[axis] + (way > 0 ? frame.size[axis] : 0.0);
+    if (way != 0) part = std::clamp((border - from[axis]) / way, 0.0, part);
+  }
+  return from + part * (to - from);
+}
+
+// A cross at a place that the tip misses; nothing where that is outside the plot.
+void draw_target(XmlWriter& svg, const PlotFrame& frame, const Eigen::Vector2d& at) {
+  if (!is_inside(frame, at)) return;
+  svg.open("g", {{"class", "target"}, {"transform", fmt::format("translate({})", page_point(at))}});
+  svg.leaf("title", {}, "target");
+  svg.leaf("path", {{"d", "M-7 -7L7 7M-7 7L7 -7"}});
+  svg.close();
+}
+
+// What the tip misses in this picture, and how far away that is.
+void draw_missed_targets(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
+                         std::size_t i, const std::vector<std::size_t>& shown) {
+  const PlotFrame& frame = scene.frames[v];
+  const Eigen::Vector2d tip = frame.page(seen(scene.views[v], motion.tip(i)));
+  for (std::size_t k = 0; k < motion.violations.size(); ++k) {
+    const auto& violation = motion.violations[k];
+    const bool is_now = violation.start <= motion.times[i] && motion.times[i] <= violation.end;
+    if (!violation.target || (!is_now && std::ranges::count(shown, k) == 0)) continue;
+    const Eigen::Vector2d at = frame.page(seen(scene.views[v], *violation.target));
+    svg.leaf("path", {{"class", "target-way"}, {"d", polyline_path({tip, cut_off(frame, tip, at)})}});
+    draw_target(svg, frame, at);
+  }
+}
+
+// The arm at state i, with a warning around the sections of these violations and those that are unsafe then.
 Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
-                       std::string_view when, const std::vector<std::size_t>& warned) {
+                       std::string_view when, const std::vector<std::size_t>& shown) {
+  const auto is_shown = [&](std::size_t section) {
+    return std::ranges::any_of(
+        shown, [&](std::size_t k) { return std::ranges::count(motion.violations[k].sections, section) > 0; });
+  };
   const std::string tip = motion.tip_text(i);
   const bool one_view = scene.views.size() == 1;
   const std::string heading = fmt::format("{}, {}{}", when, moment(motion, i), one_view ? "" : ": " + tip);
@@ -163,12 +207,13 @@ Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::
     draw_obstacles(svg, scene, v, motion);
     draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
-      const bool is_warned = motion.is_unsafe(k, i) || std::ranges::count(warned, k) > 0;
+      const bool is_warned = motion.is_unsafe(k, i) || is_shown(k);
       draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, is_warned);
     }
     draw_curve(svg, scene, v, motion, backbone);
     if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
       draw_joints(svg, scene, v, backbone);
+    draw_missed_targets(svg, scene, v, motion, i, shown);
     draw_dot(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), "tip", "5");
     label_tip(svg, scene, v, motion, i, one_view ? tip : "E");
   }
@@ -189,10 +234,18 @@ Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::siz
   return picture_of_arm(motion, scene, i, when, {});
 }
 
+std::string moment_text(const ReportMotion& motion, const UnsafeMoment& moment) {
+  constexpr std::size_t most = 4;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, moment.violations.size()); ++k)
+    text += (k == 0 ? "" : "; ") + motion.violations[moment.violations[k]].text;
+  if (moment.violations.size() > most) text += fmt::format("; and {} more", moment.violations.size() - most);
+  return text;
+}
+
 Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene, const UnsafeMoment& moment) {
-  const auto& violation = motion.violations[moment.violation];
-  Drawing drawing = picture_of_arm(motion, scene, moment.state, "worst moment", violation.sections);
-  drawing.label += ": " + violation.text;
+  Drawing drawing = picture_of_arm(motion, scene, moment.state, "worst moment", moment.violations);
+  drawing.label += ": " + moment_text(motion, moment);
   return drawing;
 }
 
@@ -233,6 +286,9 @@ Drawing player_picture(const ReportMotion& motion, const PlotScene& scene) {
     draw_obstacles(svg, scene, v, motion);
     for (const std::size_t i : {std::size_t{0}, motion.end()}) {
       svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion, i)}});
+    }
+    for (const auto& violation : motion.violations) {
+      if (violation.target) draw_target(svg, frame, frame.page(seen(scene.views[v], *violation.target)));
     }
     draw_base(svg, frame, scene.views[v], motion.arm);
     const Eigen::Vector2d origin = frame.page({0.0, 0.0});

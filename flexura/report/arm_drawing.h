@@ -18,7 +18,10 @@ namespace flexura {
 [[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                                   std::string_view when);
 
-/// The arm at the worst moment of a violation.
+/// What is wrong at a moment: "0 s to 2 s: section 1: bend 62 deg, limit 60 deg; ...", at most four of it.
+[[nodiscard]] std::string moment_text(const ReportMotion& motion, const UnsafeMoment& moment);
+
+/// The arm at the worst moment of violations.
 [[nodiscard]] Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene,
                                      const UnsafeMoment& moment);
 

@@ -70,6 +70,15 @@ void draw_dot(XmlWriter& svg, const std::string& css_class, const Eigen::Vector2
                       {"r", radius}});
 }
 
+void draw_cross(XmlWriter& svg, const std::string& css_class, const Eigen::Vector2d& at) {
+  constexpr double half = 4;
+  const auto stroke = [&](double rise) {
+    return fmt::format("M{} {}L{} {}", page_number(at.x() - half), page_number(at.y() - rise),
+                       page_number(at.x() + half), page_number(at.y() + rise));
+  };
+  svg.leaf("path", {{"class", "line " + css_class}, {"d", stroke(half) + stroke(-half)}});
+}
+
 void draw_series(XmlWriter& svg, const PlotFrame& frame, const ChartSeries& series,
                  const std::vector<double>& times, const Share& share) {
   std::string path;
@@ -84,6 +93,9 @@ void draw_series(XmlWriter& svg, const PlotFrame& frame, const ChartSeries& seri
     if (std::isfinite(series.dots[i]))
       draw_dot(svg, series.css_class, frame.page({times[i], series.dots[i]}), "3");
   }
+  for (std::size_t i = 0; i < series.crosses.size(); ++i)
+    if (std::isfinite(series.crosses[i]))
+      draw_cross(svg, series.css_class, frame.page({times[i], series.crosses[i]}));
   if (path.empty()) return;
   if (share.of == 1) {
     svg.leaf("path", {{"class", "line " + series.css_class}, {"d", path}});
@@ -111,6 +123,7 @@ Interval range_of(const std::vector<ChartSeries>& series) {
   for (const ChartSeries& one : series) {
     include(one.values);
     include(one.dots);
+    include(one.crosses);
   }
   return range.value_or(Interval{});
 }

@@ -10,10 +10,11 @@ namespace flexura {
 
 /// One line of a chart.
 struct ChartSeries {
-  std::string name;               ///< Short and without spaces, for the legend: "3", "X".
-  std::string css_class;          ///< Its colour and dash.
-  std::vector<double> values;     ///< One a time. Where one is no number the line is interrupted.
-  std::vector<double> dots = {};  ///< The same from another source, drawn as dots; likewise, or empty.
+  std::string name;                  ///< Short and without spaces, for the legend: "3", "X".
+  std::string css_class;             ///< Its colour and dash.
+  std::vector<double> values;        ///< One a time. Where one is no number the line is interrupted.
+  std::vector<double> dots = {};     ///< The same from another source, drawn as dots; likewise, or empty.
+  std::vector<double> crosses = {};  ///< From a third, drawn as crosses; likewise.
 };
 
 /// Values over time, or over something else.

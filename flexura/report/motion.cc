@@ -70,6 +70,20 @@ std::vector<double> event_times(const ReportData& data) {
   return times;
 }
 
+// In the order of the violations.
+std::vector<UnsafeMoment> unsafe_moments(const ReportMotion& motion) {
+  std::vector<UnsafeMoment> moments;
+  for (std::size_t i = 0; i < motion.violations.size(); ++i) {
+    const auto& when = motion.violations[i].pictured_at;
+    if (!when) continue;
+    const std::size_t state = nearest_index(motion.times, *when);
+    auto moment = std::ranges::find(moments, state, &UnsafeMoment::state);
+    if (moment == moments.end()) moment = moments.insert(moments.end(), {{}, state});
+    moment->violations.push_back(i);
+  }
+  return moments;
+}
+
 }  // namespace
 
 std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& wanted,
@@ -134,10 +148,7 @@ ReportMotion motion_of(const ReportData& data) {
     motion.backbones.emplace_back(data.arm, data.states[i]);
     for (const double stretch : data.states[i].stretches) motion.stretches_change |= stretch != 1.0;
   }
-  for (std::size_t i = 0; i < motion.violations.size(); ++i) {
-    const auto& when = motion.violations[i].pictured_at;
-    if (when) motion.unsafe_moments.push_back({i, nearest_index(motion.times, *when)});
-  }
+  motion.unsafe_moments = unsafe_moments(motion);
   motion.middle = nearest_index(motion.times, (motion.times.front() + motion.times.back()) / 2);
   return motion;
 }

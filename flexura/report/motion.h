@@ -20,10 +20,10 @@ inline constexpr std::size_t max_shown_numbers = 200'000;
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
                                                     const std::vector<double>& wanted, std::size_t most);
 
-/// A violation to be drawn in a picture of its own.
+/// Violations to be drawn in one picture, of the moment when they are worst.
 struct UnsafeMoment {
-  std::size_t violation = 0;  ///< Its place in ReportMotion::violations.
-  std::size_t state = 0;      ///< Index of the state nearest to the moment asked for.
+  std::vector<std::size_t> violations;  ///< Their places in ReportMotion::violations.
+  std::size_t state = 0;                ///< Index of the state nearest to the moment asked for.
 };
 
 /// The part of a run that its report shows.

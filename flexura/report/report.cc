@@ -43,7 +43,7 @@ std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
 }
 
 PlotScene motion_scene(const ReportMotion& motion) {
-  return scene_of(with_obstacles(swept_box(motion), motion.obstacles), motion.in_plane,
+  return scene_of(with_targets(with_obstacles(swept_box(motion), motion.obstacles), motion), motion.in_plane,
                   0.1 * motion.arm.length());
 }
 
@@ -149,7 +149,7 @@ std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
         "<figure id=\"picture-{}\">\n{}<figcaption><button type=\"button\" class=\"jump\" "
         "data-time=\"{:.9g}\">{}</button> {}</figcaption>\n</figure>\n",
         drawings[k].name, inline_svg(drawings[k].drawing), time, fixed(time, 3),
-        xml_escape(motion.violations[moment.violation].text));
+        xml_escape(moment_text(motion, moment)));
   }
   return html + "</div>\n</section>\n";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -45,6 +46,7 @@ struct ReportData {
       std::string text;                   ///< Said beside its picture.
       /// When to draw it in a picture of its own, s; such a time should be among the report's times.
       std::optional<double> pictured_at = {};
+      std::optional<Eigen::Vector3d> target = {};  ///< Where the tip should have come, world, m; drawn too.
     };
     /// What is listed: of one violation, or of all of a kind.
     struct Line {
@@ -83,9 +85,9 @@ struct FigureFile {
 [[nodiscard]] std::string report_html(const ReportData& data);
 
 /// The report's pictures: arm-start, arm-middle, arm-end, arm-unsafe-1 and on (violations at their worst
-/// moments), tip-path, bends (a spatial arm: bends-x and
-/// bends-y), archings and cord-angles (planar arms), stretches (where they change), tip; and those of the
-/// chapters. Throws as report_html does.
+/// moments, those of one moment together), tip-path, bends (a spatial arm: bends-x and bends-y), archings and
+/// cord-angles (planar arms), stretches (where they change), tip; and those of the chapters. Throws as
+/// report_html does.
 [[nodiscard]] std::vector<FigureFile> report_figures(const ReportData& data);
 
 }  // namespace flexura

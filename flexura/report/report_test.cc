@@ -137,6 +137,60 @@ TEST(Report, DrawsViolationsAtTheirWorstMoments) {
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-unsafe-2.svg")), 1U) << "outside its span, too";
 }
 
+TEST(Report, DrawsWhatIsWorstAtOneMomentInOnePicture) {
+  ReportData data = paper_run(50);
+  const double when = data.times[20];
+  data.safety = {
+      .violations = {{.start = when, .end = 5, .sections = {3}, .text = "one", .pictured_at = when},
+                     {.start = when, .end = 5, .sections = {4}, .text = "other", .pictured_at = when}},
+      .lines = {},
+      .remarks = {}};
+  const std::vector<FigureFile> figures = report_figures(data);
+  EXPECT_FALSE(names_of(figures).contains("arm-unsafe-2.svg"));
+  EXPECT_EQ(warnings_in(svg_of(figures, "arm-unsafe-1.svg")), 2U);
+  EXPECT_NE(report_html(data).find("</button> one; other</figcaption>"), std::string::npos);
+}
+
+std::size_t times_in(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Report, DrawsTheTargetsThatTheTipMisses) {
+  ReportData data = paper_run(50);
+  const double end = data.times.back();
+  const Eigen::Vector3d beside =
+      Backbone(data.arm, data.states.back()).tip().position + Eigen::Vector3d(1, 1, 0);
+  data.safety = {.violations = {{.start = end,
+                                 .end = end,
+                                 .sections = {},
+                                 .text = "beside",
+                                 .pictured_at = end,
+                                 .target = beside}},
+                 .lines = {},
+                 .remarks = {}};
+  const std::vector<FigureFile> figures = report_figures(data);
+  for (const char* name : {"arm-unsafe-1.svg", "arm-end.svg"}) {
+    EXPECT_EQ(xml_fault(svg_of(figures, name)), "");
+    EXPECT_EQ(times_in(svg_of(figures, name), "class=\"target\""), 1U) << name;
+    EXPECT_EQ(times_in(svg_of(figures, name), "class=\"target-way\""), 1U) << name;
+  }
+  EXPECT_EQ(times_in(svg_of(figures, "arm-start.svg"), "class=\"target"), 0U) << "not its time";
+  // Start, middle, end, worst and player: crosses in three of them.
+  EXPECT_EQ(times_in(report_html(data), "class=\"target\""), 3U);
+  // What is far away does not make the arm small: the way to it ends at the border.
+  data.safety->violations[0].target = Eigen::Vector3d(0, 1e5, 0);
+  const std::string far = svg_of(report_figures(data), "arm-unsafe-1.svg");
+  EXPECT_EQ(times_in(far, "class=\"target\""), 0U);
+  EXPECT_EQ(times_in(far, "class=\"target-way\""), 1U);
+}
+
+TEST(Report, KeepsALonePictureInItsColumn) {
+  EXPECT_EQ(report_html(paper_run(10)).find("auto-fit"), std::string::npos)
+      << "auto-fit stretches a row's only picture over the whole page; auto-fill does not";
+}
+
 TEST(Report, HasAChapterForWhatWasMeasuredBesideTheMotion) {
   ReportData data = paper_run(10);
   EXPECT_EQ(report_html(data).find("chapter-1"), std::string::npos);

@@ -70,6 +70,15 @@ Eigen::AlignedBox3d swept_box(const ReportMotion& motion) {
   return box;
 }
 
+Eigen::AlignedBox3d with_targets(Eigen::AlignedBox3d box, const ReportMotion& motion) {
+  const Eigen::Vector3d around = Eigen::Vector3d::Constant(0.5 * box.diagonal().norm());
+  const Eigen::AlignedBox3d near(box.min() - around, box.max() + around);
+  for (const auto& violation : motion.violations) {
+    if (violation.target) box.extend(violation.target->cwiseMax(near.min()).cwiseMin(near.max()));
+  }
+  return box;
+}
+
 void draw_scene_axes(XmlWriter& svg, const PlotScene& scene, std::string_view heading) {
   const Eigen::Vector2d& first = scene.frames.front().corner;
   svg.label({first.x(), 22.0}, "heading", heading);

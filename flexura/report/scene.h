@@ -32,6 +32,10 @@ struct PlotScene {
 /// What the arm's tube sweeps over during the motion, m.
 [[nodiscard]] Eigen::AlignedBox3d swept_box(const ReportMotion& motion);
 
+/// The box with the targets that the motion misses: all that are within half of its diagonal, and as far
+/// towards others.
+[[nodiscard]] Eigen::AlignedBox3d with_targets(Eigen::AlignedBox3d box, const ReportMotion& motion);
+
 /// Draws the heading and the axes of every view.
 void draw_scene_axes(XmlWriter& svg, const PlotScene& scene, std::string_view heading);
 

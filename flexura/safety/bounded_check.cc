@@ -73,8 +73,8 @@ class BoundedCheck {
       if (std::isfinite(limit))
         check_limit({.hazard = Hazard::bend_rate, .section = i, .limit = limit}, 1, threshold_of_rate(limit),
                     bend_rate(motion_, i));
-      check_jumps(i, bend_rate(motion_, i));
-      check_jumps(i, stretch_rate(motion_, i));
+      check_jumps(i, false);
+      check_jumps(i, true);
       if (!checked_.go_on(limits_share * ++done / jobs)) return;
     }
   }
@@ -96,26 +96,25 @@ class BoundedCheck {
   }
 
   // Where a law that knows its rates is faster than anything that moves: keyframes a moment apart.
-  void check_jumps(std::size_t section, const WatchedQuantity& rate) {
+  void check_jumps(std::size_t section, bool is_of_stretch) {
+    const auto rate = is_of_stretch ? stretch_rate(motion_, section) : bend_rate(motion_, section);
     const FoundSpans found =
         spans_above(jump_rate, rate, checked_.whole(), limit_search(jump_rate * limit_tolerance));
     const WorstSearch search = worst_search(found.spans.size());
     for (const Span& span : found.spans) {
       const ArmState before = motion_.at(span.start);
-      const auto change = [&](double t) { return largest_change(before, motion_.at(t)); };
-      const auto change_rate = [&](double a, double b) { return largest_rate(a, b); };
+      const auto change = [&](double t) {
+        const ArmState now = motion_.at(t);
+        return is_of_stretch ? std::abs(now.stretches[section] - before.stretches[section])
+                             : (now.bends[section] - before.bends[section]).norm();
+      };
+      const auto change_rate = [&](double a, double b) {
+        const SectionRates rates = rates_of(motion_, section, a, b);
+        return is_of_stretch ? rates.stretch : rates.bend;
+      };
       const WorstValue size = worst_in(with_rate(change, change_rate), span, search);
-      if (size.value > smallest_jump) checked_.add_jump(span, section, size);
+      if (size.value > smallest_jump) checked_.add_jump(span, section, is_of_stretch, size);
     }
-  }
-
-  [[nodiscard]] double largest_rate(double start, double end) const {
-    double most = 0;
-    for (std::size_t i = 0; i < checked_.arm.sections.size(); ++i) {
-      const SectionRates rates = rates_of(motion_, i, start, end);
-      most = std::max({most, rates.bend, rates.stretch});
-    }
-    return most;
   }
 
   void check_contacts() {

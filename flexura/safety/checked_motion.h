@@ -51,8 +51,9 @@ struct CheckedMotion {
     violation.value = sign * worst.value;
     report.violations.push_back(std::move(violation));
   }
-  void add_jump(const Span& span, std::size_t section, const WorstValue& size) const {
-    add({.hazard = Hazard::jump, .section = section, .name = timed.name}, span, size);
+  void add_jump(const Span& span, std::size_t section, bool is_of_stretch, const WorstValue& size) const {
+    add({.hazard = Hazard::jump, .section = section, .name = timed.name, .is_of_stretch = is_of_stretch},
+        span, size);
   }
   /// The law has no value, or no length, at `time`.
   void add_impossible(double time) const {

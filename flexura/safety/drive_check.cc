@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,8 +27,11 @@ constexpr double max_countable = 9007199254740992.0;
 // One limit of one axis; joins what is too much in rows that follow each other.
 class AxisLimit {
  public:
-  AxisLimit(Hazard hazard, std::string axis, double limit)
-      : found_{.hazard = hazard, .name = std::move(axis), .limit = limit} {}
+  AxisLimit(Hazard hazard, const Drive& drive, std::size_t axis, double limit)
+      : found_{.hazard = hazard,
+               .section = drive.tendons[axis].section,
+               .name = drive.axis_name(axis),
+               .limit = limit} {}
 
   void add(Span span, double value, SafetyReport& report) {
     if (value <= found_.limit * (1 + limit_tolerance)) {
@@ -52,11 +56,10 @@ class AxisCheck {
  public:
   AxisCheck(const Drive& drive, std::size_t axis)
       : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
-        speed_(Hazard::motor_speed, drive.axis_name(axis), drive.axes[axis].motor.max_speed),
-        step_rate_(Hazard::step_rate, drive.axis_name(axis), drive.axes[axis].motor.max_step_rate),
-        acceleration_(Hazard::motor_acceleration, drive.axis_name(axis),
-                      drive.axes[axis].motor.max_acceleration),
-        position_(Hazard::motor_position, drive.axis_name(axis), drive.axes[axis].motor.max_position) {}
+        speed_(Hazard::motor_speed, drive, axis, drive.axes[axis].motor.max_speed),
+        step_rate_(Hazard::step_rate, drive, axis, drive.axes[axis].motor.max_step_rate),
+        acceleration_(Hazard::motor_acceleration, drive, axis, drive.axes[axis].motor.max_acceleration),
+        position_(Hazard::motor_position, drive, axis, drive.axes[axis].motor.max_position) {}
 
   void start(double time, double position, SafetyReport& report) {
     last_position_ = position;
@@ -105,11 +108,68 @@ std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive&
 
 bool is_acceleration(const Violation& violation) { return violation.hazard == Hazard::motor_acceleration; }
 
+bool has_speed_limit(const Axis& axis) { return std::isfinite(axis.max_cable_speed()); }
+
+// Halves an interval until the rates in it prove that no tendon is too fast for its axis, or it is short.
+void prove(const Arm& arm, const Drive& drive, Span span, double shortest, const RateBounds& rates,
+           std::vector<char>& is_unproven) {
+  const auto known = rates(span.start, span.end);
+  std::vector<double> speeds;
+  if (known) speeds = tendon_speed_bounds(arm, drive, *known);
+  const auto is_open = [&](std::size_t i) {
+    if (is_unproven[i] != 0 || !has_speed_limit(drive.axes[i])) return false;
+    return !known || !(speeds[i] <= drive.axes[i].max_cable_speed() * (1 + limit_tolerance));
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) any = any || is_open(i);
+  if (!any) return;
+  if (!known || span.end - span.start <= shortest) {
+    for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+      if (is_open(i)) is_unproven[i] = 1;
+    }
+    return;
+  }
+  const double middle = (span.start + span.end) / 2;
+  prove(arm, drive, {span.start, middle}, shortest, rates, is_unproven);
+  prove(arm, drive, {middle, span.end}, shortest, rates, is_unproven);
+}
+
+// The axes with a limit on speed that the law may break somewhere, as far as its rates tell.
+std::vector<char> unproven_axes(const Arm& arm, const Drive& drive, const Span& span,
+                                const RateBounds& rates) {
+  constexpr double shortest_part = 1.0 / 16384;
+  std::vector<char> is_unproven(drive.axes.size(), 0);
+  if (!std::ranges::any_of(drive.axes, has_speed_limit)) return is_unproven;
+  prove(arm, drive, span, shortest_part * (span.end - span.start), rates, is_unproven);
+  return is_unproven;
+}
+
+// What the rows break is told already.
+void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t found_before, double step,
+                 SafetyReport& report) {
+  for (std::size_t k = found_before; k < report.violations.size(); ++k) {
+    const Violation& found = report.violations[k];
+    if (found.hazard != Hazard::motor_speed && found.hazard != Hazard::step_rate) continue;
+    for (std::size_t i = 0; i < is_unproven.size(); ++i) {
+      if (drive.axis_name(i) == found.name) is_unproven[i] = 0;
+    }
+  }
+  std::string names;
+  for (std::size_t i = 0; i < is_unproven.size(); ++i) {
+    if (is_unproven[i] != 0) names += (names.empty() ? "" : ", ") + drive.axis_name(i);
+  }
+  if (names.empty()) return;
+  report.caveats.push_back(fmt::format(
+      "motor speed and step rate of {}: sampled every {:.6g} s; the law may be faster between two steps",
+      names, step));
+}
+
 }  // namespace
 
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
-                 std::span<const double> times, SafetyReport& report) {
+                 std::span<const double> times, const RateBounds& rates, SafetyReport& report) {
   if (times.size() < 2) return;
+  const std::size_t found_before = report.violations.size();
   const auto first = displacements_in(arm, drive, state_at(times[0]));
   if (!first) return;
   MotorCommander commander(drive, *first);
@@ -128,6 +188,8 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
     last = now;
   }
   for (AxisCheck& axis : axes) axis.stop(last, report);
+  say_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before,
+              times[1] - times[0], report);
   if (!std::ranges::any_of(report.violations, is_acceleration)) return;
   report.caveats.push_back(fmt::format(
       "motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that starts "

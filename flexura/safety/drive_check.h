@@ -1,23 +1,31 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/safety/violation.h"
 
 namespace flexura {
 
+/// Bounds on how fast every section of a law changes anywhere in [start, end] s; empty where none are known.
+using RateBounds = std::function<std::optional<std::vector<SectionRates>>(double start, double end)>;
+
 /// Adds to `report` where the command list of a motion asks more of a motor than it can do: speed, step rate,
 /// acceleration, position. `times` (s, rising) are those of the list's rows, and `state_at` the arm's states.
 ///
-/// From row to row a motor turns at an even rate, so these are exact, whatever the law: nothing lies between
-/// two rows. The acceleration is the change of the rate over the time between the middles of two steps;
-/// before the first row and after the last one the motors stand. Where it is too much, a caveat says that it
-/// goes with the step. Taking up the play counts, rounding to microsteps does not. Ends before the first
-/// state that is not possible.
+/// From row to row a motor turns at an even rate, so for the list these are exact, whatever the law. The law
+/// itself may be faster between two rows: of the axes with a limit on speed or step rate that no row breaks,
+/// a caveat names those for which `rates` do not prove (tendon_speed_bounds) that it never is. The
+/// acceleration is the change of the rate over the time between the middles of two steps; before the first
+/// row and after the last one the motors stand. Where it is too much, a caveat says that it goes with the
+/// step. Taking up the play counts, rounding to microsteps does not. Ends before the first state that is not
+/// possible.
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
-                 std::span<const double> times, SafetyReport& report);
+                 std::span<const double> times, const RateBounds& rates, SafetyReport& report);
 
 }  // namespace flexura

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,12 @@ class DriveCheck : public ::testing::Test {
     const auto steps = static_cast<int>(std::lround(motion->duration() / step));
     for (int k = 0; k <= steps; ++k) times.push_back(motion->duration() * k / steps);
     SafetyReport report;
-    check_drive(arm_, drive_, [&](double t) { return motion->at(t); }, times, report);
+    const auto rates = [&](double a, double b) -> std::optional<std::vector<SectionRates>> {
+      const auto known = motion->rates(0, a, b);
+      if (!known) return std::nullopt;
+      return std::vector{*known};
+    };
+    check_drive(arm_, drive_, [&](double t) { return motion->at(t); }, times, rates, report);
     report.sort();
     return report;
   }
@@ -76,8 +82,39 @@ TEST_F(DriveCheck, TellsWhenAndHowMuch) {
       keyframe_motion({0, 1, 2, 3}, {state(0), state(0.1), state(0.9), state(1)}, Interpolation::linear);
   const SafetyReport report = check(law);
   ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_EQ(report.violations[0].section, 0U) << "the one that the motor bends";
   EXPECT_EQ(report.violations[0].text(),
             "1 s to 2 s: axis 1.2: motor speed 458.366 deg/s, limit 286.479 deg/s");
+}
+
+TEST_F(DriveCheck, SaysWhereALawMayBeTooFastBetweenTwoStepsAndOnlyThere) {
+  // The bend swings by 0.1 rad with the period of the step: every row sees the same state.
+  const auto slips = sine_motion(state(0), {{0.1, 0}}, {0}, step, 1);
+  drive_.axes[0].motor.max_speed = 10;
+  const SafetyReport slipped = check(slips);
+  EXPECT_TRUE(slipped.is_safe()) << "of the command list, which is what the motors follow";
+  ASSERT_EQ(slipped.caveats.size(), 1U);
+  EXPECT_EQ(
+      slipped.caveats[0],
+      "motor speed and step rate of 1.1: sampled every 0.01 s; the law may be faster between two steps");
+  // The motor turns by 10 rad for 1 rad of the bend, at most at 1.875 rad/s with the least jerk within 1 s.
+  const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
+  drive_.axes[0].motor.max_speed = 18.75 * (1 + 1e-6);
+  EXPECT_TRUE(check(smooth).caveats.empty()) << "proven by the law's own rates";
+  drive_.axes[0].motor.max_speed = 18.75 * (1 - 1e-6);
+  const SafetyReport peak = check(smooth);  // which no row sees: the mean from row to row is less
+  EXPECT_TRUE(peak.is_safe());
+  EXPECT_EQ(peak.caveats.size(), 1U);
+  drive_.axes[0].motor.max_speed = 15;
+  EXPECT_FALSE(check(smooth).is_safe());
+  EXPECT_TRUE(check(smooth).caveats.empty()) << "told as a violation";
+  // A formula knows no rates.
+  drive_.axes[0].motor.max_speed = 1e3;
+  const SafetyReport formula = check(function_motion(1, [](double t) { return state(0.1 * t); }));
+  EXPECT_TRUE(formula.is_safe());
+  EXPECT_EQ(formula.caveats.size(), 1U);
+  drive_.axes[0].motor.max_speed = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(check(slips).caveats.empty()) << "without a limit there is nothing to break";
 }
 
 TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {

@@ -33,7 +33,8 @@ std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
     if (n == few && size < whole / 32) return std::nullopt;
   }
   if (size <= smallest_jump) return std::nullopt;
-  return Jump{b.time, size, most_changed(a.state, b.state)};
+  const std::size_t section = most_changed(a.state, b.state);
+  return Jump{b.time, size, section, changes_stretch(a.state, b.state, section)};
 }
 
 }  // namespace
@@ -50,6 +51,10 @@ std::size_t most_changed(const ArmState& a, const ArmState& b) {
     if (change(a, b, i) > change(a, b, most)) most = i;
   }
   return most;
+}
+
+bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section) {
+  return std::abs(a.stretches[section] - b.stretches[section]) > (a.bends[section] - b.bends[section]).norm();
 }
 
 std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {

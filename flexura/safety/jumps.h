@@ -21,6 +21,7 @@ struct Jump {
   double time = 0;          ///< s
   double size = 0;          ///< Of the largest change of a bend (rad) or a stretch.
   std::size_t section = 0;  ///< From 0: whose change that is.
+  bool is_of_stretch = false;
 };
 
 /// The largest change of a bend (rad) or a stretch (factor) of any section.
@@ -28,6 +29,9 @@ struct Jump {
 
 /// The section that changes most between two states, from 0.
 [[nodiscard]] std::size_t most_changed(const ArmState& a, const ArmState& b);
+
+/// Whether a section's stretch (factor) changes by more than its bend (rad).
+[[nodiscard]] bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section);
 
 /// The jumps of a law that changes somehow, looked for in every interval of `step` s: the interval is halved
 /// towards its larger change; a jump keeps its size, what is only fast does not. A jump is found when it is

@@ -26,14 +26,18 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
   const Motion& motion = checked.motion();
   const ArmState first = motion.at(0);
   const double jump = largest_change(before, first);
-  if (jump > smallest_jump && std::isfinite(jump))
-    checked.add_jump({0, 0}, most_changed(before, first), {0, jump});
+  if (jump > smallest_jump && std::isfinite(jump)) {
+    const std::size_t section = most_changed(before, first);
+    checked.add_jump({0, 0}, section, changes_stretch(before, first, section), {0, jump});
+  }
   if (!motion.rates(0, 0, motion.duration())) {
     check_sampled(checked);
-  } else if (is_possible(first)) {
-    check_bounded(checked);
-  } else {
+  } else if (!is_possible(first)) {
     checked.add_impossible(0);
+  } else if (!is_possible(motion.at(motion.duration()))) {
+    checked.add_impossible(motion.duration());
+  } else {
+    check_bounded(checked);
   }
 }
 
@@ -44,7 +48,8 @@ bool is_possible(const ArmState& state) { return !impossible_section(state); }
 std::optional<std::size_t> impossible_section(const ArmState& state) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const double stretch = state.stretches[i];
-    if (!state.bends[i].allFinite() || !std::isfinite(stretch) || stretch <= 0) return i;
+    const bool is_bent = state.bends[i].norm() < largest_bend;  // Not where it is no number.
+    if (!is_bent || !std::isfinite(stretch) || stretch <= 0) return i;
   }
   return std::nullopt;
 }

@@ -25,6 +25,12 @@ Arm short_section() {
   return arm;
 }
 
+Arm elastic_section() {
+  Arm arm = short_section();
+  arm.sections[0].stretch_limits = {0.5, 2};
+  return arm;
+}
+
 ArmState bent(double bend) { return {{{bend, 0}}, {1}}; }
 
 SafetyReport check(const Arm& arm, MotionPtr motion, double step = 0.02) {
@@ -194,6 +200,25 @@ TEST(MotionCheck, FindsJumpsBetweenTasks) {
   EXPECT_EQ(report.violations[0].hazard, Hazard::jump);
   EXPECT_EQ(report.violations[0].start, 1);
   EXPECT_DOUBLE_EQ(report.violations[0].value, 0.1);
+  EXPECT_EQ(report.violations[0].text(), "at 1 s: section 1: jump 5.72958 deg");
+  const SafetyReport stretched =
+      check_motions(elastic_section(), {}, bent(0),
+                    {{hold_motion(bent(0), 1), 0}, {hold_motion({{{0, 0}}, {1.25}}, 1), 1}}, 0.02);
+  ASSERT_EQ(stretched.violations.size(), 1u);
+  EXPECT_EQ(stretched.violations[0].text(), "at 1 s: section 1: jump of 0.25 in stretch");
+}
+
+TEST(MotionCheck, KeepsJumpsOfBendsAndStretchesApart) {
+  const auto at_once =
+      keyframe_motion({0, 1, 1 + 1e-6, 2}, {bent(0), bent(0), {{{0.1, 0}}, {1.3}}, {{{0.1, 0}}, {1.3}}},
+                      Interpolation::linear);
+  const SafetyReport report = check_motions(elastic_section(), {}, bent(0), {{at_once, 0}}, 0.02);
+  ASSERT_EQ(report.violations.size(), 2u);
+  for (const Violation& violation : report.violations) {
+    EXPECT_EQ(violation.hazard, Hazard::jump);
+    EXPECT_NEAR(violation.value, violation.is_of_stretch ? 0.3 : 0.1, 1e-6);
+  }
+  EXPECT_NE(report.violations[0].is_of_stretch, report.violations[1].is_of_stretch);
 }
 
 TEST(MotionCheck, FindsJumpsInFormulasAndNoneWhereTheyAreOnlyFast) {
@@ -252,6 +277,13 @@ TEST(MotionCheck, FindsFormulasWithoutAPossibleValue) {
   EXPECT_NEAR(shrunk.violations.back().start, 1, 1e-9);
 }
 
+TEST(MotionCheck, RefusesThousandsOfTurns) {
+  const SafetyReport report =
+      check(short_section(), point_to_point_motion(bent(0), bent(5000), {Profile::linear(1)}), 0.1);
+  ASSERT_FALSE(report.is_safe());
+  EXPECT_EQ(report.violations[0].hazard, Hazard::not_finite);
+}
+
 TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
   Arm arm;
   arm.sections.resize(2);
@@ -261,7 +293,7 @@ TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
   });
   const SafetyReport report = check_motions(arm, {}, law->at(0), {{law, 3, "reach"}}, 0.1);
   ASSERT_EQ(report.violations.size(), 3u);
-  EXPECT_THAT(report.violations[0].text(), testing::StartsWith("at 3.4 s: reach: section 2: jump 0.1"));
+  EXPECT_THAT(report.violations[0].text(), testing::StartsWith("at 3.4 s: reach: section 2: jump 5.729"));
   EXPECT_EQ(report.violations[1].hazard, Hazard::bend);
   EXPECT_NEAR(report.violations[1].end, 4, 1e-9);
   EXPECT_EQ(report.violations[2].text(), "at 4.1 s: reach: section 2: no possible value");

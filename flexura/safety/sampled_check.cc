@@ -48,7 +48,7 @@ class SampledCheck {
     add_found();
     if (!last_possible || !checked_.report.is_complete) return;
     for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible))
-      checked_.add_jump({jump.time, jump.time}, jump.section, {jump.time, jump.size});
+      checked_.add_jump({jump.time, jump.time}, jump.section, jump.is_of_stretch, {jump.time, jump.size});
   }
 
  private:

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -30,7 +30,7 @@ const HazardText& text_of(Hazard hazard) {
                                                      {"bend rate", degrees, " deg/s"},
                                                      {"stretch", 1, ""},
                                                      {"folding: curvature times radius", 1, ""},
-                                                     {"jump", 1, ""},
+                                                     {"jump", degrees, " deg"},
                                                      {"no possible value", 1, ""},
                                                      {"self-contact", 1000, " mm deep"},
                                                      {"obstacle", 1000, " mm deep"},
@@ -53,16 +53,13 @@ std::string amount_text(Hazard hazard, double amount) {
   return fmt::format("{:.3g}{}", amount * shown.factor, unit);
 }
 
+bool is_of_motor(Hazard hazard) {
+  return hazard == Hazard::motor_speed || hazard == Hazard::step_rate ||
+         hazard == Hazard::motor_acceleration || hazard == Hazard::motor_position;
+}
+
 std::string Violation::place() const {
-  switch (hazard) {
-    case Hazard::motor_speed:
-    case Hazard::step_rate:
-    case Hazard::motor_acceleration:
-    case Hazard::motor_position:
-      return fmt::format("axis {}: ", name);
-    default:
-      break;
-  }
+  if (is_of_motor(hazard)) return fmt::format("axis {}: ", name);
   const bool is_of_task =
       hazard == Hazard::workspace || hazard == Hazard::jump || hazard == Hazard::not_finite;
   const std::string task = is_of_task && !name.empty() ? name + ": " : "";
@@ -85,6 +82,7 @@ std::string Violation::finding() const {
     case Hazard::not_finite:
       return shown.name;
     case Hazard::jump:
+      if (is_of_stretch) return fmt::format("{} of {:.6g} in stretch", shown.name, value);
       return fmt::format("{} {:.6g}{}", shown.name, found, shown.unit);
     default:
       return fmt::format("{} {:.6g}{}, limit {:.6g}{}", shown.name, found, shown.unit, limit * shown.factor,
@@ -102,11 +100,17 @@ std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t mo
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater{}, excess);
-  std::vector<std::size_t> rank(all.size());  // among those of its kind
-  std::map<std::pair<Hazard, std::string>, std::size_t> ranked;
-  for (const std::size_t i : order)
-    rank[i] = ranked[{all[i].hazard, all[i].hazard == Hazard::obstacle ? all[i].name : ""}]++;
-  std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(rank[i], !all[i].section, i); });
+  std::vector<int> rank(all.size());  // 0: the worst of its hazard; 1: the worst of another obstacle
+  std::set<Hazard> hazards;
+  std::set<std::string> obstacles;
+  for (const std::size_t i : order) {
+    const bool is_new_obstacle = all[i].hazard == Hazard::obstacle && obstacles.insert(all[i].name).second;
+    const bool is_new_hazard = hazards.insert(all[i].hazard).second;
+    const int rank_of_more = is_new_obstacle ? 1 : 2;
+    rank[i] = is_new_hazard ? 0 : rank_of_more;
+  }
+  const auto is_of_section = [&](std::size_t i) { return all[i].section && !is_of_motor(all[i].hazard); };
+  std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(rank[i], !is_of_section(i), i); });
   std::vector<std::size_t> told;
   for (const std::size_t i : order) {
     if (told.size() >= most) break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,11 +32,13 @@ struct Violation {
   double start = 0;                               ///< s
   double end = 0;                                 ///< s
   double worst_time = 0;                          ///< When `value` is found, s.
-  std::optional<std::size_t> section = {};        ///< From 0.
+  std::optional<std::size_t> section = {};        ///< From 0; of a motor, the one whose tendon it pulls.
   std::optional<std::size_t> other_section = {};  ///< From 0; which `section` touches.
   std::string name = {};                          ///< Of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< The worst in that time, in the hazard's unit.
   double limit = 0;
+  bool is_of_stretch = false;                  ///< A jump of the stretch (a factor), not of the bend (rad).
+  std::optional<Eigen::Vector3d> target = {};  ///< The place that the tip misses, world, m.
 
   /// "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg"; the times as span_text (spans.h) writes them.
   [[nodiscard]] std::string text() const;
@@ -61,10 +64,13 @@ struct SafetyReport {
   void sort();
 };
 
-/// Which violations tell most when no more than `most` can be shown: the worst of every hazard (of every
-/// obstacle) before others, those of a section before those of a motor or a task. Places in
+/// Which violations tell most when no more than `most` can be shown: the worst of every hazard, then that of
+/// every other obstacle, then the rest; those of a section before those of a motor or a task. Places in
 /// `report.violations`, ascending; of several with one worst time only the first is told.
 [[nodiscard]] std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most);
+
+/// Whether the hazard is a motor's.
+[[nodiscard]] bool is_of_motor(Hazard hazard);
 
 /// "1.5 deg": an amount in the unit that texts show for the hazard.
 [[nodiscard]] std::string amount_text(Hazard hazard, double amount);

@@ -46,12 +46,13 @@ std::string others_text(const SafetyReport& report, const ViolationGroup& group)
 }  // namespace
 
 std::vector<ViolationGroup> grouped(const SafetyReport& report) {
-  using Kind = std::tuple<Hazard, std::optional<std::size_t>, std::string, double>;
+  using Kind = std::tuple<Hazard, std::optional<std::size_t>, std::string, double, bool>;
   std::map<Kind, std::size_t> place_of;
   std::vector<ViolationGroup> groups;
   for (std::size_t i = 0; i < report.violations.size(); ++i) {
     const Violation& violation = report.violations[i];
-    const Kind kind{violation.hazard, violation.section, violation.name, violation.limit};
+    const Kind kind{violation.hazard, violation.section, violation.name, violation.limit,
+                    violation.is_of_stretch};
     const auto [found, is_new] = place_of.try_emplace(kind, groups.size());
     if (is_new) groups.push_back({{}, i, violation.end});
     ViolationGroup& group = groups[found->second];

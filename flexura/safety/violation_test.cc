@@ -19,6 +19,14 @@ Violation violation(Hazard hazard, double worst_time, double value, std::optiona
           .limit = 1};
 }
 
+TEST(MostTelling, IsAMotorsAfterThoseOfSectionsThoughItHasOne) {
+  SafetyReport report;
+  report.violations = {violation(Hazard::motor_speed, 1, 9, 0, "1.1"),
+                       violation(Hazard::step_rate, 2, 9, 0, "1.1"), violation(Hazard::bend, 3, 2, 0),
+                       violation(Hazard::stretch, 4, 2, 0)};
+  EXPECT_EQ(most_telling(report, 2), (std::vector<std::size_t>{2, 3}));
+}
+
 TEST(MostTelling, AreTheWorstOfEveryHazardAndObstacleAndThoseOfSectionsFirst) {
   SafetyReport report;
   report.violations = {violation(Hazard::bend, 1, 2, 0),
@@ -29,7 +37,7 @@ TEST(MostTelling, AreTheWorstOfEveryHazardAndObstacleAndThoseOfSectionsFirst) {
                        violation(Hazard::stretch, 6, 0.5, 0),
                        violation(Hazard::stretch, 7, 0.7, 1)};
   using Places = std::vector<std::size_t>;
-  EXPECT_EQ(most_telling(report, 4), (Places{1, 3, 4, 5}));
+  EXPECT_EQ(most_telling(report, 4), (Places{1, 2, 3, 5})) << "every hazard before a second obstacle";
   EXPECT_EQ(most_telling(report, 5), (Places{1, 2, 3, 4, 5}));
   EXPECT_EQ(most_telling(report, 6), (Places{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(most_telling(report, 99).size(), 7U);

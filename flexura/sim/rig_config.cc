@@ -28,13 +28,16 @@ bool holds_tables(const Node::Array& entries) {
 
 void lay_by_name(Node::Array& below, Node entry, const std::string& path) {
   const std::string name = *name_of(entry);
+  const SourcePosition where = entry.find("name")->where;
   const auto found = std::ranges::find_if(below, [&](const Node& candidate) {
     const std::string* other = name_of(candidate);
     return other != nullptr && *other == name;
   });
   if (found == below.end()) {
     throw InputError(std::vector<Problem>{
-        {entry.where, fmt::format("truth.{}: nothing is named \"{}\" outside [truth]", path, name)}});
+        {where,
+         fmt::format("truth.{}: nothing is named \"{}\" outside [truth]: expected the name of one that is",
+                     path, name)}});
   }
   lay(*found, std::move(entry), path);
 }

@@ -81,13 +81,14 @@ TEST(Truth, SaysWhereItNamesNothing) {
   const auto source = std::make_shared<const std::string>("x.toml");
   Node wrong = table({member("name", "sied")});
   wrong.where = {source, 7, 1};
+  wrong.find("name")->where = {source, 8, 8};
   Node document = table({entries("camera", {table({member("name", "side")})}),
                          member("truth", Node::Table{entries("camera", {wrong})})});
   try {
     (void)truth_of(document);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.toml:7:1: truth.camera: nothing is named \"sied\""));
+    EXPECT_THAT(error.what(), HasSubstr("x.toml:8:8: truth.camera: nothing is named \"sied\""));
   }
   EXPECT_THROW((void)truth_of(table({member("truth", 3.0)})), InputError);
 }

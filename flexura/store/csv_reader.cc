@@ -75,7 +75,7 @@ class CsvParser {
     }
   }
 
-  [[nodiscard]] bool is_lost() const { return problems_.size() >= max_problems; }
+  [[nodiscard]] bool is_lost() const { return is_lost_ || problems_.size() >= max_problems; }
 
   NumberTable finish() && {
     if (table_.columns.empty() && problems_.empty()) problem(1, 1, "empty: expected a line of column names");
@@ -89,6 +89,14 @@ class CsvParser {
   }
 
   void header(const std::vector<Cell>& cells, int number) {
+    // As spreadsheets write it in half of the world: one line says more than an error for each row.
+    const std::size_t other = cells.size() == 1 ? cells[0].text.find_first_of(";\t") : std::string::npos;
+    if (other != std::string::npos) {
+      const char* name = cells[0].text[other] == ';' ? "';'" : "tabs";
+      problem(number, cells[0].column + static_cast<int>(other),
+              fmt::format("columns are separated by {}: expected commas, and points in numbers", name));
+      is_lost_ = true;
+    }
     for (const Cell& cell : cells) {
       if (cell.text.empty()) problem(number, cell.column, "a column without a name");
       if (std::ranges::count(table_.columns, cell.text) > 0) {
@@ -128,6 +136,7 @@ class CsvParser {
   std::shared_ptr<const std::string> source_;
   NumberTable table_;
   std::vector<Problem> problems_;
+  bool is_lost_ = false;  // Nothing more is worth saying.
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ struct NumberTable {
 
 /// Parses CSV (RFC 4180, "\n" or "\r\n"): a line of names, then lines of as many numbers; blank lines are
 /// skipped. Throws InputError (source:line:column, the column counting characters) with up to 20 problems: no
-/// header, an empty or repeated name, too few or too many values, what is no finite number, an unclosed
+/// header, an empty or repeated name, too few or too many values, what is no finite number, columns
+/// separated by semicolons or tabs, an unclosed
 /// quote, more than 10^6 rows.
 [[nodiscard]] NumberTable parse_csv(std::string_view text, const std::string& source);
 

@@ -42,6 +42,14 @@ TEST(ParseCsv, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(csv_error_of("a\n\"1\"2\n"), HasSubstr("text follows one"));
 }
 
+TEST(ParseCsv, SaysWhatSeparatesColumnsInOneLine) {
+  EXPECT_EQ(csv_error_of("time;a\n0;1,5\n1;2,5\n"),
+            "x.csv:1:5: columns are separated by ';': expected commas, and points in numbers");
+  EXPECT_EQ(csv_error_of("time\ta\n0\t1\n"),
+            "x.csv:1:5: columns are separated by tabs: expected commas, and points in numbers");
+  EXPECT_THAT(parse_csv("time,a;b\n0,1\n", "x.csv").columns, ElementsAre("time", "a;b"));
+}
+
 TEST(ParseCsv, StopsAfterTwentyProblems) {
   std::string text = "a\n";
   for (int i = 0; i < 100000; ++i) text += "x\n";

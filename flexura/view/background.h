@@ -6,8 +6,8 @@
 namespace flexura {
 
 /// What is done beside a session's thread, each kind one thing after another.
-enum class Lane : std::uint8_t { pictures, checks, tasks };
-inline constexpr std::size_t lane_count = 3;
+enum class Lane : std::uint8_t { pictures, measures, checks, tasks };
+inline constexpr std::size_t lane_count = 4;
 
 /// Work away from a session's thread.
 class Background {

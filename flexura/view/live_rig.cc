@@ -64,13 +64,14 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
   return value_shot(rig_, camera, frame, start, std::move(instants));
 }
 
-StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state) {
+StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
+                         const std::vector<CameraStance>& stances) {
   StateMessage message;
   message.time = time;
   message.arm = state;
   message.samples = arm_samples(rig.model, state);
-  for (const Camera& camera : rig.cameras)
-    message.cameras.push_back(camera_sample(camera, camera.initial_stage(), camera.initial_head()));
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i)
+    message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i).stage, stances.at(i).head));
   if (rig.drive) message.displacements = tendon_displacements(rig.model, *rig.drive, state).pulled;
   return message;
 }

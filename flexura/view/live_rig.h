@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "flexura/port/rig_ports.h"
 #include "flexura/sim/simulated_rig.h"
@@ -45,8 +46,9 @@ class LiveRig {
   std::unique_ptr<SimulatedRig> simulated_;
 };
 
-/// The state message of the arm as tasks command it: in `state` at `time` s, with all cameras as the
-/// experiment starts.
-[[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state);
+/// The state message of the arm as tasks command it: in `state` at `time` s, with the cameras at their
+/// `stances`.
+[[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
+                                       const std::vector<CameraStance>& stances);
 
 }  // namespace flexura

@@ -38,6 +38,7 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const StageRequest& stage) const {
     session.require_free();
     const std::size_t place = session.place_of(stage.camera);
+    require_travel(session.viewed()->cameras[place], stage);
     StageState target = session.stage_targets_.at(place);
     target.offset = {stage.x.value_or(target.offset.x()), stage.y.value_or(target.offset.y()),
                      stage.z.value_or(target.offset.z())};
@@ -225,6 +226,7 @@ void LiveSession::halt() {
 void LiveSession::reset() {
   ++generation_;
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  ++leaps_;
   rig_.restart(clock_ - config_.start);
   head_targets_.clear();
   stage_targets_.clear();
@@ -267,7 +269,10 @@ void LiveSession::start_run(const Reply& reply) {
 
 void LiveSession::follow_run() {
   if (run_ == nullptr) return;
+  const bool was_shown = news_.time.has_value();
   news_ = run_->news();
+  // From the rig to the run's start, and from its end to the rig.
+  if (news_.time && (!was_shown || news_.end)) ++leaps_;
   if (!news_.end) {
     constexpr double to_be_seen = 0.002;
     if (std::abs(news_.fraction - told_fraction_) < to_be_seen) return;
@@ -302,15 +307,26 @@ ArmState LiveSession::shown_state() {
   return run_ != nullptr && news_.time ? news_.state : rig_.truth(rig_.now());
 }
 
+// Where the run's cameras stand, as far as it says so.
+std::vector<CameraStance> LiveSession::run_stances() const {
+  std::vector<CameraStance> stances;
+  for (std::size_t i = 0; i < viewed()->cameras.size(); ++i)
+    stances.push_back(i < news_.cameras.size() ? viewed()->stance(i, news_.cameras[i])
+                                               : viewed()->first_stance(i));
+  return stances;
+}
+
 void LiveSession::send_states() {
   const bool is_running = run_ != nullptr;
-  StateMessage state =
-      is_running && news_.time ? still_state(*viewed(), *news_.time, news_.state) : rig_.state();
+  StateMessage state = is_running && news_.time
+                           ? still_state(*viewed(), *news_.time, news_.state, run_stances())
+                           : rig_.state();
   // A page's time goes on; that of a run which it watches from the start to the end is the run's.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
   state.is_unsafe = !is_running && is_touching_;
+  state.leaps = leaps_;
   state.sequence = sequence_++;
   const auto message = std::make_shared<const std::string>(state_message(state));
   for (const ClientId client : clients_) messenger().post(client, state_stream, message);
@@ -319,10 +335,9 @@ void LiveSession::send_states() {
 ValueShot LiveSession::newest_shot(std::size_t camera) {
   const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
   if (run_ == nullptr || !news_.time) return rig_.shot(camera, number);
-  const Camera& shown = viewed()->cameras[camera];
+  const CameraStance stance = run_stances().at(camera);
   const double start = frame_times(viewed()->sensors[camera], number).start;
-  return value_shot(viewed(), camera, number, start,
-                    {{start, news_.state, shown.initial_head(), shown.initial_stage()}});
+  return value_shot(viewed(), camera, number, start, {{start, news_.state, stance.head, stance.stage}});
 }
 
 void LiveSession::send_images() {

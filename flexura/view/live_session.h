@@ -64,6 +64,7 @@ class LiveSession : public PictureSession {
   static Judged judge(const ViewedRig& rig, const ArmState& from, const Move& move);
 
   [[nodiscard]] bool is_watched_run() const { return config_.run != nullptr; }
+  [[nodiscard]] Look look(const ImageStreams::Key& key) override { return look_at_sent(key); }
   void require_free() const;
   void move(Move move);
   void look_at(Move move);
@@ -76,6 +77,7 @@ class LiveSession : public PictureSession {
   void send_states();
   void send_images();
   [[nodiscard]] ArmState shown_state();
+  [[nodiscard]] std::vector<CameraStance> run_stances() const;
   [[nodiscard]] ValueShot newest_shot(std::size_t camera);
   void event(const char* level, const std::string& name, const std::string& text);
   void warn(const std::string& text);
@@ -87,6 +89,7 @@ class LiveSession : public PictureSession {
   std::vector<HeadState> head_targets_;  // what they were told last, by camera
   std::vector<StageState> stage_targets_;
   std::uint32_t sequence_ = 0;
+  std::uint16_t leaps_ = 0;
   std::set<ClientId> clients_;
   bool is_looking_ = false;
   std::optional<Move> waiting_;

@@ -3,11 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "flexura/kinematics/spatial.h"
 #include "flexura/math/arrays.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/live_sessions.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
 
@@ -16,53 +21,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-// A session with a client, whose clock the test moves on.
-class LiveSessionTest : public ::testing::Test {
- protected:
-  explicit LiveSessionTest(const std::string& text = viewed_text)
-      : rig_(viewed_rig(text)),
-        session_(rig_, messenger_, background_, {.start = 100, .results = folder_.path() / "run"}) {
-    session_.opened(me);
-  }
-
-  // What comes of a request; its error, if there is one.
-  ViewAnswer ask(const Ask& ask, ClientId client = me) {
-    answer_.reset();
-    try {
-      session_.take(client, ask, [this](const ViewAnswer& answer) { answer_ = answer; });
-    } catch (const ViewRefusal& refusal) {
-      return {{}, refusal.what()};
-    }
-    return answer_.value_or(ViewAnswer{{}, "no answer yet"});
-  }
-  // Goes on by so many s, 60 times a second.
-  StateMessage pass(double seconds) {
-    for (const double end = clock_ + seconds; clock_ < end - 1e-9;) session_.advance(clock_ += 1.0 / 60);
-    return messenger_.state(me);
-  }
-  [[nodiscard]] std::string last_image(ClientId client, std::uint32_t stream) {
-    return *messenger_.posts[{client, stream}].back();
-  }
-  [[nodiscard]] std::string last_event() {
-    const Node event = messenger_.last(me, "event");
-    return event.empty() ? "" : *event.find("text")->as<std::string>();
-  }
-  static ArmRequest bends(const std::vector<std::array<double, 2>>& bends, double duration = 0) {
-    ArmRequest request;
-    request.bends = bends;
-    request.duration = duration;
-    return request;
-  }
-
-  TemporaryFolder folder_;
-  ViewedRigPtr rig_;
-  FakeMessenger messenger_;
-  FakeBackground background_;
-  LiveSession session_;
-  double clock_ = 100;
-  std::optional<ViewAnswer> answer_;
-};
 
 TEST_F(LiveSessionTest, SendsStatesAtTheRateOfItsClock) {
   const StateMessage state = pass(1);
@@ -163,6 +121,22 @@ TEST_F(LiveSessionTest, PutsEverythingBack) {
   EXPECT_GT(state.time, 2) << "time goes on";
 }
 
+TEST_F(LiveSessionTest, CountsWhereNoWayLeadsFromOneStateToTheNext) {
+  const int start = pass(0.1).leaps;
+  ask(bends({{-1, 0}, {0, 0}}));
+  EXPECT_EQ(pass(1).leaps, start) << "the arm went there";
+  ask(ResetRequest{});
+  EXPECT_EQ(pass(0.1).leaps, start + 1);
+  ask(bends({{-1, 0}, {0, 0}}));
+  pass(1);
+  background_.is_prompt = false;
+  ask(RunRequest{});
+  EXPECT_EQ(pass(0.1).leaps, start + 1) << "it has not begun";
+  background_.work();
+  pass(0.1);
+  EXPECT_EQ(pass(0.1).leaps, start + 2) << "to the run's start, or to its end where that was all";
+}
+
 TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
   EXPECT_EQ(ask(HeadRequest{"front", 0.2, {}, {}}).error, "");
   EXPECT_EQ(ask(HeadRequest{"front", {}, 0.1, {}}).error, "");
@@ -172,8 +146,13 @@ TEST_F(LiveSessionTest, TurnsACameraOneAxisAfterTheOther) {
   EXPECT_NEAR(state.cameras[0].head.tilt, 0.1, 1e-6);
   EXPECT_NEAR(state.cameras[0].fx, 160, 1e-3);
   EXPECT_EQ(state.cameras[1].head.pan, 0);
-  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error, HasSubstr("there is no camera \"back\""));
-  EXPECT_EQ(ask(StageRequest{"front", 1.0, {}, {}}).error, "") << "drawn to its limits: it has no travel";
+  EXPECT_THAT(ask(HeadRequest{"back", 0.2, {}, {}}).error,
+              HasSubstr("camera = \"back\": there is no camera"));
+}
+
+TEST_F(LiveSessionTest, SaysThatACameraHasNoStage) {
+  EXPECT_EQ(ask(StageRequest{"front", 1.0, {}, {}}).error, "the camera \"front\" has no stage");
+  EXPECT_EQ(ask(StageRequest{"front", {}, {}, {}}).error, "the camera \"front\" has no stage");
 }
 
 TEST_F(LiveSessionTest, RendersNothingThatNobodyAskedFor) {
@@ -322,7 +301,7 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   watched.opened(other);
   EXPECT_TRUE(watched.hello().readonly);
   run->update(0.5, "bend");
-  run->state(7.25, {{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}});
+  run->state(7.25, {{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}}, {});
   watched.advance(100.1);
   EXPECT_EQ(messenger_.state(other).time, 7.25);
   EXPECT_NEAR(messenger_.state(other).arm.bends[1].y(), 0.4, 1e-6);

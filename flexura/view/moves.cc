@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "flexura/base/problems.h"
@@ -49,6 +52,18 @@ std::string contact_text(const ContactWatch& watch, const Contact& contact) {
 }
 
 }  // namespace
+
+void require_travel(const Camera& camera, const StageRequest& request) {
+  constexpr std::array<const char*, 3> names = {"x", "y", "z"};
+  const std::array<const std::optional<double>*, 3> wanted = {&request.x, &request.y, &request.z};
+  const auto travels = [](const AxisConfig& axis) { return axis.limits[1] > axis.limits[0]; };
+  const std::string name = Node{camera.config().name, {}}.brief();
+  if (std::ranges::none_of(camera.stage_axes(), travels))
+    throw ViewRefusal(fmt::format("the camera {} has no stage", name));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (*wanted[i] && !travels(camera.stage_axes()[i]))
+      throw ViewRefusal(fmt::format("the stage of camera {} does not move along {}", name, names[i]));
+}
 
 ArmState within_limits(const Arm& arm, ArmState state) {
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {

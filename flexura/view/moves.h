@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/camera/camera.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
@@ -17,6 +18,9 @@ namespace flexura {
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
                                     const ArmRequest& request);
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
+
+/// A ViewRefusal where the camera has no stage, or one that does not move along what is asked for.
+void require_travel(const Camera& camera, const StageRequest& request);
 
 /// The shape nearest to `state` within the sections' limits.
 [[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);

@@ -166,6 +166,11 @@ bool PictureRoom::file(const ValueShot& shot, std::function<void(HttpAnswer)> an
   return true;
 }
 
+std::optional<PictureRoom::Shown> PictureRoom::last_sent(const ImageStreams::Key& key) const {
+  const auto found = last_.find(key);
+  return found == last_.end() ? std::nullopt : std::optional(found->second);
+}
+
 void PictureRoom::close(ClientId client) {
   std::erase_if(last_, [&](const auto& entry) { return entry.first.client == client; });
 }

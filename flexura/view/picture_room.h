@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -39,14 +40,17 @@ class PictureRoom {
   void pixel(const ImageStreams::Key& key, const ValueShot& newest, int u, int v, Reply reply);
   /// The picture as PNG. False when too many wait.
   [[nodiscard]] bool file(const ValueShot& shot, std::function<void(HttpAnswer)> answer);
-  void close(ClientId client);
-
- private:
-  struct Tools;
+  /// A picture and what it shows.
   struct Shown {
     ValueShot shot;
     std::shared_ptr<const Picture> picture;
   };
+  /// The picture last sent to the client; none before the first.
+  [[nodiscard]] std::optional<Shown> last_sent(const ImageStreams::Key& key) const;
+  void close(ClientId client);
+
+ private:
+  struct Tools;
   struct Sent;  // what a picture's streams get
   void deliver(const Sent& sent);
 

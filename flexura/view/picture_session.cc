@@ -1,6 +1,14 @@
 #include "flexura/view/picture_session.h"
 
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "flexura/port/camera_port.h"
+#include "flexura/sim/simulated_camera.h"
 
 namespace flexura {
 
@@ -8,17 +16,36 @@ PictureSession::PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Ba
     : viewed_(rig),
       messenger_(messenger),
       background_(background),
-      room_(rig, messenger, background, streams_) {}
+      room_(rig, messenger, background, streams_),
+      measures_(background, Lane::measures) {}
 
 void PictureSession::closed(ClientId client) {
   streams_.close(client);
   room_.close(client);
+  measures_.close(client);
 }
 
 std::size_t PictureSession::place_of(const std::string& camera) const {
   const auto place = viewed_->camera(camera);
-  if (!place) throw ViewRefusal("there is no camera " + Node{camera, {}}.brief());
-  return *place;
+  if (place) return *place;
+  std::vector<std::string> names;
+  for (const Camera& known : viewed_->cameras) names.push_back(Node{known.config().name, {}}.brief());
+  const std::string expected =
+      names.empty() ? "this rig has none" : fmt::format("expected one of {}", fmt::join(names, ", "));
+  throw ViewRefusal(
+      fmt::format("camera = {}: there is no camera of that name; {}", Node{camera, {}}.brief(), expected));
+}
+
+PictureSession::Look PictureSession::look_at_sent(const ImageStreams::Key& key) {
+  const auto sent = room_.last_sent(key);
+  if (!sent)
+    throw ViewRefusal(fmt::format("no picture of the camera {} was sent yet: expected one before, by images",
+                                  Node{viewed_->cameras[key.camera].config().name, {}}.brief()));
+  return [sent = *sent, rig = viewed_] {
+    const Shot& shot = sent.shot.shot;
+    return SeenPicture{shot.camera, shot.frame, shot.sensor->bits, sent.picture,
+                       rig->reading(shot.camera, stance_in(sent.shot))};
+  };
 }
 
 void PictureSession::Taker::done(Node result) const { reply({std::move(result), ""}); }
@@ -32,6 +59,34 @@ void PictureSession::Taker::operator()(const ImagesRequest& images) const {
 void PictureSession::Taker::operator()(const AckRequest& ack) const {
   pictures.streams_.ack({client, pictures.place_of(ack.camera)}, ack.number);
   done();
+}
+
+void PictureSession::Taker::operator()(const MeasureRequest& measure) const {
+  const std::size_t camera = pictures.place_of(measure.camera);
+  const auto names = layer_names();
+  std::vector<std::string> layers =
+      measure.layers.value_or(std::vector<std::string>(names.begin(), names.end()));
+  pictures.measures_.ask(
+      {client, camera},
+      [rig = pictures.viewed_, look = pictures.look({client, camera}), layers = std::move(layers)] {
+        return measure_answer(*rig, look(), layers);
+      },
+      std::move(reply));
+}
+
+void PictureSession::Taker::operator()(const ShapeRequest& /*shape*/) const {
+  const std::size_t cameras = pictures.viewed_->cameras.size();
+  if (cameras < 2) throw ViewRefusal("a shape needs the pictures of two cameras: this rig has fewer");
+  std::vector<Look> looks;
+  for (std::size_t camera = 0; camera < cameras; ++camera) looks.push_back(pictures.look({client, camera}));
+  pictures.measures_.ask(
+      {client, cameras},
+      [rig = pictures.viewed_, looks = std::move(looks)] {
+        std::vector<SeenPicture> seen;
+        for (const Look& look : looks) seen.push_back(look());
+        return shape_answer(*rig, seen);
+      },
+      std::move(reply));
 }
 
 void PictureSession::Taker::operator()(const PingRequest& /*ping*/) const { done(); }

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "flexura/view/background.h"
 #include "flexura/view/image_streams.h"
+#include "flexura/view/latest_jobs.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/picture_room.h"
+#include "flexura/view/seen_arm.h"
 #include "flexura/view/session.h"
 
 namespace flexura {
@@ -29,8 +32,17 @@ class PictureSession : public Session {
     void done(Node result = {Node::Table{}, {}}) const;
     void operator()(const ImagesRequest& images) const;
     void operator()(const AckRequest& ack) const;
+    void operator()(const MeasureRequest& measure) const;
+    void operator()(const ShapeRequest& shape) const;
     void operator()(const PingRequest& ping) const;
   };
+
+  /// Gets a picture, on the lane of measures; throws where it cannot be had.
+  using Look = std::function<SeenPicture()>;
+  /// At the picture that a client sees; a ViewRefusal where it sees none.
+  [[nodiscard]] virtual Look look(const ImageStreams::Key& key) = 0;
+  /// At the one that the room sent last.
+  [[nodiscard]] Look look_at_sent(const ImageStreams::Key& key);
 
   [[nodiscard]] const ViewedRigPtr& viewed() const { return viewed_; }
   [[nodiscard]] Messenger& messenger() { return messenger_; }
@@ -48,6 +60,7 @@ class PictureSession : public Session {
   Background& background_;
   ImageStreams streams_;
   PictureRoom room_;
+  LatestJobs measures_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };
 

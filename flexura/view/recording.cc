@@ -52,6 +52,7 @@ Recording::Recording(const std::filesystem::path& folder)
 void Recording::index() {
   images_.resize(rig_->cameras.size());
   heads_.resize(rig_->cameras.size());
+  stages_.resize(rig_->cameras.size());
   for (const McapMessage& message : log_.messages()) {
     const std::string& topic = message.channel->topic;
     const Entry entry{message.log_time, &message};
@@ -60,12 +61,14 @@ void Recording::index() {
       const std::string& name = rig_->cameras[i].config().name;
       if (topic == image_topic(name)) images_[i].push_back(entry);
       if (topic == head_topic(name)) heads_[i].push_back(entry);
+      if (topic == stage_topic(name)) stages_[i].push_back(entry);
     }
   }
   const auto sort = [](Entries& entries) { std::ranges::stable_sort(entries, {}, &Entry::time); };
   sort(states_);
   std::ranges::for_each(images_, sort);
   std::ranges::for_each(heads_, sort);
+  std::ranges::for_each(stages_, sort);
 }
 
 void Recording::read_marks() {
@@ -153,17 +156,21 @@ Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) c
           std::move(message.data.data)};
 }
 
-HeadState Recording::head(std::size_t camera, double time) const {
-  const Entries& entries = heads_.at(camera);
-  const Camera& described = rig_->cameras.at(camera);
-  if (entries.empty()) return described.initial_head();
+CameraStance Recording::stance(std::size_t camera, double time) const {
+  CameraReading reading = rig_->first_reading(camera);
   try {
-    const auto message = message_of<HeadReadingMessage>(*entries[place_at(entries, time)].message);
-    const auto [least, most] = described.head_axes()[2].limits;
-    return {message.pan, message.tilt, std::clamp(message.zoom, least, most)};
+    if (const Entries& entries = heads_.at(camera); !entries.empty()) {
+      const auto head = message_of<HeadReadingMessage>(*entries[place_at(entries, time)].message);
+      reading.head = {head.pan, head.tilt, head.zoom};
+    }
+    if (const Entries& entries = stages_.at(camera); !entries.empty()) {
+      const auto stage = message_of<StageReadingMessage>(*entries[place_at(entries, time)].message);
+      reading.stage.offset = Eigen::Vector3d(stage.offset.data());
+    }
   } catch (const InputError&) {
-    return described.initial_head();
+    return rig_->first_stance(camera);
   }
+  return rig_->stance(camera, reading);
 }
 
 }  // namespace flexura

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "flexura/camera/head.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/viewed_rig.h"
@@ -47,9 +46,9 @@ class Recording {
   };
   /// InputError where the log holds none.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
-  /// How a camera's head stood at a time, s, as the log has it, or else (a damaged message, too) as the
-  /// experiment starts.
-  [[nodiscard]] HeadState head(std::size_t camera, double time) const;
+  /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
+  /// starts.
+  [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
 
  private:
   struct Entry {
@@ -67,7 +66,7 @@ class Recording {
   ViewedRigPtr rig_;
   McapReader log_;
   Entries states_;
-  std::vector<Entries> images_, heads_;  // by camera
+  std::vector<Entries> images_, heads_, stages_;  // by camera
   std::vector<Mark> marks_;
 };
 

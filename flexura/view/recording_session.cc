@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "flexura/base/source.h"
 #include "flexura/experiment/results.h"
@@ -117,11 +118,9 @@ void RecordingSession::take(const Document& document, std::function<void(HttpAns
 void RecordingSession::send_state(ClientId client) {
   const std::size_t place = recording_->state_at(times_.at(client));
   const double time = recording_->time_of_state(place);
-  StateMessage state = still_state(*viewed(), time, recording_->state(place));
-  for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) {
-    const Camera& camera = viewed()->cameras[i];
-    state.cameras[i] = camera_sample(camera, camera.initial_stage(), recording_->head(i, time));
-  }
+  std::vector<CameraStance> stances;
+  for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) stances.push_back(recording_->stance(i, time));
+  StateMessage state = still_state(*viewed(), time, recording_->state(place), stances);
   state.is_recording = true;
   state.is_unsafe = recording_->is_unsafe(time);
   state.sequence = sequence_++;
@@ -136,9 +135,9 @@ std::int64_t RecordingSession::image_place(std::size_t camera, double time) cons
 ValueShot RecordingSession::shot(std::size_t camera, std::int64_t number) const {
   const auto place = static_cast<std::size_t>(number);
   const double time = recording_->time_of_state(place);
+  const CameraStance stance = recording_->stance(camera, time);
   return value_shot(viewed(), camera, number, time,
-                    {{time, recording_->state(place), recording_->head(camera, time),
-                      viewed()->cameras[camera].initial_stage()}});
+                    {{time, recording_->state(place), stance.head, stance.stage}});
 }
 
 void RecordingSession::advance(double now) {
@@ -210,6 +209,19 @@ void RecordingSession::tell_pixel(const ImageStreams::Key& key, int u, int v, Re
                        if (!alive.expired()) reply(answer);
                      };
                    });
+}
+
+// Of a run that was filmed, the log's picture of the time at which the client is.
+PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
+  if (!is_filmed(key.camera)) return look_at_sent(key);
+  const std::int64_t place = image_place(key.camera, times_.at(key.client));
+  return [key, place, recording = recording_] {
+    const Recording::LoggedImage image = recording->image(key.camera, static_cast<std::size_t>(place));
+    const ViewedRig& rig = *recording->rig();
+    return SeenPicture{key.camera, place, rig.sensors[key.camera].bits,
+                       std::make_shared<const Picture>(read_png(image.png)),
+                       rig.reading(key.camera, recording->stance(key.camera, image.time))};
+  };
 }
 
 void RecordingSession::give_image(const ImageAsk& ask, std::function<void(HttpAnswer)> answer) {

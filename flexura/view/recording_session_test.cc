@@ -5,10 +5,13 @@
 
 #include <fstream>
 
+#include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/model/backbone.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/port/motion_ports.h"
 #include "flexura/store/text_file.h"
 #include "flexura/view/series.h"
 #include "tests/support/experiment_files.h"
@@ -145,6 +148,60 @@ TEST_F(RecordingSessionTest, ShowsTheCommandedArmWhereNothingWasFilmed) {
   EXPECT_THAT(*ask(PixelRequest{"front", 31, 24}).result.find("label")->as<std::string>(),
               HasSubstr("section"));
   EXPECT_EQ(get(ImageAsk{"front", 0.2}).body.substr(1, 3), "PNG");
+}
+
+// As a calibration logs it, in which heads and stages move.
+TEST_F(RecordingSessionTest, ShowsCamerasWhereTheLogHasThem) {
+  const std::string text =
+      replaced(viewed_text, "position = [0, 0.5, 2], look_at = [0, 0.5, 0] }",
+               "position = [0, 0.5, 2], look_at = [0, 0.5, 0], stage = { x = { limits = [-0.5, 0.5] } } }");
+  experiment_ = parse_experiment(text, "x.toml");
+  write_new_file(folder_.path() / experiment_file_name, text);
+  {
+    const Arm arm = experiment_.arm.arm();
+    Recorder recorder(folder_.path() / log_file_name, arm);
+    const ArmState straight = ArmState::straight(2);
+    for (const double time : {0.0, 1.0, 2.0}) {
+      recorder.state(time, straight, Backbone(arm, straight));
+      recorder.reading("front", HeadReading{time, {0.1 * time, 0.05, 1}, false});
+      recorder.reading("front", StageReading{time, {{0.2 * time, 0, 0}}, true});
+    }
+    recorder.close();
+  }
+  open();
+  const StateMessage start = messenger_.state(me);
+  EXPECT_NEAR(start.cameras[0].head.tilt, 0.05, 1e-6);
+  const std::string before = get(ImageAsk{"front", 0.0}).body;
+  ask(AtRequest{2});
+  const StateMessage end = messenger_.state(me);
+  EXPECT_NEAR(end.cameras[0].head.pan, 0.2, 1e-6);
+  EXPECT_NEAR(end.cameras[0].stage.x(), 0.4, 1e-6);
+  EXPECT_NEAR((end.cameras[0].X_WC.position - start.cameras[0].X_WC.position).norm(), 0.4, 1e-6);
+  EXPECT_EQ(end.cameras[1].stage.norm(), 0) << "of which the log says nothing";
+  EXPECT_NE(get(ImageAsk{"front", 2.0}).body, before) << "pictures are taken from there";
+}
+
+TEST_F(RecordingSessionTest, MeasuresThePicturesOfTheLog) {
+  std::string text = viewed_text;
+  for (const char* what :
+       {"lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }\nsensor = { width = 64, height = 48, ",
+        "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }\nsensor = { width = 64, height = 48, "})
+    text = replaced(text, what, "sensor = { ");
+  record(text + "[record]\ncameras = true\nevery = 10\n");
+  open();
+  ask(AtRequest{1});
+  const ViewAnswer answer = ask(MeasureRequest{"front", {{"axis"}}});
+  ASSERT_EQ(answer.error, "");
+  EXPECT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
+  EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(),
+            *ask(PixelRequest{"front", 1, 1}).result.find("number")->as<std::int64_t>());
+  const ViewAnswer shape = ask(ShapeRequest{});
+  ASSERT_EQ(shape.error, "");
+  ASSERT_TRUE(*shape.result.find("found")->as<bool>()) << *shape.result.find("reason")->as<std::string>();
+  const Node::Array& tip = *shape.result.find("poses")->as<Node::Array>()->back().as<Node::Array>();
+  const Eigen::Vector3d shown = messenger_.state(me).samples.back().X_WS.position;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    EXPECT_NEAR(*tip[static_cast<std::size_t>(i)].as<double>(), shown[i], 0.03) << "but for the frame's age";
 }
 
 TEST_F(RecordingSessionTest, GivesSeriesThatKeepTheirExtremes) {

@@ -8,6 +8,7 @@
 
 #include "flexura/base/problems.h"
 #include "flexura/store/json.h"
+#include "flexura/view/seen_arm.h"
 
 namespace flexura {
 namespace {
@@ -189,6 +190,27 @@ const Table<PixelRequest>& fields_of(const PixelRequest*) {
           .check([](const PixelRequest& pixel, Reader& reader) { check_camera(pixel.camera, reader); });
   return table;
 }
+
+const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
+  static const auto table =
+      Table<MeasureRequest>("measure", "What a picture shows of the arm.")
+          .field("camera", &MeasureRequest::camera, {.required = true})
+          .field("layers", &MeasureRequest::layers,
+                 {.meaning = "what is to be drawn", .count = {0, layer_names().size()}})
+          .check([](const MeasureRequest& measure, Reader& reader) {
+            check_camera(measure.camera, reader);
+            for (std::size_t i = 0; measure.layers && i < measure.layers->size(); ++i) {
+              const std::string& name = (*measure.layers)[i];
+              if (std::ranges::count(layer_names(), name) == 0)
+                reader.problem_at(fmt::format("layers[{}]", i),
+                                  fmt::format("there is no layer {}: expected one of {}",
+                                              Node{name, {}}.brief(), fmt::join(layer_names(), ", ")));
+            }
+          });
+  return table;
+}
+
+const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeRequest>("shape"); }
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =

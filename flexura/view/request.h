@@ -53,6 +53,11 @@ struct PixelRequest {
   std::string camera;
   std::int64_t u = 0, v = 0;
 };
+struct MeasureRequest {
+  std::string camera;
+  std::optional<std::vector<std::string>> layers;  ///< All of them where it is left out.
+};
+struct ShapeRequest {};
 struct PointRequest {
   double s = 0;  ///< Along the unstretched arm, m.
 };
@@ -73,13 +78,16 @@ const Table<AtRequest>& fields_of(const AtRequest*);
 const Table<ImagesRequest>& fields_of(const ImagesRequest*);
 const Table<AckRequest>& fields_of(const AckRequest*);
 const Table<PixelRequest>& fields_of(const PixelRequest*);
+const Table<MeasureRequest>& fields_of(const MeasureRequest*);
+const Table<ShapeRequest>& fields_of(const ShapeRequest*);
 const Table<PointRequest>& fields_of(const PointRequest*);
 const Table<BackboneRequest>& fields_of(const BackboneRequest*);
 const Table<PingRequest>& fields_of(const PingRequest*);
 
-using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
-                         RunRequest, CancelRequest, OpenRequest, LiveRequest, AtRequest, ImagesRequest,
-                         AckRequest, PixelRequest, PointRequest, BackboneRequest, PingRequest>;
+using Ask =
+    std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest, RunRequest,
+                 CancelRequest, OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
+                 MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// What one message asks, or why it asks nothing.
 struct Request {

@@ -45,6 +45,11 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   EXPECT_EQ(images.quality, 60);
   EXPECT_EQ(read_as_ask<AckRequest>(R"({"id":7,"do":"ack","camera":"a","number":9})").number, 9);
   EXPECT_EQ(read_as_ask<PixelRequest>(R"({"id":7,"do":"pixel","camera":"a","u":3,"v":4})").v, 4);
+  const auto measure =
+      read_as_ask<MeasureRequest>(R"({"id":7,"do":"measure","camera":"a","layers":["axis"]})");
+  EXPECT_EQ(measure.layers->at(0), "axis");
+  EXPECT_FALSE(read_as_ask<MeasureRequest>(R"({"id":7,"do":"measure","camera":"a"})").layers);
+  (void)read_as_ask<ShapeRequest>(R"({"id":7,"do":"shape"})");
   EXPECT_EQ(read_as_ask<PointRequest>(R"({"id":7,"do":"point","s":0.5})").s, 0.5);
   EXPECT_TRUE(read_as_ask<BackboneRequest>(R"({"id":7,"do":"backbone","bends":[[0,1]]})").bends);
   (void)read_as_ask<PingRequest>(R"({"id":7,"do":"ping"})");
@@ -83,6 +88,11 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"head","camera":""})", "camera"},
       {R"({"id":7,"do":"images","camera":"a","rate":1,"quality":0})", "quality"},
       {R"({"id":7,"do":"pixel","camera":"a","u":-1,"v":0})", "u"},
+      {R"({"id":7,"do":"measure"})", "camera: missing"},
+      {R"({"id":7,"do":"measure","camera":"a","layers":["axis","edges"]})",
+       "layers[1]: there is no layer \"edges\": expected one of mask, silhouette, axis, markers, circle"},
+      {R"({"id":7,"do":"measure","camera":"a","layers":"axis"})", "layers"},
+      {R"({"id":7,"do":"shape","camera":"a"})", "camera: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},
       {R"({"id":"7","do":"ack","camera":"a","number":0})", "id is missing"}};
   for (const auto& [text, error] : cases) {

@@ -12,10 +12,11 @@ void RunLink::update(double fraction, std::string_view what) {
   news_.what.assign(what);
 }
 
-void RunLink::state(double time, const ArmState& state) {
+void RunLink::state(double time, const ArmState& state, std::span<const CameraReading> cameras) {
   const std::lock_guard lock(mutex_);
   news_.time = time;
   news_.state = state;
+  news_.cameras.assign(cameras.begin(), cameras.end());
 }
 
 void RunLink::finish(End end) {

@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run.h"
@@ -28,6 +30,7 @@ class RunLink : public Progress, public RunWatcher {
     std::string what;
     std::optional<double> time;  ///< Of `state`, s; none before the first one.
     ArmState state;
+    std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
     std::optional<End> end;
   };
 
@@ -36,7 +39,7 @@ class RunLink : public Progress, public RunWatcher {
 
   void update(double fraction, std::string_view what) override;
   [[nodiscard]] bool cancelled() const override { return cancelled_; }
-  void state(double time, const ArmState& state) override;
+  void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
   void cancel() { cancelled_ = true; }
   void finish(End end);

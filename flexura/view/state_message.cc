@@ -136,7 +136,7 @@ std::string state_message(const StateMessage& state) {
   out.count(state.samples.size());
   out.count(state.cameras.size());
   out.count(state.displacements.size());
-  out.put(std::uint16_t{0});
+  out.put(state.leaps);
   out.put(state.sequence);
   out.put(state.time);
   for (const Eigen::Vector2d& bend : state.arm.bends) out.single(bend.x()), out.single(bend.y());
@@ -156,8 +156,9 @@ std::optional<StateMessage> read_state_message(std::string_view bytes) {
   state.is_running = (flags & running_flag) != 0;
   state.is_recording = (flags & recording_flag) != 0;
   state.is_unsafe = (flags & unsafe_flag) != 0;
-  std::array<std::uint16_t, 5> counts{};
+  std::array<std::uint16_t, 4> counts{};
   for (std::uint16_t& count : counts) count = in.take<std::uint16_t>();
+  state.leaps = in.take<std::uint16_t>();
   state.sequence = in.take<std::uint32_t>();
   state.time = in.number();
   if (in.size() != body_size(counts[0], counts[1], counts[2], counts[3])) return std::nullopt;

@@ -35,6 +35,8 @@ struct StateMessage {
   bool is_running = false;  ///< A run of tasks is going on.
   bool is_recording = false;
   bool is_unsafe = false;
+  /// How often everything was put elsewhere, with no way between: counts up when it is, and wraps.
+  std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
   double time = 0;  ///< s
   ArmState arm;

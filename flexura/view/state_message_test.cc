@@ -34,6 +34,7 @@ StateMessage random_message(TestRandom& random) {
   message.is_running = random.integer(0, 1) == 1;
   message.is_recording = random.integer(0, 1) == 1;
   message.is_unsafe = random.integer(0, 1) == 1;
+  message.leaps = static_cast<std::uint16_t>(random.integer(0, 65535));
   message.sequence = 4000000000U + static_cast<std::uint32_t>(random.integer(0, 1000));
   message.time = random.uniform(0, 1e6);
   const auto sections = static_cast<std::size_t>(random.integer(1, 5));
@@ -58,6 +59,7 @@ TEST(StateMessage, ReadsBackInSinglePrecision) {
     const auto back = read_state_message(state_message(message));
     ASSERT_TRUE(back);
     EXPECT_EQ(back->is_moving, message.is_moving);
+    EXPECT_EQ(back->leaps, message.leaps);
     EXPECT_EQ(back->is_running, message.is_running);
     EXPECT_EQ(back->is_recording, message.is_recording);
     EXPECT_EQ(back->is_unsafe, message.is_unsafe);

@@ -20,6 +20,29 @@ Instant between_instants(const Instant& a, const Instant& b, double part) {
   return at;
 }
 
+// `from` and the way from one state to another.
+HeadState plus_way(const HeadState& from, const HeadState& a, const HeadState& b) {
+  return {from.pan + b.pan - a.pan, from.tilt + b.tilt - a.tilt, from.zoom + b.zoom - a.zoom};
+}
+
+// Rounding, or an offset, leads past the lens's ends.
+double on_lens(const Camera& camera, double zoom) {
+  const auto [least, most] = camera.head_axes()[2].limits;
+  return std::clamp(zoom, least, most);
+}
+
+// A log that somebody has written may say anything; no axis stands beyond its ends.
+CameraReading within_ends(const Camera& camera, CameraReading reading) {
+  const auto draw = [](const AxisConfig& axis, double& position) {
+    position = std::clamp(position, axis.limits[0], axis.limits[1]);
+  };
+  const auto& [pan, tilt, zoom] = camera.head_axes();
+  draw(pan, reading.head.pan), draw(tilt, reading.head.tilt), draw(zoom, reading.head.zoom);
+  for (std::size_t i = 0; i < camera.stage_axes().size(); ++i)
+    draw(camera.stage_axes()[i], reading.stage.offset[static_cast<Eigen::Index>(i)]);
+  return reading;
+}
+
 bool stand_alike(const Instant& a, const Instant& b) {
   return a.arm.bends == b.arm.bends && a.arm.stretches == b.arm.stretches && a.head == b.head &&
          a.stage == b.stage;
@@ -46,12 +69,44 @@ ViewedRig::ViewedRig(Experiment read)
     cameras.emplace_back(config);
     sensors.push_back(config.sensor);
   }
+  for (const CameraConfig& config : experiment.model_rig().cameras) believed.emplace_back(config);
 }
 
 std::optional<std::size_t> ViewedRig::camera(std::string_view name) const {
   for (std::size_t i = 0; i < cameras.size(); ++i)
     if (cameras[i].config().name == name) return i;
   return std::nullopt;
+}
+
+CameraReading ViewedRig::first_reading(std::size_t camera) const {
+  return {believed.at(camera).initial_head(), believed.at(camera).initial_stage()};
+}
+
+CameraStance ViewedRig::first_stance(std::size_t camera) const {
+  return {cameras.at(camera).initial_head(), cameras.at(camera).initial_stage()};
+}
+
+CameraStance ViewedRig::stance(std::size_t camera, const CameraReading& reading) const {
+  const CameraReading read = within_ends(cameras.at(camera), reading), first = first_reading(camera);
+  const CameraStance start = first_stance(camera);
+  CameraStance stance{plus_way(start.head, first.head, read.head),
+                      {start.stage.offset + read.stage.offset - first.stage.offset}};
+  stance.head.zoom = on_lens(cameras.at(camera), stance.head.zoom);
+  return stance;
+}
+
+CameraReading ViewedRig::reading(std::size_t camera, const CameraStance& stance) const {
+  const CameraReading first = first_reading(camera);
+  const CameraStance start = first_stance(camera);
+  return {plus_way(first.head, start.head, stance.head),
+          {first.stage.offset + stance.stage.offset - start.stage.offset}};
+}
+
+View ViewedRig::believed_view(std::size_t camera, const CameraReading& reading) const {
+  const Camera& described = believed.at(camera);
+  HeadState head = reading.head;
+  head.zoom = on_lens(described, head.zoom);
+  return described.view(reading.stage, head);
 }
 
 CameraSample camera_sample(const Camera& camera, const StageState& stage, const HeadState& head) {
@@ -75,6 +130,12 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
   };
   shot.backbone = [rig, shown](double time) { return Backbone(rig->truth, instant_at(*shown, time).arm); };
   return {std::move(shot), shown};
+}
+
+CameraStance stance_in(const ValueShot& shot) {
+  const double middle = times_of_frame_at(*shot.shot.sensor, shot.shot.start).middle;
+  const Instant at = instant_at(*shot.instants, middle);
+  return {at.head, at.stage};
 }
 
 bool show_the_same(const ValueShot& a, const ValueShot& b) {

@@ -9,6 +9,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/run.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
@@ -25,6 +26,12 @@ struct Instant {
   StageState stage;
 };
 
+/// Where a camera's head and stage stand.
+struct CameraStance {
+  HeadState head;
+  StageState stage;
+};
+
 /// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
 class ViewedRig {
  public:
@@ -34,12 +41,23 @@ class ViewedRig {
   Arm model, truth;  ///< The arm as it is believed to be, and as it is.
   ArmState initial;  ///< As it is.
   std::vector<Obstacle> obstacles;
-  std::optional<Drive> drive;   ///< As it is believed to be.
-  std::vector<Camera> cameras;  ///< As they are.
+  std::optional<Drive> drive;    ///< As it is believed to be.
+  std::vector<Camera> cameras;   ///< As they are.
+  std::vector<Camera> believed;  ///< As they are believed to be.
   std::vector<SensorConfig> sensors;
 
   /// The place of the camera of this name; none when there is none.
   [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
+
+  /// What a camera's head and stage say at the start, and where they stand then.
+  [[nodiscard]] CameraReading first_reading(std::size_t camera) const;
+  [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
+  /// Where they stand when they say this, and what they say when they stand there, but for play and steps:
+  /// they count from where they are believed to start.
+  [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
+  [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
+  /// What the camera sees, as far as one knows who has its readings.
+  [[nodiscard]] View believed_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
@@ -58,6 +76,9 @@ struct ValueShot {
 /// It starts at `start` s.
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
+
+/// How the camera stands in the middle of the frame's exposure.
+[[nodiscard]] CameraStance stance_in(const ValueShot& shot);
 
 /// Whether two frames are sure to be the same picture: everything stands still, in the same way, and no noise
 /// tells them apart.

@@ -11,6 +11,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StrEq;
 
 // In what the zoom of a rig's last camera is said.
 std::string zoom_unit(const std::string& rig) {
@@ -88,8 +89,9 @@ TEST_F(ViewerTest, RepliesToEverythingUnderItsNumber) {
   EXPECT_EQ(*bad.find("id")->as<std::int64_t>(), 4);
   EXPECT_THAT(error_of(bad), HasSubstr("expected one of"));
   EXPECT_TRUE(say("nonsense").find("id")->empty());
-  EXPECT_THAT(error_of(say(R"({"id":5,"do":"head","camera":"back","pan":0})")),
-              HasSubstr("there is no camera"));
+  EXPECT_THAT(
+      error_of(say(R"({"id":5,"do":"head","camera":"back","pan":0})")),
+      StrEq("camera = \"back\": there is no camera of that name; expected one of \"front\", \"side\""));
   EXPECT_THAT(error_of(say("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
 }
 

@@ -98,14 +98,9 @@ void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
   seen.ends = {};
   seen.blur = seen.noise = seen.contrast = seen.covered = 0;
   seen.is_closed = false;
-  seen.threshold = threshold_of(gray, config.threshold, histogram_samples);
-  // A thin arm may fall between the samples.
-  if (!seen.threshold.reason.empty()) seen.threshold = threshold_of(gray, config.threshold);
+  seen.threshold = flexura::segment(gray, config.threshold, components, blocks, histogram_samples);
   seen.reason = seen.threshold.reason;
   if (!seen.reason.empty()) return;
-  const bool by_block = config.threshold.method == ThresholdMethod::by_block;
-  if (by_block) blocks.make(gray, config.threshold, seen.threshold);
-  components.find(gray, seen.threshold, by_block ? &blocks : nullptr);
   seen.contrast = seen.threshold.bright - seen.threshold.dark;
 }
 
@@ -168,6 +163,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
     return false;
   }
   seen = best;
+  for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
   order_ends();
   return true;
 }

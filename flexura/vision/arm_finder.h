@@ -19,6 +19,8 @@ struct ArmFinderConfig {
   /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
   /// lower one in the picture.
   std::optional<Eigen::Vector2d> base;
+  /// No sample's standard deviation is taken to be less, px (`mask_sigma` for a mask).
+  double least_sigma = 0;
 };
 
 /// A point of a median axis.

@@ -111,4 +111,12 @@ const BlurredStep& BlurredSteps::of(double blur, double phase, int first, double
   return *step;
 }
 
+double BlurSeries::least(std::span<const double> left) const {
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(left) - left.begin());
+  if (best == 0 || best + 1 == left.size()) return at(best);
+  const double a = left[best - 1], b = left[best], c = left[best + 1], bend = a - 2 * b + c;
+  const double shift = bend > 0 && std::isfinite(bend) ? 0.5 * (a - c) / bend : 0;
+  return at(best) * std::pow(ratio, shift);
+}
+
 }  // namespace flexura

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace flexura {
@@ -64,6 +65,16 @@ class BlurredSteps {
   std::vector<std::uint8_t> blur_of_place_ = blur_places();  // Even in blur, up to the widest.
 
   static std::vector<std::uint8_t> blur_places();
+};
+
+/// A series of blurs, each `ratio` times the one before, to find out which is a picture's.
+struct BlurSeries {
+  double first = 0.4, ratio = 1.25;
+
+  [[nodiscard]] double at(std::size_t i) const { return first * std::pow(ratio, static_cast<double>(i)); }
+  /// Where `left`, what remains unexplained of the picture with each, is least: between the blurs by a
+  /// parabola through the least and its neighbours. Not empty; what is infinite counts as not tried.
+  [[nodiscard]] double least(std::span<const double> left) const;
 };
 
 }  // namespace flexura

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,26 @@ std::vector<std::pair<int, int>> trace(const Components& components, std::uint32
   return pixels;
 }
 
+// Of a series of blurs the one that explains a border's points best, of those that find nine tenths of the
+// most.
+template <typename FindBorder>
+double best_blur(const BlurSeries& series, std::size_t count, const FindBorder& border_with,
+                 const std::vector<BorderPoint>& points) {
+  constexpr double enough = 0.9;
+  std::vector<std::size_t> found(count);
+  std::vector<double> left(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    border_with(series.at(i));
+    found[i] = points.size();
+    for (const BorderPoint& point : points)
+      left[i] += point.residual * point.residual / static_cast<double>(points.size());
+  }
+  const double least = enough * static_cast<double>(std::ranges::max(found));
+  for (std::size_t i = 0; i < count; ++i)
+    if (static_cast<double>(found[i]) < least) left[i] = std::numeric_limits<double>::infinity();
+  return series.least(left);
+}
+
 }  // namespace
 
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
@@ -72,25 +93,23 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
   border.clear();
   BlurredSteps steps;
   const int sign = threshold.figure == Figure::dark ? 1 : -1;
-  const EdgeFinder<std::uint8_t> edges(gray, sign, steps);
+  const EdgeFinder<std::uint8_t> edges(gray, sign, steps, lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
-  std::vector<std::pair<int, int>> pixels = trace(components, component);
   // A pixel is passed twice where the figure is a pixel wide.
-  std::ranges::sort(pixels);
-  const auto repeated = std::ranges::unique(pixels);
-  pixels.erase(repeated.begin(), repeated.end());
-  for (const auto& [u, v] : pixels) {
+  std::set<std::pair<int, int>> passed;
+  for (const auto& [u, v] : trace(components, component)) {
+    if (!passed.emplace(u, v).second) continue;
     const Vector2d slope = sign * gradient(gray, u, v);
     if (!(slope.norm() > 0)) continue;
     const Vector2d normal = slope.normalized();
     double offset = 0;
     for (int round = 0; round < 6; ++round) {
-      const auto fit = edges.look(Vector2d(u, v) + offset * normal, normal, blur, 6);
+      const auto fit = edges.look(Vector2d(u, v) + offset * normal, normal, blur, 6 * std::max(1.0, blur));
       if (!fit || fit->contrast < 0.35 * contrast || std::abs(offset) > 2 + blur) break;
       offset += std::clamp(fit->offset, -1.0, 1.0);
       if (std::abs(fit->offset) > 0.1) continue;
       if (fit->residual < 0.12 * fit->contrast + 2)
-        border.push_back({Vector2d(u, v) + offset * normal, normal, fit->contrast});
+        border.push_back({Vector2d(u, v) + offset * normal, normal, fit->contrast, fit->residual});
       break;
     }
   }
@@ -99,7 +118,8 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
 FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConfig& config) {
   FigureBorder result;
   Components components;
-  result.threshold = segment(gray, config, components);
+  BlockThresholds blocks;
+  result.threshold = segment(gray, config, components, blocks);
   result.reason = result.threshold.reason;
   if (!result.reason.empty()) return result;
   // The largest that does not touch the picture's border; if all do, the largest.
@@ -115,15 +135,12 @@ FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConf
   }
   result.area = components.list[best].area;
   result.touches_border = components.list[best].on_border > 0;
-  // The blur that leaves most of the border and least of the picture unexplained.
-  std::size_t most = 0;
-  std::vector<BorderPoint> border;
-  for (const double blur : {0.5, 0.6, 0.75, 0.9, 1.1, 1.4, 1.8, 2.4, 3.2}) {
-    find_border(gray, result.threshold, components, static_cast<std::uint32_t>(best), blur, border);
-    if (border.size() <= most + most / 50) continue;
-    most = border.size();
-    result.points = border, result.blur = blur;
-  }
+  const auto border_with = [&](double blur) {
+    find_border(gray, result.threshold, components, static_cast<std::uint32_t>(best), blur, result.points);
+  };
+  const double roughly = best_blur({}, 11, border_with, result.points);
+  result.blur = best_blur({roughly / (1.08 * 1.08), 1.08}, 5, border_with, result.points);
+  border_with(result.blur);
   if (result.points.empty()) result.reason = "the largest figure has no sharp border";
   return result;
 }

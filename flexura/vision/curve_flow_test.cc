@@ -54,6 +54,87 @@ TEST(CurveFlow, OfMarkersIsThatOfThePicture) {
   EXPECT_THROW((void)flow_at(seen.picture, Image<std::uint8_t>(3, 3), places), std::invalid_argument);
 }
 
+// Two instants of an arm with bands: before, and bent a little more.
+struct Moments {
+  SeenArm before, after;
+  std::vector<Eigen::Vector2d> bands;  // Where their middles are seen before ...
+  std::vector<Eigen::Vector2d> moved;  // ... and by how much they move.
+};
+Moments banded_moments() {
+  const auto seen_at = [](double bend) {
+    SeenArm seen;
+    BentArm bent;
+    bent.arm.kind = ArmKind::spatial;
+    bent.arm.sections.resize(2, {.length = 0.4, .radius = {0.02, 0.02}});
+    bent.state = ArmState::straight(2);
+    bent.state.bends = {{0.2, bend}, {-0.3, -bend}};
+    seen.scene.background = Color::Constant(0.85);
+    seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
+    for (double s = 0.08; s < 0.78; s += 0.1)
+      seen.scene.arm.markers.push_back({s - 0.01, s + 0.01, Color::Constant(0.6)});
+    seen.view = pinhole_view(look_at({0, 0.4, 1.6}, {0, 0.4, 0}), 640, 480, 800);
+    seen.picture = photograph(seen.scene, seen.view, {.noise = 1}, bend > 0.5 ? 2 : 1);
+    seen.truth = true_axis(seen.scene, seen.view, 2001);
+    return seen;
+  };
+  Moments moments{seen_at(0.5), seen_at(0.54), {}, {}};
+  Renderer before, after;
+  before.prepare(moments.before.scene, moments.before.view);
+  after.prepare(moments.after.scene, moments.after.view);
+  const auto from = marker_views(before), to = marker_views(after);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    moments.bands.push_back(*from[i].center.pixel);
+    moments.moved.push_back(*to[i].center.pixel - *from[i].center.pixel);
+  }
+  return moments;
+}
+
+TEST(CurveFlow, OfADrawnArmIsThatOfItsBackbone) {
+  const Moments moments = banded_moments();
+  ArmFinder finder;
+  const auto before = finder.find(moments.before.picture).axis;
+  const auto after = finder.find(moments.after.picture).axis;
+  const CurveFlow flow = curve_flow(before, after);
+  const auto& from = moments.before.truth;
+  const auto& to = moments.after.truth;
+  const auto angle = [](const std::vector<AxisPoint>& curve, std::size_t i) {
+    const Eigen::Vector2d way = *curve[i + 10].pixel - *curve[i - 10].pixel;
+    return std::atan2(way.y(), way.x());
+  };
+  double squares = 0, turn_squares = 0, count = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!std::isfinite(flow.normal[i]) || !std::isfinite(flow.turn[i])) continue;
+    std::size_t nearest = 10;
+    for (std::size_t k = 10; k + 10 < from.size(); ++k)
+      if ((*from[k].pixel - before[i].pixel).norm() < (*from[nearest].pixel - before[i].pixel).norm())
+        nearest = k;
+    // From the same place along the normal to the later backbone: its distance, the motion being small.
+    const double expected = distance_to(to, *from[nearest].pixel);
+    // distance_to() counts from the curve to the place, from u towards v.
+    squares += std::pow(flow.normal[i] + expected, 2);
+    const double turn = std::remainder(angle(to, nearest) - angle(from, nearest), 6.283185307179586);
+    turn_squares += std::pow(flow.turn[i] - turn, 2), ++count;
+  }
+  ASSERT_GT(count, 100);
+  EXPECT_LT(std::sqrt(squares / count), 0.05);
+  EXPECT_LT(std::sqrt(turn_squares / count), 0.01);
+}
+
+TEST(CurveFlow, OfBandsIsTheirMotion) {
+  const Moments moments = banded_moments();
+  double largest = 0;
+  for (const Eigen::Vector2d& way : moments.moved) largest = std::max(largest, way.norm());
+  ASSERT_GT(largest, 2);
+  for (const FlowMethod method : {FlowMethod::lucas_kanade, FlowMethod::dis}) {
+    const auto flow = flow_at(moments.before.picture, moments.after.picture, moments.bands, method);
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      ASSERT_TRUE(flow[i]) << i;
+      EXPECT_LT((*flow[i] - moments.moved[i]).norm(), method == FlowMethod::dis ? 0.6 : 0.3)
+          << i << ", method " << static_cast<int>(method);
+    }
+  }
+}
+
 TEST(AngleIntegrator, DriftsUntilItIsAnchored) {
   AngleIntegrator angles({0, 0, 0});
   for (int i = 0; i < 10; ++i)

@@ -9,20 +9,15 @@
 #include <optional>
 
 namespace flexura {
-namespace {
-
-// Blur, in samples, beyond which every other pixel and so on will do.
-constexpr double widest_blur = 1.6;
-
-}  // namespace
 
 template <typename Value>
-EdgeFinder<Value>::EdgeFinder(const Image<Value>& picture, int sign, BlurredSteps& steps)
+EdgeFinder<Value>::EdgeFinder(const Image<Value>& picture, int sign, BlurredSteps& steps, double widest_blur)
     : values_(picture.values().data()),
       width_(picture.width()),
       height_(picture.height()),
       sign_(sign),
-      steps_(steps) {}
+      steps_(steps),
+      widest_blur_(widest_blur) {}
 
 template <typename Value>
 double EdgeFinder<Value>::at(const Eigen::Vector2d& pixel) const {
@@ -47,7 +42,7 @@ std::optional<EdgeFit> EdgeFinder<Value>::look(const Eigen::Vector2d& from, cons
   const int line = static_cast<int>(std::floor(y + 0.5));
   const double crossing = x - (line - y) * ny / nx;
   const double share = std::abs(nx), spread = blur / share;
-  const int stride = std::max(1, static_cast<int>(spread / widest_blur)), way = nx > 0 ? stride : -stride;
+  const int stride = std::max(1, static_cast<int>(spread / widest_blur_)), way = nx > 0 ? stride : -stride;
   const int pixel = static_cast<int>(std::floor(crossing + 0.5));
   const int length = by_row ? width_ : height_, lines = by_row ? height_ : width_;
   const int first = std::clamp(static_cast<int>((room / share - spread) / stride), 1, BlurredStep::before);

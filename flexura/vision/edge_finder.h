@@ -23,7 +23,9 @@ template <typename Value>
 class EdgeFinder {
  public:
   /// `sign`: 1 for a dark figure, -1 for a bright one. `steps` is used by one finder at a time.
-  EdgeFinder(const Image<Value>& picture, int sign, BlurredSteps& steps);
+  /// `widest_blur`: in samples, beyond which every other pixel and so on is one. The wider, the less of the
+  /// figure is looked at, and the more of the blur's tails are missed.
+  EdgeFinder(const Image<Value>& picture, int sign, BlurredSteps& steps, double widest_blur = 1.6);
 
   /// Whether a pixel's four neighbours are in the picture.
   [[nodiscard]] bool holds(const Eigen::Vector2d& pixel) const {
@@ -44,6 +46,7 @@ class EdgeFinder {
   const Value* values_;
   int width_, height_, sign_;
   BlurredSteps& steps_;
+  double widest_blur_;
 };
 
 extern template class EdgeFinder<std::uint8_t>;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/vision/border.h"
 #include "flexura/vision/edge_finder.h"
 #include "flexura/vision/runs.h"
 
@@ -110,13 +111,15 @@ std::vector<std::array<int, 2>> spans_of(const Components& components, const Com
   return spans;
 }
 
-// Where row v crosses the border near column u; `way`: outward, 1 or -1.
+// Where row v crosses the border near column u; `way`: outward, 1 or -1. What the border's model leaves of
+// the picture there goes to `left`.
 std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u, int v, double way,
-                                double room, double least_contrast) {
+                                double room, double blur, double least_contrast, double* left = nullptr) {
   for (int i = 0; i < 4; ++i) {
-    const auto fit = edges.look({u, v}, {way, 0}, 0.8, room);
+    const auto fit = edges.look({u, v}, {way, 0}, blur, room);
     if (!fit || fit->contrast < least_contrast) return std::nullopt;
     u += way * std::clamp(fit->offset, -1.0, 1.0);
+    if (left != nullptr) *left = fit->residual * fit->residual;
     if (std::abs(fit->offset) < 0.05) break;
   }
   return Vector2d(u, v);
@@ -127,22 +130,54 @@ struct Crossings {
   std::array<std::vector<Vector2d>, 2> sides;
   std::vector<Vector2d> peaks;
 };
+
+// Of a series of blurs that of the sides, px, by what the border's model leaves of some rows; none where no
+// side is found.
+std::optional<double> side_blur(const BlurSeries& series, std::size_t count,
+                                const EdgeFinder<std::uint8_t>& edges,
+                                const std::vector<std::array<int, 2>>& spans, int top, int inset,
+                                double least_contrast) {
+  constexpr std::size_t wanted = 24;
+  std::vector<double> sum(count), left(count);
+  const std::size_t rows = spans.size() - std::min(spans.size(), 2 * static_cast<std::size_t>(inset));
+  for (std::size_t row = 0; row < rows; row += std::max<std::size_t>(1, rows / wanted)) {
+    const auto [first, last] = spans[row + static_cast<std::size_t>(inset)];
+    const int v = top + inset + static_cast<int>(row);
+    for (const double way : {-1.0, 1.0}) {
+      const double u = (way < 0 ? first : last) - 0.5, room = 0.25 * (last - first);
+      bool is_found = last > first;
+      for (std::size_t i = 0; is_found && i < count; ++i)
+        is_found = side_of(edges, u, v, way, room, series.at(i), least_contrast, &left[i]).has_value();
+      for (std::size_t i = 0; is_found && i < count; ++i) sum[i] += left[i];
+    }
+  }
+  if (!(std::ranges::max(sum) > 0)) return std::nullopt;
+  return series.least(sum);
+}
+
 Crossings crossings_of(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
                        const Threshold& threshold, const std::vector<std::array<int, 2>>& spans, int top,
                        int inset) {
   BlurredSteps steps;
-  const EdgeFinder<std::uint8_t> edges(gray, threshold.figure == Figure::dark ? 1 : -1, steps);
+  const EdgeFinder<std::uint8_t> edges(gray, threshold.figure == Figure::dark ? 1 : -1, steps,
+                                       lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
-  const double bound = picture.channels() == 3 ? 25 : 0.06 * contrast + 4;
+  const double bound = picture.channels() == 3 ? 25 : 0.06 * contrast + 4, least_contrast = 0.3 * contrast;
+  const auto blur_among = [&](const BlurSeries& series, std::size_t count) {
+    return side_blur(series, count, edges, spans, top, inset, least_contrast);
+  };
   Crossings found;
+  const auto roughly = blur_among({}, 11);
+  if (!roughly) return found;
+  const double blur = blur_among({*roughly / (1.08 * 1.08), 1.08}, 5).value_or(*roughly);
   for (auto row = static_cast<std::size_t>(inset); row + static_cast<std::size_t>(inset) < spans.size();
        ++row) {
     const auto [first, last] = spans[row];
     if (last <= first) continue;
     const int v = top + static_cast<int>(row);
     const double room = 0.25 * (last - first);
-    const auto left = side_of(edges, first - 0.5, v, -1, room, 0.3 * contrast),
-               right = side_of(edges, last - 0.5, v, 1, room, 0.3 * contrast);
+    const auto left = side_of(edges, first - 0.5, v, -1, room, blur, least_contrast),
+               right = side_of(edges, last - 0.5, v, 1, room, blur, least_contrast);
     if (left) found.sides[0].push_back(*left);
     if (right) found.sides[1].push_back(*right);
     const int margin = std::max(3, (last - first) / 30);
@@ -157,7 +192,8 @@ EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::
                            const ThresholdConfig& config) {
   EtalonSighting seen;
   Components components;
-  seen.threshold = segment(gray, config, components);
+  BlockThresholds blocks;
+  seen.threshold = segment(gray, config, components, blocks);
   seen.reason = seen.threshold.reason;
   if (!seen.reason.empty()) return seen;
   if (seen.threshold.figure != Figure::dark) {

@@ -31,6 +31,17 @@ Image<Value> gray_of_colors(const Image<Value>& picture) {
   return gray;
 }
 
+// A picture in shades of gray that is written in colour, as one channel; otherwise as it is.
+Image<std::uint8_t> without_colors(Image<std::uint8_t> picture) {
+  if (picture.channels() != 3) return picture;
+  const auto values = picture.values();
+  for (std::size_t i = 0; i < values.size(); i += 3)
+    if (values[i] != values[i + 1] || values[i] != values[i + 2]) return picture;
+  Image<std::uint8_t> gray(picture.width(), picture.height());
+  for (std::size_t i = 0; i < gray.values().size(); ++i) gray.values()[i] = values[3 * i];
+  return gray;
+}
+
 bool has_two_values(const Image<std::uint8_t>& picture) {
   if (picture.channels() != 1) return false;
   const auto [least, most] = std::ranges::minmax(picture.values());
@@ -96,8 +107,9 @@ Photograph decode_picture(std::span<const std::uint8_t> file, const std::string&
     photograph.white = white_of(photograph.words);
     photograph.bytes = bytes_of(photograph.words, photograph.white);
   }
-  photograph.is_mask = has_two_values(photograph.bytes);
-  if (photograph.is_mask) photograph.bytes = softened_mask(photograph.bytes), photograph.words = {};
+  const Image<std::uint8_t> gray = without_colors(photograph.bytes);
+  photograph.is_mask = has_two_values(gray);
+  if (photograph.is_mask) photograph.bytes = softened_mask(gray), photograph.words = {};
   return photograph;
 }
 

@@ -19,6 +19,9 @@ struct Photograph {
   bool is_mask = false;
 };
 
+/// No place in a mask is known better, px: its staircase leaves as much, whatever its noise says.
+inline constexpr double mask_sigma = 0.1;
+
 /// Larger pictures are refused, px.
 inline constexpr std::size_t most_pixels = std::size_t{1} << 27;
 

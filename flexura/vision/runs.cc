@@ -146,14 +146,16 @@ const Run* Components::run_at(int u, int v) const {
   return &*(after - 1);
 }
 
-Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config, Components& components) {
+Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config, Components& components,
+                  BlockThresholds& blocks, std::size_t samples) {
   components.runs.clear(), components.list.clear();
-  Threshold threshold = threshold_of(gray, config);
-  if (!threshold.reason.empty()) return threshold;
-  BlockThresholds blocks;
-  const bool by_block = config.method == ThresholdMethod::by_block;
-  if (by_block) blocks.make(gray, config, threshold);
-  components.find(gray, threshold, by_block ? &blocks : nullptr);
+  Threshold threshold = threshold_of(gray, config, samples);
+  // A thin arm may fall between the samples.
+  if (!threshold.reason.empty() && samples < gray.values().size()) threshold = threshold_of(gray, config);
+  // Before an uneven screen the brightnesses of the whole stand nowhere apart, and those of its blocks do.
+  const bool by_block = config.method == ThresholdMethod::by_block && blocks.make(gray, config);
+  if (by_block) threshold = blocks.mean(gray);
+  if (threshold.reason.empty()) components.find(gray, threshold, by_block ? &blocks : nullptr);
   return threshold;
 }
 

@@ -45,8 +45,10 @@ struct Components {
   std::vector<std::uint8_t> levels_;
 };
 
-/// Threshold and components of a picture; none where the threshold has a reason.
+/// Threshold and components of a picture; none where the threshold has a reason. `samples`: of the histogram;
+/// all pixels count where so many find no figure.
 [[nodiscard]] Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
-                                Components& components);
+                                Components& components, BlockThresholds& blocks,
+                                std::size_t samples = 1U << 30U);
 
 }  // namespace flexura

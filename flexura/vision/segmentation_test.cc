@@ -67,12 +67,11 @@ TEST(Threshold, ByBlockFollowsAnUnevenScreen) {
       gray.at(u, v) = static_cast<std::uint8_t>((is_figure(u, v) ? 0.45 : 1.0) * (60 + 0.55 * u));
   ThresholdConfig config;
   config.method = ThresholdMethod::by_block;
-  config.block = 32;
-  const Threshold whole = threshold_of(gray, config);
   BlockThresholds blocks;
-  blocks.make(gray, config, whole);
   Components components;
-  components.find(gray, whole, &blocks);
+  const Threshold found = segment(gray, config, components, blocks);
+  EXPECT_EQ(found.reason, "");
+  EXPECT_EQ(found.figure, Figure::dark);
   ASSERT_EQ(components.list.size(), 1U);
   EXPECT_EQ(components.list[0].area, 14 * 299);
 }

@@ -97,13 +97,36 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   return "";
 }
 
-// What the outermost pixels mostly are is ground.
-Figure figure_of(const Image<std::uint8_t>& gray, double level) {
+// The share of bright pixels in the ring that many pixels within the picture's border. `level`: at (u, v).
+template <typename Level>
+double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& level) {
+  const int right = gray.width() - 1 - ring, bottom = gray.height() - 1 - ring;
+  if (right < ring || bottom < ring) return 0.5;
   std::size_t bright = 0, count = 0;
-  const auto look = [&](int u, int v) { ++count, bright += gray.at(u, v) > level ? 1 : 0; };
-  for (int u = 0; u < gray.width(); ++u) look(u, 0), look(u, gray.height() - 1);
-  for (int v = 0; v < gray.height(); ++v) look(0, v), look(gray.width() - 1, v);
-  return 2 * bright >= count ? Figure::dark : Figure::bright;
+  const auto look = [&](int u, int v) { ++count, bright += gray.at(u, v) >= level(u, v) ? 1 : 0; };
+  for (const int v : {ring, bottom})
+    for (int u = ring; u <= right; ++u) look(u, v);
+  for (int v = ring; v <= bottom; ++v) look(ring, v), look(right, v);
+  return static_cast<double>(bright) / static_cast<double>(count);
+}
+
+// What is mostly there at the picture's border is ground. Where that is hardly decided, because the outermost
+// pixels are a frame, say, two rings farther in are asked too.
+template <typename Level>
+Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
+  constexpr double undecided = 0.3;
+  double share = bright_share(gray, 0, level);
+  if (share > undecided && share < 1 - undecided)
+    share = (share + bright_share(gray, 2, level) + bright_share(gray, 4, level)) / 3;
+  return share >= 0.5 ? Figure::dark : Figure::bright;
+}
+
+// Two classes of a block: much farther apart than a shaded screen splits into (3.5 times its own spread), and
+// by a share of its brightness.
+bool stand_apart(const Threshold& found) {
+  constexpr double spreads = 5, share = 0.2;
+  const double contrast = found.bright - found.dark;
+  return found.reason.empty() && contrast > std::max(spreads * found.spread, share * found.bright);
 }
 
 }  // namespace
@@ -148,6 +171,7 @@ Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config
   if (dark.count == 0) found.dark = found.bright;
   if (bright.count == 0) found.bright = found.dark;
   const double count = dark.count + bright.count;
+  found.mean = count > 0 ? (dark.sum + bright.sum) / count : 0;
   found.spread = count > 0 ? std::sqrt(std::max(0.0, dark.deviations() + bright.deviations()) / count) : 0;
   found.reason = reason_against(histogram, found, count);
   return found;
@@ -155,75 +179,110 @@ Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config
 
 Threshold threshold_of(const Image<std::uint8_t>& gray, const ThresholdConfig& config, std::size_t samples) {
   Threshold found = threshold_of(histogram_of(gray, samples), config);
-  if (found.reason.empty()) found.figure = config.figure.value_or(figure_of(gray, found.level));
+  if (found.reason.empty())
+    found.figure = config.figure.value_or(figure_of(gray, [&](int, int) { return found.level; }));
   return found;
 }
 
-void BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
-                           const Threshold& whole) {
+Threshold BlockThresholds::around(const Image<std::uint8_t>& gray, int column, int row, int margin) const {
+  Histogram histogram{};
+  const int v0 = std::max(0, row * block_ - margin), u0 = std::max(0, column * block_ - margin);
+  const int v1 = std::min(gray.height(), (row + 1) * block_ + margin);
+  const int u1 = std::min(gray.width(), (column + 1) * block_ + margin);
+  for (int v = v0; v < v1; ++v)
+    for (int u = u0; u < u1; ++u) ++histogram[gray.at(u, v)];
+  return threshold_of(histogram);
+}
+
+bool BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfig& config) {
   block_ = std::max(8, config.block);
   columns_ = (gray.width() + block_ - 1) / block_, rows_ = (gray.height() + block_ - 1) / block_;
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  levels_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), none);
-  // A block is looked at with half of each neighbour: one wholly within the figure still sees ground.
+  blocks_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
+  figure_ = config.figure;
+  mean_ = {};
+  mean_.method = ThresholdMethod::by_block;
+  double count = 0;
   for (int j = 0; j < rows_; ++j) {
     for (int i = 0; i < columns_; ++i) {
-      Histogram histogram{};
-      const int v0 = std::max(0, j * block_ - block_ / 2), u0 = std::max(0, i * block_ - block_ / 2);
-      const int v1 = std::min(gray.height(), (j + 1) * block_ + block_ / 2);
-      const int u1 = std::min(gray.width(), (i + 1) * block_ + block_ / 2);
-      for (int v = v0; v < v1; ++v)
-        for (int u = u0; u < u1; ++u) ++histogram[gray.at(u, v)];
-      const Threshold here = threshold_of(histogram);
-      const bool is_apart = here.bright - here.dark > std::max(0.35 * (whole.bright - whole.dark), 15.0);
-      if (is_apart && here.reason.empty())
-        levels_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
-                static_cast<std::size_t>(i)] = here.level;
-    }
-  }
-  // What has no level of its own takes the mean of its neighbours', again and again until all have one.
-  for (bool is_open = true; is_open;) {
-    is_open = false;
-    const std::vector<double> before = levels_;
-    bool changed = false;
-    for (int j = 0; j < rows_; ++j) {
-      for (int i = 0; i < columns_; ++i) {
-        const auto at = [&](int a, int b) {
-          return static_cast<std::size_t>(b) * static_cast<std::size_t>(columns_) +
-                 static_cast<std::size_t>(a);
-        };
-        if (!std::isnan(before[at(i, j)])) continue;
-        double sum = 0, count = 0;
-        for (int b = std::max(0, j - 1); b <= std::min(rows_ - 1, j + 1); ++b)
-          for (int a = std::max(0, i - 1); a <= std::min(columns_ - 1, i + 1); ++a)
-            if (!std::isnan(before[at(a, b)])) sum += before[at(a, b)], ++count;
-        if (count > 0)
-          levels_[at(i, j)] = sum / count, changed = true;
-        else
-          is_open = true;
+      Block& block = blocks_[place(i, j)];
+      // Of the two classes that it is split into in any case.
+      const Threshold own = around(gray, i, j, 0);
+      block.mean = own.mean;
+      // A block wholly within the figure sees ground when it looks farther.
+      for (const int margin : {block_ / 2, 3 * block_ / 2, 7 * block_ / 2}) {
+        const Threshold here = around(gray, i, j, margin);
+        if (!stand_apart(here)) continue;
+        block.level = here.level, block.dark = here.dark, block.bright = here.bright;
+        mean_.level += here.level, mean_.dark += here.dark, mean_.bright += here.bright;
+        mean_.spread += here.spread, count += 1;
+        break;
       }
     }
-    if (is_open && !changed) levels_.assign(levels_.size(), whole.level), is_open = false;
+  }
+  if (count == 0) return false;
+  for (double* sum : {&mean_.level, &mean_.dark, &mean_.bright, &mean_.spread}) *sum /= count;
+  fill();
+  return true;
+}
+
+void BlockThresholds::fill() {
+  // What has no level of its own takes the mean of its neighbours', again and again until all have one; as
+  // much brighter or darker as the block is than the class of theirs that it is nearer to.
+  for (bool is_open = true; is_open;) {
+    is_open = false;
+    const std::vector<Block> before = blocks_;
+    for (int j = 0; j < rows_; ++j) {
+      for (int i = 0; i < columns_; ++i) {
+        if (before[place(i, j)].has_level()) continue;
+        Block sum{.level = 0, .dark = 0, .bright = 0};
+        double count = 0;
+        for (int b = std::max(0, j - 1); b <= std::min(rows_ - 1, j + 1); ++b) {
+          for (int a = std::max(0, i - 1); a <= std::min(columns_ - 1, i + 1); ++a) {
+            const Block& near = before[place(a, b)];
+            if (!near.has_level()) continue;
+            sum.level += near.level, sum.dark += near.dark, sum.bright += near.bright, ++count;
+          }
+        }
+        is_open = is_open || count == 0;
+        if (count == 0) continue;
+        Block& block = blocks_[place(i, j)];
+        const double dark = std::max(sum.dark / count, 1.0), bright = std::max(sum.bright / count, 1.0);
+        const double own = std::max(block.mean, 1.0);
+        const double share = own * own > dark * bright ? own / bright : own / dark;
+        block.level = share * sum.level / count, block.dark = share * dark, block.bright = share * bright;
+      }
+    }
   }
 }
 
+Threshold BlockThresholds::mean(const Image<std::uint8_t>& gray) const {
+  Threshold result = mean_;
+  std::vector<std::uint8_t> levels(static_cast<std::size_t>(gray.width()));
+  int made = -1;
+  const auto level = [&](int u, int v) {
+    if (v != made) row(v, levels), made = v;
+    return levels[static_cast<std::size_t>(u)];
+  };
+  result.figure = figure_ ? *figure_ : figure_of(gray, level);
+  return result;
+}
+
 void BlockThresholds::row(int v, std::vector<std::uint8_t>& levels) const {
-  const auto place = [&](int pixel, int count, int& low, double& share) {
+  const auto between = [&](int pixel, int count, int& low, double& share) {
     const double x = std::clamp((pixel + 0.5) / block_ - 0.5, 0.0, static_cast<double>(count - 1));
     low = std::min(static_cast<int>(x), std::max(0, count - 2));
     share = count > 1 ? x - low : 0;
   };
   int j = 0;
   double down = 0;
-  place(v, rows_, j, down);
+  between(v, rows_, j, down);
   const auto at = [&](int a, int b) {
-    return levels_[static_cast<std::size_t>(std::min(b, rows_ - 1)) * static_cast<std::size_t>(columns_) +
-                   static_cast<std::size_t>(std::min(a, columns_ - 1))];
+    return blocks_[place(std::min(a, columns_ - 1), std::min(b, rows_ - 1))].level;
   };
   for (std::size_t u = 0; u < levels.size(); ++u) {
     int i = 0;
     double right = 0;
-    place(static_cast<int>(u), columns_, i, right);
+    between(static_cast<int>(u), columns_, i, right);
     const double top = at(i, j) + right * (at(i + 1, j) - at(i, j));
     const double bottom = at(i, j + 1) + right * (at(i + 1, j + 1) - at(i, j + 1));
     levels[u] = static_cast<std::uint8_t>(std::clamp(std::ceil(top + down * (bottom - top)), 1.0, 255.0));

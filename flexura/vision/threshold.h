@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +30,7 @@ struct ThresholdConfig {
   ThresholdMethod method = ThresholdMethod::otsu;
   double level = 127.5;          ///< With `fixed`, of 0 to 255.
   std::optional<Figure> figure;  ///< Decided by the picture's border when left out: what is there is ground.
-  int block = 64;                ///< px, with `by_block`.
+  int block = 32;                ///< px, with `by_block`.
 };
 
 /// How often each brightness occurs; of pictures with more than 8 bits, by their upper 8 bits.
@@ -42,6 +44,7 @@ struct Threshold {
   ThresholdMethod method = ThresholdMethod::otsu;
   double level = 0;             ///< Between two brightnesses of 0 to 255.
   double dark = 0, bright = 0;  ///< Mean brightness of either class.
+  double mean = 0;              ///< Of all.
   double spread = 0;            ///< Standard deviation within the classes.
   Figure figure = Figure::dark;
   /// Why there is no figure to be had ("the picture is blank ..."); "" when there is.
@@ -59,14 +62,33 @@ struct Threshold {
 /// Thresholds by block, of a grid of blocks' middles.
 class BlockThresholds {
  public:
-  /// Blocks in which the two classes are not apart take what is between the others. `whole`: the picture's.
-  void make(const Image<std::uint8_t>& gray, const ThresholdConfig& config, const Threshold& whole);
+  /// Looks at each block with as much around it as it takes until two classes stand apart. Blocks in which
+  /// none do take what is between the others. False, and no thresholds, when no block has any.
+  bool make(const Image<std::uint8_t>& gray, const ThresholdConfig& config);
+  /// The mean of the blocks in which two classes stand apart; its figure is the one that is not at the
+  /// picture's border.
+  [[nodiscard]] Threshold mean(const Image<std::uint8_t>& gray) const;
   /// The level at each pixel of row v, rounded up.
   void row(int v, std::vector<std::uint8_t>& levels) const;
 
  private:
-  int columns_ = 0, rows_ = 0, block_ = 64;
-  std::vector<double> levels_;
+  struct Block {
+    double level = std::numeric_limits<double>::quiet_NaN(), dark = 0, bright = 0;
+    double mean = 0;  // Of its own pixels.
+
+    [[nodiscard]] bool has_level() const { return !std::isnan(level); }
+  };
+  [[nodiscard]] std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] Threshold around(const Image<std::uint8_t>& gray, int column, int row, int margin) const;
+  void fill();
+
+  int columns_ = 0, rows_ = 0, block_ = 32;
+  std::vector<Block> blocks_;
+  std::optional<Figure> figure_;
+  Threshold mean_;
 };
 
 }  // namespace flexura

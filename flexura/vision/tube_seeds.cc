@@ -48,15 +48,17 @@ TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& fro
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds) {
   seeds.clear();
   const double limit = std::hypot(component.right - component.left + 1, component.bottom - component.top + 1);
-  // The runs of the component, of which every n-th is taken.
-  const std::uint32_t every = std::max(1U, component.run_count / seed_count);
+  // The runs in which every n-th of the component's pixels lies: a hair across it has many short runs.
+  const std::int64_t every = std::max<std::int64_t>(1, component.area / seed_count);
   const auto own = static_cast<std::uint32_t>(&component - components.list.data());
-  std::uint32_t seen = 0, next = every / 2;
+  std::uint32_t seen = 0;
+  std::int64_t area = 0, next = every / 2;
   for (std::size_t i = component.first_run; i < components.runs.size() && seen < component.run_count; ++i) {
     const Run& run = components.runs[i];
     if (run.component != own) continue;
-    if (seen++ != next) continue;
-    next += every;
+    ++seen, area += run.last - run.first;
+    if (area <= next) continue;
+    while (next < area) next += every;
     const Vector2d middle(0.5 * (run.first + run.last - 1), run.v);
     const TubeSeed seed = shortest_chord(components, middle, limit, 8);
     if (seed.width < limit + 2) seeds.push_back(seed);

@@ -127,32 +127,22 @@ void TubeTracker<Value>::guess_blur(const CrossSection& section) {
 template <typename Value>
 void TubeTracker<Value>::measure_blur(std::span<const CrossSection> sections) {
   constexpr std::size_t wanted = 10;
-  constexpr int count = 5;
-  constexpr double ratio = 1.25;
+  constexpr std::size_t count = 5;
+  const BlurSeries series{blur_ / (1.25 * 1.25), 1.25};
   // What the model leaves of the picture, by blur, around what is known.
   std::array<double, count> left{};
-  const auto blur_at = [&](int i) { return blur_ * std::pow(ratio, i - count / 2); };
   for (std::size_t i = 0; i < sections.size(); i += std::max<std::size_t>(1, sections.size() / wanted)) {
     const CrossSection& section = sections[i];
     if (!section.is_whole()) continue;
     for (const double side : {1.0, -1.0}) {
       const Vector2d outward = side * section.normal, from = section.center + section.half_width * outward;
-      for (int j = 0; j < count; ++j) {
-        const auto fit = edges_.look(from, outward, blur_at(j), even_share * section.half_width);
-        if (fit)
-          left[static_cast<std::size_t>(j)] += std::min(fit->residual * fit->residual, noise_ * noise_ * 9);
+      for (std::size_t j = 0; j < count; ++j) {
+        const auto fit = edges_.look(from, outward, series.at(j), even_share * section.half_width);
+        if (fit) left[j] += std::min(fit->residual * fit->residual, noise_ * noise_ * 9);
       }
     }
   }
-  const auto best = static_cast<int>(std::ranges::min_element(left) - left.begin());
-  if (left[static_cast<std::size_t>(best)] <= 0) return;
-  double shift = 0;
-  if (best > 0 && best + 1 < count) {
-    const auto place = static_cast<std::size_t>(best);
-    const double a = left[place - 1], b = left[place], c = left[place + 1], bend = a - 2 * b + c;
-    if (bend > 0) shift = 0.5 * (a - c) / bend;
-  }
-  blur_ = blur_at(best) * std::pow(ratio, shift);
+  if (std::ranges::min(left) > 0) blur_ = series.least(left);
 }
 
 template <typename Value>

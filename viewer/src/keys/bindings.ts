@@ -96,7 +96,7 @@ function rig({ viewer }: App): Binding[] {
     { group, keys: ['Backspace'], shown: 'Backspace', what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : ask('reset')()) },
     { group, keys: ['h'], shown: 'H', what: 'Halt: everything stops', run: ask('halt') },
     { group, keys: ['r'], shown: 'R', what: 'Run the tasks', run: ask('run') },
-    { group, keys: ['c'], shown: 'C', what: 'Cancel the run', run: ask('cancel') },
+    { group, keys: ['c'], shown: 'C', what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
   ];
 }
 

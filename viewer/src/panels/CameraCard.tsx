@@ -1,12 +1,13 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { effect, type Signal } from '@preact/signals';
+import { color_of } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
-import type { SceneCamera } from '../protocol/types';
+import type { Layer, SceneCamera } from '../protocol/types';
 import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
 import { format_time } from '../ui/format';
 import { Icon } from '../ui/Icon';
-import type { Pixel } from './PixelInspector';
+import type { Pixel } from './pixel_value';
 
 interface Props {
   camera: SceneCamera;
@@ -21,13 +22,14 @@ export function CameraCard({ camera, pixel }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => effect(() => {
     viewer.picture_tick.value;
-    const layers = viewer.layers.value[camera.name] ?? [];
+    const layers = [...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name)];
     const here = pixel.value?.camera === camera.name ? pixel.value : null;
     paint(canvas.current!, camera, viewer.picture_of.get(camera.name)?.bitmap ?? null, layers, here);
   }), [camera]);
   viewer.picture_tick.value;
   viewer.tick.value;
   const picture = viewer.picture_of.get(camera.name);
+  const measured = viewer.measured.pictures.value[camera.name]?.value;
   const old = age(viewer.freshness.value, picture?.time, viewer.history.newest?.time);
   const point = (event: PointerEvent): void => {
     const { clientWidth, clientHeight } = canvas.current!;
@@ -51,6 +53,7 @@ export function CameraCard({ camera, pixel }: Props) {
           onPointerMove={point} onPointerDown={point} onKeyDown={step} />
         {!picture && <span class="none">No picture</span>}
         {picture && old && <span class="old">{old}</span>}
+        {picture && !old && measured && !measured.found && <span class="unfound">{measured.reason}</span>}
         {picture && !old && viewer.freshness.value === 'held' && <span class="now">Now: only the view is held</span>}
       </div>
       <figcaption>
@@ -63,6 +66,12 @@ export function CameraCard({ camera, pixel }: Props) {
       </figcaption>
     </figure>
   );
+}
+
+/** In the colours that stand beside their names. */
+function measured_layers(viewer: Viewer, camera: string): Layer[] {
+  const layers = viewer.measured.pictures.value[camera]?.value?.layers ?? [];
+  return layers.map((layer) => ({ color: color_of(layer.id), ...layer }));
 }
 
 /** The picture that is shown, losslessly: a recording's at its time, the rig's newest. */

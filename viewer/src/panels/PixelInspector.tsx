@@ -1,16 +1,10 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { effect, signal, type Signal } from '@preact/signals';
-import { Latest } from '../connection/latest';
 import type { PixelResult } from '../protocol/types';
 import { total_length } from '../scene/rings';
 import { use_app } from '../ui/app';
 import { fixed, length_places } from '../ui/format';
-
-export interface Pixel {
-  camera: string;
-  u: number;
-  v: number;
-}
+import { follow_pixel, type Pixel } from './pixel_value';
 
 /** So many pixels around the inspected one, enlarged. */
 const around = 7;
@@ -20,16 +14,7 @@ export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
   const { viewer } = use_app();
   const canvas = useRef<HTMLCanvasElement>(null);
   const result = useRef(signal<PixelResult | null>(null)).current;
-  useEffect(() => {
-    const asker = new Latest<Pixel, PixelResult>(
-      ({ camera, u, v }) => viewer.link.request<PixelResult>('pixel', { camera, u, v }),
-      (answer) => (result.value = answer),
-    );
-    return effect(() => {
-      if (pixel.value && viewer.link.status.value.kind === 'open') asker.ask(pixel.value);
-      else result.value = null;
-    });
-  }, []);
+  useEffect(() => follow_pixel(viewer, pixel, result), []);
   useEffect(() => effect(() => {
     viewer.picture_tick.value;
     const at = pixel.value;

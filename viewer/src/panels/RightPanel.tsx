@@ -1,7 +1,9 @@
 import { useSignal } from '@preact/signals';
 import { use_app } from '../ui/app';
 import { CameraCard } from './CameraCard';
-import { PixelInspector, type Pixel } from './PixelInspector';
+import { MeasurePanel } from './MeasurePanel';
+import { PixelInspector } from './PixelInspector';
+import type { Pixel } from './pixel_value';
 
 /** What the cameras see. */
 export function RightPanel() {
@@ -14,6 +16,7 @@ export function RightPanel() {
         {cameras.map((camera) => <CameraCard key={camera.name} camera={camera} pixel={pixel} />)}
         {!cameras.length && <p class="empty">This rig has no cameras.</p>}
       </div>
+      {cameras.length > 0 && <MeasurePanel cameras={cameras.length} />}
       {cameras.length > 0 && <PixelInspector pixel={pixel} />}
     </aside>
   );

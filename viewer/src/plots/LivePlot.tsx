@@ -43,7 +43,7 @@ export function LivePlot({ hello, scene, place, chosen, choose }: Props) {
   const at = cursor.value ?? viewer.playback.held.value;
   const state = at === null ? viewer.history.newest : viewer.history.at(at);
   return (
-    <PlotFrame place={place} options={sources} chosen={source.id} names={short_names(source.names)} host={host} choose={choose}
+    <PlotFrame place={place} options={sources} chosen={source.id} names={short_names(source.names)} part={source.part} host={host} choose={choose}
       values={source.names.map((_, i) => (state ? source.value(state, i) : null))} />
   );
 }

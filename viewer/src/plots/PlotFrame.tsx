@@ -7,6 +7,8 @@ interface Props {
   options: { id: string; label: string; unit: string }[];
   chosen: string;
   names: string[];
+  /** Says that it is not all. */
+  part: string | undefined;
   /** At the cursor, or where playback stands. */
   values: (number | null | undefined)[];
   host: RefObject<HTMLDivElement>;
@@ -14,7 +16,7 @@ interface Props {
 }
 
 /** A plot's head: what is drawn, and its values at the cursor. */
-export function PlotFrame({ place, options, chosen, names, values, host, choose }: Props) {
+export function PlotFrame({ place, options, chosen, names, part, values, host, choose }: Props) {
   const theme = theme_now();
   const size = Math.max(...values.map((value) => Math.abs(value ?? 0)));
   return (
@@ -30,6 +32,7 @@ export function PlotFrame({ place, options, chosen, names, values, host, choose 
               {name} <output aria-live="off">{format(values[i], size)}</output>
             </li>
           ))}
+          {part && <li class="part">{part}</li>}
         </ul>
       </figcaption>
       <div class="chart" ref={host} />

@@ -52,7 +52,7 @@ export function RecordingPlot({ hello, place, chosen, choose }: Props) {
   const at = cursor.value ?? viewer.playback.time.value;
   const row = columns.value ? nearest(columns.value[0], at) : -1;
   return (
-    <PlotFrame place={place} options={groups} chosen={group?.id ?? ''} names={short_names(names)} host={host} choose={choose}
+    <PlotFrame place={place} options={groups} chosen={group?.id ?? ''} names={short_names(names)} part={group?.part} host={host} choose={choose}
       values={names.map((_, i) => (row >= 0 ? columns.value![i + 1][row] : null))} />
   );
 }

@@ -7,6 +7,8 @@ export interface Source {
   label: string;
   unit: string;
   names: string[];
+  /** Of one that shows a part of what belongs together: that it does. */
+  part?: string;
   /** The value of the series i in a state. */
   value(state: State, i: number): number;
 }
@@ -51,7 +53,35 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
       value: ({ cameras }, i) => cameras[(i >> 1) * camera_stride + (i & 1 ? camera_tilt : camera_pan)] * degree,
     });
   }
-  return sources;
+  return sources.flatMap(in_parts);
+}
+
+/** As many of a source's series at a time as can be told apart. */
+function in_parts(source: Source): Source[] {
+  const { id, label, names, value } = source;
+  const parts = Math.ceil(names.length / most_in_group);
+  if (parts < 2) return [source];
+  return Array.from({ length: parts }, (_, i) => {
+    const from = i * most_in_group;
+    const some = names.slice(from, from + most_in_group);
+    return {
+      ...source, id: part_id(id, i), label: part_label(label, i), names: some, part: part_text(some.length, names.length, label, i, parts),
+      value: (state: State, j: number) => value(state, from + j),
+    };
+  });
+}
+
+function part_id(id: string, i: number): string {
+  return i ? `${id}+${i}` : id;
+}
+
+function part_label(label: string, i: number): string {
+  if (!i) return label;
+  return i === 1 ? `${label} (more)` : `${label} (more ${i})`;
+}
+
+function part_text(shown: number, all: number, label: string, i: number, parts: number): string {
+  return `${shown} of ${all}; others: “${part_label(label, i + 1 < parts ? i + 1 : 0)}”`;
 }
 
 function numbered(word: string, count: number): string[] {
@@ -63,9 +93,11 @@ export interface Group {
   label: string;
   unit: string;
   names: string[];
+  part?: string;
 }
 
-const most_in_group = 9;
+/** More are not told apart, by their colours or in the legend. */
+export const most_in_group = 9;
 
 /** A recording's quantities, put together by what their names have in common. */
 export function groups_of(quantities: Hello['quantities']): Group[] {
@@ -73,16 +105,18 @@ export function groups_of(quantities: Hello['quantities']): Group[] {
   for (const { name, unit } of quantities) {
     const stem = name.replace(/[\s._/-]?[\[(]?\d+[\])]?/g, '').replace(/[._/ -](x|y|z)$/, '') || name;
     const id = `${stem} ${unit}`;
-    let group = groups.get(id);
-    if (group && group.names.length >= most_in_group) {
-      // More would not be told apart: the rest stands in a group of its own.
-      group = groups.get(`${id}+`) ?? { id: `${id}+`, label: `${readable(stem)} (more)`, unit, names: [] };
-    }
-    group ??= { id, label: readable(stem), unit, names: [] };
-    groups.set(group.id, group);
+    const group = groups.get(id) ?? { id, label: readable(stem), unit, names: [] };
+    groups.set(id, group);
     group.names.push(name);
   }
-  return [...groups.values()];
+  return [...groups.values()].flatMap(({ id, label, unit, names }) => {
+    const parts = Math.ceil(names.length / most_in_group);
+    return Array.from({ length: parts }, (_, i) => {
+      const some = names.slice(i * most_in_group, (i + 1) * most_in_group);
+      const part = parts > 1 ? part_text(some.length, names.length, label, i, parts) : undefined;
+      return { id: part_id(id, i), label: part_label(label, i), unit, names: some, part };
+    });
+  });
 }
 
 /** A quantity's name as people write it. */

@@ -25,6 +25,8 @@ export const camera_cy = 16;
 
 export interface State {
   flags: number;
+  /** Counts how often everything was put elsewhere, with no way between. */
+  leaps: number;
   sequence: number;
   time: number;
   /** Pairs x, y of each section. */
@@ -71,6 +73,7 @@ export function decode_state(buffer: ArrayBuffer): State {
   };
   return {
     flags: view.getUint8(1),
+    leaps: view.getUint16(10, true),
     sequence: view.getUint32(12, true),
     time: view.getFloat64(16, true),
     bends: take(2 * sections),

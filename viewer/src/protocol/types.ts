@@ -210,6 +210,27 @@ export interface TipResult {
   danger?: string;
 }
 
+/** What the program found in a picture, or why nothing. */
+export interface MeasureResult {
+  found: boolean;
+  reason: string;
+  notes: string[];
+  number: number;
+  layers: Layer[];
+}
+
+export interface ShapeResult {
+  found: boolean;
+  reason: string;
+  notes: string[];
+  /** Of the pictures, by camera. */
+  numbers: number[];
+  poses?: Pose[];
+  bends?: [number, number][];
+  sigma?: number;
+  rms_px?: number;
+}
+
 export interface PixelResult {
   value: number[];
   bits: number;

@@ -35,6 +35,8 @@ export const preferences = {
   plots: kept<[string, string]>('plots', ['tip', 'bends']),
   recording_plots: kept<[string, string]>('recording_plots', ['', '']),
   show_plots: kept('show_plots', true),
+  /** What is measured in the pictures and drawn upon them. */
+  overlays: kept<string[]>('overlays', []),
 };
 
 export type Preferences = typeof preferences;
@@ -54,7 +56,14 @@ export function toggle_theme(): void {
   preferences.theme.value = theme_now() === 'dark' ? 'light' : 'dark';
 }
 
+function toggle(list: Signal<string[]>, id: string): void {
+  list.value = list.value.includes(id) ? list.value.filter((other) => other !== id) : [...list.value, id];
+}
+
 export function toggle_hidden(id: string): void {
-  const hidden = preferences.hidden.value;
-  preferences.hidden.value = hidden.includes(id) ? hidden.filter((other) => other !== id) : [...hidden, id];
+  toggle(preferences.hidden, id);
+}
+
+export function toggle_overlay(id: string): void {
+  toggle(preferences.overlays, id);
 }

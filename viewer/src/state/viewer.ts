@@ -7,8 +7,11 @@ import { decode_image, decode_state, flag_running, kind_image, kind_of, kind_sta
 import type { EventMessage, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
 import { Commander } from './commander';
 import { History } from './history';
+import { Measured } from './measured';
 import { Notices } from './notices';
 import { Playback } from './playback';
+import { preferences } from './preferences';
+import { shape } from '../overlays/measures';
 
 /** What one can believe of what is on the screen. */
 export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none';
@@ -27,13 +30,17 @@ export class Viewer implements LinkListener {
   readonly playback: Playback;
   readonly commander: Commander;
   readonly pictures: Pictures;
+  readonly measured = new Measured();
 
   readonly hello = signal<Hello | null>(null);
   readonly scene = signal<Scene | null>(null);
   readonly events = signal<EventMessage[]>([]);
   readonly progress = signal<ProgressMessage | null>(null);
   readonly layers = signal<Record<string, Layer[]>>({});
-  readonly ghosts = signal<Record<string, GhostMessage>>({});
+  /** As the program sends them. */
+  private readonly sent_ghosts = signal<Record<string, GhostMessage>>({});
+  /** Those, and the shape that the pictures tell. */
+  readonly ghosts = computed(() => this.all_ghosts());
   /** Grows with each picture of a camera; the picture itself is in `picture_of`. */
   readonly picture_tick = signal(0);
   /** Grows some ten times a second while the shown state changes. */
@@ -64,6 +71,7 @@ export class Viewer implements LinkListener {
       failed: (error) => this.notices.error(error),
     });
     this.commander = new Commander(this);
+    this.measured.start(this, preferences.overlays);
     setInterval(() => this.watch_states(), 500);
   }
 
@@ -139,7 +147,7 @@ export class Viewer implements LinkListener {
     this.events.value = [];
     this.progress.value = null;
     this.layers.value = {};
-    this.ghosts.value = {};
+    this.sent_ghosts.value = {};
     this.picked.value = null;
     this.commander.forget_tip();
     this.pictures.reset();
@@ -158,8 +166,14 @@ export class Viewer implements LinkListener {
   }
 
   private take_ghost(message: GhostMessage): void {
-    const { [message.id]: _, ...others } = this.ghosts.value;
-    this.ghosts.value = message.poses?.length ? { ...others, [message.id]: message } : others;
+    const { [message.id]: _, ...others } = this.sent_ghosts.value;
+    this.sent_ghosts.value = message.poses?.length ? { ...others, [message.id]: message } : others;
+  }
+
+  private all_ghosts(): Record<string, GhostMessage> {
+    const poses = this.measured.shape.value?.poses;
+    if (!poses) return this.sent_ghosts.value;
+    return { ...this.sent_ghosts.value, [shape.id]: { type: 'ghost', id: shape.id, color: shape.color, poses } };
   }
 
   private take_state(state: State): void {

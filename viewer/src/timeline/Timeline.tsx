@@ -70,7 +70,7 @@ function Line() {
               aria-label={`${mark.level}: ${mark.name} at ${format_time(mark.time)}`}
               // Keeps no focus: Space after it is to play, not to come back here.
               onMouseDown={(event) => event.preventDefault()} onClick={() => playback.seek(mark.time)}>
-              <span>{mark.name}</span>
+              {!is_band(mark) && <span>{mark.name}</span>}
             </button>
           ))}
         </div>
@@ -80,10 +80,15 @@ function Line() {
   );
 }
 
-/** Where a mark's label must end: with the mark, or where the next one begins. */
+/** What is to be noticed lies in a lane of its own, without words upon it. */
+function is_band({ level }: Mark): boolean {
+  return level !== 'info';
+}
+
+/** Where a mark's label must end: with the mark, or where the next label begins. */
 function room_of(mark: Mark, marks: Mark[], to: number): number {
-  if (mark.end > mark.time) return mark.end;
-  return Math.min(to, ...marks.filter(({ time }) => time > mark.time).map(({ time }) => time));
+  if (mark.end > mark.time || is_band(mark)) return mark.end;
+  return Math.min(to, ...marks.filter((other) => other.time > mark.time && !is_band(other)).map(({ time }) => time));
 }
 
 function marks_of(marks: Mark[], events: Omit<Mark, 'end'>[], from: number, to: number): Mark[] {

@@ -76,7 +76,10 @@ function Rig() {
         <span class="running">
           <span class="running-text">{progress.what}</span>
           <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
-          <button type="button" class="button" onClick={ask('cancel')}><Icon name="close" />Cancel</button>
+          <button type="button" class="button" disabled={!connected || viewer.readonly} onClick={ask('cancel')}
+            title={viewer.readonly ? 'The run belongs to the terminal that started it' : 'The run ends early (C)'}>
+            <Icon name="close" />Cancel
+          </button>
         </span>
       )}
       {!running && hello.controls.tasks.length > 0 && (

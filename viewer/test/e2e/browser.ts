@@ -6,6 +6,12 @@ import { chromium, type Browser, type Page } from 'playwright-core';
 /** The built page: FLEXURA_PAGE, or what `npm run build` made. */
 export const dist = process.env.FLEXURA_PAGE ?? fileURLToPath(new URL('../../dist', import.meta.url));
 
+/** Shows `dist` also where the program brings a page of its own: to work on the page without building the program. */
+const is_instead = process.env.FLEXURA_PAGE_INSTEAD !== undefined;
+
+/** A page that came from no address of the network may not speak with one of this machine: else. */
+const has_no_address = '--disable-features=LocalNetworkAccessChecks';
+
 /** By how much longer everything may take, on a machine that does much else. */
 const patience = Number(process.env.FLEXURA_PATIENCE ?? 1);
 
@@ -14,7 +20,7 @@ export async function launch(): Promise<Browser> {
   // The default software WebGL: it is what a headless machine has.
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--disable-dev-shm-usage'],
+    args: ['--no-sandbox', '--disable-dev-shm-usage', ...(is_instead ? [has_no_address] : [])],
   });
 }
 
@@ -38,8 +44,21 @@ export async function open_page(
       complaints.push(message.text());
     }
   });
+  if (is_instead) await show_instead(page);
   await page.goto(url);
   return { page, complaints };
+}
+
+/** The page's parts come from `dist`, under the policy of the server that is asked for them. */
+async function show_instead(page: Page): Promise<void> {
+  await page.route(({ pathname }) => pathname === '/' || pathname.startsWith('/assets/'), async (route) => {
+    const { origin, pathname } = new URL(route.request().url());
+    const { headers } = await fetch(origin);
+    await route.fulfill({
+      path: `${dist}${pathname === '/' ? '/index.html' : pathname}`,
+      headers: { 'Content-Security-Policy': headers.get('Content-Security-Policy') ?? '' },
+    });
+  });
 }
 
 /** The 3D view alone: what lies upon it (a clock that runs, buttons, notes) would be in a picture of it too. */

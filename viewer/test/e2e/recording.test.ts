@@ -39,6 +39,17 @@ const shown_time = () => page.evaluate(() =>
   (globalThis as unknown as { flexura: { shown(): { time: number } } }).flexura.shown().time);
 const stage = () => stage_at_rest(page);
 
+/** Of the front camera's picture of a time, as the server gives it losslessly: the values of its first channel. */
+const served_picture = (of: Page, at: number) => of.evaluate(async (time) => {
+  const answer = await fetch(`image/front.png?time=${time}`);
+  const bitmap = await createImageBitmap(await answer.blob());
+  const { width, height } = bitmap;
+  const context = new OffscreenCanvas(width, height).getContext('2d')!;
+  context.drawImage(bitmap, 0, 0);
+  const { data } = context.getImageData(0, 0, width, height);
+  return { width, height, values: Array.from({ length: width * height }, (_, i) => data[4 * i]) };
+}, at);
+
 /**
  * What holds of each recording of 6 s whose second task, `back`, starts at 4 s. It is shown at the times asked for, or up
  * to `a_state` s before; `interval` s is one step.
@@ -92,6 +103,50 @@ function recording_tests(a_state: number, interval: number, title: string): void
     await slide(page, '#scrub', 4);
     await until(async () => (await said.textContent()) === '4.00 s');
     expect((await camera.screenshot()).equals(before)).toBe(false);
+  });
+
+  test('under a pointer that rests, the pixel’s value goes with the picture', async () => {
+    await slide(page, '#scrub', 0);
+    const [first, second] = await Promise.all([0, 4].map((time) => served_picture(page, time)));
+    const differs = (u: number, v: number): boolean => {
+      const i = v * first.width + u;
+      return Math.abs((first.values[i] ?? 0) - (second.values[i] ?? 0)) > 40;
+    };
+    const camera = page.locator('.picture canvas').first();
+    const box = (await camera.boundingBox())!;
+    // Differs all around, too, where the pointer's place is coarser than the picture's pixels.
+    const reach = Math.floor(first.width / box.width);
+    const around = [-reach, 0, reach];
+    const places = first.values.map((_, i) => [i % first.width, Math.floor(i / first.width)]);
+    const place = places.find(([u, v]) => around.every((du) => around.every((dv) => differs(u + du, v + dv))))!;
+    await page.mouse.move(box.x + ((place[0] + 0.5) / first.width) * box.width, box.y + ((place[1] + 0.5) / first.height) * box.height);
+    const said = page.locator('.pixel dd');
+    const [, u, v] = /\((\d+), (\d+)\)/.exec((await said.first().textContent())!)!.map(Number);
+    const values = new Set<string>();
+    for (const { time, picture } of [{ time: 0, picture: first }, { time: 4, picture: second }, { time: 0, picture: first }]) {
+      await slide(page, '#scrub', time);
+      const wanted = `${picture.values[v * picture.width + u]} of 255`;
+      await until(async () => (await said.nth(1).textContent()) === wanted, 8000, `at ${time} s it is ${wanted}`);
+      values.add(wanted);
+    }
+    expect(values.size).toBe(2);
+    await page.mouse.move(box.x - 200, box.y);
+  });
+
+  test('no label lies upon a band of the timeline', async () => {
+    const rects = (selector: string) => page.locator(selector).evaluateAll((marks) => marks.map((mark) => {
+      const { left, right, top, bottom } = mark.getBoundingClientRect();
+      return { left, right, top, bottom };
+    }));
+    const labels = await rects('.mark[data-level="info"]');
+    const bands = await rects('.mark:not([data-level="info"])');
+    expect(labels.length).toBeGreaterThan(1);
+    for (const band of bands) {
+      for (const label of labels) expect(label.top >= band.bottom || band.top >= label.bottom).toBe(true);
+      expect(band.bottom).toBeLessThanOrEqual(720);
+      expect(band.right - band.left).toBeGreaterThanOrEqual(5);
+    }
+    if (title !== 'A recording') expect(bands.length).toBeGreaterThan(0);
   });
 
   test('marks stand on the timeline and go to their time', async () => {
@@ -168,15 +223,25 @@ describe('a recording', () => {
     await until(async () => (await to_the_rig.count()) === 1);
   });
 
-  test('a warning without a span stands as a line, one with a span as a band', async () => {
-    const band = () => page.locator('.mark[data-level="warning"]').evaluate((mark) => getComputedStyle(mark).backgroundColor);
-    const spanned = await band();
-    expect(spanned).not.toMatch(/transparent|rgba\(0, 0, 0, 0\)/);
-    await page.locator('.mark[data-level="warning"]').click();
-    await until(async () => Math.abs((await shown_time()) - 2.5) < a_state);
-    await page.locator('.mark[data-level="warning"]').evaluate((mark: HTMLElement) => (mark.dataset.span = 'false'));
-    expect(await band()).toMatch(/transparent|rgba\(0, 0, 0, 0\)/);
-    await page.locator('.mark[data-level="warning"]').evaluate((mark: HTMLElement) => (mark.dataset.span = 'true'));
+  test('a band is as long as what it tells of; what takes no time is a tick', async () => {
+    const of = async (level: string) => {
+      const mark = page.locator(`.mark[data-level="${level}"]`);
+      const { x, width } = (await mark.boundingBox())!;
+      return { mark, x, width, color: await mark.evaluate((button) => getComputedStyle(button).backgroundColor) };
+    };
+    const line = (await page.locator('.line').boundingBox())!;
+    const [warning, error] = [await of('warning'), await of('error')];
+    expect(warning.x).toBeCloseTo(line.x + (2.5 / 6) * line.width, 0);
+    expect(warning.width).toBeCloseTo((0.2 / 6) * line.width, 0);
+    expect(error.x).toBeCloseTo(line.x + (5 / 6) * line.width, 0);
+    expect(error.width).toBe(5);
+    expect(error.color).not.toBe(warning.color);
+    for (const [{ mark }, time] of [[warning, 2.5], [error, 5]] as const) {
+      await mark.click();
+      await until(async () => Math.abs((await shown_time()) - time) < a_state);
+    }
+    await slide(page, '#scrub', 0);
+    await until(async () => (await shown_time()) === 0);
   });
 
   recording_tests(a_state, 1 / 60, 'Report');
@@ -226,19 +291,69 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 });
 
 describe.skipIf(!program)('a run that is watched', () => {
+  /** Takes some seconds to be run. */
+  const watched_s = 4000;
+
   opened_before(async () => {
-    const run = new Program(['run', file, '--out', 'watched', '--set', 'task.0.duration=19000', '--view']);
+    const run = new Program(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']);
     await run.start();
     return run;
   }, 'live');
 
-  test('it is shown as it goes on, can be cancelled, and is a recording when it is over', async () => {
+  test('it is shown as it goes on, is not to be cancelled here, and is a recording when it is over', async () => {
     const { time } = await server_state(page);
     await until(async () => (await server_state(page)).time > time);
-    await page.getByRole('button', { name: 'Cancel' }).click();
-    await page.waitForSelector('.badge[data-kind="recording"]');
-    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeGreaterThan(time);
+    const cancel = page.getByRole('button', { name: 'Cancel' });
+    expect(await cancel.isDisabled()).toBe(true);
+    expect(await cancel.getAttribute('title')).toContain('belongs to the terminal');
+    await page.keyboard.press('c');
+    await page.waitForSelector('.badge[data-kind="recording"]', { timeout: 60_000 });
+    // To its end: nobody ended it early.
+    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeCloseTo(watched_s + 2, 6);
     expect(await page.getByRole('button', { name: 'To the rig' }).count()).toBe(0);
+    expect(complaints).toEqual([]);
+  });
+});
+
+describe.skipIf(!program)('a calibration, when it is over', () => {
+  const calibration = fileURLToPath(new URL('../../../examples/05_calibration/experiment.toml', import.meta.url));
+
+  opened_before(async () => {
+    const made = new Program();
+    const recorded = new Program(['view', made.record(calibration)]);
+    await recorded.start();
+    return {
+      url: recorded.url,
+      stop: async () => {
+        await recorded.stop();
+        await made.stop();
+      },
+    };
+  }, 'recording');
+
+  /** Position, pan, tilt and stage of the front camera, as the page has them. */
+  const front = () => page.evaluate(() => {
+    const { cameras } = (globalThis as unknown as { flexura: { shown(): { cameras: Float32Array } } }).flexura.shown();
+    return { position: [...cameras.subarray(0, 3)], head: [...cameras.subarray(7, 9)], stage: [...cameras.subarray(10, 13)] };
+  });
+
+  test('its cameras stand and look where it drove them', async () => {
+    await slide(page, '#scrub', 0);
+    await until(async () => (await shown_time()) === 0);
+    const [start, picture] = [await front(), await served_picture(page, 0)];
+    expect(start.head).toEqual([0, 0]);
+    expect(start.stage).toEqual([0, 0, 0]);
+    const end_time = Number(await page.locator('#scrub').getAttribute('max'));
+    await slide(page, '#scrub', end_time);
+    await until(async () => Math.abs((await shown_time()) - end_time) < 0.1);
+    const end = await front();
+    // They stood ten degrees askew, and half a metre off: the stage slides along its own axes.
+    expect(Math.hypot(...end.head)).toBeGreaterThan(0.05);
+    const way = Math.hypot(...end.position.map((x, i) => x - start.position[i]));
+    expect(way).toBeGreaterThan(0.05);
+    expect(way).toBeCloseTo(Math.hypot(...end.stage), 1);
+    const { values } = await served_picture(page, end_time);
+    expect(values.filter((value, i) => Math.abs(value - picture.values[i]) > 40).length).toBeGreaterThan(1000);
     expect(complaints).toEqual([]);
   });
 });

@@ -45,6 +45,26 @@ test('values follow the hand', async () => {
   expect(await effector()).not.toBe(before);
 });
 
+test('between the lines of an equation there is room', async () => {
+  const overlaps = () => page.evaluate(() => [...document.querySelectorAll('.equation')].flatMap((equation) => {
+    // As it is drawn: what stands in a formula may reach out of the box that the browser makes of it.
+    const lines = [...equation.querySelectorAll('p, math')].map((line) => {
+      const parts = [...line.querySelectorAll('mi, mn, mo')].map((part) => part.getBoundingClientRect());
+      const rects = parts.length ? parts : [line.getBoundingClientRect()];
+      return {
+        top: Math.min(...rects.map(({ top }) => top)), bottom: Math.max(...rects.map(({ bottom }) => bottom)),
+        left: Math.min(...rects.map(({ left }) => left)), right: Math.max(...rects.map(({ right }) => right)),
+      };
+    });
+    return lines.flatMap((a, i) => lines.slice(i + 1).map((b) =>
+      Math.min(Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top), Math.min(a.right, b.right) - Math.max(a.left, b.left))));
+  }));
+  for (let i = 0; i < 8; ++i) {
+    await page.locator('.recurrence tbody tr').nth(i).click();
+    expect(Math.max(...(await overlaps())), `section ${i + 1}`).toBeLessThanOrEqual(-2);
+  }
+});
+
 test('no equation and no row is cut off, however large its numbers', async () => {
   for (let i = 0; i < 8; ++i) await set(i, -179.9);
   for (let i = 1; i <= 8; ++i) {

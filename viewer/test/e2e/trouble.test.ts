@@ -149,6 +149,20 @@ test('tasks run with progress, can be cancelled, and their recording can be open
   await page.waitForSelector('.badge[data-kind="recording"]');
 });
 
+test('a run that a terminal has started is not to be cancelled here, by a button or a key', async () => {
+  server.session.is_watched = true;
+  await page.reload();
+  await until(async () => (await badge()) === 'live');
+  server.tell_all({ type: 'progress', what: 'reach', fraction: 0.3 });
+  const cancel = page.getByRole('button', { name: 'Cancel' });
+  await cancel.waitFor();
+  expect(await cancel.isDisabled()).toBe(true);
+  await cancel.click({ force: true });
+  await page.keyboard.press('c');
+  await page.waitForTimeout(200);
+  expect(server.log.filter(({ do: what }) => what === 'cancel')).toHaveLength(0);
+});
+
 test('layers lie upon the pictures, and ghosts stand in the view', async () => {
   const picture = page.locator('.picture canvas').first();
   await until(async () => (await page.locator('.picture .none').count()) === 0, 15000);

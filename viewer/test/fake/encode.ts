@@ -1,6 +1,7 @@
 // The binary messages, written by hand from docs/viewer-protocol.md: the page's reader is tested against them.
 export interface StateRows {
   flags: number;
+  leaps?: number;
   sequence: number;
   time: number;
   bends: ArrayLike<number>;
@@ -19,6 +20,7 @@ export function encode_state(state: StateRows): Buffer {
   bytes.writeUInt16LE(state.samples.length / 8, 4);
   bytes.writeUInt16LE(state.cameras.length / 18, 6);
   bytes.writeUInt16LE(state.displacements.length, 8);
+  bytes.writeUInt16LE(state.leaps ?? 0, 10);
   bytes.writeUInt32LE(state.sequence, 12);
   bytes.writeDoubleLE(state.time, 16);
   let at = 24;

@@ -2,6 +2,7 @@
 import { cord_angles_of, archings_of } from '../../src/math/planar';
 import { point_at } from '../../src/math/arc';
 import type { Bends } from './arm';
+import type { PointInPicture } from './picture';
 import type { FakeSession } from './session';
 
 export interface Client {
@@ -11,6 +12,15 @@ export interface Client {
   rates: Map<string, number>;
   /** Where it stands in a recording. */
   time: number;
+  /** The picture of each camera that was sent last. */
+  sent: Map<string, SentPicture>;
+}
+
+export interface SentPicture {
+  number: number;
+  pixels: Uint8Array;
+  /** Where the backbone is seen. */
+  points: PointInPicture[];
 }
 
 type Request = Record<string, unknown> & { do: string };
@@ -44,6 +54,24 @@ function camera_of(session: FakeSession, request: Request): number {
   const i = session.rig.scene.cameras.findIndex(({ name }) => name === request.camera);
   if (i < 0) throw new Error(`no camera is called "${String(request.camera)}"`);
   return i;
+}
+
+function layers_of({ pixels, points }: SentPicture, width: number): { id: string; [key: string]: unknown }[] {
+  const inside = points.filter(({ u }) => u > 0 && u < width);
+  const along = (side: number) => inside.map(({ u, v, radius }) => [u + side * radius, v]);
+  const rows = Array.from({ length: pixels.length / width }, (_, v) => {
+    const row = Array.from(pixels.subarray(v * width, (v + 1) * width), (value) => value < 128);
+    return [v, row.indexOf(true), row.lastIndexOf(true)];
+  }).filter(([, from]) => from >= 0);
+  const middle = inside[inside.length >> 1] ?? { u: 0, v: 0 };
+  return [
+    { id: 'mask', kind: 'runs', rows },
+    { id: 'silhouette', kind: 'polyline', points: along(1) },
+    { id: 'silhouette', kind: 'polyline', points: along(-1) },
+    { id: 'axis', kind: 'polyline', points: along(0) },
+    { id: 'circle', kind: 'ellipse', center: [middle.u, middle.v], axes: [60, 60], angle: 0 },
+    { id: 'markers', kind: 'points', points: along(0).filter((_, i) => i % 50 === 25) },
+  ];
 }
 
 const handlers: Record<string, (hub: Hub, request: Request, client: Client) => Answer | void> = {
@@ -103,9 +131,29 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     camera_of(session, request);
     client.rates.set(request.camera as string, request.rate as number);
   },
-  pixel: ({ session }, request) => {
-    const value = session.pixel(camera_of(session, request), request.u as number, request.v as number);
-    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: session.sequence };
+  pixel: ({ session }, request, client) => {
+    const { width } = session.rig.scene.cameras[camera_of(session, request)];
+    const sent = client.sent.get(request.camera as string);
+    if (!sent) throw new Error('no picture was sent yet');
+    const value = sent.pixels[(request.v as number) * width + (request.u as number)];
+    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: sent.number };
+  },
+  measure: ({ session }, request, client) => {
+    const { width } = session.rig.scene.cameras[camera_of(session, request)];
+    const sent = client.sent.get(request.camera as string);
+    if (!sent) throw new Error('no picture was sent yet');
+    const wanted = request.layers as string[];
+    return {
+      found: true, reason: '', notes: [], number: sent.number,
+      layers: layers_of(sent, width).filter(({ id }) => wanted.includes(id)),
+    };
+  },
+  shape: ({ session }, _, client) => {
+    const rows = Array.from(session.arm.samples());
+    return {
+      found: true, reason: '', notes: [], numbers: [...client.sent.values()].map(({ number }) => number),
+      poses: Array.from({ length: rows.length / 8 }, (_row, i) => rows.slice(8 * i + 1, 8 * i + 8)), sigma: 1.2e-4, rms_px: 0.08,
+    };
   },
   point: ({ session }, request) => ({ ...point_at(session.arm.samples(), request.s as number), section: 0 }),
   backbone: ({ session }, request) => ({ poses: session.arm.samples(request.bends as Bends) }),

@@ -122,7 +122,8 @@ export class FakeServer {
       if (!image) return this.series(searchParams, end);
       const camera = this.rig.scene.cameras.findIndex(({ name }) => name === decodeURIComponent(image[1]));
       if (camera < 0) return end(404);
-      return end(200, this.session.picture(camera, Number(searchParams.get('time') ?? this.session.time)), 'image/png');
+      const pixels = this.session.pixels(camera, Number(searchParams.get('time') ?? this.session.time));
+      return end(200, this.session.picture(camera, pixels), 'image/png');
     }
     const file = normalize(join(this.folder, pathname === '/' ? 'index.html' : pathname));
     if (!file.startsWith(normalize(this.folder)) || !existsSync(file)) return end(404);
@@ -138,7 +139,7 @@ export class FakeServer {
 
   private welcome(socket: WebSocket): void {
     const client: Connected = {
-      socket, time: 0, rates: new Map(), open_pictures: new Map(), last_picture: new Map(),
+      socket, time: 0, sent: new Map(), rates: new Map(), open_pictures: new Map(), last_picture: new Map(),
       send: (text) => !this.mute && socket.send(text),
       push: (bytes) => !this.mute && socket.bufferedAmount < 1e6 && socket.send(bytes),
     };
@@ -184,7 +185,9 @@ export class FakeServer {
       if (!rate || client.open_pictures.has(name) || Math.abs(time - (client.last_picture.get(name) ?? -1)) < 1 / rate) return;
       client.open_pictures.set(name, ++this.pictures);
       client.last_picture.set(name, time);
-      client.push(encode_image(i, this.pictures, time, this.session.picture(i, time)));
+      const pixels = this.session.pixels(i, time);
+      client.sent.set(name, { number: this.pictures, pixels, points: this.session.seen(i) });
+      client.push(encode_image(i, this.pictures, time, this.session.picture(i, pixels)));
     });
   }
 }

@@ -13,6 +13,7 @@ export class FakeSession {
   arm: FakeArm;
   time = 0;
   sequence = 0;
+  leaps = 0;
   heads: { pan: number; tilt: number; zoom: number }[];
   stage = [0, 0, 0];
   mode: 'live' | 'recording';
@@ -22,6 +23,8 @@ export class FakeSession {
   /** As the program says it: a run that was watched leaves none. */
   has_rig = true;
   has_recording = false;
+  /** As a run that a terminal has started. */
+  is_watched = false;
 
   constructor(readonly rig: RigDescription, mode: 'live' | 'recording' = 'live') {
     this.arm = new FakeArm(rig);
@@ -30,6 +33,7 @@ export class FakeSession {
   }
 
   reset(): void {
+    ++this.leaps;
     this.arm = new FakeArm(this.rig);
     this.heads.forEach((head) => Object.assign(head, { pan: 0, tilt: 0, zoom: 1 }));
     this.stage = [0, 0, 0];
@@ -68,6 +72,7 @@ export class FakeSession {
     const recording = this.mode === 'recording';
     return encode_state({
       flags: (this.moving && !recording ? 1 : 0) | (this.running ? 2 : 0) | (recording ? 4 : 0),
+      leaps: this.leaps,
       sequence: ++this.sequence,
       time,
       bends: this.arm.bends.flat(),
@@ -88,13 +93,14 @@ export class FakeSession {
             { time: 0, end: 4, level: 'info', name: 'reach', text: 'move' },
             { time: 2.5, end: 2.7, level: 'warning', name: 'near', text: 'near the post: 4 cm' },
             { time: 4, end: 6, level: 'info', name: 'back', text: 'move' },
+            { time: 5, end: 5, level: 'error', name: 'jump', text: 'section 1 jumps' },
           ]
         : [],
       quantities: recording
         ? ['x', 'y', 'z'].map((axis) => ({ name: `tip.${axis}`, unit: 'm' })).concat(
             this.arm.bends.map((_, i) => ({ name: `bend[${i + 1}].x`, unit: 'rad' })))
         : [],
-      report: recording, rig: this.has_rig, recording: this.has_recording || recording, readonly: recording,
+      report: recording, rig: this.has_rig, recording: this.has_recording || recording, readonly: recording || this.is_watched,
     };
   }
 
@@ -128,18 +134,20 @@ export class FakeSession {
     });
   }
 
-  picture(i: number, time = this.time): Buffer {
+  /** The grey values of a picture. */
+  pixels(i: number, time = this.time): Uint8Array {
     if (this.mode === 'recording') this.arm.bends = this.bends_at(time);
     const { width, height } = this.rig.scene.cameras[i];
-    return encode_png(width, height, draw_arm(width, height, this.seen(i)));
+    return draw_arm(width, height, this.seen(i));
   }
 
-  pixel(i: number, u: number, v: number): number {
+  picture(i: number, pixels = this.pixels(i)): Buffer {
     const { width, height } = this.rig.scene.cameras[i];
-    return draw_arm(width, height, this.seen(i))[v * width + u];
+    return encode_png(width, height, pixels);
   }
 
-  private seen(i: number): PointInPicture[] {
+  /** Where the backbone is in a picture, as it was drawn last. */
+  seen(i: number): PointInPicture[] {
     const { width, height } = this.rig.scene.cameras[i];
     const samples = this.arm.samples();
     const pose = this.camera_pose(i);

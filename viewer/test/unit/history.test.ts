@@ -2,11 +2,13 @@ import { expect, test } from 'vitest';
 import type { State } from '../../src/protocol/state';
 import { History } from '../../src/state/history';
 import { window_of } from '../../src/plots/data';
-import { groups_of, short_names } from '../../src/plots/sources';
+import { groups_of, live_sources, most_in_group, short_names } from '../../src/plots/sources';
+import { spatial_rig } from '../fake/rigs';
+import type { Hello } from '../../src/protocol/types';
 
 const none = new Float32Array(0);
 function state(time: number, sequence = 0): State {
-  return { flags: 0, sequence, time, bends: none, stretches: none, samples: none, cameras: none, displacements: none };
+  return { flags: 0, leaps: 0, sequence, time, bends: none, stretches: none, samples: none, cameras: none, displacements: none };
 }
 
 function filled(seconds: number, kept = 60): History {
@@ -62,7 +64,31 @@ test('quantities are grouped by what their names have in common', () => {
   const names = ['cord_angle_1', 'cord_angle_2', 'bend_x_1', 'bend_x_2', 'bend_y_1', 'tip_x', 'tip_y', 'tip_z'];
   const groups = groups_of(names.map((name) => ({ name, unit: name.startsWith('tip') ? 'm' : 'rad' })));
   expect(groups.map(({ label, names }) => [label, names.length])).toEqual([['Cord angle', 2], ['Bend', 3], ['Tip', 3]]);
-  expect(groups_of(Array.from({ length: 20 }, (_, i) => ({ name: `q_${i}`, unit: '' }))).every(({ names }) => names.length < 20)).toBe(true);
+});
+
+test('of more quantities than can be told apart each is in a group of its own size, which says so', () => {
+  const quantities = Array.from({ length: 40 }, (_, i) => ({ name: `q_${i}`, unit: '' }));
+  const groups = groups_of(quantities);
+  expect(groups.flatMap(({ names }) => names)).toEqual(quantities.map(({ name }) => name));
+  expect(groups.map(({ names }) => names.length)).toEqual([9, 9, 9, 9, 4]);
+  expect(groups.map(({ label }) => label)).toEqual(['Q', 'Q (more)', 'Q (more 2)', 'Q (more 3)', 'Q (more 4)']);
+  expect(groups[0].part).toBe('9 of 40; others: “Q (more)”');
+  expect(groups[4].part).toBe('4 of 40; others: “Q”');
+  expect(new Set(groups.map(({ id }) => id)).size).toBe(5);
+  expect(groups_of(quantities.slice(0, 9)).map(({ part }) => part)).toEqual([undefined]);
+});
+
+test('a live arm of many sections is plotted in parts, nine curves at most', () => {
+  const { scene, controls } = spatial_rig();
+  const sections = Array.from({ length: 8 }, () => scene.arm.sections[0]);
+  const sources = live_sources({ controls } as Hello, { ...scene, arm: { ...scene.arm, sections } });
+  for (const { names } of sources) expect(names.length).toBeLessThanOrEqual(most_in_group);
+  const bends = sources.filter(({ label }) => label.startsWith('Bends'));
+  expect(bends.map(({ names }) => names.length)).toEqual([9, 7]);
+  expect(bends[0].part).toBe('9 of 16; others: “Bends (more)”');
+  const shown = { bends: Float32Array.from({ length: 16 }, (_, i) => i * (Math.PI / 180)) } as State;
+  expect(Math.round(bends[1].value(shown, 0))).toBe(9);
+  expect(bends[1].names[0]).toBe('5y');
 });
 
 test('a legend says what tells the names apart', () => {

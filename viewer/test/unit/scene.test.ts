@@ -9,7 +9,7 @@ import { Orbit } from '../../src/scene/orbit';
 import { make_arm } from '../../src/scene/parts/arm';
 import { gap_between, make_cameras } from '../../src/scene/parts/cameras';
 import { nearest_point } from '../../src/scene/pick';
-import { samples_of } from '../../src/scene/parts/ghosts';
+import { make_ghosts, samples_of } from '../../src/scene/parts/ghosts';
 import { grid_step } from '../../src/scene/parts/floor';
 import { plan_rings, radius_at, total_length } from '../../src/scene/rings';
 import { Tube } from '../../src/scene/tube';
@@ -175,7 +175,7 @@ function default_stand(): { scene: typeof rig.scene; state: State; span: number 
     -far, 0, 0, 0, Math.SQRT1_2, 0, Math.SQRT1_2, ...seen,
   ]);
   const state = {
-    flags: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new FakeArm(rig).samples(),
+    flags: 0, leaps: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new FakeArm(rig).samples(),
     cameras, displacements: new Float32Array(),
   };
   return { scene: rig.scene, state, span };
@@ -232,7 +232,7 @@ test('through a camera one sees as near and as far wherever the world’s origin
     const moved = { ...rig.scene, arm: { ...arm, base: arm.base.map((x, i) => (i === 0 ? x + shift : x)) as Pose } };
     const cameras = Float32Array.from([shift, 0.4, 2.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0]);
     const state = {
-      flags: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new Float32Array(),
+      flags: 0, leaps: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new Float32Array(),
       cameras, displacements: new Float32Array(),
     };
     expect(see_through(camera, moved, state, 'front', 4 / 3)).toBe(true);
@@ -262,4 +262,27 @@ test('the arm is hit where it is now, also when it was looked at before it lay a
   expect(ray.intersectObject(skin)).toHaveLength(0);
   tube.lay(new FakeArm(rig).samples());
   expect(ray.intersectObject(skin)[0].point.z).toBeCloseTo(radius_at(arm, 0.5), 2);
+});
+
+test('a ghost that moves keeps its skin, and goes when it has no poses', () => {
+  const [part] = make_ghosts({ scene: rig.scene, span: 1, floor: 0, theme: 'dark' });
+  const group = part.group as Group;
+  const poses_of = (samples: Float32Array): Pose[] =>
+    Array.from({ length: samples.length / 8 }, (_, i) => [...samples.subarray(8 * i + 1, 8 * i + 8)] as unknown as Pose);
+  const show = (samples: Float32Array | null): void =>
+    part.ghosts!({ shape: { type: 'ghost', id: 'shape', color: '#b197fc', poses: samples ? poses_of(samples) : [] } });
+  const tip = () => {
+    const positions = ((group.children[0] as Mesh).geometry).getAttribute('position');
+    return new Vector3().fromBufferAttribute(positions as never, positions.count - 1);
+  };
+  show(new FakeArm(rig).samples() as unknown as Float32Array);
+  const [first, straight] = [group.children[0], tip()];
+  show(bent());
+  expect(group.children).toHaveLength(1);
+  expect(group.children[0]).toBe(first);
+  expect(tip().distanceTo(straight)).toBeGreaterThan(0.05);
+  const { position } = point_at(bent(), total_length(arm));
+  expect(tip().distanceTo(new Vector3(...position))).toBeLessThan(0.03);
+  show(null);
+  expect(group.children).toHaveLength(0);
 });

@@ -3,7 +3,7 @@ import { decode_image, decode_state, kind_of } from '../../src/protocol/state';
 import { encode_image, encode_state } from '../fake/encode';
 
 const rows = {
-  flags: 9, sequence: 4_000_000_000, time: 12.5, bends: [0.5, -1, 2, 3], stretches: [1, 1.25],
+  flags: 9, leaps: 65_535, sequence: 4_000_000_000, time: 12.5, bends: [0.5, -1, 2, 3], stretches: [1, 1.25],
   samples: Array.from({ length: 24 }, (_, i) => i / 4), cameras: Array.from({ length: 18 }, (_, i) => i - 4),
   displacements: [0.125, 0.25, 0.375],
 };
@@ -15,6 +15,7 @@ function buffer(bytes: Buffer): ArrayBuffer {
 test('a state is read as it was written', () => {
   const state = decode_state(buffer(encode_state(rows)));
   expect(state.flags).toBe(9);
+  expect(state.leaps).toBe(65_535);
   expect(state.sequence).toBe(4_000_000_000);
   expect(state.time).toBe(12.5);
   for (const key of ['bends', 'stretches', 'samples', 'cameras', 'displacements'] as const) {

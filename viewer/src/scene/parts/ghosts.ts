@@ -8,7 +8,7 @@ import { plan_rings } from '../rings';
 import { Tube } from '../tube';
 
 interface Shown {
-  message: GhostMessage;
+  message: GhostMessage | null;
   tube: Tube;
   mesh: Mesh;
 }
@@ -29,27 +29,40 @@ export function make_ghosts({ scene }: PartContext): Part[] {
     label: 'Ghosts',
     group,
     ghosts(messages) {
-      for (const id of [...shown.keys()]) if (shown.get(id)?.message !== messages[id]) remove(id);
+      for (const id of [...shown.keys()]) if (!has_shape(messages[id])) remove(id);
       for (const [id, message] of Object.entries(messages)) {
-        if (shown.has(id) || !message.poses || message.poses.length < 2) continue;
-        const ghost = make_ghost(message, message.poses, scene.arm);
+        if (!has_shape(message) || shown.get(id)?.message === message) continue;
+        // One that moves keeps its skin: with each picture comes another shape.
+        const ghost = shown.get(id) ?? make_ghost(scene.arm);
+        lay(ghost, message, scene.arm);
+        if (!shown.has(id)) group.add(ghost.mesh);
         shown.set(id, ghost);
-        group.add(ghost.mesh);
       }
     },
     dispose: () => [...shown.keys()].forEach(remove),
   }];
 }
 
-function make_ghost(message: GhostMessage, poses: Pose[], arm: SceneArm): Shown {
+interface Shaped extends GhostMessage {
+  poses: Pose[];
+}
+
+function has_shape(message: GhostMessage | undefined): message is Shaped {
+  return (message?.poses?.length ?? 0) > 1;
+}
+
+function make_ghost(arm: SceneArm): Shown {
   const color: Vector3 = [1, 1, 1];
   const tube = new Tube(plan_rings({ ...arm, markers: [], disks: [] }, () => color));
-  tube.lay(samples_of(poses, arm.sections.reduce((sum, { length }) => sum + length, 0)));
-  const mesh = new Mesh(tube.geometry, new MeshLambertMaterial({
-    color: new Color(message.color ?? '#4dabf7'), transparent: true, opacity: 0.35, depthWrite: false,
-  }));
+  const mesh = new Mesh(tube.geometry, new MeshLambertMaterial({ transparent: true, opacity: 0.35, depthWrite: false }));
   mesh.frustumCulled = false;
-  return { message, tube, mesh };
+  return { message: null, tube, mesh };
+}
+
+function lay(ghost: Shown, message: Shaped, arm: SceneArm): void {
+  ghost.message = message;
+  ghost.tube.lay(samples_of(message.poses, arm.sections.reduce((sum, { length }) => sum + length, 0)));
+  (ghost.mesh.material as MeshLambertMaterial).color = new Color(message.color ?? '#4dabf7');
 }
 
 /** Rows as in a state from poses alone: s by the arcs' lengths, scaled to the unstretched arm. */

@@ -2,12 +2,12 @@ import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Line, LineBasicMater
 import { sample_stride, type State } from '../../protocol/state';
 import type { Part, PartContext } from '../part';
 
-const most_points = 3000;
+export const most_points = 3000;
 /** Time and way between two shown states above which the tip was not seen to go there: one scrubbed. */
 const jump_s = 0.5;
 const jump_share = 0.03;
 
-/** Where the tip was: begins anew when time jumps. */
+/** Where the tip was seen to go: begins anew where time goes back or jumps, and where the tip was put elsewhere. */
 export function make_trail({ span, theme }: PartContext): Part[] {
   const points = new Float32Array(3 * most_points);
   const attribute = new BufferAttribute(points, 3).setUsage(DynamicDrawUsage);
@@ -16,6 +16,7 @@ export function make_trail({ span, theme }: PartContext): Part[] {
   line.frustumCulled = false;
   let count = 0;
   let time = 0;
+  let leaps = 0;
   geometry.setDrawRange(0, 0);
   return [{
     id: 'trail',
@@ -26,8 +27,10 @@ export function make_trail({ span, theme }: PartContext): Part[] {
       const [x, y, z] = [state.samples[tip], state.samples[tip + 1], state.samples[tip + 2]];
       const last = 3 * (count - 1);
       const way = count ? Math.hypot(x - points[last], y - points[last + 1], z - points[last + 2]) : 0;
-      if (Math.abs(state.time - time) > jump_s && way > jump_share * span) count = 0;
+      const jumped = state.time - time > jump_s && way > jump_share * span;
+      if (state.time < time || state.leaps !== leaps || jumped) count = 0;
       time = state.time;
+      leaps = state.leaps;
       if (count && way < 1e-3 * span) return;
       if (count === most_points) {
         // The oldest half goes at once: moving all of it at every state would cost more.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "flexura/base/source.h"
+
+namespace flexura {
+
+/// The value of an enumeration that an option's word names. InputError, with all the words, for another.
+template <typename E>
+E named(const std::string& option, const std::string& word) {
+  const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));
+  const auto found = std::ranges::find(names, word);
+  if (found == names.end())
+    throw input_error(option,
+                      fmt::format("\"{}\": expected one of \"{}\"", word, fmt::join(names, "\", \"")));
+  return static_cast<E>(found - names.begin());
+}
+
+}  // namespace flexura

@@ -1,0 +1,83 @@
+// Where cameras stand that slide, and start elsewhere than they are believed to.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/view/live_session.h"
+#include "tests/support/experiment_files.h"
+#include "tests/support/live_sessions.h"
+#include "tests/support/view_fakes.h"
+
+namespace flexura {
+namespace {
+
+// The second camera slides, and starts elsewhere than it is believed to.
+const std::string sliding_text =
+    replaced(viewed_text, "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0] }",
+             "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0], stage = { y = { limits = [-0.3, 0.3] "
+             "} } }") +
+    "[[truth.camera]]\nname = \"side\"\ninitial.pan_deg = 2\n";
+
+class SlidingCamera : public LiveSessionTest {
+ protected:
+  SlidingCamera() : LiveSessionTest(sliding_text) {}
+};
+
+TEST_F(SlidingCamera, MovesAlongTheAxesThatItHas) {
+  EXPECT_EQ(ask(StageRequest{"side", {}, 0.2, {}}).error, "");
+  EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
+  EXPECT_EQ(ask(StageRequest{"side", {}, 0.1, 0.1}).error,
+            "the stage of camera \"side\" does not move along z");
+  EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
+}
+
+// What a run reads from its cameras is where the page sees them, and through them.
+TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
+  auto run = std::make_shared<RunLink>();
+  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
+  watched.opened(other);
+  const ArmState arm{{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}};
+  const auto picture = [&](std::span<const CameraReading> readings) {
+    run->state(7, arm, readings);
+    watched.advance(clock_ += 0.1);
+    HttpAnswer got;
+    watched.take(ImageAsk{"side", {}}, [&](const HttpAnswer& answer) { got = answer; });
+    return got.body;
+  };
+  const std::string at_start = picture({});
+  const StateMessage start = messenger_.state(other);
+  EXPECT_NEAR(start.cameras[1].head.pan, 2 * std::numbers::pi / 180, 1e-6) << "where it truly stands";
+  const CameraReading front{{0, 0, 1}, {}}, side{{0.05, -0.02, 1.5}, {{0, 0.25, 0}}};
+  const std::string moved = picture(std::array{front, side});
+  EXPECT_NE(moved, at_start);
+  const CameraSample shown = messenger_.state(other).cameras[1];
+  EXPECT_NEAR(shown.head.pan, 2 * std::numbers::pi / 180 + 0.05, 1e-6) << "from where it started";
+  EXPECT_NEAR(shown.head.tilt, -0.02, 1e-6);
+  EXPECT_NEAR(shown.head.zoom, 1.5, 1e-6);
+  EXPECT_NEAR(shown.stage.y(), 0.25, 1e-6);
+  EXPECT_NEAR((shown.X_WC.position - start.cameras[1].X_WC.position).norm(), 0.25, 0.01);
+  EXPECT_NEAR(shown.fx, 1.5 * start.cameras[1].fx, 1e-3);
+}
+
+TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
+  const CameraReading read{{0.1, 0.05, 1.2}, {{0, -0.1, 0}}};
+  const CameraReading again = rig_->reading(1, rig_->stance(1, read));
+  EXPECT_NEAR(again.head.pan, read.head.pan, 1e-12);
+  EXPECT_NEAR(again.head.tilt, read.head.tilt, 1e-12);
+  EXPECT_NEAR(again.head.zoom, read.head.zoom, 1e-12);
+  EXPECT_NEAR((again.stage.offset - read.stage.offset).norm(), 0, 1e-12);
+  EXPECT_FALSE(rig_->believed_view(1, read).X_WC.rotation.isApprox(
+      rig_->cameras[1].view(read.stage, rig_->stance(1, read).head).X_WC.rotation));
+  // Whoever wrote the log.
+  EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,213 @@
+#include "flexura/view/seen_arm.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "flexura/base/image.h"
+#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/view/answers.h"
+#include "flexura/view/pixel.h"
+#include "flexura/vision/arm_finder.h"
+#include "flexura/vision/backbone_image.h"
+#include "flexura/vision/conic.h"
+#include "flexura/vision/markers.h"
+#include "flexura/vision/picture_file.h"
+#include "flexura/vision/runs.h"
+#include "flexura/vision/threshold.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Vector2d;
+using Points = std::vector<Vector2d>;
+
+constexpr std::array<std::string_view, 5> names = {"mask", "silhouette", "axis", "markers", "circle"};
+
+// A picture in 8 bits, in which markers are looked for, and what was found of the arm.
+struct FoundArm {
+  Image<std::uint8_t> bytes;
+  View view;
+  ArmSighting arm;
+};
+
+FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
+  FoundArm found{for_eyes(*seen.picture, seen.bits), rig.believed_view(seen.camera, seen.reading), {}};
+  ArmFinderConfig config;
+  config.base = found.view.project(rig.model.X_WB.position);
+  ArmFinder finder(config);
+  const auto* words = std::get_if<Image<std::uint16_t>>(seen.picture.get());
+  const int white = (1 << seen.bits) - 1;
+  found.arm =
+      words != nullptr ? finder.find(gray_picture(*words), white) : finder.find(gray_picture(found.bytes));
+  return found;
+}
+
+// To a hundredth of a pixel: a picture on a screen shows no more.
+Node shown(double pixels) { return {std::round(100 * pixels) / 100, {}}; }
+Node shown(const Vector2d& pixel) { return {Node::Array{shown(pixel.x()), shown(pixel.y())}, {}}; }
+
+Node layer(const char* id, const char* kind, Node::Table members) {
+  Node::Table table{{"id", {}, text_node(id)}, {"kind", {}, text_node(kind)}};
+  for (Node::Member& member : members) table.push_back(std::move(member));
+  return {std::move(table), {}};
+}
+
+Node line(const char* id, const Points& points) {
+  Node::Array list;
+  for (const Vector2d& point : points) list.push_back(shown(point));
+  return layer(id, "polyline", {{"points", {}, {std::move(list), {}}}, {"closed", {}, {false, {}}}});
+}
+
+// The component that most of the axis lies in.
+std::optional<std::uint32_t> component_of(const Components& components, const ArmSighting& arm) {
+  std::vector<std::size_t> votes(components.list.size());
+  for (const AxisSample& sample : arm.axis) {
+    const Run* run = components.run_at(static_cast<int>(std::lround(sample.pixel.x())),
+                                       static_cast<int>(std::lround(sample.pixel.y())));
+    if (run != nullptr) ++votes[run->component];
+  }
+  const auto most = std::ranges::max_element(votes);
+  if (most == votes.end() || *most == 0) return std::nullopt;
+  return static_cast<std::uint32_t>(most - votes.begin());
+}
+
+void add_mask(const FoundArm& found, Node::Array& layers) {
+  Components components;
+  BlockThresholds blocks;
+  (void)segment(gray_picture(found.bytes), {}, components, blocks);
+  const auto component = component_of(components, found.arm);
+  if (!component) return;
+  Node::Array rows;
+  for (const Run& run : components.runs) {
+    if (run.component != *component) continue;
+    const auto number = [](int value) { return Node{static_cast<std::int64_t>(value), {}}; };
+    rows.push_back({Node::Array{number(run.v), number(run.first), number(run.last - 1)}, {}});
+  }
+  layers.push_back(layer("mask", "runs", {{"rows", {}, {std::move(rows), {}}}}));
+}
+
+// Both borders, as far as they are seen without a gap.
+void add_silhouette(const ArmSighting& arm, Node::Array& layers) {
+  for (const double side : {0.5, -0.5}) {
+    Points points;
+    const auto finish = [&] {
+      if (points.size() > 1) layers.push_back(line("silhouette", points));
+      points.clear();
+    };
+    for (const AxisSample& sample : arm.axis) {
+      if (!sample.is_seen)
+        finish();
+      else
+        points.push_back(sample.pixel + side * sample.width * sample.normal);
+    }
+    finish();
+  }
+}
+
+void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Node::Array& layers,
+                 std::vector<std::string>& notes) {
+  ArmSighting corrected = found.arm;
+  corrected.axis = axis;
+  const MarkerSightings markers = find_markers(found.bytes, corrected);
+  notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
+  Node::Array points;
+  for (const MarkerSighting& marker : markers.markers) points.push_back(shown(marker.pixel));
+  layers.push_back(layer("markers", "points", {{"points", {}, {std::move(points), {}}}}));
+}
+
+// The circle through the axis; one so large that the picture shows a straight line is left out.
+void add_circle(const FoundArm& found, const std::vector<AxisSample>& axis, Node::Array& layers) {
+  constexpr std::size_t independent = 4;  // samples whose errors have little in common
+  constexpr double largest = 20;          // of the picture's width
+  Points points;
+  for (std::size_t i = 0; i < axis.size(); i += independent)
+    if (axis[i].is_seen) points.push_back(axis[i].pixel);
+  const std::optional<CircleFit> circle = fit_circle(points);
+  if (!circle || circle->radius > largest * found.view.width) return;
+  layers.push_back(layer("circle", "ellipse",
+                         {{"center", {}, shown(circle->center)},
+                          {"axes", {}, {Node::Array{shown(circle->radius), shown(circle->radius)}, {}}},
+                          {"angle", {}, {0.0, {}}},
+                          {"rms", {}, number_node(circle->rms)},
+                          {"verified", {}, {circle->is_verified, {}}}}));
+}
+
+Node::Table outcome(bool is_found, const std::string& reason, const std::vector<std::string>& notes) {
+  return {{"found", {}, {is_found, {}}}, {"reason", {}, text_node(reason)}, {"notes", {}, texts_node(notes)}};
+}
+
+// What the rig's file says of the arm.
+ShapePrior prior_of(const ViewedRig& rig) {
+  ShapePrior prior;
+  prior.arm = rig.model;
+  prior.is_length_known = std::ranges::none_of(rig.model.sections, [](const Section& section) {
+    return section.stretch_limits[1] > section.stretch_limits[0];
+  });
+  for (const Marker& marker : rig.experiment.arm.look.markers(rig.model)) prior.markers.push_back(marker.at);
+  std::ranges::sort(prior.markers);
+  return prior;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double square = 0;
+  for (const double value : values) square += value * value / static_cast<double>(values.size());
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+std::span<const std::string_view> layer_names() { return names; }
+
+Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::vector<std::string>& layers) {
+  const FoundArm found = find_arm(rig, seen);
+  const auto is_wanted = [&](std::string_view name) { return std::ranges::count(layers, name) > 0; };
+  Node::Array drawn;
+  std::vector<std::string> notes = found.arm.notes;
+  if (found.arm.is_found()) {
+    std::vector<AxisSample> axis = found.arm.axis;
+    to_backbone_image(found.view.lens, axis);
+    Points points;
+    for (const AxisSample& sample : axis) points.push_back(sample.pixel);
+    if (is_wanted("mask")) add_mask(found, drawn);
+    if (is_wanted("silhouette")) add_silhouette(found.arm, drawn);
+    if (is_wanted("axis")) drawn.push_back(line("axis", points));
+    if (is_wanted("circle")) add_circle(found, axis, drawn);
+    if (is_wanted("markers")) add_markers(found, axis, drawn, notes);
+  }
+  Node::Table answer = outcome(found.arm.is_found(), found.arm.reason, notes);
+  answer.push_back({"number", {}, {seen.number, {}}});
+  answer.push_back({"layers", {}, {std::move(drawn), {}}});
+  return {std::move(answer), {}};
+}
+
+Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
+  std::vector<Sighting> sightings;
+  Node::Array numbers;
+  std::vector<std::string> notes;
+  for (const SeenPicture& picture : seen) {
+    const FoundArm found = find_arm(rig, picture);
+    if (!found.arm.is_found())
+      notes.push_back("camera " + rig.cameras[picture.camera].config().name + ": " + found.arm.reason);
+    sightings.push_back(sighting_of(found.arm, found.view, found.bytes));
+    numbers.push_back({picture.number, {}});
+  }
+  const ShapeEstimate estimate = ShapeEstimator(prior_of(rig)).estimate(sightings);
+  notes.insert(notes.end(), estimate.notes.begin(), estimate.notes.end());
+  Node::Table answer = outcome(estimate.is_found, estimate.reason, notes);
+  answer.push_back({"numbers", {}, {std::move(numbers), {}}});
+  if (estimate.is_found) {
+    answer.push_back({"poses", {}, *backbone_answer(estimate.shape.arm, estimate.shape.state).find("poses")});
+    answer.push_back({"bends", {}, bends_node(estimate.shape.state)});
+    answer.push_back({"sigma", {}, number_node(root_mean_square(estimate.sigma))});
+    answer.push_back({"rms_px", {}, number_node(estimate.rms)});
+  }
+  return {std::move(answer), {}};
+}
+
+}  // namespace flexura

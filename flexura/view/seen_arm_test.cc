@@ -1,0 +1,190 @@
+#include "flexura/view/seen_arm.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flexura/kinematics/spatial.h"
+#include "flexura/model/backbone.h"
+#include "flexura/view/live_session.h"
+#include "tests/support/live_sessions.h"
+#include "tests/support/view_fakes.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(LiveSessionTest, MeasuresThePictureThatWasSent) {
+  EXPECT_THAT(ask(MeasureRequest{"front", {}}).error,
+              HasSubstr("no picture of the camera \"front\" was sent yet"));
+  EXPECT_THAT(ask(MeasureRequest{"back", {}}).error, HasSubstr("expected one of \"front\", \"side\""));
+  EXPECT_THAT(ask(ShapeRequest{}).error, HasSubstr("was sent yet"));
+}
+
+// An arm large enough to be measured, with bands, before cameras that see it well.
+const std::string measured_text = R"(
+[arm]
+kind = "spatial"
+initial = { bends = [[0.6, 0.4], [-0.8, 0.5]] }
+look = { bands = { per_section = 3, width = 0.014, colors = [[0.85, 0.1, 0.1], [0.1, 0.2, 0.85]] } }
+[[arm.section]]
+length = 0.5
+radius = 0.02
+[[arm.section]]
+length = 0.5
+radius = 0.02
+[[camera]]
+name = "front"
+mount = { position = [0, 0.5, 2.2], look_at = [0, 0.5, 0] }
+sensor = { psf = 0.7, pixels = "color" }
+[[camera]]
+name = "side"
+mount = { position = [-2.2, 0.5, 0], look_at = [0, 0.5, 0] }
+sensor = { psf = 0.7, bits = 12 }
+[[truth.camera]]
+name = "front"
+initial.pan_deg = 0
+)";
+
+class MeasuredArm : public LiveSessionTest {
+ protected:
+  MeasuredArm() : LiveSessionTest(measured_text) {
+    for (const char* camera : {"front", "side"}) ask(ImagesRequest{camera, 30, 80});
+    pass(0.2);
+  }
+  static std::vector<Eigen::Vector2d> points_of(const Node& layer) {
+    std::vector<Eigen::Vector2d> points;
+    for (const Node& point : *layer.find("points")->as<Node::Array>()) {
+      const auto& pair = *point.as<Node::Array>();
+      points.emplace_back(*pair[0].as<double>(), *pair[1].as<double>());
+    }
+    return points;
+  }
+  static std::vector<const Node*> layers_of(const ViewAnswer& answer, const std::string& id) {
+    std::vector<const Node*> layers;
+    for (const Node& layer : *answer.result.find("layers")->as<Node::Array>())
+      if (*layer.find("id")->as<std::string>() == id) layers.push_back(&layer);
+    return layers;
+  }
+};
+
+// Held against where the arm truly is, through the camera that truly took the picture.
+TEST_F(MeasuredArm, LiesUnderItsLayers) {
+  for (const char* camera : {"front", "side"}) {
+    const ViewAnswer answer = ask(MeasureRequest{camera, {}});
+    ASSERT_EQ(answer.error, "");
+    ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
+    const std::size_t place = *rig_->camera(camera);
+    const std::string image = last_image(me, static_cast<std::uint32_t>(1 + place));
+    EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(), static_cast<unsigned char>(image[4]));
+    const CameraStance stance = rig_->first_stance(place);
+    const View view = rig_->cameras[place].view(stance.stage, stance.head);
+    const Backbone backbone(rig_->truth, rig_->initial);
+    std::vector<Eigen::Vector2d> truth;
+    for (int i = 0; i <= 1000; ++i)
+      truth.push_back(*view.project(backbone.pose(1e-3 * i * backbone.length()).position));
+    const auto distance = [&](const Eigen::Vector2d& pixel) {
+      double nearest = 1e9;
+      for (const Eigen::Vector2d& point : truth) nearest = std::min(nearest, (point - pixel).norm());
+      return nearest;
+    };
+    const auto axis = points_of(*layers_of(answer, "axis").at(0));
+    ASSERT_GT(axis.size(), 50);
+    for (const Eigen::Vector2d& point : axis)
+      EXPECT_LT(distance(point), 0.7) << camera << " " << point.transpose();
+    ASSERT_GE(layers_of(answer, "silhouette").size(), 2);
+    for (const Node* side : layers_of(answer, "silhouette"))
+      for (const Eigen::Vector2d& point : points_of(*side)) EXPECT_NEAR(distance(point), 7.3, 2.5);
+    EXPECT_EQ(layers_of(answer, "mask").size(), 1);
+  }
+  const ViewAnswer answer = ask(MeasureRequest{"front", {}});
+  const auto markers = points_of(*layers_of(answer, "markers").at(0));
+  EXPECT_GE(markers.size(), 5) << "of three bands a section; one may be seen too much from its end";
+  EXPECT_LE(markers.size(), 6);
+  const Backbone backbone(rig_->truth, rig_->initial);
+  const CameraStance stance = rig_->first_stance(0);
+  const View view = rig_->cameras[0].view(stance.stage, stance.head);
+  const auto look = rig_->experiment.arm.look.markers(rig_->truth);
+  for (const Eigen::Vector2d& seen : markers) {
+    const bool is_one = std::ranges::any_of(look, [&](const Marker& marker) {
+      return (*view.project(backbone.pose(marker.at).position) - seen).norm() < 1;
+    });
+    EXPECT_TRUE(is_one) << seen.transpose();
+  }
+  const ViewAnswer few = ask(MeasureRequest{"front", {{"axis"}}});
+  EXPECT_EQ(few.result.find("layers")->as<Node::Array>()->size(), 1);
+}
+
+// Bent in a plane that the front camera sees from straight before it.
+TEST_F(MeasuredArm, LiesOnTheCircleThatItsArcIs) {
+  ask(bends({{-0.8, 0}, {-0.8, 0}}));
+  pass(0.5);
+  ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
+  pass(0.2);
+  const ViewAnswer answer = ask(MeasureRequest{"front", {{"circle"}}});
+  const Node* circle = layers_of(answer, "circle").at(0);
+  const double radius = 0.5 / 0.8, distance = 2.2;
+  const CameraStance stance = rig_->first_stance(0);
+  const View view = rig_->cameras[0].view(stance.stage, stance.head);
+  const auto& axes = *circle->find("axes")->as<Node::Array>();
+  EXPECT_NEAR(*axes[0].as<double>(), view.lens.intrinsics().fx * radius / distance, 0.5);
+  EXPECT_EQ(*axes[1].as<double>(), *axes[0].as<double>());
+  const Eigen::Vector2d center = *view.project({-radius, 0, 0});
+  const auto& seen = *circle->find("center")->as<Node::Array>();
+  EXPECT_NEAR(*seen[0].as<double>(), center.x(), 0.5);
+  EXPECT_NEAR(*seen[1].as<double>(), center.y(), 0.5);
+  EXPECT_TRUE(*circle->find("verified")->as<bool>());
+  // One that is straight lies on no circle.
+  ask(bends({{0, 0}, {0, 0}}));
+  pass(0.5);
+  ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
+  pass(0.2);
+  EXPECT_TRUE(layers_of(ask(MeasureRequest{"front", {{"circle"}}}), "circle").empty());
+}
+
+TEST_F(MeasuredArm, IsFoundInTwoPicturesAsItStands) {
+  const ViewAnswer answer = ask(ShapeRequest{});
+  ASSERT_EQ(answer.error, "");
+  ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
+  EXPECT_EQ(answer.result.find("numbers")->as<Node::Array>()->size(), 2);
+  const Node::Array& tip = *answer.result.find("poses")->as<Node::Array>()->back().as<Node::Array>();
+  const Eigen::Vector3d truth = tip_pose(rig_->truth, rig_->initial).position;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    EXPECT_NEAR(*tip[static_cast<std::size_t>(i)].as<double>(), truth[i], 2e-3);
+  EXPECT_LT(*answer.result.find("rms_px")->as<double>(), 0.5);
+}
+
+TEST_F(MeasuredArm, IsMeasuredInTheNewestOfManyPictures) {
+  background_.is_prompt = false;
+  std::vector<std::string> ends;
+  for (const char* name : {"first: ", "second: ", "third: "}) {
+    session_.take(me, MeasureRequest{"front", {}}, [&ends, name](const ViewAnswer& answer) {
+      ends.push_back(name + (answer.error.empty() ? std::string("done") : answer.error));
+    });
+  }
+  EXPECT_THAT(ends, ::testing::ElementsAre("second: overtaken by a newer one"));
+  EXPECT_EQ(background_.jobs[Lane::measures], 1);
+  background_.work();
+  EXPECT_EQ(background_.jobs[Lane::measures], 2);
+  EXPECT_EQ(ends.back(), "third: done");
+}
+
+TEST_F(MeasuredArm, IsNotThereWhereTheCameraLooksAway) {
+  ask(HeadRequest{"front", 1.2, {}, {}});
+  pass(4);
+  ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
+  pass(0.1);
+  const ViewAnswer answer = ask(MeasureRequest{"front", {}});
+  EXPECT_FALSE(*answer.result.find("found")->as<bool>());
+  EXPECT_NE(*answer.result.find("reason")->as<std::string>(), "");
+  EXPECT_TRUE(answer.result.find("layers")->as<Node::Array>()->empty());
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+
+#include "flexura/estimate/shape_estimator.h"
+#include "tests/support/seen_arms.h"
+
+namespace flexura {
+
+/// An arm, and what two cameras at about a right angle to each other see of it.
+struct SeenShape {
+  BentArm bent;
+  std::array<View, 2> views;
+  std::array<Image<std::uint8_t>, 2> pictures;
+};
+
+inline SeenShape random_seen_shape(TestRandom& random) {
+  SeenArmOptions options;
+  options.noise = random.uniform(0, 4), options.psf = random.uniform(0.5, 1.2);
+  RandomArm arm = random_arm(random, options);
+  SeenShape result{arm.bent, {}, {}};
+  const Backbone backbone = arm.bent.backbone();
+  const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
+  const double turn = random.uniform(0, 2 * std::numbers::pi);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double angle =
+        turn + static_cast<double>(i) * (0.5 * std::numbers::pi + random.uniform(-0.15, 0.15));
+    const Eigen::Vector3d direction(std::cos(angle), random.uniform(-0.2, 0.2), std::sin(angle));
+    const Eigen::Vector3d from = middle + direction.normalized() * random.uniform(1.5, 3);
+    result.views[i] = pinhole_view(
+        look_at(from, middle + random.vector<3>(-0.05, 0.05)), options.width, options.height,
+        0.42 * options.height * (from - middle).norm() / (0.55 * backbone.length()) * random.uniform(0.7, 1));
+    result.pictures[i] = photograph(arm.scene, result.views[i], options,
+                                    static_cast<std::uint64_t>(random.integer(0, 1 << 30)));
+  }
+  return result;
+}
+
+/// Root mean square of the distances between points at equal shares of both lengths, of the arm's length.
+inline double relative_shape_error(const Shape& shape, const Backbone& truth) {
+  const Backbone found(shape.arm, shape.state);
+  constexpr int count = 100;
+  double squares = 0;
+  for (int i = 0; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    squares += (found.pose(share * found.length()).position - truth.pose(share * truth.length()).position)
+                   .squaredNorm();
+  }
+  return std::sqrt(squares / (count + 1)) / truth.length();
+}
+
+/// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly
+/// from 0 to 1 where it is right. By E. B. Wilson's and M. M. Hilferty's cube root of chi^2, good to 0.01.
+inline double expected_share(const ShapeEstimate& found, const ArmState& truth) {
+  const auto count = static_cast<Eigen::Index>(2 * truth.bends.size());
+  Eigen::VectorXd off(count);
+  for (std::size_t i = 0; i < truth.bends.size(); ++i)
+    off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - truth.bends[i];
+  const double square = off.dot(found.covariance.topLeftCorner(count, count).ldlt().solve(off));
+  const double spread = 2 / (9.0 * static_cast<double>(count));
+  const double normal = (std::cbrt(square / static_cast<double>(count)) - (1 - spread)) / std::sqrt(spread);
+  return 0.5 * std::erfc(-normal / std::numbers::sqrt2);
+}
+
+}  // namespace flexura

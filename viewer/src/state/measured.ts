@@ -1,0 +1,99 @@
+// What the program measures in the pictures that are shown, picture by picture, as long as somebody wants to see it.
+import { effect, signal, type ReadonlySignal, type Signal } from '@preact/signals';
+import { Latest } from '../connection/latest';
+import { shape as shape_measure } from '../overlays/measures';
+import type { MeasureResult, ShapeResult } from '../protocol/types';
+
+/** What of the `Viewer` is needed. */
+export interface MeasureHost {
+  picture_tick: ReadonlySignal<number>;
+  picture_of: ReadonlyMap<string, { number: number }>;
+  epoch: ReadonlySignal<number>;
+  scene: ReadonlySignal<{ cameras: { name: string }[] } | null>;
+  link: {
+    status: ReadonlySignal<{ kind: string }>;
+    request<Result>(what: string, values: Record<string, unknown>): Promise<Result>;
+  };
+}
+
+/** What was measured in a picture before the shown one stands for so long, ms: the next is on its way. */
+export const grace_ms = 300;
+
+/** Asks again for each picture; `found` is null where nothing is known of what is shown. */
+function follow<Result>(
+  found: Signal<Result | null>, ask: () => Promise<Result>, shown: () => string | null,
+): () => void {
+  let asked: string | null = null;
+  let outdated: ReturnType<typeof setTimeout> | undefined;
+  const say = (result: Result | null): void => {
+    clearTimeout(outdated);
+    outdated = undefined;
+    if (found.peek() !== result) found.value = result;
+  };
+  const expire = (): void => {
+    outdated ??= setTimeout(() => say(null), grace_ms);
+  };
+  const asker = new Latest<string, Result>(ask, (result, _, of) => {
+    // What is shown now may be another run's, or a later picture.
+    if (asked === null) return;
+    say(result && of.split(' ')[0] === asked.split(' ')[0] ? result : null);
+    if (of !== asked) expire();
+  });
+  const stop = effect(() => {
+    const now = shown();
+    if (now === asked) return;
+    asked = now;
+    if (now === null) {
+      asker.forget();
+      return say(null);
+    }
+    expire();
+    asker.ask(now);
+  });
+  return () => {
+    stop();
+    asked = null;
+    say(null);
+  };
+}
+
+export class Measured {
+  /** By camera. */
+  readonly pictures = signal<Record<string, Signal<MeasureResult | null>>>({});
+  readonly shape = signal<ShapeResult | null>(null);
+
+  /** `wanted`: which measures are to be seen. Gives what ends this. */
+  start(host: MeasureHost, wanted: ReadonlySignal<string[]>): () => void {
+    let stops: (() => void)[] = [];
+    const end = (): void => stops.forEach((stop) => stop());
+    const numbers = (cameras: string[]): string | null => {
+      host.picture_tick.value;
+      const known = cameras.map((camera) => host.picture_of.get(camera)?.number);
+      if (host.link.status.value.kind !== 'open' || !cameras.length || known.includes(undefined)) return null;
+      return `${host.epoch.value} ${known.join()}`;
+    };
+    const stop = effect(() => {
+      const cameras = host.scene.value?.cameras.map(({ name }) => name) ?? [];
+      end();
+      this.pictures.value = Object.fromEntries(cameras.map((name) => [name, signal(null)]));
+      const of_layers = (): string[] => wanted.value.filter((id) => id !== shape_measure.id);
+      stops = cameras.map((camera) => follow(
+        this.pictures.peek()[camera],
+        () => host.link.request<MeasureResult>('measure', { camera, layers: of_layers() }),
+        () => {
+          const [layers, picture] = [of_layers(), numbers([camera])];
+          return layers.length && picture ? `${picture} ${layers.join()}` : null;
+        },
+      ));
+      stops.push(follow(
+        this.shape,
+        () => host.link.request<ShapeResult>('shape', {}),
+        () => (wanted.value.includes(shape_measure.id) && cameras.length > 1 ? numbers(cameras) : null),
+      ));
+    });
+    return () => {
+      stop();
+      end();
+    };
+  }
+}

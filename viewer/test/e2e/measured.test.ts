@@ -1,0 +1,136 @@
+// What the program measures in the pictures, upon them and in the 3D view: the fake one, and the program itself.
+import { fileURLToPath } from 'node:url';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { spatial_rig } from '../fake/rigs';
+import { FakeServer } from '../fake/server';
+import { dist, launch, open_page, slide, stage_at_rest, until } from './browser';
+import { Program, program } from './program';
+import type { Served } from './rig_tests';
+
+const measured = fileURLToPath(new URL('measured.toml', import.meta.url));
+
+/** How many of the first picture's pixels have this colour, or near, and where they are in the mean. */
+const colored = (page: Page, color: string) => page.locator('.picture canvas').first().evaluate((canvas: HTMLCanvasElement, hex) => {
+  const wanted = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+  const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+  let [count, u, v] = [0, 0, 0];
+  for (let i = 0; i < data.length; i += 4) {
+    if (Math.max(...wanted.map((value, k) => Math.abs(value - data[i + k]))) > 25) continue;
+    ++count;
+    u += (i / 4) % canvas.width;
+    v += Math.floor(i / 4 / canvas.width);
+  }
+  return { count, u: u / count, v: v / count };
+}, color);
+
+const chip = (page: Page, label: string) => page.getByRole('button', { name: new RegExp(`^${label}: `) });
+
+function measured_tests(start: () => Promise<Served>, is_recording: boolean): void {
+  let browser: Browser;
+  let served: Served;
+  let page: Page;
+  let complaints: string[];
+
+  beforeAll(async () => {
+    browser = await launch();
+    served = await start();
+    ({ page, complaints } = await open_page(browser, served.url, { width: 1280, height: 720 }));
+    await page.waitForSelector(`.badge[data-kind="${is_recording ? 'recording' : 'live'}"]`);
+    if (is_recording) await slide(page, '#scrub', 2);
+    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
+  });
+
+  afterAll(async () => {
+    await browser?.close();
+    await served?.stop();
+  });
+
+  test('nothing is drawn before anybody asks', async () => {
+    for (const color of ['#69db7c', '#ffd43b', '#ff6b6b', '#4dabf7']) expect((await colored(page, color)).count).toBe(0);
+    expect(await page.locator('.chip[aria-pressed="true"]').count()).toBe(0);
+  });
+
+  for (const [label, color, least] of [['Edges', '#69db7c', 100], ['Axis', '#ffd43b', 60], ['Marks', '#ff6b6b', 20], ['Circle', '#4dabf7', 50]] as const) {
+    test(`${label} are drawn while their switch is on`, async () => {
+      await chip(page, label).click();
+      await until(async () => (await colored(page, color)).count >= least, 8000, `no ${label}`);
+      expect(await chip(page, label).getAttribute('aria-pressed')).toBe('true');
+      await chip(page, label).click();
+      await until(async () => (await colored(page, color)).count === 0, 8000, `${label} stay`);
+    });
+  }
+
+  test('the mask tints the arm', async () => {
+    const tinted = () => page.locator('.picture canvas').first().evaluate((canvas: HTMLCanvasElement) => {
+      const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i + 1] - data[i] > 30 && data[i + 2] - data[i] > 20) ++count;
+      return count;
+    });
+    const before = await tinted();
+    await chip(page, 'Mask').click();
+    await until(async () => (await tinted()) > before + 300, 8000, 'no mask');
+    await chip(page, 'Mask').click();
+    await until(async () => (await tinted()) === before, 8000, 'the mask stays');
+  });
+
+  test('layers go with the picture', async () => {
+    await chip(page, 'Axis').click();
+    await until(async () => (await colored(page, '#ffd43b')).count > 60);
+    const before = await colored(page, '#ffd43b');
+    if (is_recording) await slide(page, '#scrub', 0);
+    else for (const i of [0, 1]) await slide(page, `#arm-bends-${i}`, -0.6);
+    await until(async () => {
+      const { count, u, v } = await colored(page, '#ffd43b');
+      return count > 60 && Math.hypot(u - before.u, v - before.v) > 5;
+    }, 8000, 'the axis stays where it was');
+    await chip(page, 'Axis').click();
+  });
+
+  test('the shape of both pictures stands in the view', async () => {
+    const before = await stage_at_rest(page);
+    await chip(page, 'Shape').click();
+    await until(async () => /^Shape ±[\d.]+ mm, images [\d.]+ px off/.test((await page.locator('.shape-said').textContent()) ?? ''), 15000, 'no shape');
+    expect((await stage_at_rest(page)).equals(before)).toBe(false);
+    await chip(page, 'Shape').click();
+    await until(async () => (await page.locator('.shape-said').count()) === 0);
+    expect((await stage_at_rest(page)).equals(before)).toBe(true);
+  });
+
+  test('switches are worked by keys, and kept', async () => {
+    await chip(page, 'Axis').focus();
+    await page.keyboard.press('Enter');
+    await until(async () => (await colored(page, '#ffd43b')).count > 60);
+    await page.reload();
+    await until(async () => (await page.locator('.chip[aria-pressed="true"]').count()) === 1);
+    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000);
+    await until(async () => (await colored(page, '#ffd43b')).count > 60, 15000, 'it is not kept');
+    expect(complaints).toEqual([]);
+  });
+}
+
+describe('a rig', () => measured_tests(async () => {
+  const server = new FakeServer(dist, spatial_rig());
+  await server.start();
+  return server;
+}, false));
+
+describe.skipIf(!program)('the program’s rig', () => measured_tests(async () => {
+  const served = new Program(measured);
+  await served.start();
+  return served;
+}, false));
+
+describe.skipIf(!program)('a recording that was filmed', () => measured_tests(async () => {
+  const made = new Program();
+  const recorded = new Program(['view', made.record(measured)]);
+  await recorded.start();
+  return {
+    url: recorded.url,
+    stop: async () => {
+      await recorded.stop();
+      await made.stop();
+    },
+  };
+}, true));

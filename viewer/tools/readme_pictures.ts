@@ -1,0 +1,30 @@
+// `FLEXURA_PROGRAM=.../bin/flexura npm run pictures`: the README's pictures of the viewer, of the program with its page.
+import { fileURLToPath } from 'node:url';
+import { launch, open_page, slide, until } from '../test/e2e/browser';
+import { Program, program } from '../test/e2e/program';
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+if (!program) throw new Error('FLEXURA_PROGRAM names the program: there is none');
+const browser = await launch();
+const served = new Program(`${root}examples/03_cameras/experiment.toml`);
+await served.start();
+
+const { page } = await open_page(browser, served.url, { width: 1440, height: 900, dark: true });
+await until(async () => (await page.locator('.picture .none').count()) === 0, 30000);
+for (const [i, bend] of [0.75, 0.5, -1.25, 0.75, 1.25].entries()) {
+  await slide(page, `#arm-bends-${i}`, bend);
+  await page.waitForTimeout(700);
+}
+for (const label of ['Edges', 'Axis']) await page.getByRole('button', { name: new RegExp(`^${label}: `) }).click();
+// All of the way from straight to bent is in the plots, and the view has come to rest.
+await page.waitForTimeout(4000);
+await page.screenshot({ path: `${root}docs/images/viewer.png` });
+
+const teach = await open_page(browser, `${new URL(served.url).origin}/#/teach`, { width: 1280, height: 720, dark: false });
+await teach.page.waitForSelector('.plane');
+await teach.page.locator('.recurrence tbody tr').nth(2).click();
+await teach.page.waitForTimeout(500);
+await teach.page.screenshot({ path: `${root}docs/images/teaching.png` });
+
+await browser.close();
+await served.stop();

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -73,7 +73,8 @@ SafetyReport judged(const Arm& arm, const LimiterSettings& settings, const std::
     const auto state_at = [&](double t) {
       return sent[static_cast<std::size_t>(std::lround(t / settings.step))];
     };
-    check_drive(arm, *settings.drive, state_at, times, report);
+    const auto none = [](double, double) -> std::optional<std::vector<SectionRates>> { return std::nullopt; };
+    check_drive(arm, *settings.drive, state_at, times, none, report);
   }
   return report;
 }

@@ -100,7 +100,7 @@ TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) {
 }
 
 TEST(ImageLaw, FallsExponentiallyWhereTheModelIsRight) {
-  Loop loop;
+  ServoLoop loop;
   loop.set = FeatureSet::of_points(6);
   const ImageLaw law(loop.arm, {.rate = 3, .damping = 0});
   ArmState state = {{{0.3, 0.2}, {0.1, -0.2}, {0.2, 0.4}}, {1, 1, 1}};

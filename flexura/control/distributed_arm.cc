@@ -11,12 +11,12 @@ namespace flexura {
 namespace {
 
 void require_arm(const DistributedArmModel& model) {
-  const auto not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
   if (!(model.density > 0) || !std::isfinite(model.density))
     throw std::invalid_argument("a distributed arm's density must be finite and above 0");
-  if (!not_negative(model.bending_stiffness) || !not_negative(model.axial_stiffness) ||
-      !not_negative(model.damping) || !not_negative(model.length_damping))
-    throw std::invalid_argument("a distributed arm's stiffness and damping must be finite and 0 or more");
+  for (const double number :
+       {model.bending_stiffness, model.axial_stiffness, model.damping, model.length_damping})
+    if (!(number >= 0) || !std::isfinite(number))
+      throw std::invalid_argument("a distributed arm's stiffness and damping must be finite and 0 or more");
   if (!model.gravity.allFinite()) throw std::invalid_argument("a distributed arm's gravity must be finite");
   if (model.clamp && !(std::isfinite((*model.clamp)[0]) && std::abs((*model.clamp)[1]) < 1.57))
     throw std::invalid_argument("a distributed arm's base must have |q| below 1.57 rad");
@@ -122,7 +122,7 @@ void DistributedArm::set_velocities() {
 void DistributedArm::set_forces() {
   const Eigen::Index n = nodes(), points = theta_.size();
   const Eigen::Vector3d& g = model_.gravity;
-  const double EI = model_.bending_stiffness;
+  const double bending = model_.bending_stiffness;
   const auto gather = [&](Eigen::VectorXd& to, Eigen::Index at, const Eigen::MatrixXd& shapes) {
     to.segment(at, n).noalias() += shapes.transpose() * point_force_;
   };
@@ -138,14 +138,15 @@ void DistributedArm::set_forces() {
   at_points([&](Eigen::Index j, double stretch) { return -weigh_[j] * stretch * g.dot(e_q_.col(j)); });
   gather(gravity_gradient_, n, shapes_.values);
   at_points([&](Eigen::Index j, double stretch) {
-    return -EI * shapes_.weights[j] / stretch * std::sin(q_[j]) * std::cos(q_[j]) * theta_s_[j] * theta_s_[j];
+    return -bending * shapes_.weights[j] / stretch * std::sin(q_[j]) * std::cos(q_[j]) * theta_s_[j] *
+           theta_s_[j];
   });
   gather(elastic_gradient_, n, shapes_.values);
   at_points([&](Eigen::Index j, double stretch) {
-    return EI * shapes_.weights[j] / stretch * std::cos(q_[j]) * std::cos(q_[j]) * theta_s_[j];
+    return bending * shapes_.weights[j] / stretch * std::cos(q_[j]) * std::cos(q_[j]) * theta_s_[j];
   });
   gather(elastic_gradient_, 0, shapes_.slopes);
-  at_points([&](Eigen::Index j, double stretch) { return EI * shapes_.weights[j] / stretch * q_s_[j]; });
+  at_points([&](Eigen::Index j, double stretch) { return bending * shapes_.weights[j] / stretch * q_s_[j]; });
   gather(elastic_gradient_, n, shapes_.slopes);
   const double c = model_.damping;
   at_points([&](Eigen::Index j, double) {
@@ -163,7 +164,7 @@ void DistributedArm::set_forces() {
     gravity_gradient_[lengths_at_ + k] -= weigh_[j] * g.dot(e_.col(j)) / rest;
     elastic_gradient_[lengths_at_ + k] +=
         w / rest *
-        (model_.axial_stiffness * (stretch_[k] - 1) - 0.5 * EI * square / (stretch_[k] * stretch_[k]));
+        (model_.axial_stiffness * (stretch_[k] - 1) - 0.5 * bending * square / (stretch_[k] * stretch_[k]));
   }
   damping_force_.tail(stretch_.size()) = model_.length_damping * rates_.tail(stretch_.size());
 }

@@ -182,19 +182,19 @@ TEST(JacobianEstimates, FindALinearMapAfterAsManyMotionsAsItHasColumns) {
       // Broyden's forgets nothing of motions at right angles to the newest.
       const Eigen::VectorXd dx = 0.3 * Eigen::VectorXd::Unit(n, k), other = any(n, 1);
       EXPECT_TRUE(broyden.learn(dx, truth * dx));
-      EXPECT_LE((broyden.J() * dx - truth * dx).norm(), 1e-12);
+      EXPECT_LE((broyden.jacobian() * dx - truth * dx).norm(), 1e-12);
       EXPECT_TRUE(recursive.learn(other, truth * other));
     }
-    EXPECT_LE((broyden.J() - truth).norm(), 1e-12);
+    EXPECT_LE((broyden.jacobian() - truth).norm(), 1e-12);
     for (int k = 0; k < 20; ++k) {
       const Eigen::VectorXd other = any(n, 1);
       recursive.learn(other, truth * other);
     }
-    EXPECT_LE((recursive.J() - truth).norm(), 1e-5);
-    const Eigen::MatrixXd before = broyden.J();
+    EXPECT_LE((recursive.jacobian() - truth).norm(), 1e-5);
+    const Eigen::MatrixXd before = broyden.jacobian();
     EXPECT_FALSE(broyden.learn(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(m)));
     EXPECT_FALSE(recursive.learn(Eigen::VectorXd::Ones(n), Eigen::VectorXd::Constant(m, std::nan(""))));
-    EXPECT_EQ(broyden.J(), before);
+    EXPECT_EQ(broyden.jacobian(), before);
     EXPECT_THROW(broyden.learn(Eigen::VectorXd::Ones(n + 1), Eigen::VectorXd::Ones(m)),
                  std::invalid_argument);
   });
@@ -213,7 +213,7 @@ TEST(JacobianEstimates, FollowAMapThatChanges) {
     const Eigen::Vector2d dx = random.vector<2>(-0.1, 0.1);
     recursive.learn(dx, truth * dx);
     if (k == 199 || k == 399) {
-      EXPECT_LE((recursive.J() - truth).norm(), 1e-6);
+      EXPECT_LE((recursive.jacobian() - truth).norm(), 1e-6);
     }
   }
 }

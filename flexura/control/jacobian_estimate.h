@@ -14,7 +14,7 @@ class BroydenEstimate {
   /// std::invalid_argument: numbers out of these ranges or not finite.
   explicit BroydenEstimate(Eigen::MatrixXd J, double share = 1, double least = 1e-6);
 
-  [[nodiscard]] const Eigen::MatrixXd& J() const { return J_; }
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
   /// The variables moved by dx, the features by df. False: too small a motion, or numbers that are not
   /// finite; nothing is learned. std::invalid_argument for other sizes.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
@@ -35,7 +35,7 @@ class RecursiveEstimate {
   explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double doubt = 1e4,
                              double least = 1e-6);
 
-  [[nodiscard]] const Eigen::MatrixXd& J() const { return J_; }
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
   /// As BroydenEstimate's.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 

@@ -21,8 +21,10 @@ std::vector<double> needed_shares(const FeatureSet& set) {
   if (set.has_moments)
     for (int i = 0; i < set.moment_points; ++i)
       shares.push_back(static_cast<double>(i) / (set.moment_points - 1));
-  for (const double share : shares)
-    if (!(share >= 0 && share <= 1)) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
+  for (const double share : shares) {
+    const bool is_on_the_arm = share >= 0 && share <= 1;
+    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
+  }
   return shares;
 }
 

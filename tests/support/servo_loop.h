@@ -57,11 +57,11 @@ inline Eigen::MatrixXd learned(JacobianEstimate& estimate, const Eigen::VectorXd
                                const Eigen::VectorXd& df) {
   if (auto* broyden = std::get_if<BroydenEstimate>(&estimate)) {
     broyden->learn(dx, df);
-    return broyden->J();
+    return broyden->jacobian();
   }
   auto& recursive = std::get<RecursiveEstimate>(estimate);
   recursive.learn(dx, df);
-  return recursive.J();
+  return recursive.jacobian();
 }
 
 /// From `start` towards `target` for so many seconds.

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "flexura/kinematics/arm_variables.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// How a law of images goes about it.
+struct ImageLawGains {
+  double rate = 4;         ///< Errors fall as exp(-rate t) where the model is right, 1/s; > 0.
+  double damping = 0.01;   ///< Of the least squares, share of the Jacobian's root mean square gain; >= 0.
+  double most_step = 0.5;  ///< The longest step of the variables at a time, rad; > 0.
+};
+
+/// What a law asks for, and how sure its Jacobian is of it.
+struct ImageStep {
+  ArmState asked;
+  double reciprocal_condition = 0;  ///< Least over greatest singular value of the Jacobian.
+  bool is_singular = false;         ///< Some motion of the arm shows in no feature: below 1e-6.
+};
+
+/// Steers features to their desired values by damped least squares (docs/control.md, eq. 20; C. W. Wampler,
+/// 1986; Y. Nakamura, H. Hanafusa, 1986):
+///   dx = -(1 - exp(-rate dt)) (J^T J + mu^2 I)^-1 J^T e.
+class ImageLaw {
+ public:
+  /// std::invalid_argument: numbers out of their ranges or not finite, an arm without sections.
+  ImageLaw(const Arm& arm, const ImageLawGains& gains);
+
+  /// What the arm may change: bends, of planar arms bend_x alone, and stretches whose limits leave them free.
+  [[nodiscard]] const ArmVariables& variables() const { return variables_; }
+  /// The columns of a derivative by (bend_x, bend_y, stretch) of every section that belong to these.
+  [[nodiscard]] Eigen::MatrixXd by_variables(const Eigen::MatrixXd& by_state) const;
+
+  /// Where to send an arm that was last sent to `sent`, dt s later. `error`: features seen less desired; J:
+  /// their derivatives by the variables (by_variables, or an estimate's). Within the sections' limits.
+  /// std::invalid_argument: sizes that do not fit, dt not positive. Numbers that are not finite come out as
+  /// such, for the limiter to stop at.
+  [[nodiscard]] ImageStep step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
+                               double dt) const;
+
+ private:
+  ArmVariables variables_;
+  ImageLawGains gains_;
+};
+
+/// The law on shapes: where to send an arm that was last sent to `sent` and is seen in the shape `seen`, dt s
+/// later: sent + (1 - exp(-rate dt)) (desired - seen), section by section. What the arm does wrong with its
+/// commands is made up for; what the sight gets wrong is not. std::invalid_argument: states of different
+/// arms.
+[[nodiscard]] ArmState shape_step(const ArmState& sent, const ArmState& seen, const ArmState& desired,
+                                  double rate, double dt);
+
+}  // namespace flexura

@@ -1,0 +1,222 @@
+#include "flexura/control/image_law.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/control/jacobian_estimate.h"
+#include "flexura/control/limiter.h"
+#include "flexura/control/shape_features.h"
+#include "tests/support/servo_loop.h"
+#include "tests/support/servo_views.h"
+
+namespace flexura {
+namespace {
+
+constexpr double dt = servo_step;
+
+TEST(ImageLaw, BringsTheArmToRandomTargets) {
+  FeatureSet both = FeatureSet::of_points(6);
+  both.chords = FeatureSet::of_chords(6).chords;
+  for (const auto& [name, set] : {std::pair{"points", FeatureSet::of_points(6)},
+                                  std::pair{"chords", FeatureSet::of_chords(9)}, std::pair{"both", both}}) {
+    ServoShare share;
+    for_random_cases(20, [&](TestRandom& random) {
+      ServoLoop loop;
+      loop.set = set;
+      share.add(servo(loop, random_servo_state(random, loop.arm, 0.3),
+                      random_servo_state(random, loop.arm, 1.5), 8));
+    });
+    share.print(name);
+    EXPECT_EQ(share.converged, share.all) << name;
+  }
+}
+
+TEST(ImageLaw, BringsTheArmToTargetsNearByWithMomentsAlone) {
+  ServoShare share;
+  for_random_cases(10, [&](TestRandom& random) {
+    ServoLoop loop;
+    loop.set = FeatureSet::of_moments();
+    const ArmState target = random_servo_state(random, loop.arm, 1.2);
+    ArmState start = target;
+    for (Eigen::Vector2d& bend : start.bends) bend += random.vector<2>(-0.15, 0.15);
+    share.add(servo(loop, start, target, 5));
+  });
+  share.print("moments");
+  EXPECT_GE(share.converged, 0.8 * share.all);
+}
+
+TEST(ImageLaw, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe) {
+  ServoShare share;
+  for_random_cases(20, [&](TestRandom& random) {
+    ServoLoop loop;
+    loop.set = FeatureSet::of_points(6);
+    loop.model = wrong_views(random, loop.truth, 0.5 * std::numbers::pi / 180, 0.01);
+    share.add(
+        servo(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
+  });
+  share.print("cameras 0.5 degrees and 1 % wrong");
+  EXPECT_EQ(share.converged, share.all);
+}
+
+// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are
+// told.
+ArmState turned(const ArmState& sent) {
+  ArmState state = sent;
+  const double c = std::cos(1.75), s = std::sin(1.75);
+  for (Eigen::Vector2d& bend : state.bends)
+    bend = 1.3 * Eigen::Vector2d(c * bend.x() - s * bend.y(), s * bend.x() + c * bend.y());
+  return state;
+}
+
+TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) {
+  ServoShare model{1e-3}, broyden{1e-3}, recursive{1e-3};
+  for_random_cases(8, [&](TestRandom& random) {
+    ServoLoop loop;
+    loop.set = FeatureSet::of_points(6);
+    loop.mechanism = turned;
+    loop.rate = 3, loop.most_step = 0.1;
+    const ArmState start = random_servo_state(random, loop.arm, 0.2),
+                   target = random_servo_state(random, loop.arm, 0.8);
+    const ImageLaw law(loop.arm, {});
+    const Eigen::MatrixXd J =
+        law.by_variables(shape_features(loop.arm, start, loop.model, loop.set).value().by_state);
+    model.add(servo(loop, start, target, 20));
+    broyden.add(servo(loop, start, target, 20, BroydenEstimate(J)));
+    recursive.add(servo(loop, start, target, 20, RecursiveEstimate(J, 0.97)));
+  });
+  model.print("the model's Jacobian");
+  broyden.print("Broyden");
+  recursive.print("recursive least squares");
+  EXPECT_EQ(model.converged, 0);
+  EXPECT_EQ(broyden.converged, broyden.all);
+  EXPECT_EQ(recursive.converged, recursive.all);
+}
+
+TEST(ImageLaw, FallsExponentiallyWhereTheModelIsRight) {
+  ServoLoop loop;
+  loop.set = FeatureSet::of_points(6);
+  const ImageLaw law(loop.arm, {.rate = 3, .damping = 0});
+  ArmState state = {{{0.3, 0.2}, {0.1, -0.2}, {0.2, 0.4}}, {1, 1, 1}};
+  const ArmState target = {{{0.31, 0.21}, {0.09, -0.19}, {0.2, 0.41}}, {1, 1, 1}};
+  const Eigen::VectorXd desired = shape_features(loop.arm, target, loop.model, loop.set).value().values;
+  double before = 0;
+  for (int k = 0; k < 10; ++k) {
+    const auto seen = shape_features(loop.arm, state, loop.model, loop.set).value();
+    const Eigen::VectorXd error = feature_error(loop.set, seen.values, desired);
+    if (k > 0) {
+      EXPECT_NEAR(error.norm() / before, std::exp(-3 * dt), 2e-3);
+    }
+    before = error.norm();
+    const ImageStep step = law.step(state, error, law.by_variables(seen.by_state), dt);
+    EXPECT_FALSE(step.is_singular);
+    state = step.asked;
+  }
+}
+
+TEST(ImageLaw, TellsWhatItCannotSee) {
+  // One camera that sees a straight arm end on: nothing of its stretch.
+  Arm arm = servo_arm();
+  for (Section& section : arm.sections) section.stretch_limits = {0.9, 1.1};
+  const ImageLaw law(arm, {});
+  EXPECT_EQ(law.variables().size(), 9);
+  View above = servo_views()[0];
+  above.X_WC.position = {0, 3, 0};
+  above.X_WC.rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const ArmState straight = ArmState::straight(3);
+  const auto seen = shape_features(arm, straight, std::array{above}, FeatureSet::of_points(6)).value();
+  const ImageStep step = law.step(straight, Eigen::VectorXd::Ones(12), law.by_variables(seen.by_state), dt);
+  EXPECT_TRUE(step.is_singular);
+  EXPECT_TRUE(step.asked.bends[0].allFinite());
+  // What is no number goes on to the limiter as it is.
+  const ImageStep lost =
+      law.step(straight, Eigen::VectorXd::Constant(12, std::nan("")), law.by_variables(seen.by_state), dt);
+  EXPECT_FALSE(lost.asked.bends[0].allFinite());
+  CommandLimiter limiter(arm, {.looks_ahead = false}, straight);
+  EXPECT_TRUE(limiter.next(lost.asked).is_at_rest);
+  EXPECT_TRUE(limiter.fault().has_value());
+  EXPECT_THROW((void)law.step(straight, Eigen::VectorXd::Ones(11), law.by_variables(seen.by_state), dt),
+               std::invalid_argument);
+  EXPECT_THROW(ImageLaw(arm, {.rate = 0}), std::invalid_argument);
+}
+
+TEST(ShapeLaw, MakesUpForWhatTheArmDoesWrong) {
+  // The arm bends by 0.8 to 1.2 of what it is told and by a little more; it is seen as it is.
+  for_random_cases(50, [](TestRandom& random) {
+    const Arm arm = servo_arm();
+    const Eigen::Vector3d gain = random.vector<3>(0.8, 1.2);
+    const Eigen::Vector2d droop = random.vector<2>(-0.1, 0.1);
+    const auto mechanism = [&](ArmState state) {
+      for (std::size_t i = 0; i < 3; ++i)
+        state.bends[i] = gain[static_cast<Eigen::Index>(i)] * state.bends[i] + droop;
+      return state;
+    };
+    const ArmState desired = random_servo_state(random, arm, 1.2);
+    CommandLimiter limiter(arm, {.step = dt, .looks_ahead = false}, ArmState::straight(3));
+    for (int k = 0; k < 150; ++k)
+      (void)limiter.next(shape_step(limiter.sent(), mechanism(limiter.sent()), desired, 4, dt));
+    EXPECT_LE(shape_error(arm, mechanism(limiter.sent()), desired), 1e-6);
+  });
+  EXPECT_THROW((void)shape_step(ArmState::straight(3), ArmState::straight(2), ArmState::straight(3), 1, dt),
+               std::invalid_argument);
+}
+
+TEST(JacobianEstimates, FindALinearMapAfterAsManyMotionsAsItHasColumns) {
+  for_random_cases(40, [](TestRandom& random) {
+    const Eigen::Index n = random.integer(2, 6), m = random.integer(2, 12);
+    const auto any = [&](Eigen::Index rows, Eigen::Index columns) {
+      Eigen::MatrixXd A(rows, columns);
+      for (double& entry : A.reshaped()) entry = random.uniform(-1, 1);
+      return A;
+    };
+    const Eigen::MatrixXd truth = any(m, n);
+    BroydenEstimate broyden(any(m, n));
+    RecursiveEstimate recursive(any(m, n), 1, 1e8);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      // Broyden's forgets nothing of motions at right angles to the newest.
+      const Eigen::VectorXd dx = 0.3 * Eigen::VectorXd::Unit(n, k), other = any(n, 1);
+      EXPECT_TRUE(broyden.learn(dx, truth * dx));
+      EXPECT_LE((broyden.jacobian() * dx - truth * dx).norm(), 1e-12);
+      EXPECT_TRUE(recursive.learn(other, truth * other));
+    }
+    EXPECT_LE((broyden.jacobian() - truth).norm(), 1e-12);
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::VectorXd other = any(n, 1);
+      recursive.learn(other, truth * other);
+    }
+    EXPECT_LE((recursive.jacobian() - truth).norm(), 1e-5);
+    const Eigen::MatrixXd before = broyden.jacobian();
+    EXPECT_FALSE(broyden.learn(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(m)));
+    EXPECT_FALSE(recursive.learn(Eigen::VectorXd::Ones(n), Eigen::VectorXd::Constant(m, std::nan(""))));
+    EXPECT_EQ(broyden.jacobian(), before);
+    EXPECT_THROW(broyden.learn(Eigen::VectorXd::Ones(n + 1), Eigen::VectorXd::Ones(m)),
+                 std::invalid_argument);
+  });
+  EXPECT_THROW(BroydenEstimate(Eigen::MatrixXd::Identity(2, 2), 0), std::invalid_argument);
+  EXPECT_THROW(RecursiveEstimate(Eigen::MatrixXd::Identity(2, 2), 1.1), std::invalid_argument);
+}
+
+TEST(JacobianEstimates, FollowAMapThatChanges) {
+  TestRandom random(3);
+  RecursiveEstimate recursive(Eigen::MatrixXd::Zero(2, 2), 0.8);
+  Eigen::Matrix2d truth = Eigen::Matrix2d::Identity();
+  for (int k = 0; k < 400; ++k) {
+    if (k == 200) truth << 0, 2, -1, 0;
+    // It stands for a while: what it knows must not blow up.
+    if (k > 50 && k < 150) recursive.learn(Eigen::Vector2d(1e-5, 0), truth * Eigen::Vector2d(1e-5, 0));
+    const Eigen::Vector2d dx = random.vector<2>(-0.1, 0.1);
+    recursive.learn(dx, truth * dx);
+    if (k == 199 || k == 399) {
+      EXPECT_LE((recursive.jacobian() - truth).norm(), 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,58 @@
+#include "flexura/control/jacobian_estimate.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+void require_numbers(bool are_good, const Eigen::MatrixXd& J) {
+  if (!are_good || J.size() == 0 || !J.allFinite())
+    throw std::invalid_argument("an estimate of a Jacobian starts from finite numbers in their ranges");
+}
+
+bool teaches(const Eigen::MatrixXd& J, const Eigen::VectorXd& dx, const Eigen::VectorXd& df, double least) {
+  if (dx.size() != J.cols() || df.size() != J.rows())
+    throw std::invalid_argument("a motion does not fit the estimate of its Jacobian");
+  return dx.allFinite() && df.allFinite() && dx.norm() >= least;
+}
+
+}  // namespace
+
+BroydenEstimate::BroydenEstimate(Eigen::MatrixXd J, double share, double least)
+    : J_(std::move(J)), share_(share), least_(least) {
+  require_numbers(share > 0 && share <= 1 && least > 0 && std::isfinite(least), J_);
+}
+
+bool BroydenEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df) {
+  if (!teaches(J_, dx, df, least_)) return false;
+  const Eigen::VectorXd missed = df - J_ * dx;
+  J_.noalias() += share_ / dx.squaredNorm() * missed * dx.transpose();
+  return true;
+}
+
+RecursiveEstimate::RecursiveEstimate(Eigen::MatrixXd J, double forgetting, double doubt, double least)
+    : J_(std::move(J)), forgetting_(forgetting), doubt_(doubt), least_(least) {
+  require_numbers(forgetting > 0 && forgetting <= 1 && doubt > 0 && std::isfinite(doubt) && least > 0 &&
+                      std::isfinite(least),
+                  J_);
+  P_ = doubt * Eigen::MatrixXd::Identity(J_.cols(), J_.cols());
+}
+
+bool RecursiveEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df) {
+  if (!teaches(J_, dx, df, least_)) return false;
+  const Eigen::VectorXd seen = P_ * dx;
+  const Eigen::VectorXd gain = seen / (forgetting_ + dx.dot(seen));
+  const Eigen::VectorXd missed = df - J_ * dx;
+  J_.noalias() += missed * gain.transpose();
+  P_ -= (gain * seen.transpose()).eval();
+  P_ /= forgetting_;
+  // Rounding must not make it lopsided, nor rest make it grow.
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  const double most = P_.diagonal().maxCoeff();
+  if (most > doubt_) P_ *= doubt_ / most;
+  return true;
+}
+
+}  // namespace flexura

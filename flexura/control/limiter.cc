@@ -1,0 +1,217 @@
+#include "flexura/control/limiter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/control/limiter_ways.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/kinematics/motors.h"
+#include "flexura/kinematics/tendons.h"
+#include "flexura/safety/motion_check.h"
+
+namespace flexura {
+
+CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState& start)
+    : arm_(std::move(arm)), settings_(std::move(settings)), limits_(limit_watches(arm_)), sent_(start) {
+  if (!(settings_.step > 0) || !std::isfinite(settings_.step))
+    throw std::invalid_argument("a limiter's step must be finite and above 0");
+  if (!fits(arm_, start) || !is_possible(start))
+    throw std::invalid_argument("a limiter starts in a finite state of its arm");
+  motors_ = motors_at(start);
+  motor_rates_ = Eigen::VectorXd::Zero(motors_.size());
+  std::string broken = breach({start});
+  if (broken.empty() && settings_.looks_ahead) broken = contact({start});
+  if (!broken.empty()) throw std::invalid_argument("a limiter starts within the limits: " + broken);
+}
+
+LimitedCommand CommandLimiter::next(const ArmState& asked) {
+  asked_ = asked;
+  if (!fault_) {
+    if (!fits(arm_, asked))
+      fault("the law's command is not of this arm");
+    else if (!is_possible(asked))
+      fault("the law's command is not finite, or has a length that is not above 0");
+  }
+  if (fault_) return brake();
+  std::string reason;
+  const ArmState wanted = within_limits(asked, reason);
+  Plan whole = plan(wanted, settings_.looks_ahead);
+  if (whole.is_allowed) return send(std::move(whole), reason, reason.empty());
+  if (reason.empty()) reason = whole.reason;
+  // From braking, which is allowed, as far towards the law's wish as is allowed too.
+  const ArmState braked = way_to_rest_.empty() ? sent_ : way_to_rest_.front();
+  double low = 0, high = 1;
+  Plan best;
+  for (int i = 0; i < 40 && high - low > 1e-3 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    Plan trial = plan(between(braked, wanted, middle), false);
+    (trial.is_allowed ? low : high) = middle;
+    if (trial.is_allowed) best = std::move(trial);
+  }
+  // Contact is looked for last, and from farther back, for it costs more.
+  for (int i = 0; settings_.looks_ahead && best.is_allowed && i < 4; ++i) {
+    const std::string touched = contact(best.way);
+    if (touched.empty()) break;
+    reason = touched;
+    low *= i < 3 ? 0.5 : 0;
+    best = low > 0 ? plan(between(braked, wanted, low), false) : Plan{};
+  }
+  if (best.is_allowed) return send(std::move(best), reason, false);
+  LimitedCommand command = brake();
+  command.reason = reason;
+  return command;
+}
+
+LimitedCommand CommandLimiter::brake() {
+  Plan plan;
+  plan.way = way_to_rest_.empty() ? std::vector<ArmState>{sent_} : way_to_rest_;
+  plan.is_allowed = true;
+  return send(std::move(plan), fault_ ? fault_->reason : std::string(), false);
+}
+
+void CommandLimiter::fault(const std::string& reason) {
+  if (fault_) return;
+  fault_ = {static_cast<double>(steps_) * settings_.step, reason, observed_, sent_, asked_};
+}
+
+void CommandLimiter::reset() {
+  if (!is_at_rest()) throw std::logic_error("a limiter goes on when the arm is at rest");
+  fault_.reset();
+}
+
+LimitedCommand CommandLimiter::send(Plan plan, std::string reason, bool is_untouched) {
+  LimitedCommand command;
+  command.is_at_rest = plan.way.size() == 1 && are_equal(plan.way.front(), sent_);
+  const Eigen::VectorXd before = motors_;
+  sent_ = plan.way.front();
+  way_to_rest_.assign(plan.way.begin() + 1, plan.way.end());
+  motors_ = motors_at(sent_);
+  motor_rates_ = (motors_ - before) / settings_.step;
+  ++steps_;
+  command.state = sent_;
+  command.is_untouched = is_untouched;
+  command.reason = std::move(reason);
+  return command;
+}
+
+ArmState CommandLimiter::within_limits(const ArmState& asked, std::string& reason) const {
+  ArmState state = asked;
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    const Section& section = arm_.sections[i];
+    const auto say = [&](const char* what) {
+      if (reason.empty()) reason = fmt::format("section {}: {} at its limit", i + 1, what);
+    };
+    const double stretch =
+        std::clamp(state.stretches[i], section.stretch_limits[0], section.stretch_limits[1]);
+    if (stretch != state.stretches[i]) say("stretch");
+    state.stretches[i] = stretch;
+    constexpr double short_of_folding = 1 - 1e-6;
+    const double radius = std::max(section.radius[0], section.radius[1]);
+    const double fold = short_of_folding * section.length * stretch / radius;
+    const double limit = std::min(section.max_bend, fold), bend = state.bends[i].norm();
+    if (bend > limit) state.bends[i] *= limit / bend, say(limit == fold ? "folding" : "bend");
+    if (arm_.kind == ArmKind::planar && state.bends[i].y() != 0)
+      state.bends[i].y() = 0, say("bend out of the plane");
+  }
+  return state;
+}
+
+// The way from `next` to rest at evenly falling rates, in as few steps as the motors allow.
+CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead) const {
+  Plan plan;
+  const int fewest = braking_steps(next);
+  for (const int count : {fewest, 2 * fewest + 1}) {
+    if (count > settings_.most_braking) {
+      if (plan.reason.empty()) plan.reason = "the motors' acceleration";
+      return plan;
+    }
+    plan.way = way_of(sent_, next, count);
+    plan.reason = breach(plan.way);
+    if (plan.reason.empty() || fewest == 1) break;
+  }
+  if (plan.reason.empty() && looks_ahead) plan.reason = contact(plan.way);
+  plan.is_allowed = plan.reason.empty();
+  return plan;
+}
+
+int CommandLimiter::braking_steps(const ArmState& next) const {
+  if (!settings_.drive) return 1;
+  const Eigen::VectorXd rates = (motors_at(next) - motors_) / settings_.step;
+  double steps = 1;
+  for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
+    const StepperMotor& motor = settings_.drive->axes[i].motor;
+    const double change = motor_acceleration(motor) * settings_.step;  // microsteps/s in one step
+    steps = std::max(steps, std::ceil(std::abs(rates[static_cast<Eigen::Index>(i)]) / change * (1 + 1e-9)));
+  }
+  return static_cast<int>(std::min(steps, 1e6));
+}
+
+std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
+  const ArmState* before = &sent_;
+  for (const ArmState& state : way) {
+    if (!is_possible(state)) return "a length that is not above 0";
+    for (const LimitWatch& watch : limits_)
+      if (watch.sign * watch.value(state) > watch.threshold())
+        return fmt::format("section {}: {}", watch.section + 1, name_of(watch.hazard));
+    for (std::size_t i = 0; i < state.bends.size(); ++i) {
+      const double rate = (state.bends[i] - before->bends[i]).norm() / settings_.step;
+      if (rate > arm_.sections[i].max_bend_rate * (1 + 0.5 * limit_tolerance))
+        return fmt::format("section {}: bend rate", i + 1);
+    }
+    before = &state;
+  }
+  return settings_.drive ? breach_of_motors(way) : std::string();
+}
+
+std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) const {
+  const Drive& drive = *settings_.drive;
+  constexpr double slack = 1 + 0.5 * limit_tolerance;
+  Eigen::VectorXd before = motors_, rates_before = motor_rates_;
+  // One step more at the end: the arm stands.
+  for (std::size_t k = 0; k <= way.size(); ++k) {
+    const Eigen::VectorXd now = motors_at(way[std::min(k, way.size() - 1)]);
+    const Eigen::VectorXd rates = (now - before) / settings_.step;
+    for (std::size_t i = 0; i < drive.axes.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const StepperMotor& motor = drive.axes[i].motor;
+      const auto say = [&](const char* what) {
+        return fmt::format("motor {}: {}", drive.axis_name(i), what);
+      };
+      if (!(std::abs(now[at]) <= motor.max_position)) return say("position");
+      if (!(std::abs(rates[at]) <= motor_rate(motor) * slack)) return say("speed");
+      if (!(std::abs(rates[at] - rates_before[at]) <= motor_acceleration(motor) * settings_.step * slack))
+        return say("acceleration");
+    }
+    before = now, rates_before = rates;
+  }
+  return {};
+}
+
+std::string CommandLimiter::contact(const std::vector<ArmState>& way) const {
+  std::vector<double> times{0};
+  std::vector<ArmState> states{sent_};
+  for (const ArmState& state : way) {
+    times.push_back(times.back() + settings_.step);
+    states.push_back(state);
+  }
+  const MotionPtr motion = keyframe_motion(times, states, Interpolation::linear);
+  const SafetyReport report =
+      check_motions(arm_, settings_.obstacles, sent_, {{motion, 0, "look-ahead"}}, settings_.step);
+  for (const Violation& violation : report.violations) return violation.what();
+  return {};
+}
+
+Eigen::VectorXd CommandLimiter::motors_at(const ArmState& state) const {
+  if (!settings_.drive) return {};
+  const std::vector<double> positions =
+      motor_positions(*settings_.drive, tendon_displacements(arm_, *settings_.drive, state));
+  return Eigen::Map<const Eigen::VectorXd>(positions.data(), static_cast<Eigen::Index>(positions.size()));
+}
+
+}  // namespace flexura

@@ -1,0 +1,262 @@
+#include "flexura/control/limiter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "flexura/kinematics/motion.h"
+#include "flexura/safety/drive_check.h"
+#include "flexura/safety/motion_check.h"
+#include "tests/support/arms.h"
+#include "tests/support/drives.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+// Spatial sections whose every limit may be met.
+Arm limited_arm(TestRandom& random) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  for (int i = random.integer(1, 3); i > 0; --i) {
+    Section& section = arm.sections.emplace_back();
+    section.length = random.uniform(0.2, 0.5);
+    section.radius = {0.02, 0.015};
+    section.max_bend = random.uniform(0.5, 1.5);
+    section.max_bend_rate = random.uniform(0.3, 2);
+    if (random.integer(0, 1) == 1) section.stretch_limits = {0.9, 1.2};
+  }
+  return arm;
+}
+
+Drive limited_drive(TestRandom& random, const Arm& arm) {
+  Drive drive = random_drive(random, arm);
+  for (Axis& axis : drive.axes) {
+    axis.spool.backlash = 0;  // Taking it up is the drive's own.
+    axis.motor.max_speed = random.uniform(5, 60);
+    axis.motor.max_acceleration = random.uniform(20, 400);
+    axis.motor.max_step_rate = random.uniform(2000, 40000);
+    axis.motor.max_position = axis.microsteps_a_metre() * random.uniform(0.01, 0.03);
+  }
+  if (random.integer(0, 3) == 0) drive.disks = 5;
+  return drive;
+}
+
+// What a law may ask for: a walk, with leaps, beyond every limit at times.
+ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
+  ArmState wish = before;
+  const double size = random.integer(0, 9) == 0 ? 3 : 0.1;
+  for (Eigen::Vector2d& bend : wish.bends) bend += size * random.vector<2>(-1, 1);
+  for (std::size_t i = 0; i < arm.sections.size(); ++i)
+    if (arm.sections[i].stretch_limits[0] < 1) wish.stretches[i] = random.uniform(0.7, 1.4);
+  return wish;
+}
+
+// Everything that a run's check finds in a sequence of commands.
+SafetyReport judged(const Arm& arm, const LimiterSettings& settings, const std::vector<ArmState>& sent) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < sent.size(); ++i) times.push_back(settings.step * static_cast<double>(i));
+  const MotionPtr motion = keyframe_motion(times, sent, Interpolation::linear);
+  SafetyReport report =
+      check_motions(arm, settings.obstacles, sent.front(), {{motion, 0, "sent"}}, settings.step);
+  if (settings.drive) {
+    const auto state_at = [&](double t) {
+      return sent[static_cast<std::size_t>(std::lround(t / settings.step))];
+    };
+    const auto none = [](double, double) -> std::optional<std::vector<SectionRates>> { return std::nullopt; };
+    check_drive(arm, *settings.drive, state_at, times, none, report);
+  }
+  return report;
+}
+
+void expect_safe(const SafetyReport& report) {
+  for (const Violation& violation : report.violations) ADD_FAILURE() << violation.text();
+}
+
+void come_to_rest(CommandLimiter& limiter, std::vector<ArmState>& sent) {
+  for (int i = 0; i < 300 && !limiter.is_at_rest(); ++i) sent.push_back(limiter.brake().state);
+  EXPECT_TRUE(limiter.is_at_rest());
+  sent.push_back(limiter.brake().state);
+  sent.push_back(limiter.brake().state);
+}
+
+TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
+  int held_back = 0, moved = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    const Arm arm = limited_arm(random);
+    LimiterSettings settings{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
+    if (random.integer(0, 3) > 0) settings.drive = limited_drive(random, arm);
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, settings, straight);
+    std::vector<ArmState> sent{straight};
+    ArmState wish = straight;
+    for (int i = 0; i < 60; ++i) {
+      wish = next_wish(random, arm, wish);
+      const LimitedCommand command = limiter.next(wish);
+      EXPECT_EQ(command.is_untouched, command.reason.empty());
+      held_back += command.reason.empty() ? 0 : 1;
+      for (std::size_t k = 0; k < wish.bends.size(); ++k)
+        if (command.state.bends[k] != sent.back().bends[k]) ++moved;
+      sent.push_back(command.state);
+    }
+    come_to_rest(limiter, sent);
+    expect_safe(judged(arm, settings, sent));
+  });
+  EXPECT_GT(held_back, 1000 / one_case_of);
+  EXPECT_GT(moved, 1000 / one_case_of);
+}
+
+TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
+  int stopped = 0;
+  for_random_cases(8, [&](TestRandom& random) {
+    Arm arm = limited_arm(random);
+    for (Section& section : arm.sections) section.max_bend = 3, section.max_bend_rate = 3;
+    LimiterSettings settings{.step = 0.05};
+    settings.obstacles = obstacles({SphereConfig{.center = {0.18, 0.25, 0}, .radius = 0.06},
+                                    PlaneConfig{.point = {0, 0, -0.1}, .normal = {0, 0, 1}}});
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, settings, straight);
+    std::vector<ArmState> sent{straight};
+    ArmState wish = straight;
+    for (int i = 0; i < 40; ++i) {
+      if (i % 10 == 0)
+        for (Eigen::Vector2d& bend : wish.bends) bend = 2.5 * random.vector<2>(-1, 1);
+      const LimitedCommand command = limiter.next(wish);
+      if (command.reason.find("contact") != std::string::npos) ++stopped;
+      sent.push_back(command.state);
+    }
+    come_to_rest(limiter, sent);
+    expect_safe(judged(arm, settings, sent));
+  });
+  EXPECT_GT(stopped, 0);
+}
+
+TEST(Limiter, PassesWhatIsWithinTheLimitsBitForBit) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Arm arm = limited_arm(random);
+    LimiterSettings settings{.step = 1.0 / 30};
+    settings.drive = limited_drive(random, arm);
+    // A sine so small and slow that every motor follows it.
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, settings, straight);
+    for (int i = 1; i < 90; ++i) {
+      ArmState wish = straight;
+      const double share = 0.004 * (1 - std::cos(0.05 * i));
+      for (Eigen::Vector2d& bend : wish.bends) bend = Eigen::Vector2d(share, -0.3 * share);
+      const LimitedCommand command = limiter.next(wish);
+      EXPECT_TRUE(command.is_untouched) << command.reason;
+      EXPECT_EQ(command.state.bends, wish.bends);
+      EXPECT_EQ(command.state.stretches, wish.stretches);
+    }
+  });
+}
+
+TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Arm arm = limited_arm(random);
+    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
+    settings.drive = limited_drive(random, arm);
+    for (Axis& axis : settings.drive->axes) axis.motor.max_position = 1e9;
+    ArmState wish = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, settings, wish);
+    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
+    bool arrived = false;
+    for (int i = 0; i < 3000 && !arrived; ++i) arrived = limiter.next(wish).is_at_rest;
+    EXPECT_TRUE(arrived);
+    EXPECT_EQ(limiter.sent().bends, wish.bends);
+    EXPECT_TRUE(limiter.next(wish).is_untouched);
+  });
+}
+
+TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
+  for_random_cases(30, [](TestRandom& random) {
+    const Arm arm = limited_arm(random);
+    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
+    settings.drive = limited_drive(random, arm);
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, settings, straight);
+    std::vector<ArmState> sent{straight};
+    ArmState wish = straight, seen = straight;
+    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-2, 2);
+    for (int i = 0; i < 6; ++i) sent.push_back(limiter.next(wish).state);
+    seen.bends[0] = {0.123, 0};
+    limiter.observe(seen);
+    const int kind = random.integer(0, 3);
+    ArmState bad = wish;
+    if (kind == 0) bad.bends[0].x() = std::nan("");
+    if (kind == 1) bad.stretches[0] = std::numeric_limits<double>::infinity();
+    if (kind == 2) bad.bends.emplace_back(0, 0);
+    if (kind == 3) limiter.fault("link lost: camera front");
+    const ArmState before = limiter.sent();
+    sent.push_back(limiter.next(bad).state);
+    ASSERT_TRUE(limiter.fault().has_value());
+    EXPECT_THAT(limiter.fault()->reason, HasSubstr(kind < 2    ? "finite"
+                                                   : kind == 2 ? "this arm"
+                                                               : "link lost"));
+    EXPECT_NEAR(limiter.fault()->time, 0.3, 1e-12);
+    EXPECT_EQ(limiter.fault()->sent.bends, before.bends);
+    EXPECT_EQ(limiter.fault()->observed->bends, seen.bends);
+    EXPECT_EQ(limiter.fault()->asked->bends.size(), kind == 2 ? wish.bends.size() + 1 : wish.bends.size());
+    // Whatever the law says, the arm comes to rest, within all limits, and stays.
+    for (int i = 0; i < 300 && !limiter.is_at_rest(); ++i) {
+      EXPECT_THROW(limiter.reset(), std::logic_error);
+      sent.push_back(limiter.next(wish).state);
+    }
+    const ArmState rest = limiter.sent();
+    for (int i = 0; i < 3; ++i) {
+      const LimitedCommand command = limiter.next(wish);
+      EXPECT_TRUE(command.is_at_rest);
+      EXPECT_EQ(command.state.bends, rest.bends);
+      EXPECT_FALSE(command.reason.empty());
+      sent.push_back(command.state);
+    }
+    expect_safe(judged(arm, settings, sent));
+    limiter.reset();
+    EXPECT_FALSE(limiter.fault().has_value());
+    EXPECT_NE(limiter.next(wish).state.bends, rest.bends);
+  });
+}
+
+TEST(Limiter, SaysWhatHeldTheLawBack) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  Section& section = arm.sections.emplace_back();
+  section.length = 0.4, section.max_bend = 1, section.max_bend_rate = 0.5;
+  const ArmState straight = ArmState::straight(1);
+  CommandLimiter limiter(arm, {.step = 0.1, .looks_ahead = false}, straight);
+  EXPECT_THAT(limiter.next({{{0.2, 0}}, {1}}).reason, HasSubstr("section 1: bend rate"));
+  EXPECT_NEAR(limiter.sent().bends[0].x(), 0.05, 1e-3);
+  EXPECT_LE(limiter.sent().bends[0].x(), 0.05 * (1 + 1e-9));
+  for (int i = 0; i < 30; ++i) (void)limiter.next({{{2, 0}}, {1}});
+  EXPECT_NEAR(limiter.sent().bends[0].x(), 1, 1e-3);
+  EXPECT_THAT(limiter.next({{{2, 0}}, {1}}).reason, HasSubstr("bend at its limit"));
+  EXPECT_THAT(limiter.next({{{0.96, 0}}, {1.1}}).reason, HasSubstr("stretch at its limit"));
+}
+
+TEST(Limiter, StartsWithinTheLimitsOnly) {
+  Arm arm;
+  arm.sections.emplace_back().max_bend = 1;
+  EXPECT_THROW(CommandLimiter(arm, {}, ArmState::straight(2)), std::invalid_argument);
+  EXPECT_THROW(CommandLimiter(arm, {}, {{{1.1, 0}}, {1}}), std::invalid_argument);
+  EXPECT_THROW(CommandLimiter(arm, {.step = 0}, ArmState::straight(1)), std::invalid_argument);
+  LimiterSettings lamp;
+  lamp.obstacles = obstacles({SphereConfig{.center = {0, 0.5, 0}, .radius = 0.1}});
+  EXPECT_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)), std::invalid_argument);
+  lamp.looks_ahead = false;
+  EXPECT_NO_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)));
+  CommandLimiter limiter(arm, {}, ArmState::straight(1));
+  EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the plane"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,53 @@
+#include "flexura/control/plane_errors.h"
+
+#include <cmath>
+
+namespace flexura {
+namespace {
+
+// The cosine of theta below which the reading is singular: of 80 degrees.
+constexpr double least_cosine = 0.17364817766693033;
+
+double elevation_of(const PlaneView& view) {
+  return std::atan(std::tan(view.alpha_2) * std::cos(view.alpha_1));
+}
+
+PlaneError measured_angles(const PlaneView& measured) {
+  PlaneError error;
+  error.theta = measured.alpha_1;
+  error.q = elevation_of(measured);
+  error.gain = -std::sin(error.q) * std::cos(error.q) * std::tan(error.theta);
+  error.is_singular = std::abs(std::cos(error.theta)) < least_cosine;
+  return error;
+}
+
+void add_spatial(PlaneError& error) {
+  error.spatial = std::hypot(error.e_q, std::cos(error.q) * error.e_theta);
+}
+
+}  // namespace
+
+PlaneView plane_view(double theta, double q) {
+  return {theta, std::atan2(std::sin(q), std::cos(theta) * std::cos(q))};
+}
+
+PlaneError plane_error(const PlaneView& measured, const PlaneView& desired) {
+  PlaneError error = measured_angles(measured);
+  const double e_1 = measured.alpha_1 - desired.alpha_1, e_2 = measured.alpha_2 - desired.alpha_2;
+  const double cosine = std::cos(error.q) / std::cos(measured.alpha_2);
+  error.e_theta = e_1;
+  error.e_q = std::cos(error.theta) * cosine * cosine * e_2 + error.gain * e_1;
+  add_spatial(error);
+  return error;
+}
+
+PlaneError exact_plane_error(const PlaneView& measured, const PlaneView& desired) {
+  PlaneError error = measured_angles(measured);
+  error.e_theta = measured.alpha_1 - desired.alpha_1;
+  error.e_q = error.q - elevation_of(desired);
+  error.is_singular = error.is_singular || std::abs(std::cos(desired.alpha_1)) < least_cosine;
+  add_spatial(error);
+  return error;
+}
+
+}  // namespace flexura

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace flexura {
+
+/// What two parallel views show of a direction e(s), rad: in the plane XOY the angle from Y towards X, in the
+/// plane ZOY that from Y towards Z.
+struct PlaneView {
+  double alpha_1 = 0;
+  double alpha_2 = 0;
+};
+
+/// The views of the direction of the angles theta and q.
+[[nodiscard]] PlaneView plane_view(double theta, double q);
+
+/// A direction as two parallel views tell it, and its error: measured less desired (docs/control.md, eq. 14).
+struct PlaneError {
+  double theta = 0, q = 0;      ///< Measured, rad.
+  double e_theta = 0, e_q = 0;  ///< Of the angles, rad.
+  double spatial = 0;           ///< sqrt(e_q^2 + cos^2 q e_theta^2), rad.
+  /// d q/d alpha_1: how strongly an error of the first view enters q.
+  double gain = 0;
+  /// |theta| is within 10 degrees of a quarter turn: the second view says little of q there. Triangulate.
+  bool is_singular = false;
+};
+
+/// With the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 - alpha_2d taken over to the angles by
+/// the derivative at the measured ones, as the paper's section 2 has it:
+///   e_theta = e_1,
+///   e_q = cos theta / cos^2 alpha_2 cos^2 q e_2 - sin q cos q tan theta e_1.
+[[nodiscard]] PlaneError plane_error(const PlaneView& measured, const PlaneView& desired);
+
+/// With the angles of both computed first: exact for any size of error, as long as neither is singular.
+[[nodiscard]] PlaneError exact_plane_error(const PlaneView& measured, const PlaneView& desired);
+
+}  // namespace flexura

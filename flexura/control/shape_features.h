@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/camera/view.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// Which features of an arm's image make up the vector that is steered, in each camera. Shares are of the
+/// unstretched arm's length, from its base.
+struct FeatureSet {
+  std::vector<double> points = {};  ///< Shares whose pixels (u, v) count, px.
+  std::vector<std::array<double, 2>> chords =
+      {};                      ///< Pairs of shares: the angle of the image of their chord.
+  double angle_weight = 100;   ///< px for a radian.
+  bool has_moments = false;    ///< The six moments of the curve's image (curve_moments).
+  int moment_points = 33;      ///< Corners of the polygon that they are taken of.
+  double moment_weight = 100;  ///< Second moments count as px^2 over so many px.
+
+  /// Points at `count` equal shares, the last one the tip.
+  [[nodiscard]] static FeatureSet of_points(int count);
+  /// The angles of `count` chords in a row from base to tip.
+  [[nodiscard]] static FeatureSet of_chords(int count);
+  /// The moments.
+  [[nodiscard]] static FeatureSet of_moments();
+  /// Rows that one camera gives.
+  [[nodiscard]] Eigen::Index rows() const;
+};
+
+/// What all cameras see of an arm in these terms, camera by camera: points, chords, moments.
+struct ShapeFeatures {
+  Eigen::VectorXd values;    ///< All in px.
+  Eigen::MatrixXd by_state;  ///< J_s: columns are each section's bend_x, bend_y (rad), stretch.
+  /// L_s: columns are the twists [v; w] of the first camera, relative to W in C, then the next one's.
+  Eigen::MatrixXd by_cameras;
+};
+
+/// The features of an arm in a state with their derivatives, through the cameras' own models and the
+/// backbone's Jacobian. None where a camera's lens shows a needed point nowhere, or an image has no direction
+/// or length. std::invalid_argument: a share outside [0, 1], no features, a state that does not fit.
+[[nodiscard]] std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,
+                                                          std::span<const View> views, const FeatureSet& set);
+
+/// `seen` less `desired`, the angles' differences within half a turn. std::invalid_argument for vectors that
+/// are not of this set.
+[[nodiscard]] Eigen::VectorXd feature_error(const FeatureSet& set, const Eigen::VectorXd& seen,
+                                            const Eigen::VectorXd& desired);
+
+}  // namespace flexura

@@ -14,7 +14,8 @@ namespace {
 // The middle of the largest figure's pixels, whatever it looks like.
 void find_centroid(const Image<std::uint8_t>& gray, EtalonView& view) {
   Components components;
-  const Threshold threshold = segment(gray, {}, components);
+  BlockThresholds blocks;
+  const Threshold threshold = segment(gray, {}, components, blocks);
   if (!threshold.reason.empty() || threshold.figure != Figure::dark || components.list.empty()) return;
   const auto largest = std::ranges::max_element(components.list, {}, &Component::area);
   const auto own = static_cast<std::uint32_t>(largest - components.list.begin());

@@ -109,8 +109,8 @@ int study(int cases, std::uint64_t seed) {
       if (is_told)
         std::fprintf(stderr, "%d %zu %s error %.4f %% rms %.3f px doubted %.2f notes %zu%s\n", i, k,
                      found.is_found ? "found" : "lost",
-                     found.is_found ? 100 * relative_shape_error(found.shape, truth) : 0.0, found.rms, found.doubted,
-                     found.notes.size(),
+                     found.is_found ? 100 * relative_shape_error(found.shape, truth) : 0.0, found.rms,
+                     found.doubted, found.notes.size(),
                      found.notes.empty() ? found.reason.c_str() : found.notes.front().c_str());
     }
   }

@@ -53,7 +53,7 @@ inline Eigen::VectorXd random_rates(TestRandom& random, const DistributedArm& ar
 
 /// No drives.
 inline double no_force(double, const DistributedArm&, const Eigen::VectorXd&, const Eigen::VectorXd&,
-                     Eigen::VectorXd& Q) {
+                       Eigen::VectorXd& Q) {
   Q.setZero();
   return 0;
 }

@@ -87,7 +87,7 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
     middles[i] = aims_at_centers ? plan.centers[i] : Backbone(arm, *state).pose(0.5 * arm.length()).position;
   }
   plan.target = {middles[0].x(), 0.5 * (middles[0].y() + middles[1].y()), middles[1].z()};
-  std::array<double, 2> distances;
+  std::array<double, 2> distances{};
   for (std::size_t i = 0; i < 2; ++i) {
     distances[i] = (vector(loop.model(i).config.mount.position) - plan.centers[i]).dot(plan.normals[i]);
     if (distances[i] < 2 * plan.radius)
@@ -96,7 +96,7 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
           "at least",
           loop.name(i), distances[i], i == 0 ? "XOY" : "ZOY");
   }
-  std::array<double, 2> depths;
+  std::array<double, 2> depths{};
   for (std::size_t i = 0; i < 2; ++i)
     depths[i] = distances[i] - (plan.target - plan.centers[i]).dot(plan.normals[i]);
   const double magnification = common_magnification(loop, depths);

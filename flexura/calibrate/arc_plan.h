@@ -22,11 +22,11 @@ namespace flexura {
 struct ArcPlan {
   std::array<ArmState, 2> arcs;  ///< In XOY, for the first camera, and in ZOY.
   std::array<Eigen::Vector3d, 2> centers,
-      normals;                 ///< Of the arcs' circles, in W; the cameras look along -normal.
-  double radius = 0;           ///< m
-  Eigen::Vector3d target;      ///< Where the axes shall meet.
-  std::array<View, 2> ideal;   ///< What the cameras shall be.
-  std::array<double, 2> zoom;  ///< Positions of the lenses for that.
+      normals;                          ///< Of the arcs' circles, in W; the cameras look along -normal.
+  double radius = 0;                    ///< m
+  Eigen::Vector3d target;               ///< Where the axes shall meet.
+  std::array<View, 2> ideal;            ///< What the cameras shall be.
+  std::array<double, 2> zoom = {1, 1};  ///< Positions of the lenses for that.
 };
 
 /// The plan for cameras as they are believed to be; `aims_at_centers`: each at its circle's centre, or both

@@ -149,7 +149,7 @@ std::array<RigStance, 2> ArcsLoop::wanted() const {
 
 LookLoop::Trouble ArcsLoop::run() {
   if (auto trouble = begin_with_arm(loop_)) return trouble;
-  if (const auto why = plan_arcs(loop_, false, plan_)) return *why;
+  if (auto why = plan_arcs(loop_, false, plan_)) return why;
   loop_.result().target = plan_.target;
   if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
   std::array<double, 2> last = {std::numeric_limits<double>::infinity(),
@@ -165,14 +165,15 @@ LookLoop::Trouble ArcsLoop::run() {
       const bool is_noise = off > 0.5 * last[i];
       last[i] = off;
       const bool goes = !is_accepted && !is_noise;
-      loop_.decide(
-          i, "orientation and positioning", off, loop_.config().accepted, "px",
-          goes ? fmt::format("{:.2f} px are left of the markers; pan to {:.5g} rad, tilt to {:.5g} rad, "
-                             "stage to {:.4g}, {:.4g}, {:.4g} m",
-                             fit_.rms, next[i].head.pan, next[i].head.tilt, next[i].stage.offset.x(),
-                             next[i].stage.offset.y(), next[i].stage.offset.z())
-               : (is_accepted ? "holds, or nothing finer can be commanded"
-                              : "holds: the pictures tell nothing finer"));
+      std::string decision =
+          is_accepted ? "holds, or nothing finer can be commanded" : "holds: the pictures tell nothing finer";
+      if (goes)
+        decision = fmt::format(
+            "{:.2f} px are left of the markers; pan to {:.5g} rad, tilt to {:.5g} rad, "
+            "stage to {:.4g}, {:.4g}, {:.4g} m",
+            fit_.rms, next[i].head.pan, next[i].head.tilt, next[i].stage.offset.x(), next[i].stage.offset.y(),
+            next[i].stage.offset.z());
+      loop_.decide(i, "orientation and positioning", off, loop_.config().accepted, "px", decision);
       if (!goes) continue;
       if (auto trouble = loop_.go(i, next[i])) return trouble;
       is_moved = true;

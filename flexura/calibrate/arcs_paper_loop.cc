@@ -115,7 +115,7 @@ LookLoop::Trouble ArcsPaperLoop::go_around(std::size_t i, Orbit& orbit) {
 
 LookLoop::Trouble ArcsPaperLoop::run() {
   if (auto trouble = begin_with_arm(loop_)) return trouble;
-  if (const auto why = plan_arcs(loop_, true, plan_)) return *why;
+  if (auto why = plan_arcs(loop_, true, plan_)) return why;
   loop_.result().target = plan_.target;
   if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
   for (std::size_t i = 0; i < 2; ++i)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <ranges>
 
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/threshold.h"
@@ -54,7 +55,7 @@ EtalonCounts count_etalon(const Image<std::uint8_t>& picture) {
   while (counts.below < height && !is_black(column, height - 1 - counts.below)) ++counts.below;
   const auto has_black = [](int n) { return n > 0; };
   counts.first = *std::ranges::find_if(by_row, has_black);
-  counts.last = *std::find_if(by_row.rbegin(), by_row.rend(), has_black);
+  counts.last = *std::ranges::find_if(by_row | std::views::reverse, has_black);
   for (const int n : by_row) counts.white += width - n;
   counts.middle = 0.5 * (width - 1 + counts.left - counts.right);
   if (picture.channels() == 3) counts.axes = red_axes(picture, by_row);

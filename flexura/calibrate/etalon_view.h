@@ -39,7 +39,7 @@ struct EtalonView {
 [[nodiscard]] std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture);
 
 /// What the picture tells of a cylinder of this radius, by a lens as it is believed to be.
-[[nodiscard]] EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& lens,
+[[nodiscard]] EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& intrinsics,
                                      double radius);
 
 }  // namespace flexura

@@ -17,7 +17,8 @@ std::atomic<long> mallocs{0};
 }  // namespace
 
 extern "C" {
-void* __libc_malloc(std::size_t size);  // glibc's own.
+// glibc's own. NOLINTNEXTLINE(readability-identifier-naming)
+void* __libc_malloc(std::size_t size);
 void* malloc(std::size_t size) {
   ++mallocs;
   return __libc_malloc(size);

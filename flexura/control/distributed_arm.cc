@@ -18,7 +18,11 @@ void require_arm(const DistributedArmModel& model) {
     if (!(number >= 0) || !std::isfinite(number))
       throw std::invalid_argument("a distributed arm's stiffness and damping must be finite and 0 or more");
   if (!model.gravity.allFinite()) throw std::invalid_argument("a distributed arm's gravity must be finite");
-  if (model.clamp && !(std::isfinite((*model.clamp)[0]) && std::abs((*model.clamp)[1]) < 1.57))
+  constexpr double most_q = 1.57;
+  const auto is_clamp = [](const std::array<double, 2>& clamp) {
+    return std::isfinite(clamp[0]) && std::abs(clamp[1]) < most_q;  // Not where it is no number.
+  };
+  if (model.clamp && !is_clamp(*model.clamp))
     throw std::invalid_argument("a distributed arm's base must have |q| below 1.57 rad");
 }
 

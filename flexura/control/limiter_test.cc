@@ -65,6 +65,7 @@ ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
 // Everything that a run's check finds in a sequence of commands.
 SafetyReport judged(const Arm& arm, const LimiterSettings& settings, const std::vector<ArmState>& sent) {
   std::vector<double> times;
+  times.reserve(sent.size());
   for (std::size_t i = 0; i < sent.size(); ++i) times.push_back(settings.step * static_cast<double>(i));
   const MotionPtr motion = keyframe_motion(times, sent, Interpolation::linear);
   SafetyReport report =

@@ -14,6 +14,7 @@
 #include "flexura/control/interaction.h"
 #include "flexura/math/derivative_check.h"
 #include "flexura/math/so3.h"
+#include "flexura/model/backbone.h"
 #include "tests/support/arms.h"
 #include "tests/support/cameras.h"
 #include "tests/support/servo_views.h"
@@ -143,8 +144,8 @@ TEST(CurveMoments, OfACircleAndALineAreInClosedForm) {
   EXPECT_NEAR(straight[3], 675, 1e-10);
   EXPECT_NEAR(straight[4], 900, 1e-10);
   EXPECT_NEAR(straight[5], 1200, 1e-10);
-  EXPECT_THROW(curve_moments(line.leftCols(1)), std::domain_error);
-  EXPECT_THROW(curve_moments(Eigen::Matrix2Xd::Ones(2, 5)), std::domain_error);
+  EXPECT_THROW((void)curve_moments(line.leftCols(1)), std::domain_error);
+  EXPECT_THROW((void)curve_moments(Eigen::Matrix2Xd::Ones(2, 5)), std::domain_error);
 }
 
 TEST(ShapeFeatures, DifferByLessThanHalfATurn) {

@@ -46,6 +46,7 @@ std::vector<Eigen::Vector3d> seen_from(const Pose& X_WC) {
 
 std::vector<VispPoint> visp_points(const std::vector<Eigen::Vector3d>& seen) {
   std::vector<VispPoint> points;
+  points.reserve(seen.size());
   for (const Eigen::Vector3d& p_CP : seen) points.push_back(visp_point(p_CP));
   return points;
 }

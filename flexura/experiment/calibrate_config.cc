@@ -207,8 +207,8 @@ double arc_bend(const CalibrateTask& task) {
 
 std::size_t most_images(const CalibrateTask& task) {
   constexpr std::int64_t of_bundle = 12, of_corrected = 60, of_printed = 400;
-  return static_cast<std::size_t>(
-      task.images.value_or(!is_loop(task) ? of_bundle : (is_as_printed(task) ? of_printed : of_corrected)));
+  const std::int64_t of_loop = is_as_printed(task) ? of_printed : of_corrected;
+  return static_cast<std::size_t>(task.images.value_or(is_loop(task) ? of_loop : of_bundle));
 }
 
 std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm) {
@@ -268,8 +268,8 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   config.images = most_images(task);
   constexpr double printed = 3, printed_zoom = 0.01, of_etalon = 0.05, of_arcs = 0.5, corrected_zoom = 0.001;
   const bool is_printed = is_as_printed(task);
-  config.accepted =
-      task.loop.accepted.value_or(is_printed ? printed : (is_before_etalon(task) ? of_etalon : of_arcs));
+  const double corrected = is_before_etalon(task) ? of_etalon : of_arcs;
+  config.accepted = task.loop.accepted.value_or(is_printed ? printed : corrected);
   config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : corrected_zoom);
   config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
   config.arc = arc_bend(task);
@@ -296,6 +296,7 @@ namespace {
 
 std::vector<std::string> quoted(const std::vector<CameraConfig>& cameras) {
   std::vector<std::string> names;
+  names.reserve(cameras.size());
   for (const CameraConfig& camera : cameras) names.push_back(Node{camera.name, {}}.brief());
   return names;
 }

@@ -47,7 +47,7 @@ void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
                              .worst_time = duration_,
                              .name = legs_.back().name,
                              .value = missed,
-                             .target = *target});
+                             .target = target});
 }
 
 double Schedule::time_of_step(std::size_t step) const {

@@ -85,7 +85,7 @@ TEST(Inverse, OfTwoPlanarSectionsListsWhatBruteForceFinds) {
     for (Eigen::Vector2d& bend : state.bends) bend.x() = random.uniform(-2.9, 2.9);
     const TipTarget target{.position = Backbone(arm, state).tip().position};
     const auto bends = brute_force(arm, target.position.x(), target.position.y());
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
       const auto solutions = all_inverse_solutions(arm, target, {.seed = seed});
       expect_distinct(arm, target, solutions);
       ASSERT_EQ(solutions.size(), bends.size()) << "seed of the starts " << seed;
@@ -132,7 +132,7 @@ TEST(Inverse, ListsRollsOfAWholeTurnOnceAndNotInEveryDirection) {
   // 32 had been listed.
   const Arm arm = arm_of(ArmKind::spatial, {0.3, 0.3, 0.3}, 6.5);
   const TipTarget target{.position = {-0.390251, 0.427663, -0.0089057}};
-  for (const std::uint64_t seed : {1, 7}) {
+  for (const std::uint64_t seed : {1U, 7U}) {
     const auto solutions = all_inverse_solutions(arm, target, {.max_starts = 150, .seed = seed});
     expect_distinct(arm, target, solutions);
     EXPECT_LE(solutions.size(), 6U);

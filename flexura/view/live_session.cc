@@ -310,6 +310,7 @@ ArmState LiveSession::shown_state() {
 // Where the run's cameras stand, as far as it says so.
 std::vector<CameraStance> LiveSession::run_stances() const {
   std::vector<CameraStance> stances;
+  stances.reserve(viewed()->cameras.size());
   for (std::size_t i = 0; i < viewed()->cameras.size(); ++i)
     stances.push_back(i < news_.cameras.size() ? viewed()->stance(i, news_.cameras[i])
                                                : viewed()->first_stance(i));

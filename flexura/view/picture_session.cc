@@ -78,6 +78,7 @@ void PictureSession::Taker::operator()(const ShapeRequest& /*shape*/) const {
   const std::size_t cameras = pictures.viewed_->cameras.size();
   if (cameras < 2) throw ViewRefusal("a shape needs the pictures of two cameras: this rig has fewer");
   std::vector<Look> looks;
+  looks.reserve(cameras);
   for (std::size_t camera = 0; camera < cameras; ++camera) looks.push_back(pictures.look({client, camera}));
   pictures.measures_.ask(
       {client, cameras},

@@ -119,6 +119,7 @@ void RecordingSession::send_state(ClientId client) {
   const std::size_t place = recording_->state_at(times_.at(client));
   const double time = recording_->time_of_state(place);
   std::vector<CameraStance> stances;
+  stances.reserve(viewed()->cameras.size());
   for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) stances.push_back(recording_->stance(i, time));
   StateMessage state = still_state(*viewed(), time, recording_->state(place), stances);
   state.is_recording = true;

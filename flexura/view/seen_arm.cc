@@ -104,7 +104,7 @@ void add_silhouette(const ArmSighting& arm, Node::Array& layers) {
       if (!sample.is_seen)
         finish();
       else
-        points.push_back(sample.pixel + side * sample.width * sample.normal);
+        points.emplace_back(sample.pixel + side * sample.width * sample.normal);
     }
     finish();
   }

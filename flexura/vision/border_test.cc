@@ -42,6 +42,7 @@ TEST(LargestFigure, HasItsBorderWhereItIsHoweverBlurred) {
                          [&](int u, int v) { return std::hypot(u - 100.3, v - 88.6) - radius; });
       const FigureBorder found = largest_figure(picture);
       std::vector<Eigen::Vector2d> points;
+      points.reserve(found.points.size());
       for (const BorderPoint& point : found.points) points.push_back(point.pixel);
       const auto circle = fit_circle(points);
       ASSERT_TRUE(circle) << blur;

@@ -84,7 +84,7 @@ Moments banded_moments() {
   const auto from = marker_views(before), to = marker_views(after);
   for (std::size_t i = 0; i < from.size(); ++i) {
     moments.bands.push_back(*from[i].center.pixel);
-    moments.moved.push_back(*to[i].center.pixel - *from[i].center.pixel);
+    moments.moved.emplace_back(*to[i].center.pixel - *from[i].center.pixel);
   }
   return moments;
 }

@@ -48,7 +48,7 @@ DistributedArm::DistributedArm(const DistributedArmModel& model)
     of_x->setZero(size_);
   flow_.setZero(3 * points, size_), mass_.setZero(size_, size_);
   flow_rate_.setZero(3 * points), bias_.setZero(3 * points);
-  factor_ = Eigen::LLT<Eigen::MatrixXd>(size_);
+  factor_.compute(Eigen::MatrixXd::Identity(size_, size_));  // Room for that of the mass.
   set(Eigen::VectorXd::Zero(size_), Eigen::VectorXd::Zero(size_));
 }
 

@@ -144,6 +144,14 @@ TEST(BadFiles, ThousandsOfBandsAreTooMany) {
               HasSubstr("makes 6000 bands: expected at most 4096"));
 }
 
+TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {
+  EXPECT_THAT(error_of_file("[arm]\n[[arm.section]]\nlength = 1\n"
+                            "[[task]]\nkind = 'expression'\nduration = 1\narchings = '1.1e308*t'\n"
+                            "[[task]]\nkind = 'move'\nlaw = 'trapezoid'\nmax_rate = 1\n"
+                            "max_acceleration = 2\nto.archings = [0.1]\n"),
+              HasSubstr("steps of"));
+}
+
 TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {
   EXPECT_EQ(
       error_of_file("[arm]\nkind = 'planar'\nkind = 'spatial'\n[[arm.section]]\nlength = -1\nlength = 2\n"),

@@ -42,7 +42,9 @@ std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& fr
     acceleration = std::min(acceleration, of_section(*task.max_acceleration, i) / way);
   }
   if (rate == unlimited) return std::nullopt;
-  return Profile::trapezoid(1.0, rate, acceleration);
+  // A formula may leave the arm nowhere; the way from there takes longer than a run may.
+  constexpr double least = 1e-300;
+  return Profile::trapezoid(1.0, std::max(rate, least), std::max(acceleration, least));
 }
 
 MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {

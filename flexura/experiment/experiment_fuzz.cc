@@ -8,6 +8,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
+#include "flexura/safety/motion_check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace flexura;
@@ -23,7 +24,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (experiment_toml(parse_experiment(written, "written.toml")) != written) std::abort();
   const Arm arm = experiment.arm.arm();
   const Schedule schedule(experiment);
-  const Backbone backbone(arm, schedule.state_at(schedule.duration()));
+  const ArmState last = schedule.state_at(schedule.duration());
+  if (!is_possible(last)) return 0;  // A run stops before.
+  const Backbone backbone(arm, last);
   if (!backbone.tip().position.allFinite() || !backbone.tip().rotation.allFinite()) std::abort();
   return 0;
 }

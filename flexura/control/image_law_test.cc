@@ -14,6 +14,7 @@
 #include "flexura/control/limiter.h"
 #include "flexura/control/shape_features.h"
 #include "tests/support/servo_loop.h"
+#include "tests/support/servo_trials.h"
 #include "tests/support/servo_views.h"
 
 namespace flexura {
@@ -21,83 +22,15 @@ namespace {
 
 constexpr double dt = servo_step;
 
-TEST(ImageLaw, BringsTheArmToRandomTargets) {
-  FeatureSet both = FeatureSet::of_points(6);
-  both.chords = FeatureSet::of_chords(6).chords;
-  for (const auto& [name, set] : {std::pair{"points", FeatureSet::of_points(6)},
-                                  std::pair{"chords", FeatureSet::of_chords(9)}, std::pair{"both", both}}) {
-    ServoShare share;
-    for_random_cases(20, [&](TestRandom& random) {
-      ServoLoop loop;
-      loop.set = set;
-      share.add(servo(loop, random_servo_state(random, loop.arm, 0.3),
-                      random_servo_state(random, loop.arm, 1.5), 8));
-    });
-    share.print(name);
-    EXPECT_EQ(share.converged, share.all) << name;
-  }
-}
+TEST(ImageLaw, BringsTheArmToRandomTargets) { expect_random_targets(20); }
 
-TEST(ImageLaw, BringsTheArmToTargetsNearByWithMomentsAlone) {
-  ServoShare share;
-  for_random_cases(10, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_moments();
-    const ArmState target = random_servo_state(random, loop.arm, 1.2);
-    ArmState start = target;
-    for (Eigen::Vector2d& bend : start.bends) bend += random.vector<2>(-0.15, 0.15);
-    share.add(servo(loop, start, target, 5));
-  });
-  share.print("moments");
-  EXPECT_GE(share.converged, 0.8 * share.all);
-}
+TEST(ImageLaw, BringsTheArmToTargetsNearByWithMomentsAlone) { expect_moments_alone(10, 0.8); }
 
 TEST(ImageLaw, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe) {
-  ServoShare share;
-  for_random_cases(20, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_points(6);
-    loop.model = wrong_views(random, loop.truth, 0.5 * std::numbers::pi / 180, 0.01);
-    share.add(
-        servo(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
-  });
-  share.print("cameras 0.5 degrees and 1 % wrong");
-  EXPECT_EQ(share.converged, share.all);
+  expect_targets_of_wrong_cameras(20);
 }
 
-// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are
-// told.
-ArmState turned(const ArmState& sent) {
-  ArmState state = sent;
-  const double c = std::cos(1.75), s = std::sin(1.75);
-  for (Eigen::Vector2d& bend : state.bends)
-    bend = 1.3 * Eigen::Vector2d(c * bend.x() - s * bend.y(), s * bend.x() + c * bend.y());
-  return state;
-}
-
-TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) {
-  ServoShare model{1e-3}, broyden{1e-3}, recursive{1e-3};
-  for_random_cases(8, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_points(6);
-    loop.mechanism = turned;
-    loop.rate = 3, loop.most_step = 0.1;
-    const ArmState start = random_servo_state(random, loop.arm, 0.2),
-                   target = random_servo_state(random, loop.arm, 0.8);
-    const ImageLaw law(loop.arm, {});
-    const Eigen::MatrixXd J =
-        law.by_variables(shape_features(loop.arm, start, loop.model, loop.set).value().by_state);
-    model.add(servo(loop, start, target, 20));
-    broyden.add(servo(loop, start, target, 20, BroydenEstimate(J)));
-    recursive.add(servo(loop, start, target, 20, RecursiveEstimate(J, 0.97)));
-  });
-  model.print("the model's Jacobian");
-  broyden.print("Broyden");
-  recursive.print("recursive least squares");
-  EXPECT_EQ(model.converged, 0);
-  EXPECT_EQ(broyden.converged, broyden.all);
-  EXPECT_EQ(recursive.converged, recursive.all);
-}
+TEST(ImageLaw, LearnsAnArmOfWhichItIsTaughtWrong) { expect_turned_arm_is_learned(8, 1); }
 
 TEST(ImageLaw, FallsExponentiallyWhereTheModelIsRight) {
   ServoLoop loop;

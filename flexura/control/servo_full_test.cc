@@ -1,96 +1,19 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <cmath>
-#include <numbers>
-#include <utility>
-
-#include "flexura/control/image_law.h"
-#include "flexura/control/jacobian_estimate.h"
-#include "flexura/control/shape_features.h"
-#include "tests/support/servo_loop.h"
-#include "tests/support/servo_views.h"
+#include "tests/support/servo_trials.h"
 
 namespace flexura {
 namespace {
 
-TEST(ServoLoop, BringsTheArmToRandomTargets) {
-  FeatureSet both = FeatureSet::of_points(6);
-  both.chords = FeatureSet::of_chords(6).chords;
-  for (const auto& [name, set] : {std::pair{"points", FeatureSet::of_points(6)},
-                                  std::pair{"chords", FeatureSet::of_chords(9)}, std::pair{"both", both}}) {
-    ServoShare share;
-    for_random_cases(200, [&](TestRandom& random) {
-      ServoLoop loop;
-      loop.set = set;
-      share.add(servo(loop, random_servo_state(random, loop.arm, 0.3),
-                      random_servo_state(random, loop.arm, 1.5), 8));
-    });
-    share.print(name);
-    EXPECT_EQ(share.converged, share.all) << name;
-  }
-}
+TEST(ServoLoop, BringsTheArmToRandomTargets) { expect_random_targets(200); }
 
-TEST(ServoLoop, BringsTheArmToTargetsNearByWithMomentsAlone) {
-  ServoShare share;
-  for_random_cases(100, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_moments();
-    const ArmState target = random_servo_state(random, loop.arm, 1.2);
-    ArmState start = target;
-    for (Eigen::Vector2d& bend : start.bends) bend += random.vector<2>(-0.15, 0.15);
-    share.add(servo(loop, start, target, 5));
-  });
-  share.print("moments");
-  EXPECT_GE(share.converged, 0.95 * share.all);
-}
+TEST(ServoLoop, BringsTheArmToTargetsNearByWithMomentsAlone) { expect_moments_alone(100, 0.95); }
 
 TEST(ServoLoop, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe) {
-  ServoShare share;
-  for_random_cases(200, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_points(6);
-    loop.model = wrong_views(random, loop.truth, 0.5 * std::numbers::pi / 180, 0.01);
-    share.add(
-        servo(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
-  });
-  share.print("cameras 0.5 degrees and 1 % wrong");
-  EXPECT_EQ(share.converged, share.all);
+  expect_targets_of_wrong_cameras(200);
 }
 
-// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are
-// told.
-ArmState turned(const ArmState& sent) {
-  ArmState state = sent;
-  const double c = std::cos(1.75), s = std::sin(1.75);
-  for (Eigen::Vector2d& bend : state.bends)
-    bend = 1.3 * Eigen::Vector2d(c * bend.x() - s * bend.y(), s * bend.x() + c * bend.y());
-  return state;
-}
-
-TEST(ServoLoop, LearnsAnArmOfWhichItIsTaughtWrong) {
-  ServoShare model{1e-3}, broyden{1e-3}, recursive{1e-3};
-  for_random_cases(40, [&](TestRandom& random) {
-    ServoLoop loop;
-    loop.set = FeatureSet::of_points(6);
-    loop.mechanism = turned;
-    loop.rate = 3, loop.most_step = 0.1;
-    const ArmState start = random_servo_state(random, loop.arm, 0.2),
-                   target = random_servo_state(random, loop.arm, 0.8);
-    const ImageLaw law(loop.arm, {});
-    const Eigen::MatrixXd J =
-        law.by_variables(shape_features(loop.arm, start, loop.model, loop.set).value().by_state);
-    model.add(servo(loop, start, target, 20));
-    broyden.add(servo(loop, start, target, 20, BroydenEstimate(J)));
-    recursive.add(servo(loop, start, target, 20, RecursiveEstimate(J, 0.97)));
-  });
-  model.print("the model's Jacobian");
-  broyden.print("Broyden");
-  recursive.print("recursive least squares");
-  EXPECT_EQ(model.converged, 0);
-  EXPECT_EQ(broyden.converged, broyden.all);
-  EXPECT_GE(recursive.converged, 0.95 * recursive.all);
-}
+TEST(ServoLoop, LearnsAnArmOfWhichItIsTaughtWrong) { expect_turned_arm_is_learned(40, 0.95); }
 
 }  // namespace
 }  // namespace flexura

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,8 @@ std::vector<Eigen::Vector2d> border_of(const Image<std::uint8_t>& gray) {
 
 TEST(RealPictures, TheEllipseIsThereToATenthOfAPixel) {
   SKIP_WITHOUT(visp);
-  int count = 0, rough = 0;
+  const std::set<int> half_hidden = {17, 27, 30, 31, 32, 34, 35, 37, 47};
+  int count = 0;
   std::string over;
   for (int i = 1; i <= 50; ++i) {
     const auto file = visp / "ellipse-1" / fmt::format("image.{:04}.pgm", i);
@@ -60,10 +62,10 @@ TEST(RealPictures, TheEllipseIsThereToATenthOfAPixel) {
     // Where half of it is hidden, the rest is no ellipse to 0.2 px, but scatters by 0.03 px around its
     // course.
     EXPECT_LT(fit->rms, 0.25) << file;
-    if (fit->rms >= 0.09) over += fmt::format(" {}: {:.3f}", i, fit->rms), ++rough;
+    if (fit->rms >= 0.09 && !half_hidden.contains(i)) over += fmt::format(" {}: {:.3f}", i, fit->rms);
   }
   EXPECT_EQ(count, 50);
-  EXPECT_LE(rough, 9) << over;
+  EXPECT_EQ(over, "");
 }
 
 TEST(RealPictures, AWhiteEllipseInAFrameIsTheFigure) {

@@ -10,6 +10,7 @@
 
 #include "flexura/estimate/shape_estimator.h"
 #include "tests/support/seen_arms.h"
+#include "tests/support/shape_error.h"
 
 namespace flexura {
 
@@ -42,17 +43,9 @@ inline SeenShape random_seen_shape(TestRandom& random) {
   return result;
 }
 
-/// Root mean square of the distances between points at equal shares of both lengths, of the arm's length.
+/// shape_error() as a share of the arm's length.
 inline double relative_shape_error(const Shape& shape, const Backbone& truth) {
-  const Backbone found(shape.arm, shape.state);
-  constexpr int count = 100;
-  double squares = 0;
-  for (int i = 0; i <= count; ++i) {
-    const double share = static_cast<double>(i) / count;
-    squares += (found.pose(share * found.length()).position - truth.pose(share * truth.length()).position)
-                   .squaredNorm();
-  }
-  return std::sqrt(squares / (count + 1)) / truth.length();
+  return shape_error(shape, truth) / truth.length();
 }
 
 /// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly

@@ -10,6 +10,7 @@
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/backbone.h"
 #include "tests/support/random_cases.h"
+#include "tests/support/shape_error.h"
 
 namespace flexura {
 
@@ -70,20 +71,6 @@ inline std::vector<Sighting> sightings_of(const Backbone& backbone, TestRandom& 
   std::vector<Sighting> seen;
   for (const View& view : two_views()) seen.push_back(sighting_of(backbone, view, random, sigma));
   return seen;
-}
-
-/// Root mean square of the distances between points of equal shares of both lengths, m.
-inline double shape_error(const Shape& shape, const Backbone& truth) {
-  const Backbone backbone(shape.arm, shape.state);
-  constexpr int count = 50;
-  double square = 0;
-  for (int i = 0; i <= count; ++i) {
-    const double f = static_cast<double>(i) / count;
-    square += (backbone.pose(f * backbone.length()).position - truth.pose(f * truth.length()).position)
-                  .squaredNorm() /
-              (count + 1);
-  }
-  return std::sqrt(square);
 }
 
 }  // namespace flexura

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/loop_bench.h"
+#include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
 
 namespace flexura {
@@ -47,8 +47,8 @@ Ending run_one(const std::string& method, std::uint64_t seed) {
   for (double& gain : gains) gain = 1 + random.uniform(-0.01, 0.01);
   const std::string task = "method = \"" + method + "\"\n";
   const bool has_arm = !method.starts_with("etalon");
-  LoopBench bench(has_arm ? arcs_rig(task, arcs_cameras({front, side}, method == "arcs-paper"), longer)
-                          : etalon_rig(task, {.wrong = {front, side}}));
+  CalibrationBench bench(has_arm ? arcs_rig(task, arcs_cameras({front, side}, method == "arcs-paper"), longer)
+                                 : etalon_rig(task, {.wrong = {front, side}}));
   RigPorts ports = bench.ports();
   WrongArm arm(*ports.arm, gains);
   if (has_arm) ports.arm = &arm;

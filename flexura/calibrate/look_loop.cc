@@ -30,21 +30,14 @@ LookLoop::LookLoop(const RigPorts& ports, const RigModel& believed, const LoopCo
       config_(config),
       watcher_(watcher),
       hands_(ports, believed, config.patience),
+      trip_(hands_, watcher, config.cameras, config.move_duration),
       cameras_{Camera(camera_of(ports, believed, config, 0)), Camera(camera_of(ports, believed, config, 1))} {
 }
 
 LookLoop::Trouble LookLoop::begin() {
-  if (auto trouble = hands_.settle()) return trouble;
-  const auto arm = hands_.arm();
-  if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-  home_ = std::get<ArmState>(arm), shown_ = home_;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto stance = hands_.stance(config_.cameras[i]);
-    if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-    result_.start[i] = std::get<RigStance>(stance), stands_[i] = result_.start[i];
-  }
-  has_begun_ = true;
-  return std::nullopt;
+  auto trouble = trip_.begin();
+  result_.start = stands_ = trip_.start();
+  return trouble;
 }
 
 LookLoop::Trouble LookLoop::look_from_one_side() const {
@@ -100,23 +93,6 @@ LookLoop::Trouble LookLoop::go(std::size_t i, const RigStance& stance) {
   return hands_.settle();
 }
 
-LookLoop::Trouble LookLoop::bend(const ArmState& state) {
-  watcher_.arm_sent(hands_.now(), state, config_.move_duration);
-  if (auto trouble = hands_.bend(state, config_.move_duration)) return trouble;
-  shown_ = state;
-  return hands_.settle();
-}
-
-LookLoop::Trouble LookLoop::show(const ArmState& pose) {
-  const auto is_same = [](const ArmState& a, const ArmState& b) {
-    return a.bends == b.bends && a.stretches == b.stretches;
-  };
-  if (is_same(pose, shown_)) return std::nullopt;
-  if (!is_same(home_, shown_))
-    if (auto trouble = bend(home_)) return trouble;
-  return is_same(home_, pose) ? std::nullopt : bend(pose);
-}
-
 RigStance LookLoop::commandable_stance(std::size_t i, const RigStance& stance) const {
   RigStance drawn = stance;
   const auto& [pan, tilt, zoom] = cameras_[i].head_axes();
@@ -137,26 +113,9 @@ bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
          (stance.stage.offset - is.stage.offset).norm() < rounding;
 }
 
-std::string LookLoop::retreat() {
-  if (!has_begun_) return "; nothing was moved";
-  Trouble trouble;
-  const auto keep = [&trouble](Trouble another) {
-    if (!trouble) trouble = std::move(another);
-  };
-  for (const RigStance& stance : result_.start) {
-    watcher_.camera_sent(hands_.now(), stance);
-    keep(hands_.go(stance));
-  }
-  watcher_.arm_sent(hands_.now(), home_, config_.move_duration);
-  keep(hands_.bend(home_, config_.move_duration));
-  keep(hands_.settle());
-  if (trouble) return "; on the way back: " + *trouble;
-  return "; heads, stages and arm are back where they began";
-}
-
 LoopResult LookLoop::finish(const Trouble& trouble) {
   result_.is_done = !trouble;
-  if (trouble) result_.reason = *trouble + retreat();
+  if (trouble) result_.reason = *trouble + trip_.retreat();
   result_.stances = trouble ? result_.start : stands_;
   return std::move(result_);
 }

@@ -9,6 +9,7 @@
 
 #include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
 namespace flexura {
@@ -24,6 +25,8 @@ class LookLoop {
   /// std::invalid_argument: ports for other cameras than the model's.
   LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
            RigSessionWatcher& watcher);
+  LookLoop(const LookLoop&) = delete;
+  LookLoop& operator=(const LookLoop&) = delete;
 
   /// Waits for rest, and remembers where everything stands.
   Trouble begin();
@@ -36,13 +39,11 @@ class LookLoop {
               const std::string& next);
   /// Sends a camera, or the arm by way of the shape in which it began, and waits.
   Trouble go(std::size_t i, const RigStance& stance);
-  Trouble show(const ArmState& pose);
+  Trouble show(const ArmState& pose) { return trip_.show(pose); }
   /// What the camera can be sent to that is nearest, and whether that is where it was sent already.
   [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const;
   [[nodiscard]] bool stands_there(std::size_t i, const RigStance& stance) const;
-  /// Sends everything back; says how that went.
-  std::string retreat();
-  /// The result, with how things stand at the end.
+  /// The result, with how things stand at the end; in trouble everything is sent back first.
   LoopResult finish(const Trouble& trouble);
 
   [[nodiscard]] const LoopConfig& config() const { return config_; }
@@ -59,18 +60,15 @@ class LookLoop {
   [[nodiscard]] const RigSight& sight() const { return sight_; }
 
  private:
-  Trouble bend(const ArmState& state);
-
   const RigModel& believed_;
   const LoopConfig& config_;
   RigSessionWatcher& watcher_;
   RigHands hands_;
+  RigTrip trip_;
   std::array<Camera, 2> cameras_;
   LoopResult result_;
   RigSight sight_;
-  ArmState home_, shown_;
   std::array<RigStance, 2> stands_;
-  bool has_begun_ = false;
 };
 
 /// The lens's position at which the focal length is `ratio` times that at position `from`, or comes nearest

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "flexura/calibrate/rig_session_plan.h"
+#include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
 namespace flexura {
@@ -24,10 +25,6 @@ View view_of(const RigModel& model, const RigStance& stance) {
   return Camera(camera.config).view(stance.stage, head);
 }
 
-bool is_same(const ArmState& a, const ArmState& b) {
-  return a.bends == b.bends && a.stretches == b.stretches;
-}
-
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,
@@ -37,6 +34,7 @@ class Session {
         config_(config),
         watcher_(watcher),
         hands_(ports, believed, config.patience),
+        trip_(hands_, watcher, config.cameras, config.move_duration),
         plan_(believed, config) {
     if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
       throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
@@ -50,31 +48,18 @@ class Session {
   }
 
   RigSessionResult run() {
-    Trouble trouble = begin();
+    Trouble trouble = trip_.begin();
+    stands_ = trip_.start();
     if (!trouble) trouble = look_and_move();
     if (trouble) {
       result_.is_done = false;
-      result_.reason = *trouble + retreat();
+      result_.reason = *trouble + trip_.retreat();
     }
     finish();
     return std::move(result_);
   }
 
  private:
-  Trouble begin() {
-    if (auto trouble = hands_.settle()) return trouble;
-    const auto arm = hands_.arm();
-    if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    home_ = std::get<ArmState>(arm), shown_ = home_;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto stance = hands_.stance(config_.cameras[i]);
-      if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-      start_[i] = std::get<RigStance>(stance), stands_[i] = start_[i];
-    }
-    has_begun_ = true;
-    return std::nullopt;
-  }
-
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
       if (auto trouble = look({pose(i), {stands_[0], stands_[1]}})) return trouble;
@@ -101,7 +86,7 @@ class Session {
   // Shows the arm in a pose and takes a picture from each stance.
   Trouble look(const ViewCandidate& what) {
     if (watcher_.is_cancelled()) return "cancelled";
-    if (auto trouble = show(what.pose)) return trouble;
+    if (auto trouble = trip_.show(what.pose)) return trouble;
     for (const RigStance& stance : what.stances)
       if (auto trouble = send(stance)) return trouble;
     if (auto trouble = hands_.settle()) return trouble;
@@ -122,19 +107,6 @@ class Session {
     return std::nullopt;
   }
 
-  // To a pose by way of the shape in which the arm began: these ways are known before anything moves.
-  Trouble show(const ArmState& pose) {
-    if (is_same(pose, shown_)) return std::nullopt;
-    if (!is_same(home_, shown_))
-      if (auto trouble = bend(home_)) return trouble;
-    return is_same(home_, pose) ? std::nullopt : bend(pose);
-  }
-  Trouble bend(const ArmState& state) {
-    watcher_.arm_sent(hands_.now(), state, config_.move_duration);
-    if (auto trouble = hands_.bend(state, config_.move_duration)) return trouble;
-    shown_ = state;
-    return hands_.settle();
-  }
   Trouble send(const RigStance& stance) {
     RigStance& stands = stands_[place_of(stance.camera)];
     if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
@@ -200,7 +172,7 @@ class Session {
   // Turns the head about until enough of the arm is seen.
   Trouble search(std::size_t i) {
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
-      RigStance stance = start_[i];
+      RigStance stance = trip_.start()[i];
       stance.head.pan += way.x(), stance.head.tilt += way.y();
       stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
       if (auto trouble = send(stance)) return trouble;
@@ -230,7 +202,7 @@ class Session {
     plan_.know(problem_->variables(), *found_, wanted_, step);
     choose(step);
     watcher_.known(step);
-    return plan_.trouble_with(found_->model, wanted_, step, home_);
+    return plan_.trouble_with(found_->model, wanted_, step, trip_.home());
   }
 
   // What to look at next, if the session goes on.
@@ -277,31 +249,14 @@ class Session {
     return std::sqrt(squares / static_cast<double>(image.markers.size()));
   }
 
-  // Sends everything back to where it began, as far as it goes; says how it went.
-  std::string retreat() {
-    if (!has_begun_) return "; nothing was moved";
-    Trouble trouble;
-    const auto keep = [&trouble](Trouble another) {
-      if (!trouble) trouble = std::move(another);
-    };
-    for (const RigStance& stance : start_) {
-      watcher_.camera_sent(hands_.now(), stance);
-      keep(hands_.go(stance));
-    }
-    watcher_.arm_sent(hands_.now(), home_, config_.move_duration);
-    keep(hands_.bend(home_, config_.move_duration));
-    keep(hands_.settle());
-    if (trouble) return "; on the way back: " + *trouble;
-    return "; heads, stages and arm are back where they began";
-  }
-
   void finish() {
     if (!found_ || !problem_) return;
     result_.observability = observability(problem_->variables(), found_->covariance);
     const Eigen::Vector3d target = plan_.target(found_->model);
-    result_.target = target, result_.start = start_;
-    result_.start_remainder = remainder(found_->model, start_, target);
-    result_.believed_remainder = remainder(found_->model, plan_.wanted(believed_, start_).stances, target);
+    result_.target = target, result_.start = trip_.start();
+    result_.start_remainder = remainder(found_->model, trip_.start(), target);
+    result_.believed_remainder =
+        remainder(found_->model, plan_.wanted(believed_, trip_.start()).stances, target);
     for (RigStep& step : result_.steps)
       if (step.is_found) step.remainder = remainder(found_->model, step.wanted, target);
     // Where the cameras truly stand, as far as the pictures tell.
@@ -316,13 +271,13 @@ class Session {
   const RigSessionConfig& config_;
   RigSessionWatcher& watcher_;
   RigHands hands_;
+  RigTrip trip_;
   RigSessionPlan plan_;
   std::vector<ArmPicture> eyes_;
   RigSessionResult result_;
 
-  ArmState home_, shown_;
-  std::array<RigStance, 2> start_, stands_;  // As they were, and as they were last sent.
-  bool has_begun_ = false, has_moved_ = false;
+  std::array<RigStance, 2> stands_;  // As they were last sent.
+  bool has_moved_ = false;
   std::array<bool, 2> is_turned_ = {true, true};  // Since the last stance.
   std::array<std::optional<std::size_t>, 2> stance_, last_stance_;
   std::array<int, 2> misses_ = {0, 0};

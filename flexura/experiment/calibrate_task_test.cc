@@ -24,6 +24,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/calibration_bench.h"
 #include "tests/support/calibration_files.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/quiet.h"
@@ -34,56 +35,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class Unwatched : public RigSessionWatcher {
- public:
-  void arm_sent(double, const ArmState&, double) override {}
-  void camera_sent(double, const RigStance&) override {}
-  void seen(const RigSight&) override {}
-  void known(const RigStep&) override {}
-};
-
-// A session at the ports alone, with nothing of a run around it.
-class Bench {
- public:
-  explicit Bench(const std::string& text)
-      : experiment_(parse_experiment(text, "x.toml")),
-        photographer_(experiment_),
-        rig_(
-            experiment_.model_rig(), experiment_.true_rig(),
-            [this](const Shot& shot) { return photographer_.take(shot); }, 1) {}
-
-  SimulatedRig& rig() { return rig_; }
-  RigPorts ports() { return rig_.ports(); }
-  RigSessionResult calibrate(const RigPorts& ports) {
-    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
-    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
-    const RigSessionConfig config = session_config(task, experiment_.arm, experiment_.cameras());
-    Unwatched nobody;
-    return calibrate_rig_in_session(ports, believed, session_prior(task, believed), config, nobody);
-  }
-  // Whether heads and stages are where the file starts them.
-  void expect_back() {
-    for (std::size_t i = 0; i < rig_.camera_count(); ++i) {
-      const auto head = rig_.camera(i).head().read().value().state;
-      EXPECT_NEAR(head.pan, 0, 1e-9);
-      EXPECT_NEAR(head.tilt, 0, 1e-9);
-      EXPECT_NEAR(rig_.camera(i).stage().read().value().state.offset.norm(), 0, 1e-9);
-    }
-  }
-
- private:
-  Experiment experiment_;
-  Photographer photographer_;
-  SimulatedRig rig_;
-};
-
 const std::string three_poses =
     "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
     "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
 
 TEST(CalibrateTask, FindsARigThatIsWrongInEveryWayAndSquaresItsAxes) {
-  Bench bench(small_calibration("images = 6\n" + three_poses, wrong_cameras));
-  const RigSessionResult result = bench.calibrate(bench.ports());
+  CalibrationBench bench(small_calibration("images = 6\n" + three_poses, wrong_cameras));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_EQ(result.looks, 6U);
   EXPECT_LT(std::abs(result.remainder.angle), 0.005);
@@ -94,11 +52,11 @@ TEST(CalibrateTask, FindsARigThatIsWrongInEveryWayAndSquaresItsAxes) {
 }
 
 TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {
-  Bench bench(
+  CalibrationBench bench(
       small_calibration("images = 5\n" + three_poses,
                         "[[truth.camera]]\nname = \"side\"\nmount = { position = [-2.5, 0.5, 0], look_at = "
                         "[-2.5, 0.5, 3] }\n"));
-  const RigSessionResult result = bench.calibrate(bench.ports());
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));
   EXPECT_THAT(result.reason, HasSubstr("back where they began"));
@@ -109,61 +67,46 @@ TEST(CalibrateTask, StopsWhereBothCamerasLookFromOneSide) {
   std::string text = small_calibration("images = 5\n" + three_poses, "");
   const std::string side = "position = [-2.5, 0.5, 0]";
   text.replace(text.find(side), side.size(), "position = [-0.4, 0.5, 2.47]");
-  Bench bench(text);
-  const RigSessionResult result = bench.calibrate(bench.ports());
+  CalibrationBench bench(text);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side"));
   EXPECT_THAT(result.reason, HasSubstr("back where they began"));
   bench.expect_back();
 }
 
-// A head whose pan motor takes commands and does not turn.
-class StuckHead : public HeadPort {
- public:
-  explicit StuckHead(HeadPort& head) : head_(head) {}
-  CommandOutcome command(const HeadState& state) override {
-    HeadState reached = state;
-    reached.pan = 0;
-    return head_.command(reached);
-  }
-  CommandOutcome halt() override { return head_.halt(); }
-  Outcome<HeadReading> read() override { return head_.read(); }
-
- private:
-  HeadPort& head_;
-};
-
 TEST(CalibrateTask, StopsWhereAHeadDoesNotFollow) {
-  Bench bench(small_calibration("images = 5\n" + three_poses, ""));
+  CalibrationBench bench(small_calibration("images = 5\n" + three_poses, ""));
   RigPorts ports = bench.ports();
-  StuckHead stuck(*ports.cameras[1].head);
+  StuckPan stuck(*ports.cameras[1].head);
   ports.cameras[1].head = &stuck;
-  const RigSessionResult result = bench.calibrate(ports);
+  const RigSessionResult result = bench.calibrate_bundle(ports);
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("the head of camera side does not follow: pan was sent to"));
   bench.expect_back();
 }
 
 TEST(CalibrateTask, StopsWhereNoFrameComes) {
-  Bench bench(small_calibration("images = 5\nframe_timeout = 1\n" + three_poses, "", ", drop = 1"));
-  const RigSessionResult result = bench.calibrate(bench.ports());
+  CalibrationBench bench(
+      small_calibration("images = 5\nframe_timeout = 1\n" + three_poses, "", ", drop = 1"));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("camera front gave no frame for 1 s"));
   bench.expect_back();
 }
 
 TEST(CalibrateTask, StopsWhereALinkIsLost) {
-  Bench bench(small_calibration("images = 5\n" + three_poses, ""));
+  CalibrationBench bench(small_calibration("images = 5\n" + three_poses, ""));
   bench.rig().camera(0).camera().link().lose(3, 1e6);
-  const RigSessionResult result = bench.calibrate(bench.ports());
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("link lost: camera front does not answer"));
   bench.expect_back();
 }
 
 TEST(CalibrateTask, WaitsForAnotherFrameWhereSomeAreLost) {
-  Bench all(small_calibration("images = 4\n" + three_poses, wrong_cameras));
-  Bench some(small_calibration("images = 4\n" + three_poses, wrong_cameras, ", drop = 0.6"));
+  CalibrationBench all(small_calibration("images = 4\n" + three_poses, wrong_cameras));
+  CalibrationBench some(small_calibration("images = 4\n" + three_poses, wrong_cameras, ", drop = 0.6"));
   const RigSessionResult one = all.calibrate(all.ports()), other = some.calibrate(some.ports());
   ASSERT_TRUE(one.is_done) << one.reason;
   ASSERT_TRUE(other.is_done) << other.reason;

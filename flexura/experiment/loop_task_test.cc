@@ -15,8 +15,8 @@
 #include "flexura/experiment/run.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/calibration_bench.h"
 #include "tests/support/experiment_files.h"
-#include "tests/support/loop_bench.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
@@ -36,7 +36,7 @@ LoopRig small(const std::array<WrongStart, 2>& wrong, const std::string& sensor 
 
 TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
   for_random_cases(1, [](TestRandom& random) {
-    LoopBench bench(
+    CalibrationBench bench(
         etalon_rig("method = \"etalon\"\n", {.wrong = {wrong_start(random), wrong_start(random)}}));
     const LoopResult result = bench.calibrate();
     ASSERT_TRUE(result.is_done) << result.reason;
@@ -56,7 +56,7 @@ TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
 TEST(EtalonLoop, StopsWhereTheCylinderIsOutOfView) {
   WrongStart away;
   away.pan = 1.2;
-  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, away})));
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, away})));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("the cylinder is out of view of camera side"));
@@ -71,7 +71,7 @@ TEST(EtalonLoop, StopsWhereBothCamerasLookFromOneSide) {
   // Beside the first one, and looking as it does.
   for (std::size_t at = text.find("2.5, 0.5, 0.3"); at != std::string::npos; at = text.find("2.5, 0.5, 0.3"))
     text.replace(at, 13, "1.5, 0.5, -10");
-  LoopBench bench(text);
+  CalibrationBench bench(text);
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side"));
@@ -79,8 +79,8 @@ TEST(EtalonLoop, StopsWhereBothCamerasLookFromOneSide) {
 }
 
 TEST(EtalonLoop, StopsWhereTheCylinderTouchesTheBorder) {
-  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, WrongStart{}}),
-                             "radius = 0.4\nheight = 1.2\n"));
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, WrongStart{}}),
+                                    "radius = 0.4\nheight = 1.2\n"));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("cannot have all of the cylinder in its picture"));
@@ -90,7 +90,7 @@ TEST(EtalonLoop, StopsWhereTheCylinderTouchesTheBorder) {
 TEST(EtalonLoop, StopsWhereAHeadDoesNotFollow) {
   WrongStart turned;
   turned.pan = 0.1;
-  LoopBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, turned})));
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", small({WrongStart{}, turned})));
   RigPorts ports = bench.ports();
   StuckPan stuck(*ports.cameras[1].head);
   ports.cameras[1].head = &stuck;
@@ -103,7 +103,7 @@ TEST(EtalonLoop, StopsWhereAHeadDoesNotFollow) {
 TEST(EtalonLoop, StopsWhereAStageDoesNotReach) {
   LoopRig rig = small({WrongStart{.shift = {0.3, 0, 0}}, WrongStart{}});
   rig.travel = 0.1;
-  LoopBench bench(etalon_rig("method = \"etalon\"\n", rig));
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", rig));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("horizontal positioning of camera front: what can be commanded ends"));
@@ -111,12 +111,12 @@ TEST(EtalonLoop, StopsWhereAStageDoesNotReach) {
 }
 
 TEST(EtalonLoop, StopsWhereNoFrameComesAndWhereTooManyAreNeeded) {
-  LoopBench lost(etalon_rig("method = \"etalon\"\nframe_timeout = 1\n",
-                            small({WrongStart{}, WrongStart{}}, ", drop = 1")));
+  CalibrationBench lost(etalon_rig("method = \"etalon\"\nframe_timeout = 1\n",
+                                   small({WrongStart{}, WrongStart{}}, ", drop = 1")));
   EXPECT_THAT(lost.calibrate().reason, HasSubstr("camera front gave no frame for 1 s"));
   lost.expect_back();
   TestRandom random(5);
-  LoopBench many(
+  CalibrationBench many(
       etalon_rig("method = \"etalon\"\nimages = 3\n", small({wrong_start(random), wrong_start(random)})));
   EXPECT_THAT(many.calibrate().reason, HasSubstr("the limit of 3 pictures of camera front is reached"));
   many.expect_back();
@@ -155,7 +155,7 @@ TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
 // should.
 TEST(EtalonPaperLoop, CentresTheCylinderWhereNothingElseIsWrong) {
   const WrongStart front{.pan = 0.05, .tilt = -0.03}, side{.pan = -0.04, .tilt = 0.05};
-  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, side})));
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, side})));
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   const RigRemainder left = bench.truth(result);
@@ -168,7 +168,7 @@ TEST(EtalonPaperLoop, CentresTheCylinderWhereNothingElseIsWrong) {
 
 TEST(EtalonPaperLoop, DoesNotSeeThatACameraStandsBesideTheLine) {
   const WrongStart front{.pan = 0.03, .shift = {0.05, 0, 0}};
-  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   // 0.05 m at 1.5 m.
@@ -177,8 +177,8 @@ TEST(EtalonPaperLoop, DoesNotSeeThatACameraStandsBesideTheLine) {
 
 TEST(EtalonPaperLoop, StopsWhereTwoAxesShowForEver) {
   const WrongStart front{.pan = 0.26, .shift = {0.4, 0, 0}};
-  LoopBench bench(etalon_rig("method = \"etalon-paper\"\nloop.slide = 0.04\nloop.accepted = 25\n",
-                             small({front, WrongStart{}})));
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\nloop.slide = 0.04\nloop.accepted = 25\n",
+                                    small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("two red axes"));
@@ -187,7 +187,7 @@ TEST(EtalonPaperLoop, StopsWhereTwoAxesShowForEver) {
 
 TEST(EtalonPaperLoop, StopsWhereTheZoomRunsAway) {
   const WrongStart front{.shift = {0, 0, -0.15}};
-  LoopBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("zoom runs away"));
@@ -197,8 +197,8 @@ TEST(EtalonPaperLoop, StopsWhereTheZoomRunsAway) {
 
 TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
   const WrongStart front{.pan = 0.0436};  // Two steps and a half.
-  LoopBench bench(etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n",
-                             small({front, WrongStart{}})));
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n",
+                                    small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("horizontal orientation of camera front goes back and forth"));
@@ -208,7 +208,7 @@ TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
 TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
   for_random_cases(1, [](TestRandom& random) {
     const LoopRig rig = arcs_cameras({wrong_start(random), wrong_start(random)});
-    LoopBench bench(arcs_rig("method = \"arcs\"\n", rig, {0.003, -0.003, 0.004}));
+    CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig, {0.003, -0.003, 0.004}));
     RigPorts ports = bench.ports();
     WrongArm arm(*ports.arm, {1.006, 0.995, 1.008});
     ports.arm = &arm;
@@ -228,7 +228,7 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
 TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
   const LoopRig rig =
       arcs_cameras({WrongStart{.pan = 0.03, .tilt = 0.02}, WrongStart{.shift = {0, 0, 0.05}}}, true);
-  LoopBench bench(arcs_rig("method = \"arcs-paper\"\n", rig));
+  CalibrationBench bench(arcs_rig("method = \"arcs-paper\"\n", rig));
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   ASSERT_EQ(result.notes.size(), 2U);
@@ -241,7 +241,7 @@ TEST(ArcsLoop, StopsWhereTheArmIsOutOfView) {
   for (const char* method : {"arcs", "arcs-paper"}) {
     LoopRig rig = arcs_cameras({WrongStart{}, WrongStart{.pan = 1.2}}, std::string(method) == "arcs-paper");
     rig.size = 0.5;
-    LoopBench bench(arcs_rig(std::string("method = \"") + method + "\"\n", rig));
+    CalibrationBench bench(arcs_rig(std::string("method = \"") + method + "\"\n", rig));
     const LoopResult result = bench.calibrate();
     EXPECT_FALSE(result.is_done);
     EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));

@@ -25,10 +25,10 @@ class NobodyWatches : public RigSessionWatcher {
   void known(const RigStep&) override {}
 };
 
-/// One of the paper's methods at the ports alone, with nothing of a run around it: the file's first task.
-class LoopBench {
+/// A calibration at the ports alone, with nothing of a run around it: the file's first task.
+class CalibrationBench {
  public:
-  explicit LoopBench(const std::string& text)
+  explicit CalibrationBench(const std::string& text)
       : experiment_(parse_experiment(text, "x.toml")),
         photographer_(experiment_),
         rig_(

@@ -107,7 +107,7 @@ TEST(CalibrateTask, StopsWhereALinkIsLost) {
 TEST(CalibrateTask, WaitsForAnotherFrameWhereSomeAreLost) {
   CalibrationBench all(small_calibration("images = 4\n" + three_poses, wrong_cameras));
   CalibrationBench some(small_calibration("images = 4\n" + three_poses, wrong_cameras, ", drop = 0.6"));
-  const RigSessionResult one = all.calibrate(all.ports()), other = some.calibrate(some.ports());
+  const RigSessionResult one = all.calibrate_bundle(all.ports()), other = some.calibrate_bundle(some.ports());
   ASSERT_TRUE(one.is_done) << one.reason;
   ASSERT_TRUE(other.is_done) << other.reason;
   EXPECT_EQ(one.looks, other.looks);

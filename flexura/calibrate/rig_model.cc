@@ -1,5 +1,6 @@
 #include "flexura/calibrate/rig_model.h"
 
+#include "flexura/camera/camera.h"
 #include "flexura/math/arrays.h"
 
 namespace flexura {
@@ -16,6 +17,13 @@ RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras) {
   model.bend_gains.assign(arm.sections.size(), 1.0);
   for (const CameraConfig& camera : cameras) model.cameras.push_back({.config = camera});
   return model;
+}
+
+View view_of(const RigModel& model, const RigStance& stance) {
+  const RigCamera& camera = model.cameras.at(stance.camera);
+  HeadState head = stance.head;
+  head.pan += camera.pan_zero, head.tilt += camera.tilt_zero;
+  return Camera(camera.config).view(stance.stage, head);
 }
 
 RigPrior rough_prior(const RigModel& model, double share) {

@@ -10,6 +10,7 @@
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/head.h"
 #include "flexura/camera/mount.h"
+#include "flexura/camera/view.h"
 #include "flexura/model/arm.h"
 
 namespace flexura {
@@ -80,5 +81,8 @@ struct RigStance {
   /// may have zoomed or slid: what its head truly stands at, beside what it says, is then the same.
   std::optional<std::size_t> turned_as = {};
 };
+
+/// What a camera of a model that reads this stance sees.
+[[nodiscard]] View view_of(const RigModel& model, const RigStance& stance);
 
 }  // namespace flexura

@@ -17,14 +17,6 @@ namespace {
 
 using Trouble = RigHands::Trouble;
 
-// The view of a camera of a model that reads a stance.
-View view_of(const RigModel& model, const RigStance& stance) {
-  const RigCamera& camera = model.cameras[stance.camera];
-  HeadState head = stance.head;
-  head.pan += camera.pan_zero, head.tilt += camera.tilt_zero;
-  return Camera(camera.config).view(stance.stage, head);
-}
-
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,

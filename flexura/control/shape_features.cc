@@ -14,20 +14,6 @@ namespace {
 
 constexpr Eigen::Index moment_count = 6;
 
-// The shares whose pixels a camera needs, in the order: points, chords' ends, corners of the polygon.
-std::vector<double> needed_shares(const FeatureSet& set) {
-  std::vector<double> shares = set.points;
-  for (const auto& [from, to] : set.chords) shares.push_back(from), shares.push_back(to);
-  if (set.has_moments)
-    for (int i = 0; i < set.moment_points; ++i)
-      shares.push_back(static_cast<double>(i) / (set.moment_points - 1));
-  for (const double share : shares) {
-    const bool is_on_the_arm = share >= 0 && share <= 1;
-    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
-  }
-  return shares;
-}
-
 // Pixels of the needed points in one camera, and their derivatives: two rows a point.
 struct SeenPixels {
   Eigen::Matrix2Xd pixels;
@@ -101,6 +87,41 @@ FeatureSet FeatureSet::of_moments() {
 
 Eigen::Index FeatureSet::rows() const {
   return static_cast<Eigen::Index>(2 * points.size() + chords.size()) + (has_moments ? moment_count : 0);
+}
+
+std::vector<double> needed_shares(const FeatureSet& set) {
+  std::vector<double> shares = set.points;
+  for (const auto& [from, to] : set.chords) shares.push_back(from), shares.push_back(to);
+  if (set.has_moments)
+    for (int i = 0; i < set.moment_points; ++i)
+      shares.push_back(static_cast<double>(i) / (set.moment_points - 1));
+  for (const double share : shares) {
+    const bool is_on_the_arm = share >= 0 && share <= 1;
+    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
+  }
+  return shares;
+}
+
+std::optional<Eigen::VectorXd> feature_values(const FeatureSet& set, const Eigen::Matrix2Xd& pixels) {
+  const auto points = static_cast<Eigen::Index>(set.points.size()),
+             chords = static_cast<Eigen::Index>(set.chords.size());
+  const Eigen::Index corners = set.has_moments ? set.moment_points : 0;
+  if (pixels.cols() != points + 2 * chords + corners)
+    throw std::invalid_argument("features need a pixel for each share");
+  Eigen::VectorXd values(set.rows());
+  values.head(2 * points) = pixels.leftCols(points).reshaped();
+  try {
+    for (Eigen::Index i = 0; i < chords; ++i)
+      values[2 * points + i] =
+          set.angle_weight * chord_angle(pixels.col(points + 2 * i), pixels.col(points + 2 * i + 1)).value;
+    if (!set.has_moments) return values;
+    const CurveMoments moments = curve_moments(pixels.rightCols(corners));
+    values.tail(moment_count) = moments.values;
+    values.tail(moment_count - 3) /= set.moment_weight;
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  }
+  return values;
 }
 
 std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,

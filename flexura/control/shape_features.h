@@ -46,6 +46,16 @@ struct ShapeFeatures {
 [[nodiscard]] std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,
                                                           std::span<const View> views, const FeatureSet& set);
 
+/// The shares of the arm whose pixels a camera needs for the features, in the order in which feature_values()
+/// takes them: points, chords' ends, the polygon's corners. std::invalid_argument: a share outside [0, 1].
+[[nodiscard]] std::vector<double> needed_shares(const FeatureSet& set);
+
+/// One camera's features (values, set.rows() of them) from the pixels of needed_shares(), however these were
+/// come by. None where an image has no direction or length. std::invalid_argument for another number of
+/// pixels.
+[[nodiscard]] std::optional<Eigen::VectorXd> feature_values(const FeatureSet& set,
+                                                            const Eigen::Matrix2Xd& pixels);
+
 /// `seen` less `desired`, the angles' differences within half a turn. std::invalid_argument for vectors that
 /// are not of this set.
 [[nodiscard]] Eigen::VectorXd feature_error(const FeatureSet& set, const Eigen::VectorXd& seen,

@@ -14,12 +14,8 @@
 namespace flexura {
 namespace {
 
-// In sigmas, and px: a fit whose points lie farther from the shape is no fit.
-constexpr double most_scale = 8, most_rms = 1.0;
-
-bool is_good(const ShapeFit& fit) {
-  return fit.is_settled && fit.doubted < 0.1 && (fit.scale < most_scale || fit.rms < 0.5 * most_rms);
-}
+// In sigmas: a fit whose points lie farther from the shape is no fit.
+constexpr double most_scale = 8;
 
 // The end nearer to where the base is seen comes first.
 Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
@@ -58,6 +54,10 @@ Shape scaled(Shape shape, double factor) {
 
 ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
     : prior_(std::move(prior)), config_(config) {}
+
+bool ShapeEstimator::is_good(const ShapeFit& fit) const {
+  return fit.is_settled && fit.doubted < 0.1 && (fit.scale < most_scale || fit.rms < 0.5 * config_.most_rms);
+}
 
 std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
   std::vector<Sighting> result;
@@ -161,7 +161,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.reason = "the images do not tell the shape";
     return result;
   }
-  result.is_found = fit.doubted < 0.5 && (fit.rms < most_rms || fit.scale < most_scale);
+  result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
         "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {:.2f} px off",

@@ -22,6 +22,9 @@ struct EstimatorConfig {
   double uncertain = 1.2e-4;
   /// Beyond this share the sightings tell no shape.
   double hopeless = 0.1;
+  /// Shapes whose images lie farther from the points are none, unless their noise explains it; px, root mean
+  /// square. Cameras that are known badly need more.
+  double most_rms = 1;
 };
 
 /// The arm's shape from what cameras see of it.
@@ -56,6 +59,7 @@ class ShapeEstimator {
   [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
 
  private:
+  [[nodiscard]] bool is_good(const ShapeFit& fit) const;
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
   // `problem` is that at the fit's shape.
   [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;

@@ -8,6 +8,7 @@
 
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_loop.h"
+#include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
 
@@ -230,12 +231,7 @@ std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& ar
 
 std::array<std::size_t, 2> calibrated_cameras(const CalibrateTask& task,
                                               const std::vector<CameraConfig>& cameras) {
-  std::array<std::size_t, 2> places = {0, 1};
-  for (std::size_t i = 0; i < task.cameras.size() && i < 2; ++i) {
-    const auto found = std::ranges::find(cameras, task.cameras[i], &CameraConfig::name);
-    places[i] = static_cast<std::size_t>(found - cameras.begin());
-  }
-  return places;
+  return two_cameras(task.cameras, cameras);
 }
 
 RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
@@ -294,28 +290,6 @@ RigPrior session_prior(const CalibrateTask& task, const RigModel& believed) {
 
 namespace {
 
-std::vector<std::string> quoted(const std::vector<CameraConfig>& cameras) {
-  std::vector<std::string> names;
-  names.reserve(cameras.size());
-  for (const CameraConfig& camera : cameras) names.push_back(Node{camera.name, {}}.brief());
-  return names;
-}
-
-void check_names(const CalibrateTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
-                 Reader& reader) {
-  if (task.cameras.empty() && cameras.size() < 2)
-    reader.problem_at(path, "needs two cameras: expected a second [[camera]]");
-  for (std::size_t i = 0; i < task.cameras.size(); ++i) {
-    const std::string& name = task.cameras[i];
-    if (std::ranges::find(cameras, name, &CameraConfig::name) == cameras.end())
-      reader.problem_at(fmt::format("{}.cameras[{}]", path, i),
-                        fmt::format("there is no camera {}: expected one of {}", Node{name, {}}.brief(),
-                                    fmt::join(quoted(cameras), ", ")));
-  }
-  if (task.cameras.size() == 2 && task.cameras[0] == task.cameras[1])
-    reader.problem_at(path + ".cameras", "names one camera twice: expected two");
-}
-
 bool is_plain_file(const std::string& name) {
   const bool is_plain = std::ranges::all_of(name, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -368,7 +342,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
 void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
                        const std::vector<CameraConfig>& cameras, const StandConfig& stand,
                        const std::string& path, Reader& reader) {
-  check_names(task, cameras, path, reader);
+  check_two_cameras(task.cameras, cameras, path, reader);
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
   if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/experiment/commanded_motion.h"
 #include "flexura/experiment/ideal_picture.h"
 #include "flexura/port/rig_ports.h"
 
@@ -21,64 +22,6 @@ std::vector<std::array<double, 2>> bends_of(const ArmState& state) {
   for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
   return bends;
 }
-
-// The arm as it was commanded since a time: from shape to shape in straight lines.
-class CommandedMotion {
- public:
-  CommandedMotion(double start, ArmState state) : start_(start) { states_.push_back(std::move(state)); }
-
-  void send(double time, const ArmState& state, double duration) {
-    const ArmState from = at(time);
-    while (times_.size() > 1 && times_.back() > time - start_) times_.pop_back(), states_.pop_back();
-    if (time - start_ > times_.back()) times_.push_back(time - start_), states_.push_back(from);
-    times_.push_back(times_.back() + duration), states_.push_back(state);
-  }
-  [[nodiscard]] ArmState at(double time) const {
-    const double t = time - start_;
-    const auto after = std::ranges::upper_bound(times_, t);
-    if (after == times_.end()) return states_.back();
-    if (after == times_.begin()) return states_.front();
-    const auto i = static_cast<std::size_t>(after - times_.begin());
-    const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
-    ArmState state = states_[i - 1];
-    for (std::size_t j = 0; j < state.bends.size(); ++j) {
-      state.bends[j] += share * (states_[i].bends[j] - state.bends[j]);
-      state.stretches[j] += share * (states_[i].stretches[j] - state.stretches[j]);
-    }
-    return state;
-  }
-  // All of it up to `time`.
-  [[nodiscard]] MotionPtr motion(double time) const {
-    std::vector<double> times = times_;
-    std::vector<ArmState> states = states_;
-    while (times.size() > 1 && times.back() >= time - start_) times.pop_back(), states.pop_back();
-    if (!(time > start_)) return hold_motion(states.back(), 0);
-    times.push_back(time - start_), states.push_back(at(time));
-    return keyframe_motion(std::move(times), states, Interpolation::linear);
-  }
-
- private:
-  double start_;
-  std::vector<double> times_ = {0};  // since the start
-  std::vector<ArmState> states_;
-};
-
-// The rig's clock; the run's steps are recorded as its time passes.
-class RecordedClock : public ClockPort {
- public:
-  RecordedClock(ClockPort& clock, const RecordSteps& record, const CommandedMotion& motion)
-      : clock_(clock), record_(record), motion_(motion) {}
-  [[nodiscard]] double now() const override { return clock_.now(); }
-  void wait_until(double time) override {
-    clock_.wait_until(time);
-    record_(now(), [this](double at) { return motion_.at(at); });
-  }
-
- private:
-  ClockPort& clock_;
-  const RecordSteps& record_;
-  const CommandedMotion& motion_;
-};
 
 // Tells the log of everything.
 class LoggedSession : public RigSessionWatcher {

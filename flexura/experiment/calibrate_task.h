@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/filming.h"
+#include "flexura/experiment/record_steps.h"
 #include "flexura/experiment/witness.h"
 #include "flexura/kinematics/motion.h"
 
@@ -31,9 +31,6 @@ struct CalibrationRun {
   [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
-
-/// Records the clock's steps before a time, given the arm's state at every time since the task's start.
-using RecordSteps = std::function<void(double until, const std::function<ArmState(double time)>& state_at)>;
 
 /// Does task number `task`, a calibration, on the rig that plays; what it does, sees and decides goes to the
 /// witness.

@@ -37,6 +37,8 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
     if (const auto* calibration = std::get_if<CalibrateTask>(&experiment.task[i]))
       check_calibration(*calibration, experiment.arm, experiment.cameras(), experiment.stand,
                         fmt::format("task[{}]", i), reader);
+    if (const auto* servo = std::get_if<ServoTask>(&experiment.task[i]))
+      check_servo(*servo, experiment.arm, experiment.cameras(), fmt::format("task[{}]", i), reader);
   }
 }
 

@@ -189,6 +189,26 @@ void check_whole(const Experiment& experiment, const Node& document) {
   }
 }
 
+// What is wrong with the pictures that servos are to reach.
+void check_recorded(const Experiment& experiment) {
+  std::vector<Problem> problems;
+  const std::vector<CameraConfig> cameras = experiment.cameras();
+  for (const TaskConfig& task : experiment.task) {
+    const auto* servo = std::get_if<ServoTask>(&task);
+    if (servo == nullptr) continue;
+    const auto [first, second] = servo_cameras(*servo, cameras);
+    for (const ServoTargetConfig& target : servo->target) {
+      if (target.pictures.empty()) continue;
+      try {
+        (void)recorded_views(target, {cameras[first], cameras[second]}, experiment.folder);
+      } catch (const InputError& error) {
+        append(problems, error);
+      }
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 // Puts the value of `set` (path=value) into `document`.
 void set_value(Node& document, const std::string& set) {
   const std::string source = "--set " + set.substr(0, set.find('\n'));
@@ -232,6 +252,7 @@ Experiment load_experiment(const std::filesystem::path& file, const Overrides& o
   auto experiment = read_with_keyframes(document, file.parent_path(), std::move(repeated));
   if (experiment.title.empty()) experiment.title = file.stem().string();
   experiment.folder = file.parent_path();
+  check_recorded(experiment);
   check_whole(experiment, document);
   return experiment;
 }

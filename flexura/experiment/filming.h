@@ -12,6 +12,7 @@
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/truth_files.h"
+#include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/sim/simulated_rig.h"
@@ -37,6 +38,9 @@ class Filming {
 
   /// Where a camera of the simulated world truly stands: not for algorithms.
   [[nodiscard]] RigStance true_stance(std::size_t camera);
+
+  /// The arm as it truly is, and stood at a time not long ago, s: likewise.
+  [[nodiscard]] Backbone true_backbone(double time) { return rig_.arm().backbone(time); }
 
   /// The rig that plays; its clock is at the last call's time.
   [[nodiscard]] RigPorts ports() { return rig_.ports(); }

@@ -156,6 +156,32 @@ struct CalibrationDecisionMessage {
   std::optional<std::string> unit;             ///< Of both.
 };
 
+/// flexura.ServoStep, on /servo/steps: one command of a servo, and what it was made of.
+struct ServoStepMessage {
+  double time = 0;                                         ///< When it was sent, s.
+  std::optional<double> seen_at;                           ///< Of the pictures it goes by, s.
+  std::vector<std::array<double, 2>> desired;              ///< Bends wanted at their time, rad,
+  std::vector<double> desired_stretches;                   ///< and stretches.
+  std::optional<std::vector<std::array<double, 2>>> seen;  ///< By these pictures, rad.
+  std::optional<std::vector<double>> seen_stretches;
+  std::vector<std::array<double, 2>> sent;              ///< rad
+  std::optional<double> rms, most, tip;                 ///< From seen to desired, shares of the length.
+  std::optional<double> true_rms, true_most, true_tip;  ///< Likewise, of the simulated truth.
+  double potential = 0;                                 ///< Half the square of the law's error.
+  bool fresh = false;                                   ///< The pictures are new.
+  bool singular = false;
+  std::optional<std::string> limited;  ///< What held the law back.
+};
+
+/// flexura.ServoSighting, on /servo/sightings: what a servo measured in one picture.
+struct ServoSightingMessage {
+  double time = 0;  ///< Middle of the exposure, s.
+  std::string camera;
+  std::int64_t frame = 0;                ///< Its number.
+  std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
+  std::optional<std::string> reason;     ///< Why the picture shows no arm.
+};
+
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
 struct ImageMessage {
   TimeMessage timestamp;  ///< Middle of the exposure.
@@ -172,6 +198,8 @@ inline constexpr std::string_view events_topic = "/events";
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
 inline constexpr std::string_view calibration_sightings_topic = "/calibration/sightings";
 inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
+inline constexpr std::string_view servo_steps_topic = "/servo/steps";
+inline constexpr std::string_view servo_sightings_topic = "/servo/sightings";
 
 const Table<TimeMessage>& fields_of(const TimeMessage*);
 const Table<ArmStateMessage>& fields_of(const ArmStateMessage*);
@@ -191,6 +219,8 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
+const Table<ServoStepMessage>& fields_of(const ServoStepMessage*);
+const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
 
 /// The topics of a camera's images, and of its head's and its stage's readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);

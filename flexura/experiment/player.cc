@@ -11,9 +11,9 @@
 namespace flexura {
 namespace {
 
-bool has_calibrations(const Experiment& experiment) {
-  return std::ranges::any_of(
-      experiment.task, [](const TaskConfig& task) { return std::holds_alternative<CalibrateTask>(task); });
+// What such a task does is decided on the way.
+bool is_for_rig(const TaskConfig& task) {
+  return std::holds_alternative<CalibrateTask>(task) || std::holds_alternative<ServoTask>(task);
 }
 
 // What is told of a check before the run: how far that is, in words, for nothing is played yet.
@@ -43,8 +43,10 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       watcher_(watcher),
       schedule_(experiment),
       safety_(checked(schedule_, progress)),
+      believed_(rig_model(experiment.arm.arm(), experiment.cameras())),
       played_{0, 0, schedule_.initial(), false, ""} {
-  if (experiment.record.cameras || has_calibrations(experiment)) filming_.emplace(experiment);
+  if (experiment.record.cameras || std::ranges::any_of(experiment.task, is_for_rig))
+    filming_.emplace(experiment);
   plan(0);
 }
 
@@ -74,8 +76,8 @@ Played Player::play() {
     played_.is_cancelled = progress_.cancelled();
     if (played_.is_cancelled) break;
     const double time = schedule_.time_of_step(step_);
-    if (const auto task = calibration_due(time)) {
-      if (!calibrate(*task)) break;
+    if (const auto task = rig_task_due(time)) {
+      if (!perform(*task)) break;
       continue;
     }
     tell_up_to(time);
@@ -113,46 +115,57 @@ void Player::step(double time, const ArmState& state) {
   played_ = {step_, time, state, false, ""};
 }
 
-// The calibration that begins at `time` or before, if it was not done yet and may be done.
-std::optional<std::size_t> Player::calibration_due(double time) const {
+// The task for the rig that begins at `time` or before, if it was not done yet and may be done.
+std::optional<std::size_t> Player::rig_task_due(double time) const {
   if (!filming_ || !safety_.is_safe()) return std::nullopt;
   for (std::size_t i = 0; i < experiment_.task.size(); ++i) {
-    if (!std::holds_alternative<CalibrateTask>(experiment_.task[i]) || performed_.contains(i)) continue;
+    if (!is_for_rig(experiment_.task[i]) || performed_.contains(i)) continue;
     return schedule_.legs()[i].start <= time ? std::optional(i) : std::nullopt;
   }
   return std::nullopt;
 }
 
+Player::Performed Player::calibrate(std::size_t task, const RecordSteps& record_steps) {
+  CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_steps);
+  if (run.is_done() && !run.loop) believed_ = run.result.found.model;
+  calibrations_.push_back(std::move(run));
+  const CalibrationRun& done = calibrations_.back();
+  return {done.motion, done.is_done() ? "" : fmt::format("{}: {}", done.name, done.reason())};
+}
+
+Player::Performed Player::servo(std::size_t task, const RecordSteps& record_steps) {
+  servos_.push_back(run_servo(experiment_, task, believed_, *filming_, witness_, progress_, record_steps));
+  const ServoRun& done = servos_.back();
+  return {done.motion, done.result.is_done ? "" : fmt::format("{}: {}", done.name, done.result.reason)};
+}
+
 // Whether the run goes on after it.
-bool Player::calibrate(std::size_t task) {
+bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
   tell_up_to(leg.start);
   film_to(leg.start, leg.motion->at(0));
-  const auto record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
+  const RecordSteps record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
     // A step at the end is the next task's.
     constexpr double rounding = 1e-9;
     for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - rounding;
          time = experiment_.clock.step * static_cast<double>(step_))
       step(time, state_at(time));
   };
-  CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_step);
-  performed_[task] = run.motion;
+  const bool is_servo = std::holds_alternative<ServoTask>(experiment_.task[task]);
+  const Performed done = is_servo ? servo(task, record_step) : calibrate(task, record_step);
+  performed_[task] = done.motion;
   schedule_ = Schedule(experiment_, performed_);
   safety_ = schedule_.check();
   const double end = schedule_.legs()[task].end();
   plan(end);
   filming_->skip_to_now();
-  const bool is_done = run.is_done();
-  if (!is_done) {
-    // The run ends here: with the state at the end, which belongs to no step.
-    played_ = {step_, end, run.motion->at(run.motion->duration()), progress_.cancelled(),
-               fmt::format("{}: {}", run.name, run.reason())};
-    witness_.expect(step_);
-    witness_.state(step_, end, played_.last);
-    witness_.readings(filming_->ports());
-  }
-  calibrations_.push_back(std::move(run));
-  return is_done;
+  if (done.failure.empty()) return true;
+  // The run ends here: with the state at the end, which belongs to no step.
+  played_ = {step_, end, done.motion->at(done.motion->duration()), progress_.cancelled(), done.failure};
+  witness_.expect(step_);
+  witness_.state(step_, end, played_.last);
+  witness_.readings(filming_->ports());
+  return false;
 }
 
 }  // namespace flexura

@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
+#include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/calibrate_task.h"
 #include "flexura/experiment/filming.h"
+#include "flexura/experiment/record_steps.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/servo_run.h"
 #include "flexura/experiment/witness.h"
 #include "flexura/safety/violation.h"
 
@@ -22,21 +25,22 @@ struct Played {
   double time = 0;         ///< Of the last one, s.
   ArmState last;
   bool is_cancelled = false;
-  std::string failure;  ///< Why a calibration stopped and the run with it; "": none did.
+  std::string failure;  ///< Why a calibration or servo stopped and the run with it; "": none did.
 };
 
 /// Plays an experiment's schedule, step by step, before the eyes of a witness.
 class Player {
  public:
-  /// Nothing that is unsafe is done to cameras: then calibrations are only gone through.
+  /// Nothing that is unsafe is done by rigs: then calibrations and servos are only gone through.
   Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher);
 
   [[nodiscard]] const Schedule& schedule() const { return schedule_; }
   [[nodiscard]] const SafetyReport& safety() const { return safety_; }
   [[nodiscard]] const std::vector<CalibrationRun>& calibrations() const { return calibrations_; }
+  [[nodiscard]] const std::vector<ServoRun>& servos() const { return servos_; }
 
-  /// Plays every step, or those before the first state that no arm can take, or until a calibration fails or
-  /// it is cancelled.
+  /// Plays every step, or those before the first state that no arm can take, or until a calibration or servo
+  /// fails or it is cancelled.
   Played play();
 
  private:
@@ -49,19 +53,27 @@ class Player {
   void tell_up_to(double time);
   void step(double time, const ArmState& state);
   void film_to(double time, const ArmState& state);
-  [[nodiscard]] std::optional<std::size_t> calibration_due(double time) const;
-  [[nodiscard]] bool calibrate(std::size_t task);
+  [[nodiscard]] std::optional<std::size_t> rig_task_due(double time) const;
+  [[nodiscard]] bool perform(std::size_t task);
+  struct Performed {
+    MotionPtr motion;
+    std::string failure;
+  };
+  [[nodiscard]] Performed calibrate(std::size_t task, const RecordSteps& record_steps);
+  [[nodiscard]] Performed servo(std::size_t task, const RecordSteps& record_steps);
 
   const Experiment& experiment_;
   Witness& witness_;
   Progress& progress_;
   RunWatcher* watcher_;
-  std::map<std::size_t, MotionPtr> performed_;  // By task: what calibrations did.
+  std::map<std::size_t, MotionPtr> performed_;  // By task: what calibrations and servos did.
   Schedule schedule_;
   SafetyReport safety_;
   std::optional<Filming> filming_;
   std::vector<Event> events_;  // Still to be told, in the order of time.
   std::vector<CalibrationRun> calibrations_;
+  std::vector<ServoRun> servos_;
+  RigModel believed_;     // By the file, or the last calibration that found a rig.
   std::size_t step_ = 0;  // The next one.
   Played played_;
 };

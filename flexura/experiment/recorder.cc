@@ -48,6 +48,7 @@ struct Recorder::Channels {
   std::optional<std::uint16_t> commands;
   std::optional<std::uint16_t> arm_reading;
   std::optional<std::uint16_t> calibration_moves, calibration_sightings, calibration_decisions;
+  std::optional<std::uint16_t> servo_steps, servo_sightings;
   std::map<std::string, std::uint16_t> heads;   // by camera
   std::map<std::string, std::uint16_t> stages;  // by camera
   std::map<std::string, std::uint16_t> images;  // by camera
@@ -135,6 +136,14 @@ void Recorder::calibration(const CalibrationSightingMessage& message, double rec
 
 void Recorder::calibration(const CalibrationDecisionMessage& message) {
   channels_->write(channels_->calibration_decisions, calibration_decisions_topic, message.time, message);
+}
+
+void Recorder::servo(const ServoStepMessage& message) {
+  channels_->write(channels_->servo_steps, servo_steps_topic, message.time, message);
+}
+
+void Recorder::servo(const ServoSightingMessage& message, double received) {
+  channels_->write(channels_->servo_sightings, servo_sightings_topic, received, message);
 }
 
 void Recorder::image(const std::string& camera, const Frame& frame) {

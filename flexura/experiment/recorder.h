@@ -46,6 +46,10 @@ class Recorder {
   void calibration(const CalibrationSightingMessage& message, double received);
   void calibration(const CalibrationDecisionMessage& message);
 
+  /// What a servo sends and sees. Likewise.
+  void servo(const ServoStepMessage& message);
+  void servo(const ServoSightingMessage& message, double received);
+
   /// A frame, as PNG. The first one of a camera opens its channel.
   void image(const std::string& camera, const Frame& frame);
 

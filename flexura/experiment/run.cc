@@ -17,6 +17,7 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/servo_results.h"
 #include "flexura/experiment/study_results.h"
 #include "flexura/experiment/witness.h"
 #include "flexura/model/backbone.h"
@@ -150,11 +151,14 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   write_rig_files(experiment, calibrations, folder);
   if (!calibrations.empty())
     result.summary.as<Node::Table>()->push_back({"calibrations", {}, calibration_nodes(calibrations)});
+  const std::vector<ServoRun>& servos = player.servos();
+  if (!servos.empty()) result.summary.as<Node::Table>()->push_back({"servos", {}, servo_nodes(servos)});
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
     for (std::size_t i = 0; i < calibrations.size(); ++i)
       data.chapters.push_back(calibration_chapter(calibrations[i], i));
+    for (std::size_t i = 0; i < servos.size(); ++i) data.chapters.push_back(servo_chapter(servos[i], i));
     for (const ImageStudy& study : studies) data.chapters.push_back(study_chapter(study));
     write_report(folder, data);
   }

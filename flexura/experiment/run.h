@@ -19,7 +19,7 @@ namespace flexura {
 enum class RunOutcome {
   done,
   unsafe,     ///< A task would break a limit of the arm or touch something; simulated to be looked at.
-  failed,     ///< A calibration stopped, and the run with it.
+  failed,     ///< A calibration or servo stopped, and the run with it.
   cancelled,  ///< Progress::cancelled: the log ends with the last step that was played.
 };
 

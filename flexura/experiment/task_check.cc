@@ -24,6 +24,9 @@ void check_one(const StudyTask&, ArmKind, std::size_t, const std::string&, Reade
 // Calibrations on both, and on the arm's markers (check_calibration).
 void check_one(const CalibrateTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
 
+// Likewise (check_servo).
+void check_one(const ServoTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
+
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   check_shape(task.to, kind, sections, path + ".to", reader);

@@ -10,6 +10,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_config.h"
+#include "flexura/experiment/servo_task_config.h"
 #include "flexura/experiment/study_config.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm_config.h"
@@ -73,8 +74,8 @@ struct ExpressionTask {
   std::optional<std::vector<std::string>> stretches;
 };
 
-using TaskConfig =
-    std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask, CalibrateTask>;
+using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
+                                CalibrateTask, ServoTask>;
 
 const std::vector<std::string>& names_of(const MoveLaw*);
 const std::vector<std::string>& names_of(const Interpolation*);

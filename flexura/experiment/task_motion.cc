@@ -67,6 +67,20 @@ MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& f
   return keyframe_motion(std::move(times), states, Interpolation::linear);
 }
 
+// The straight way to each target, slowly: what is to be expected of a servo before it is done.
+MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from) {
+  constexpr double slow = 10;  // s a target
+  std::vector<double> times = {0};
+  std::vector<ArmState> states = {from};
+  for (const ServoTargetConfig& target : task.target) {
+    if (!target.pictures.empty()) continue;  // Nobody knows yet.
+    times.push_back(times.back() + slow);
+    states.push_back(servo_target_shape(target, arm, states.back()).state);
+  }
+  if (times.size() < 2) return hold_motion(from, 0);
+  return keyframe_motion(std::move(times), states, Interpolation::smooth);
+}
+
 // The shape that a move goes to. The search for one starts from where the arm is.
 ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const auto tip = tip_target(task);

@@ -1,0 +1,44 @@
+#include "flexura/experiment/commanded_motion.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace flexura {
+
+CommandedMotion::CommandedMotion(double start, ArmState state) : start_(start) {
+  states_.push_back(std::move(state));
+}
+
+void CommandedMotion::send(double time, const ArmState& state, double duration) {
+  const ArmState from = at(time);
+  while (times_.size() > 1 && times_.back() > time - start_) times_.pop_back(), states_.pop_back();
+  if (time - start_ > times_.back()) times_.push_back(time - start_), states_.push_back(from);
+  times_.push_back(times_.back() + duration), states_.push_back(state);
+}
+
+ArmState CommandedMotion::at(double time) const {
+  const double t = time - start_;
+  const auto after = std::ranges::upper_bound(times_, t);
+  if (after == times_.end()) return states_.back();
+  if (after == times_.begin()) return states_.front();
+  const auto i = static_cast<std::size_t>(after - times_.begin());
+  const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
+  ArmState state = states_[i - 1];
+  for (std::size_t j = 0; j < state.bends.size(); ++j) {
+    state.bends[j] += share * (states_[i].bends[j] - state.bends[j]);
+    state.stretches[j] += share * (states_[i].stretches[j] - state.stretches[j]);
+  }
+  return state;
+}
+
+MotionPtr CommandedMotion::motion(double time) const {
+  std::vector<double> times = times_;
+  std::vector<ArmState> states = states_;
+  while (times.size() > 1 && times.back() >= time - start_) times.pop_back(), states.pop_back();
+  if (!(time > start_)) return hold_motion(states.back(), 0);
+  times.push_back(time - start_), states.push_back(at(time));
+  return keyframe_motion(std::move(times), states, Interpolation::linear);
+}
+
+}  // namespace flexura

@@ -1,0 +1,46 @@
+#include "flexura/experiment/messages.h"
+
+namespace flexura {
+
+const Table<ServoStepMessage>& fields_of(const ServoStepMessage*) {
+  using M = ServoStepMessage;
+  static const auto table =
+      Table<M>("flexura.ServoStep", "A command of a servo, and what it was made of.")
+          .field("time", &M::time, {.meaning = "When it was sent, since the experiment's start, s."})
+          .field("seen_at", &M::seen_at, {.meaning = "Middle of the exposure of the pictures it goes by, s."})
+          .field("desired", &M::desired, {.meaning = "Each section's bend wanted at their time, rad."})
+          .field("desired_stretches", &M::desired_stretches,
+                 {.meaning = "Each section's stretch wanted then."})
+          .field("seen", &M::seen, {.meaning = "Each section's bend as seen in them, rad."})
+          .field("seen_stretches", &M::seen_stretches, {.meaning = "Each section's stretch as seen."})
+          .field("sent", &M::sent, {.meaning = "Each section's bend as commanded, rad."})
+          .field("rms", &M::rms,
+                 {.meaning =
+                      "Distance along the arm from seen to desired, root mean square, share of its length."})
+          .field("most", &M::most, {.meaning = "Likewise, the largest."})
+          .field("tip", &M::tip, {.meaning = "Likewise, of the tip."})
+          .field("true_rms", &M::true_rms, {.meaning = "As rms, from the simulated truth to desired."})
+          .field("true_most", &M::true_most, {.meaning = "Likewise, the largest."})
+          .field("true_tip", &M::true_tip, {.meaning = "Likewise, of the tip."})
+          .field("potential", &M::potential,
+                 {.meaning =
+                      "Half the square of the law's error: rad^2 for shape and potential, px^2 otherwise."})
+          .field("fresh", &M::fresh, {.meaning = "Whether the pictures are new."})
+          .field("singular", &M::singular, {.meaning = "Whether some motion shows in nothing that is seen."})
+          .field("limited", &M::limited, {.meaning = "What held the law back."});
+  return table;
+}
+
+const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
+  using M = ServoSightingMessage;
+  static const auto table =
+      Table<M>("flexura.ServoSighting", "What a servo measured in one picture.")
+          .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
+          .field("camera", &M::camera, {.meaning = "The camera's name."})
+          .field("frame", &M::frame, {.meaning = "The frame's number."})
+          .field("points", &M::points, {.meaning = "Points of the median axis, base to tip."})
+          .field("reason", &M::reason, {.meaning = "Why the picture shows no arm."});
+  return table;
+}
+
+}  // namespace flexura

@@ -1,0 +1,163 @@
+#include "flexura/experiment/servo_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "flexura/base/bytes.h"
+#include "flexura/calibrate/eight_bits.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/model/backbone.h"
+#include "flexura/picture/image_file.h"
+#include "flexura/report/chart.h"
+#include "flexura/report/image_picture.h"
+
+namespace flexura {
+namespace {
+
+Node error_node(const ServoError& error) {
+  return {Node::Table{{"rms", {}, number_node(error.rms)},
+                      {"most", {}, number_node(error.most)},
+                      {"tip", {}, number_node(error.tip)}},
+          {}};
+}
+
+Node fault_node(const LimiterFault& fault, double start) {
+  return {Node::Table{{"time", {}, number_node(start + fault.time)}, {"reason", {}, {fault.reason, {}}}}, {}};
+}
+
+NamedDrawing errors_over_time(const ServoRun& run, std::size_t number) {
+  LineChart chart{.name = "errors",
+                  .heading = "distance from the wanted shape",
+                  .value_label = "share of the length, power of ten",
+                  .legend = "",
+                  .least = 1,
+                  .series = {},
+                  .x_label = "time in the task (s)"};
+  const auto power = [](double value) { return std::log10(std::max(value, 1e-7)); };
+  std::vector<double> times;
+  ChartSeries rms{"seen", "s0", {}}, tip{"tip", "s1", {}}, truth{"truth", "s2", {}};
+  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
+    const ServoStep& step = run.result.steps[i];
+    if (!step.is_fresh || !step.error) continue;
+    times.push_back(*step.seen_at - run.result.start);
+    rms.values.push_back(power(step.error->rms)), tip.values.push_back(power(step.error->tip));
+    truth.values.push_back(run.truth[i] ? power(run.truth[i]->rms)
+                                        : std::numeric_limits<double>::quiet_NaN());
+  }
+  chart.series = {rms, tip, truth};
+  return {fmt::format("servo-{}-errors", number + 1), chart_picture(chart, times, {})};
+}
+
+NamedDrawing potential_over_time(const ServoRun& run, std::size_t number) {
+  LineChart chart{.name = "potential",
+                  .heading = "half the square of the law's error",
+                  .value_label = "power of ten",
+                  .legend = "",
+                  .least = 1,
+                  .series = {},
+                  .x_label = "time in the task (s)"};
+  constexpr double least = 1e-12;
+  std::vector<double> times;
+  ChartSeries potential{"potential", "s3", {}};
+  for (const ServoStep& step : run.result.steps) {
+    if (!step.is_fresh || !step.error) continue;
+    times.push_back(*step.seen_at - run.result.start);
+    potential.values.push_back(std::log10(std::max(step.potential, least)));
+  }
+  chart.series = {potential};
+  return {fmt::format("servo-{}-potential", number + 1), chart_picture(chart, times, {})};
+}
+
+// A picture with the axis as measured in it, and the wanted shape as it would be seen.
+NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
+  const ServoSight& sight = is_last ? *run.result.last : *run.result.first;
+  const char* when = is_last ? "last" : "first";
+  const auto found = std::ranges::find_if(
+      run.believed.cameras, [&](const RigCamera& camera) { return camera.config.name == run.cameras[i]; });
+  const Image<std::uint8_t> picture =
+      eight_bits(*sight.frames[i].picture, (1 << found->config.sensor.bits) - 1);
+  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
+                 .legend = "",
+                 .width = picture.width(),
+                 .height = picture.height(),
+                 .outlines = {},
+                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
+  ImageOutline seen{"seen", "s2", {}}, wanted{"wanted", "s1", {}};
+  auto& axis = seen.lines.emplace_back();
+  for (const CurvePoint& point : sight.seen[i].points) axis.points.push_back(point.pixel);
+  const Backbone backbone(run.believed.arm, run.result.steps.back().desired);
+  constexpr int count = 60;
+  auto& line = wanted.lines.emplace_back();
+  for (int k = 0; k <= count; ++k) {
+    const auto pixel = sight.seen[i].view.project(backbone.pose(backbone.length() * k / count).position);
+    if (pixel) line.points.push_back(*pixel);
+  }
+  plot.outlines = {seen, wanted};
+  return {fmt::format("servo-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
+}
+
+std::string error_text(const ServoError& error) {
+  return fmt::format("{:.3f} % of the length root mean square, {:.3f} % at most, {:.3f} % at the tip",
+                     100 * error.rms, 100 * error.most, 100 * error.tip);
+}
+
+}  // namespace
+
+Node servo_nodes(const std::vector<ServoRun>& runs) {
+  Node::Array list;
+  for (const ServoRun& run : runs) {
+    const ServoResult& result = run.result;
+    Node::Table members{{"name", {}, {run.name, {}}},
+                        {"done", {}, {result.is_done, {}}},
+                        {"start", {}, number_node(result.start)},
+                        {"steps", {}, {static_cast<std::int64_t>(result.steps.size()), {}}}};
+    if (!result.is_done) members.push_back({"reason", {}, {result.reason, {}}});
+    if (result.settled) members.push_back({"settled", {}, number_node(*result.settled)});
+    members.push_back({"overshoot", {}, number_node(result.overshoot)});
+    if (result.remaining) members.push_back({"remaining", {}, error_node(*result.remaining)});
+    if (run.true_remaining) members.push_back({"remaining_in_truth", {}, error_node(*run.true_remaining)});
+    if (result.fault) members.push_back({"fault", {}, fault_node(*result.fault, result.start)});
+    list.push_back({std::move(members), {}});
+  }
+  return {std::move(list), {}};
+}
+
+Chapter servo_chapter(const ServoRun& run, std::size_t number) {
+  const ServoResult& result = run.result;
+  const double took = result.steps.empty() ? 0 : result.steps.back().time - result.start;
+  Chapter chapter{"Servo: " + run.name,
+                  result.is_done
+                      ? fmt::format("The arm came to the wanted shape in {:.2f} s, {} commands.", took,
+                                    result.steps.size())
+                      : fmt::format("The arm did not come to the wanted shape: {}.", result.reason),
+                  {},
+                  {},
+                  false};
+  if (result.settled)
+    chapter.points.push_back(
+        fmt::format("Within 2 % of its length after {:.2f} s, and from then on; the tip went "
+                    "{:.1f} % of its way too far.",
+                    *result.settled, 100 * std::max(0.0, result.overshoot)));
+  if (result.remaining)
+    chapter.points.push_back("In the end, as seen: " + error_text(*result.remaining) + ".");
+  if (run.true_remaining)
+    chapter.points.push_back("In the end, in the simulated truth: " + error_text(*run.true_remaining) + ".");
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (result.first) chapter.drawings.push_back(servo_photograph(run, i, false, number));
+    if (result.last) chapter.drawings.push_back(servo_photograph(run, i, true, number));
+  }
+  const bool has_errors =
+      std::ranges::any_of(result.steps, [](const ServoStep& step) { return step.error && step.is_fresh; });
+  if (has_errors) {
+    chapter.drawings.push_back(errors_over_time(run, number));
+    chapter.drawings.push_back(potential_over_time(run, number));
+  }
+  return chapter;
+}
+
+}  // namespace flexura

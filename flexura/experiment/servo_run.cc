@@ -1,0 +1,171 @@
+#include "flexura/experiment/servo_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "flexura/experiment/commanded_motion.h"
+#include "flexura/kinematics/spatial.h"
+
+namespace flexura {
+namespace {
+
+std::vector<std::array<double, 2>> bends_in(const ArmState& state) {
+  std::vector<std::array<double, 2>> bends;
+  bends.reserve(state.bends.size());
+  for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
+  return bends;
+}
+
+// Where the bands of an arm are that turns out to be longer or shorter than its file says.
+std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
+  const Arm arm = experiment.arm.arm();
+  std::vector<double> places;
+  for (const Marker& marker : experiment.arm.look.markers(arm)) {
+    const MaterialPoint point = material_point(arm, marker.at);
+    double from = 0;
+    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
+    places.push_back(from + point.fraction * believed.sections[point.section].length);
+  }
+  return places;
+}
+
+// Tells the log of everything, and compares with the truth.
+class LoggedServo : public ServoWatcher {
+ public:
+  LoggedServo(const Experiment& experiment, ServoRun& run, Filming& filming, Witness& witness,
+              Progress& progress, CommandedMotion& motion)
+      : keeps_images_(experiment.record.cameras),
+        run_(run),
+        filming_(filming),
+        witness_(witness),
+        progress_(progress),
+        motion_(motion) {}
+
+  void arm_sent(double time, const ArmState& state, double duration) override {
+    motion_.send(time, state, duration);
+  }
+  void seen(const ServoSight& sight) override {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (keeps_images_) witness_.image(run_.cameras[i], sight.frames[i]);
+      ServoSightingMessage message;
+      message.time = sight.frames[i].time, message.camera = run_.cameras[i];
+      message.frame = sight.frames[i].number;
+      if (!sight.reasons[i].empty()) message.reason = sight.reasons[i];
+      const Sighting few = thinned(sight.seen[i], most_points);
+      for (const CurvePoint& point : few.points)
+        message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
+      witness_.recorder().servo(message, sight.frames[i].received);
+    }
+  }
+  void stepped(const ServoStep& step) override {
+    ServoStepMessage message;
+    message.time = step.time, message.seen_at = step.seen_at;
+    message.desired = bends_in(step.desired), message.desired_stretches = step.desired.stretches;
+    if (step.seen) message.seen = bends_in(*step.seen), message.seen_stretches = step.seen->stretches;
+    message.sent = bends_in(step.sent);
+    if (step.error)
+      message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
+    message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
+    if (!step.limited.empty()) message.limited = step.limited;
+    const auto truth = truth_of(step);
+    if (truth) message.true_rms = truth->rms, message.true_most = truth->most, message.true_tip = truth->tip;
+    run_.truth.push_back(truth);
+    witness_.recorder().servo(message);
+    progress_.update(
+        0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
+                        : run_.name);
+  }
+  void told(double time, const std::string& what) override {
+    witness_.event(time, Recorder::Level::warning, run_.name, what);
+  }
+  bool is_cancelled() override { return progress_.cancelled(); }
+
+ private:
+  static constexpr std::size_t most_points = 60;  // Of an axis in the log.
+
+  [[nodiscard]] std::optional<ServoError> truth_of(const ServoStep& step) {
+    if (!step.seen_at) return std::nullopt;
+    const Arm& arm = run_.believed.arm;
+    return servo_error(filming_.true_backbone(*step.seen_at), Backbone(arm, step.desired), arm.length());
+  }
+
+  bool keeps_images_;
+  ServoRun& run_;
+  Filming& filming_;
+  Witness& witness_;
+  Progress& progress_;
+  CommandedMotion& motion_;
+};
+
+void add_true_remaining(ServoRun& run) {
+  const std::vector<ServoStep>& steps = run.result.steps;
+  double latest = -1;
+  for (const ServoStep& step : steps)
+    if (step.is_fresh) latest = std::max(latest, *step.seen_at);
+  ServoError sum;
+  int count = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!steps[i].is_fresh || !run.truth[i] || *steps[i].seen_at < latest - run.settle) continue;
+    sum.rms += run.truth[i]->rms, sum.most += run.truth[i]->most, sum.tip += run.truth[i]->tip, ++count;
+  }
+  if (count > 0) run.true_remaining = ServoError{sum.rms / count, sum.most / count, sum.tip / count};
+}
+
+}  // namespace
+
+ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, const RigModel& believed,
+                         const ArmState& from) {
+  const std::vector<CameraConfig> cameras = experiment.cameras();
+  ServoConfig config;
+  config.cameras = servo_cameras(task, cameras);
+  const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
+  ArmState state = from;
+  for (const ServoTargetConfig& target : task.target) {
+    if (!target.pictures.empty()) {
+      config.goals.push_back({target.time, recorded_views(target, {first, second}, experiment.folder)});
+      continue;
+    }
+    const ServoTargetShape shape = servo_target_shape(target, believed.arm, state);
+    state = shape.state;
+    config.goals.push_back({target.time, shape.state, shape.missed});
+  }
+  config.law = task.law, config.jacobian = task.jacobian;
+  config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
+  config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
+  config.follows = task.follow;
+  const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
+  if (is_colored) config.markers = band_places(experiment, believed.arm);
+  config.step = task.step.value_or(1 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
+  if (experiment.drive) config.drive = experiment.drive->drive();
+  config.obstacles = obstacles(experiment.obstacle);
+  config.patience = {.blind = task.blind, .lost = task.lost, .timeout = task.timeout};
+  return config;
+}
+
+ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigModel& believed, Filming& filming,
+                   Witness& witness, Progress& progress, const RecordSteps& record_steps) {
+  const auto& config = std::get<ServoTask>(experiment.task.at(task));
+  RigPorts ports = filming.ports();
+  const ArmState from = ports.arm->read().value().state;
+  const ServoConfig session = servo_config(experiment, config, believed, from);
+  ServoRun run;
+  run.name = task_name(experiment.task[task]), run.task = task, run.believed = believed;
+  run.settle = config.settle;
+  for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = ports.cameras[session.cameras[i]].name;
+  CommandedMotion motion(ports.clock->now(), from);
+  RecordedClock clock(*ports.clock, record_steps, motion);
+  ports.clock = &clock;
+  LoggedServo log(experiment, run, filming, witness, progress, motion);
+  run.result = servo_in_session(ports, run.believed, session, log);
+  const double end = clock.now();
+  record_steps(end, [&motion](double at) { return motion.at(at); });
+  run.motion = motion.motion(end);
+  add_true_remaining(run);
+  witness.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
+                run.result.is_done ? "there" : run.result.reason);
+  return run;
+}
+
+}  // namespace flexura

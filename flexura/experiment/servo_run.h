@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/progress.h"
+#include "flexura/calibrate/rig_model.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/filming.h"
+#include "flexura/experiment/record_steps.h"
+#include "flexura/experiment/witness.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/servo/servo_session.h"
+
+namespace flexura {
+
+/// What a task of kind "servo" did.
+struct ServoRun {
+  std::string name;
+  std::size_t task = 0;                ///< Its number.
+  std::array<std::string, 2> cameras;  ///< Their names.
+  RigModel believed;
+  double settle = 0;  ///< As the task has it, s.
+  ServoResult result;
+  /// Of the simulated truth from what was desired, one a step of the result; of which the session knows
+  /// nothing. Where pictures are the target, from the shape that they seemed to show.
+  std::vector<std::optional<ServoError>> truth;
+  std::optional<ServoError> true_remaining;  ///< Mean over the last `settle` s.
+  MotionPtr motion;                          ///< Of the arm, as commanded, from the task's start.
+};
+
+/// What the task asks of a session, for an arm that is in the state `from`.
+[[nodiscard]] ServoConfig servo_config(const Experiment& experiment, const ServoTask& task,
+                                       const RigModel& believed, const ArmState& from);
+
+/// Does task number `task`, a servo, on the rig that plays, which is believed to be `believed`; what it does
+/// and sees goes to the witness.
+[[nodiscard]] ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigModel& believed,
+                                 Filming& filming, Witness& witness, Progress& progress,
+                                 const RecordSteps& record_steps);
+
+}  // namespace flexura

@@ -1,0 +1,258 @@
+#include "flexura/experiment/servo_task_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "flexura/experiment/camera_names.h"
+#include "flexura/kinematics/inverse.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/math/arrays.h"
+#include "flexura/store/text_file.h"
+#include "flexura/vision/picture_file.h"
+
+namespace flexura {
+namespace {
+
+constexpr double longest = 1e4;  // s
+constexpr std::size_t most_targets = 10000, most_points = 10000;
+
+// A curve whose direction has these angles at equal shares of its length, linear in between.
+std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths,
+                                             const std::vector<double>& elevations, const Arm& arm) {
+  constexpr int pieces = 16;  // Between two angles; each is a straight one along its middle's direction.
+  std::vector<Eigen::Vector3d> points = {arm.X_WB.position};
+  const std::size_t spans = azimuths.size() - 1;
+  const double length = arm.length() / static_cast<double>(spans * pieces);
+  for (std::size_t i = 0; i < spans; ++i) {
+    for (int k = 0; k < pieces; ++k) {
+      const double share = (k + 0.5) / pieces;
+      const double theta = azimuths[i] + share * (azimuths[i + 1] - azimuths[i]),
+                   q = elevations[i] + share * (elevations[i + 1] - elevations[i]);
+      points.push_back(points.back() + length * Eigen::Vector3d(std::sin(theta) * std::cos(q),
+                                                                std::cos(theta) * std::cos(q), std::sin(q)));
+    }
+  }
+  return points;
+}
+
+ServoTargetShape along(const Arm& arm, std::vector<Eigen::Vector3d> points, const ArmState& from) {
+  InverseOptions options;
+  options.start = from;
+  const InverseResult found = solve_inverse(arm, CurveTarget{std::move(points)}, options);
+  return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
+}
+
+}  // namespace
+
+const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
+  const auto of_shape = [](std::string_view name) {
+    return fields_of(static_cast<const ShapeConfig*>(nullptr)).info().find(name)->spec;
+  };
+  using Target = ServoTargetConfig;
+  using Angles = std::optional<std::vector<double>> Target::*;
+  using Bends = std::optional<std::vector<std::array<double, 2>>> Target::*;
+  static const auto table =
+      Table<Target>(
+          "target",
+          "A wanted shape, said in one way: by its bends; by a place for the tip; as a curve in "
+          "space, along which the whole backbone shall lie; by the angles of its direction; or by two "
+          "pictures of the arm in it.")
+          .field("time", &Target::time,
+                 {.meaning =
+                      "When it is wanted, from the task's start; in between, what is wanted goes from one "
+                      "target to the next in straight lines.",
+                  .unit = Unit::second,
+                  .range = between(0, longest)})
+          .field("cord_angles", Angles(&ShapeConfig::cord_angles), of_shape("cord_angles"))
+          .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
+          .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
+          .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
+          .field("position", &Target::position,
+                 {.meaning = "Where the tip shall be in the world.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .default_text = "not set"})
+          .field("curve", &Target::curve,
+                 {.meaning = "Points of the backbone in the world, from the base on.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field("azimuths", &Target::azimuths,
+                 {.meaning =
+                      "The direction's angle from +Y towards +X, at equal shares of the length, from base to "
+                      "tip.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field("elevations", &Target::elevations,
+                 {.meaning = "Its angle from the plane XOY towards +Z, at the same places.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field(
+              "pictures", &Target::pictures,
+              {.meaning =
+                   "Two picture files in this file's folder or below, of the task's cameras in this order, "
+                   "as they stand when the task begins.",
+               .count = {2, 2},
+               .default_text = "not set"});
+  return table;
+}
+
+const Table<ServoTask>& fields_of(const ServoTask*) {
+  using T = ServoTask;
+  static const auto table =
+      Table<T>("servo",
+               "The arm is steered by two cameras until its shape is the wanted one. It takes as long as it "
+               "takes.")
+          .field("name", &T::name,
+                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
+          .field("law", &T::law,
+                 {.meaning =
+                      "What drives it: shape is the shape that both images tell, less the wanted one; "
+                      "points, chords and moments compare features of the images; potential is the paper's "
+                      "artificial potential on the errors in two image planes (the first camera's XOY, the "
+                      "second one's ZOY)."})
+          .field("jacobian", &T::jacobian,
+                 {.meaning =
+                      "Where the derivatives of what is seen come from: the model, or learned on the way by "
+                      "Broyden's update or by recursive least squares."})
+          .field("cameras", &T::cameras,
+                 {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+          .field("target", &T::target,
+                 {.meaning = "The wanted shapes, as `[[task.target]]`, in the order of their times.",
+                  .count = {1, most_targets},
+                  .required = true})
+          .field(
+              "points", &T::points,
+              {.meaning = "Of points, chords and potential: places along the arm.", .range = between(1, 200)})
+          .field("rate", &T::rate,
+                 {.meaning = "Errors fall as exp(-rate t), 1/s.", .range = above_up_to(0, 1000)})
+          .field("damping", &T::damping,
+                 {.meaning =
+                      "Of the least squares, a share of the derivatives' root mean square; none with shape.",
+                  .range = between(0, 10)})
+          .field("predict", &T::predict,
+                 {.meaning = "What was sent after a picture was taken is counted as done."})
+          .field(
+              "tolerance", &T::tolerance,
+              {.meaning =
+                   "The arm is there when it is so near, root mean square along it, a share of its length.",
+               .range = above_up_to(0, 1)})
+          .field("settle", &T::settle,
+                 {.meaning = "And stays so near for this time.",
+                  .unit = Unit::second,
+                  .range = between(0, longest)})
+          .field("timeout", &T::timeout,
+                 {.meaning = "How long to go on after the last target's time.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field("blind", &T::blind,
+                 {.meaning = "Unseen for so long, the arm stops and waits.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field("lost", &T::lost,
+                 {.meaning = "Unseen for so long, the task is given up.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field(
+              "follow", &T::follow,
+              {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})
+          .field("step", &T::step,
+                 {.meaning = "Time from one command to the next.",
+                  .unit = Unit::second,
+                  .range = between(1e-4, 10),
+                  .default_text = "a frame of the slower camera"});
+  return table;
+}
+
+std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
+  return two_cameras(task.cameras, cameras);
+}
+
+ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm, const ArmState& from) {
+  if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
+  if (target.curve) {
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& point : *target.curve) points.push_back(vector(point));
+    return along(arm, std::move(points), from);
+  }
+  if (!target.position) return {arm_state(arm, target), 0};
+  InverseOptions options;
+  options.start = from;
+  const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, options);
+  return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
+}
+
+RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<CameraConfig, 2>& cameras,
+                             const std::filesystem::path& folder) {
+  RecordedViews views;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::filesystem::path path = file_inside(folder, target.pictures[i]);
+    const std::string file = read_text_file(path, most_picture_bytes);
+    const Photograph photograph =
+        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, path.string());
+    const SensorConfig& sensor = cameras[i].sensor;
+    const Image<std::uint8_t>& bytes = photograph.bytes;
+    if (bytes.width() != sensor.width || bytes.height() != sensor.height)
+      throw input_error(path.string(),
+                        fmt::format("{} x {} px: expected {} x {}, as camera {} takes them", bytes.width(),
+                                    bytes.height(), sensor.width, sensor.height, cameras[i].name));
+    if (sensor.bits > 8 && photograph.words.values().empty())
+      throw input_error(path.string(), fmt::format("8 bits a value: expected {}, as camera {} takes them",
+                                                   sensor.bits, cameras[i].name));
+    if (sensor.bits > 8) {
+      views[i] = photograph.words;
+    } else {
+      views[i] = bytes;
+    }
+  }
+  return views;
+}
+
+namespace {
+
+void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const std::string& path,
+                  Reader& reader) {
+  check_shape(target, arm.kind, arm.section.size(), path, reader);
+  const bool has_shape = target.cord_angles || target.archings || target.bends || target.stretches;
+  const int ways = (has_shape ? 1 : 0) + (target.position ? 1 : 0) + (target.curve ? 1 : 0) +
+                   (target.azimuths || target.elevations ? 1 : 0) + (target.pictures.empty() ? 0 : 1);
+  if (ways != 1)
+    reader.problem_at(path,
+                      fmt::format("says {}: expected a shape in one way, as bends, position, curve, azimuths "
+                                  "and elevations, or pictures",
+                                  ways == 0 ? "nothing" : "a shape in more than one way"));
+  if (target.azimuths.has_value() != target.elevations.has_value() ||
+      (target.azimuths && target.azimuths->size() != target.elevations->size()))
+    reader.problem_at(path,
+                      "has azimuths and elevations that do not belong together: expected as many of each");
+  if (target.curve) {
+    const auto& first = target.curve->front();
+    if (std::ranges::all_of(*target.curve, [&](const auto& point) { return point == first; }))
+      reader.problem_at(path + ".curve", "has no length: expected points that differ");
+  }
+}
+
+}  // namespace
+
+void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
+                 const std::string& path, Reader& reader) {
+  check_two_cameras(task.cameras, cameras, path, reader);
+  for (std::size_t i = 0; i < task.target.size(); ++i) {
+    const std::string place = fmt::format("{}.target[{}]", path, i);
+    check_target(task.target[i], arm, place, reader);
+    if (i > 0 && !(task.target[i].time > task.target[i - 1].time))
+      reader.problem_at(place + ".time",
+                        fmt::format("{} s: expected more than the target before it has, {} s",
+                                    task.target[i].time, task.target[i - 1].time));
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/calibrate/rig_model.h"
+#include "flexura/camera/camera_config.h"
+#include "flexura/model/arm_config.h"
+#include "flexura/model/look.h"
+#include "flexura/servo/servo_config.h"
+
+namespace flexura {
+
+/// A shape that a servo is to reach, said in one of several ways.
+struct ServoTargetConfig : ShapeConfig {
+  double time = 0;                                          ///< s from the task's start.
+  std::optional<std::array<double, 3>> position;            ///< p_WT, m; the shape by inverse kinematics.
+  std::optional<std::vector<std::array<double, 3>>> curve;  ///< Points of the whole backbone, W, m.
+  std::optional<std::vector<double>> azimuths, elevations;  ///< Of its direction at equal shares, rad.
+  std::vector<std::string> pictures;  ///< Two files, of the task's cameras in this order.
+};
+
+/// `kind = "servo"`: the arm is steered by two cameras until its shape is the wanted one.
+struct ServoTask {
+  std::string name;
+  ServoLawKind law = ServoLawKind::shape;
+  ServoJacobian jacobian = ServoJacobian::model;
+  std::vector<std::string> cameras;       ///< Two names; empty: the first two.
+  std::vector<ServoTargetConfig> target;  ///< At least one.
+  std::int64_t points = 12;
+  double rate = 4;  ///< 1/s
+  double damping = 0.01;
+  bool predict = true;
+  double tolerance = 0.005;  ///< Share of the arm's length.
+  double settle = 0.5;       ///< s
+  double timeout = 20;       ///< s
+  double blind = 0.3;        ///< s
+  double lost = 3;           ///< s
+  bool follow = false;
+  std::optional<double> step;  ///< s; a frame of the slower camera.
+};
+
+const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*);
+const Table<ServoTask>& fields_of(const ServoTask*);
+
+/// The two cameras of a task that was checked: places among `cameras`.
+[[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
+                                                       const std::vector<CameraConfig>& cameras);
+
+/// The shape that a target without pictures means for `arm`, and how far it stays from what was said, a share
+/// of the arm's length. The search for it begins at `from`.
+struct ServoTargetShape {
+  ArmState state;
+  double missed = 0;
+};
+[[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
+                                                  const ArmState& from);
+
+/// The pictures of a target that has some, from files in `folder` or below. InputError: what is no picture,
+/// or of another size than its camera takes.
+[[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
+                                           const std::array<CameraConfig, 2>& cameras,
+                                           const std::filesystem::path& folder);
+
+/// Reports what keeps the servo at `path` ("task[2]") from being tried with this arm and these cameras.
+void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
+                 const std::string& path, Reader& reader);
+
+}  // namespace flexura

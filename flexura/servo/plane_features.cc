@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "flexura/control/plane_errors.h"
+#include "flexura/kinematics/jacobian.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/servo/servo_eyes.h"
+#include "flexura/servo/servo_features.h"
+
+namespace flexura {
+namespace {
+
+// The way between two pixels, in W's axes, as if it were seen from afar.
+Eigen::Vector3d parallel_way(const View& view, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const Intrinsics& lens = view.lens.intrinsics();
+  const Eigen::Vector2d way = to - from;
+  return view.X_WC.rotation * Eigen::Vector3d(way.x() / lens.fx, way.y() / lens.fy, 0);
+}
+
+// alpha_1 of every chord in the front view, then alpha_2 of every one in the side view.
+Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
+                                const std::array<Eigen::Matrix2Xd, 2>& pixels) {
+  const Eigen::Index chords = pixels[0].cols() - 1;
+  Eigen::VectorXd angles(2 * chords);
+  for (Eigen::Index k = 0; k < chords; ++k) {
+    const Eigen::Vector3d front = parallel_way(views[0], pixels[0].col(k), pixels[0].col(k + 1)),
+                          side = parallel_way(views[1], pixels[1].col(k), pixels[1].col(k + 1));
+    angles[k] = std::atan2(front.x(), front.y());
+    angles[chords + k] = std::atan2(side.z(), side.y());
+  }
+  return angles;
+}
+
+class PlaneFeatures : public ServoFeatures {
+ public:
+  PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)) {
+    for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
+  }
+
+  [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
+                                                        const std::array<Sighting, 2>& seen) const override {
+    std::array<Eigen::Matrix2Xd, 2> pixels;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto measured = measured_pixels(arm_, estimate, seen[i], shares_);
+      if (!measured) return std::nullopt;
+      pixels[i] = *measured;
+    }
+    return plane_angles_of({seen[0].view, seen[1].view}, pixels);
+  }
+  [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
+                                                        const std::array<View, 2>& views) const override {
+    std::array<Eigen::Matrix2Xd, 2> pixels;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto projected = measured_pixels(arm_, state, {views[i], {}, {}, {}}, shares_);
+      if (!projected) return std::nullopt;
+      pixels[i] = *projected;
+    }
+    return plane_angles_of(views, pixels);
+  }
+  [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                                                  const ArmState& estimate,
+                                                  const std::array<View, 2>&) const override {
+    const Eigen::Index chords = seen.size() / 2;
+    const double share = 1 / std::sqrt(static_cast<double>(chords));
+    FeatureError result{Eigen::VectorXd::Zero(2 * chords), chord_derivatives(estimate)};
+    for (Eigen::Index k = 0; k < chords; ++k) {
+      const PlaneError error =
+          plane_error({seen[k], seen[chords + k]},
+                      {near(desired[k], seen[k]), near(desired[chords + k], seen[chords + k])});
+      const double weight = error.is_singular ? 0 : share, across = weight * std::cos(error.q);
+      result.error[2 * k] = across * error.e_theta, result.error[2 * k + 1] = weight * error.e_q;
+      result.by_state.row(2 * k) *= across, result.by_state.row(2 * k + 1) *= weight;
+    }
+    return result;
+  }
+
+ private:
+  // The angle that differs from another one by half a turn at most.
+  static double near(double angle, double other) {
+    return other + std::remainder(angle - other, 2 * std::numbers::pi);
+  }
+
+  // Of theta and q of each chord, by the state; rad.
+  [[nodiscard]] Eigen::MatrixXd chord_derivatives(const ArmState& state) const {
+    const BackboneJacobian backbone(arm_, state);
+    const auto columns = 3 * static_cast<Eigen::Index>(arm_.sections.size());
+    const auto chords = static_cast<Eigen::Index>(shares_.size()) - 1;
+    Eigen::MatrixXd by_state(2 * chords, columns);
+    Jacobian before(6, columns), here(6, columns);
+    Eigen::Vector3d p_before = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k <= chords; ++k) {
+      const MaterialPoint point = material_point(arm_, shares_[static_cast<std::size_t>(k)] * arm_.length());
+      backbone.at(point, here);
+      const Eigen::Vector3d p = backbone.pose(point).position, c = p - p_before;
+      if (k > 0) {
+        const Eigen::MatrixXd dc = here.topRows<3>() - before.topRows<3>();
+        // Upright chords have no azimuth: their q alone counts, and of theta nothing is asked.
+        constexpr double least = 1e-9;
+        const double h = std::max(c.head<2>().norm(), least);
+        const Eigen::RowVectorXd dh = (c.x() * dc.row(0) + c.y() * dc.row(1)) / h;
+        by_state.row(2 * (k - 1)) = (c.y() * dc.row(0) - c.x() * dc.row(1)) / (h * h);
+        by_state.row(2 * k - 1) = (h * dc.row(2) - c.z() * dh) / std::max(c.squaredNorm(), least * least);
+      }
+      p_before = p, before = here;
+    }
+    return by_state;
+  }
+
+  Arm arm_;
+  std::vector<double> shares_;
+};
+
+}  // namespace
+
+std::unique_ptr<ServoFeatures> plane_features(const Arm& arm, int points) {
+  return std::make_unique<PlaneFeatures>(arm, points);
+}
+
+}  // namespace flexura

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/model/obstacle.h"
+
+namespace flexura {
+
+/// What drives the arm to the wanted shape (docs/servo.md).
+enum class ServoLawKind : std::uint8_t {
+  shape,      ///< The shape that both images tell, less the wanted one.
+  points,     ///< Pixels of points along the arm.
+  chords,     ///< Angles of the images of its chords.
+  moments,    ///< Length, middle and second moments of its images.
+  potential,  ///< The paper's: the errors in two image planes, an artificial potential in two angles.
+};
+
+/// Where the derivatives of what is seen come from.
+enum class ServoJacobian : std::uint8_t {
+  model,      ///< From arm and cameras as they are believed to be.
+  broyden,    ///< Learned on the way (control/jacobian_estimate.h), beginning with the model's.
+  recursive,  ///< Likewise, by recursive least squares.
+};
+
+/// Two pictures of the arm in the wanted shape, by the two cameras as they stand.
+using RecordedViews = std::array<Picture, 2>;
+
+/// What is wanted from a time on.
+struct ServoGoal {
+  double time = 0;  ///< s from the start of the servo.
+  std::variant<ArmState, RecordedViews> shape;
+  /// How far the nearest shape of this arm is from what was asked for, share of its length.
+  double missed = 0;
+};
+
+/// Noise, faults and patience.
+struct ServoPatience {
+  double blind = 0.3;   ///< The arm goes on without being seen for so long, then stops and waits, s.
+  double lost = 3;      ///< Unseen for so long it gives up, s.
+  double timeout = 20;  ///< After the last goal's time, s.
+};
+
+/// What a servo does.
+struct ServoConfig {
+  std::array<std::size_t, 2> cameras = {0, 1};  ///< Places among the rig's; the law `potential` takes the
+                                                ///< first for the front (XOY) and the second for the side.
+  std::vector<ServoGoal>
+      goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
+  ServoLawKind law = ServoLawKind::shape;
+  ServoJacobian jacobian = ServoJacobian::model;
+  int points = 12;                   ///< Of the laws points, chords and potential: places along the arm.
+  double rate = 4;                   ///< Errors fall as exp(-rate t), 1/s.
+  double damping = 0.01;             ///< ImageLawGains::damping
+  bool predicts = true;              ///< What was sent after a picture was taken is counted as done.
+  double tolerance = 0.005;          ///< Root mean square along the arm, share of its length: there.
+  double settle = 0.5;               ///< The error has to stay below it for so long, s.
+  bool follows = false;              ///< Heads turn so that the arm stays in the middle of the pictures.
+  std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, rising.
+  double step = 1.0 / 30;            ///< From one command to the next, s.
+  std::optional<Drive> drive = {};
+  std::vector<Obstacle> obstacles = {};
+  ServoPatience patience;
+};
+
+const std::vector<std::string>& names_of(const ServoLawKind*);
+const std::vector<std::string>& names_of(const ServoJacobian*);
+
+}  // namespace flexura

@@ -1,0 +1,128 @@
+#include "flexura/servo/servo_eyes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "flexura/calibrate/eight_bits.h"
+#include "flexura/estimate/picture_sighting.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/model/backbone.h"
+#include "flexura/vision/picture_file.h"
+
+namespace flexura {
+namespace {
+
+ShapePrior prior_of(const Arm& arm, std::vector<double> markers) {
+  ShapePrior prior;
+  prior.arm = arm;
+  prior.markers = std::move(markers);
+  return prior;
+}
+
+// Cameras that are a degree wrong show the arm by many pixels elsewhere than it would be seen: the nearest
+// shape is still the one to go by.
+EstimatorConfig patient_estimator() {
+  EstimatorConfig config;
+  config.most_rms = 20;
+  return config;
+}
+
+// Of the way from `a` to `b`, the share where it meets the line through `at` across `heading`; none beside
+// it.
+std::optional<double> meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& at,
+                              const Eigen::Vector2d& heading) {
+  const double from = heading.dot(a - at), to = heading.dot(b - at);
+  if ((from < 0) == (to < 0)) return std::nullopt;
+  return from / (from - to);
+}
+
+}  // namespace
+
+ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras,
+                     std::vector<double> markers)
+    : arm_(believed.arm),
+      whites_{},
+      has_markers_(!markers.empty()),
+      estimator_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
+  for (std::size_t i = 0; i < 2; ++i)
+    whites_[i] = (1 << believed.cameras.at(cameras[i]).config.sensor.bits) - 1;
+}
+
+Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& view, std::string& reason) {
+  constexpr double moved = 2;  // px; then the finder is told anew where the base is.
+  const Eigen::Vector2d base =
+      view.project(arm_.X_WB.position).value_or(Eigen::Vector2d(0.5 * view.width, view.height));
+  if (!finders_[i] || (finders_[i]->base - base).norm() > moved) {
+    ArmFinderConfig config;
+    config.base = base;
+    finders_[i].emplace(Finder{base, ArmFinder(config)});
+  }
+  const auto find = [&]<typename Value>(const Image<Value>& image) -> const ArmSighting& {
+    ArmFinder& finder = finders_[i]->finder;
+    if constexpr (sizeof(Value) == 1) {
+      return image.channels() == 1 ? finder.find(image) : finder.find(gray_picture(image));
+    } else {
+      return image.channels() == 1 ? finder.find(image, whites_[i])
+                                   : finder.find(gray_picture(image), whites_[i]);
+    }
+  };
+  const ArmSighting& found = std::visit(find, picture);
+  reason = found.reason;
+  if (!found.is_found()) return Sighting{view, {}, {}, {}};
+  return has_markers_ ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
+}
+
+ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
+                           const std::optional<ArmState>& guess) {
+  ServoSight sight;
+  sight.frames = frames;
+  sight.time = 0.5 * (frames[0].time + frames[1].time);
+  for (std::size_t i = 0; i < 2; ++i)
+    sight.seen[i] = sighting(i, *frames[i].picture, views[i], sight.reasons[i]);
+  constexpr std::size_t fewest = 4;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (sight.seen[i].points.size() >= fewest) continue;
+    if (sight.reasons[i].empty()) sight.reasons[i] = "too little of the arm is seen";
+    sight.estimate.reason = "the arm is not seen in every image";
+  }
+  if (!sight.estimate.reason.empty()) return sight;
+  if (guess) sight.estimate = estimator_.follow(sight.seen, {arm_, *guess});
+  if (!sight.estimate.is_found) sight.estimate = estimator_.estimate(sight.seen);
+  return sight;
+}
+
+std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
+                                                const Sighting& seen, const std::vector<double>& shares) {
+  constexpr double farthest = 20;  // px: what is farther from the shape's image is not the arm there.
+  const Backbone backbone(arm, estimate);
+  Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const double s = std::min(arc_length_of(arm, estimate, material_point(arm, shares[k] * arm.length())),
+                              backbone.length());
+    const Pose X_WS = backbone.pose(s);
+    const double ahead = 1e-4 * backbone.length();
+    const auto at = seen.view.project(X_WS.position),
+               next = seen.view.project(X_WS.position + ahead * X_WS.rotation.col(2));
+    if (!at || !next) return std::nullopt;
+    pixels.col(static_cast<Eigen::Index>(k)) = *at;
+    const double length = (*next - *at).norm();
+    if (!(length > 0)) continue;
+    const Eigen::Vector2d heading = (*next - *at) / length;
+    double nearest = farthest;
+    for (std::size_t i = 1; i < seen.points.size(); ++i) {
+      const Eigen::Vector2d &a = seen.points[i - 1].pixel, &b = seen.points[i].pixel;
+      const auto share = meeting(a, b, *at, heading);
+      if (!share) continue;
+      const Eigen::Vector2d point = a + *share * (b - a);
+      const double distance = (point - *at).norm();
+      if (!(distance < nearest)) continue;
+      nearest = distance, pixels.col(static_cast<Eigen::Index>(k)) = point;
+    }
+  }
+  return pixels;
+}
+
+}  // namespace flexura

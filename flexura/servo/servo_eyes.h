@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/calibrate/rig_model.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/servo/servo_session.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// Makes shapes of pictures of a known arm by two cameras.
+class ServoEyes {
+ public:
+  /// `cameras`: places among the model's; `markers`: middles of the arm's bands, m, rising.
+  ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras, std::vector<double> markers);
+
+  /// What the pictures show of the arm, seen by these views; near `guess`, if there is one. Where a picture
+  /// shows no arm, its reason is set and the estimate is not found.
+  [[nodiscard]] ServoSight look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
+                                const std::optional<ArmState>& guess);
+
+ private:
+  [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
+                                  std::string& reason);
+
+  Arm arm_;
+  std::array<int, 2> whites_;  // The largest value of each camera's pictures.
+  bool has_markers_;
+  ShapeEstimator estimator_;
+  struct Finder {
+    Eigen::Vector2d base;
+    ArmFinder finder;
+  };
+  std::array<std::optional<Finder>, 2> finders_;
+};
+
+/// Where the points of an arm in these shares of its length are seen: on the image of the estimated shape,
+/// moved across it onto the median axis as it was measured there.
+[[nodiscard]] std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
+                                                              const Sighting& seen,
+                                                              const std::vector<double>& shares);
+
+}  // namespace flexura

@@ -1,0 +1,61 @@
+#include "flexura/servo/servo_goals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "flexura/kinematics/shape.h"
+
+namespace flexura {
+
+ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes,
+                       const ServoFeatures& features, const std::array<View, 2>& views) {
+  for (const ServoGoal& goal : goals) {
+    times_.push_back(goal.time);
+    if (const auto* state = std::get_if<ArmState>(&goal.shape)) {
+      shapes_.push_back({*state, {}});
+    } else {
+      measure(std::get<RecordedViews>(goal.shape), arm, eyes, features, views);
+    }
+  }
+}
+
+void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes,
+                         const ServoFeatures& features, const std::array<View, 2>& views) {
+  std::array<Frame, 2> frames;
+  for (std::size_t i = 0; i < 2; ++i) frames[i].picture = std::make_shared<const Picture>(recorded[i]);
+  const ServoSight sight = eyes.look(frames, views, std::nullopt);
+  WantedShape& wanted = shapes_.emplace_back(WantedShape{ArmState::straight(arm.sections.size()), {}});
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!sight.reasons[i].empty())
+      problem_ =
+          fmt::format("picture {} of goal {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
+  if (!problem_.empty()) return;
+  if (!sight.estimate.is_found) {
+    problem_ = fmt::format("the pictures of goal {} show no shape: {}", times_.size(), sight.estimate.reason);
+    return;
+  }
+  wanted.state = sight.estimate.shape.state;
+  const auto seen = features.measured(wanted.state, sight.seen),
+             foreseen = features.foreseen(wanted.state, views);
+  if (seen && foreseen) wanted.offset = *seen - *foreseen;
+}
+
+WantedShape ServoGoals::at(double time) const {
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(times_, time) - times_.begin());
+  if (after == 0) return shapes_.front();
+  if (after == times_.size()) return shapes_.back();
+  const double share = (time - times_[after - 1]) / (times_[after] - times_[after - 1]);
+  const WantedShape &from = shapes_[after - 1], &to = shapes_[after];
+  WantedShape wanted{interpolate(from.state, to.state, share), {}};
+  const Eigen::Index size = std::max(from.offset.size(), to.offset.size());
+  if (size == 0) return wanted;
+  wanted.offset = Eigen::VectorXd::Zero(size);
+  if (from.offset.size() > 0) wanted.offset += (1 - share) * from.offset;
+  if (to.offset.size() > 0) wanted.offset += share * to.offset;
+  return wanted;
+}
+
+}  // namespace flexura

@@ -1,0 +1,66 @@
+#include "flexura/servo/servo_law.h"
+
+#include <array>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+ImageLawGains gains_of(const ServoConfig& config) {
+  ImageLawGains gains;
+  gains.rate = config.rate;
+  gains.damping = config.law == ServoLawKind::shape ? 0 : config.damping;
+  return gains;
+}
+
+Eigen::VectorXd with_offset(Eigen::VectorXd values, const Eigen::VectorXd& offset) {
+  if (offset.size() == values.size()) values += offset;
+  return values;
+}
+
+}  // namespace
+
+ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, const ServoFeatures& features)
+    : config_(config), features_(features), law_(arm, gains_of(config)) {}
+
+void ServoLaw::learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model) {
+  const Eigen::VectorXd x = law_.variables().pack(said);
+  if (!x_before_) {
+    if (config_.jacobian == ServoJacobian::broyden) learned_ = BroydenEstimate(model);
+    if (config_.jacobian == ServoJacobian::recursive) learned_ = RecursiveEstimate(model);
+  } else {
+    const Eigen::VectorXd dx = x - *x_before_, df = seen - *f_before_;
+    if (auto* broyden = std::get_if<BroydenEstimate>(&learned_)) (void)broyden->learn(dx, df);
+    if (auto* recursive = std::get_if<RecursiveEstimate>(&learned_)) (void)recursive->learn(dx, df);
+  }
+  x_before_ = x, f_before_ = seen;
+}
+
+ServoLaw::Wish ServoLaw::step(const Input& input) {
+  const ArmState& estimate = input.sight.estimate.shape.state;
+  const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
+  const auto seen = features_.measured(estimate, input.sight.seen);
+  const auto then = features_.foreseen(input.then.state, views),
+             now = features_.foreseen(input.wanted.state, views);
+  if (!seen || !then || !now) return {input.sent, 0, true};
+  const auto was = features_.error(*seen, with_offset(*then, input.then.offset), estimate, views);
+  const auto is = features_.error(*seen, with_offset(*now, input.wanted.offset), estimate, views);
+  if (!was || !is) return {input.sent, 0, true};
+  Eigen::MatrixXd J = law_.by_variables(is->by_state);
+  if (config_.jacobian != ServoJacobian::model) {
+    if (input.is_fresh) learn(*seen, input.said, J);
+    if (const auto* broyden = std::get_if<BroydenEstimate>(&learned_)) J = broyden->jacobian();
+    if (const auto* recursive = std::get_if<RecursiveEstimate>(&learned_)) J = recursive->jacobian();
+  }
+  Eigen::VectorXd error = is->error;
+  // What was sent since the pictures were taken is on its way.
+  if (config_.predicts) error += J * (law_.variables().pack(input.sent) - law_.variables().pack(input.said));
+  ImageStep step = law_.step(input.sent, error, J, config_.step);
+  for (std::size_t i = 0; i < step.asked.bends.size(); ++i) {
+    step.asked.bends[i] += input.next.bends[i] - input.wanted.state.bends[i];
+    step.asked.stretches[i] += input.next.stretches[i] - input.wanted.state.stretches[i];
+  }
+  return {std::move(step.asked), 0.5 * was->error.squaredNorm(), step.is_singular};
+}
+
+}  // namespace flexura

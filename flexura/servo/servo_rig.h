@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "flexura/calibrate/rig_model.h"
+#include "flexura/port/rig_ports.h"
+#include "flexura/servo/motion_history.h"
+
+namespace flexura {
+
+/// The devices of a rig as a servo reads them: what they said lately, and the newest pair of pictures.
+class ServoRig {
+ public:
+  /// Readings are kept for `span` s; pictures of both cameras belong together when they were taken within
+  /// `together` s. `believed` outlives this.
+  ServoRig(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
+           double span, double together);
+
+  using Trouble = std::optional<std::string>;
+  /// Asks arm, heads and stages where they are. What does not answer, or answers with what is no number, is
+  /// trouble.
+  [[nodiscard]] Trouble read();
+  /// Asks the cameras for pictures; true when there is a new pair. A camera that does not answer has none,
+  /// and `silence()` says why.
+  [[nodiscard]] bool look();
+  [[nodiscard]] const std::array<Frame, 2>& frames() const { return pair_; }
+  /// Of each camera: why it gave no picture when it was last asked, "" otherwise.
+  [[nodiscard]] const std::array<std::string, 2>& silence() const { return silence_; }
+
+  /// What the drives said, and what the model makes of it, at a time.
+  [[nodiscard]] ArmState said(double time) const { return *arm_.at(time); }
+  [[nodiscard]] ArmState believed(double time) const { return model_.bent(said(time)); }
+  /// What a camera saw at a time, as believed.
+  [[nodiscard]] View view(std::size_t i, double time) const;
+  [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
+  [[nodiscard]] RigStance stance(std::size_t i, double time) const;
+
+  [[nodiscard]] double now() const { return ports_.clock->now(); }
+  [[nodiscard]] const RigPorts& ports() const { return ports_; }
+  /// Place among the rig's cameras.
+  [[nodiscard]] std::size_t camera(std::size_t i) const { return cameras_[i]; }
+  [[nodiscard]] const std::string& name(std::size_t i) const { return ports_.cameras[cameras_[i]].name; }
+
+ private:
+  struct Stand {
+    HeadState head;
+    StageState stage;
+  };
+  using StateBlend = ArmState (*)(const ArmState&, const ArmState&, double);
+  using StandBlend = Stand (*)(const Stand&, const Stand&, double);
+  static Stand between(const Stand& a, const Stand& b, double share);
+
+  RigPorts ports_;
+  const RigModel& model_;
+  std::array<std::size_t, 2> cameras_;
+  double together_;
+  MotionHistory<ArmState, StateBlend> arm_;
+  std::array<MotionHistory<Stand, StandBlend>, 2> stands_;
+  std::array<std::deque<Frame>, 2> recent_;
+  std::array<Frame, 2> pair_;
+  double paired_at_ = -1;  // s, of the second camera's
+  std::array<std::string, 2> silence_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,284 @@
+#include "flexura/servo/servo_session.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "flexura/camera/camera.h"
+#include "flexura/control/image_law.h"
+#include "flexura/control/jacobian_estimate.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/servo/servo_eyes.h"
+#include "flexura/servo/servo_features.h"
+#include "flexura/servo/servo_goals.h"
+#include "flexura/servo/servo_judge.h"
+#include "flexura/servo/servo_law.h"
+#include "flexura/servo/servo_rig.h"
+#include "flexura/servo/view_keeper.h"
+
+namespace flexura {
+namespace {
+
+void require(bool is_so, const char* what) {
+  if (!is_so) throw std::invalid_argument(what);
+}
+
+void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& config) {
+  require(!config.goals.empty(), "a servo needs a goal");
+  double before = 0;
+  for (const ServoGoal& goal : config.goals) {
+    require(&goal == &config.goals.front() ? goal.time >= 0 : goal.time > before,
+            "a servo's goals follow each other in time");
+    before = goal.time;
+  }
+  require(ports.cameras.size() == believed.cameras.size() && config.cameras[0] != config.cameras[1] &&
+              config.cameras[0] < believed.cameras.size() && config.cameras[1] < believed.cameras.size(),
+          "a servo needs the ports of two cameras of the model");
+  require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
+          "a servo's points, rate, tolerance and step are above 0");
+}
+
+LimiterSettings limiter_settings(const ServoConfig& config) {
+  LimiterSettings settings;
+  settings.step = config.step, settings.drive = config.drive, settings.obstacles = config.obstacles;
+  return settings;
+}
+
+class Session {
+ public:
+  Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config, ServoWatcher& watcher)
+      : model_(believed),
+        config_(config),
+        watcher_(watcher),
+        rig_(ports, believed, config.cameras, 2.0, 0.6 * config.step),
+        eyes_(believed, config.cameras, config.markers),
+        features_(servo_features(config.law, believed.arm, config.points)),
+        law_(believed.arm, config, *features_),
+        keeper_(believed, config.cameras) {}
+
+  ServoResult run() {
+    result_.start = rig_.now();
+    if (auto trouble = begin()) {
+      result_.reason = std::move(*trouble);
+      return std::move(result_);
+    }
+    while (!is_over()) step();
+    come_to_rest();
+    result_.is_done = result_.reason.empty();
+    result_.fault = limiter_->fault();
+    result_.last = last_;
+    add_figures(model_.arm, config_, goals_->last(), result_);
+    return std::move(result_);
+  }
+
+ private:
+  ServoRig::Trouble begin() {
+    if (auto trouble = rig_.read()) return trouble;
+    for (const ServoGoal& goal : config_.goals)
+      if (goal.missed > config_.tolerance)
+        return fmt::format("not reachable: the nearest shape of this arm stays {:.3g} % of its length away",
+                           100 * goal.missed);
+    goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
+    if (!goals_->problem().empty()) return goals_->problem();
+    sent_ = rig_.said(result_.start);
+    try {
+      limiter_.emplace(model_.arm, limiter_settings(config_), sent_);
+    } catch (const std::invalid_argument& error) {
+      return fmt::format("the arm cannot be steered from where it is: {}", error.what());
+    }
+    judge_.emplace(config_, result_.start, goals_->last());
+    seen_since_ = result_.start;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_over() {
+    if (!result_.reason.empty() || judge_->is_done()) return true;
+    if (watcher_.is_cancelled()) result_.reason = "cancelled";
+    if (const auto& why = judge_->hopeless()) result_.reason = *why;
+    if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
+    return !result_.reason.empty();
+  }
+
+  // Waits for the next command's time; reads everything.
+  void wake() {
+    rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
+    if (auto trouble = rig_.read()) fault(*trouble);
+  }
+
+  void fault(const std::string& what) {
+    if (!limiter_->fault()) watcher_.told(rig_.now(), what);
+    limiter_->fault(what);
+  }
+
+  void step() {
+    wake();
+    const double now = rig_.now();
+    ServoStep step;
+    step.time = now;
+    if (!limiter_->fault()) look(now, step);
+    LimitedCommand command;
+    const bool is_blind = now - seen_since_ > config_.patience.blind;
+    if (!last_ || is_blind || limiter_->fault()) {
+      command = limiter_->brake();
+    } else {
+      command = limiter_->next(asked(now, step));
+    }
+    if (now - seen_since_ > config_.patience.lost) result_.reason = "out of view: " + unseen_because_;
+    step.limited = command.reason;
+    send(now, std::move(command.state), std::move(step));
+  }
+
+  // The newest pair of pictures, if there is one.
+  void look(double now, ServoStep& step) {
+    if (rig_.look()) {
+      const auto& frames = rig_.frames();
+      const double time = 0.5 * (frames[0].time + frames[1].time);
+      const std::array<View, 2> views = {rig_.view(0, frames[0].time), rig_.view(1, frames[1].time)};
+      ServoSight sight = eyes_.look(frames, views, guess(time));
+      watcher_.seen(sight);
+      if (!result_.first) result_.first = sight;
+      if (sight.estimate.is_found) {
+        if (!unseen_because_.empty() && last_) watcher_.told(now, "the arm is seen again");
+        unseen_because_.clear();
+        step.is_fresh = true, seen_since_ = now;
+        limiter_->observe(sight.estimate.shape.state);
+        last_ = std::move(sight);
+        if (config_.follows) follow(now);
+      } else {
+        cannot_see(now, sight);
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!rig_.silence()[i].empty())
+        tell_unseen(now, fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]));
+    if (now - seen_since_ > config_.patience.blind) tell_unseen(now, "no pictures come");
+  }
+
+  void cannot_see(double now, const ServoSight& sight) {
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!sight.reasons[i].empty())
+        return tell_unseen(now,
+                           fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]));
+    tell_unseen(now, sight.estimate.reason);
+  }
+
+  void tell_unseen(double now, const std::string& why) {
+    if (unseen_because_.empty()) watcher_.told(now, why);
+    unseen_because_ = why;
+  }
+
+  // The shape in which the arm is expected at a time: as it was seen last, moved by what the drives did.
+  [[nodiscard]] ArmState guess(double time) const {
+    ArmState state = rig_.believed(time);
+    if (!last_) return state;
+    const ArmState then = rig_.believed(last_->time), &seen = last_->estimate.shape.state;
+    for (std::size_t i = 0; i < state.bends.size(); ++i) state.bends[i] += seen.bends[i] - then.bends[i];
+    return state;
+  }
+
+  // What the law asks for, by the last sight.
+  [[nodiscard]] ArmState asked(double now, ServoStep& step) {
+    const ArmState& seen = last_->estimate.shape.state;
+    step.seen_at = last_->time, step.seen = seen, step.believed = rig_.said(last_->time);
+    step.desired = goals_->at(last_->time - result_.start).state;
+    step.error = servo_error(model_.arm, seen, step.desired);
+    const double since = now - result_.start;
+    const ServoLaw::Wish wish = law_.step({.sight = *last_,
+                                           .is_fresh = step.is_fresh,
+                                           .said = step.believed,
+                                           .sent = sent_,
+                                           .then = goals_->at(last_->time - result_.start),
+                                           .wanted = goals_->at(since),
+                                           .next = goals_->at(since + config_.step).state});
+    step.is_singular = wish.is_singular, step.potential = wish.potential;
+    return wish.asked;
+  }
+
+  void follow(double now) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto head =
+          keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, now), last_->seen[i].view);
+      if (!head) continue;
+      const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
+      if (const auto refused = taken.fault())
+        return fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
+      watcher_.camera_sent(now,
+                           {.camera = rig_.camera(i), .head = *head, .stage = rig_.stance(i, now).stage});
+    }
+  }
+
+  void send(double now, ArmState state, ServoStep step) {
+    const auto taken = rig_.ports().arm->command(state, config_.step);
+    if (const auto refused = taken.fault()) {
+      fault("the arm: " + text(*refused));
+      // What does not take commands may still stop.
+      (void)rig_.ports().arm->halt();
+    } else {
+      watcher_.arm_sent(now, state, config_.step);
+      sent_ = state;
+    }
+    if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
+    if (step.believed.bends.empty()) step.believed = rig_.said(now);
+    step.sent = std::move(state);
+    watcher_.stepped(step);
+    judge_->add(step);
+    result_.steps.push_back(std::move(step));
+  }
+
+  // Down the limiter's way to rest.
+  void come_to_rest() {
+    while (!limiter_->is_at_rest()) {
+      wake();
+      ServoStep step;
+      step.time = rig_.now();
+      LimitedCommand command = limiter_->brake();
+      step.limited = command.reason;
+      send(step.time, std::move(command.state), std::move(step));
+    }
+    // The last command lasts until the next one's time.
+    rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
+  }
+
+  const RigModel& model_;
+  const ServoConfig& config_;
+  ServoWatcher& watcher_;
+  ServoRig rig_;
+  ServoEyes eyes_;
+  std::unique_ptr<ServoFeatures> features_;
+  ServoLaw law_;
+  ViewKeeper keeper_;
+  std::optional<ServoGoals> goals_;
+  std::optional<CommandLimiter> limiter_;
+  std::optional<ServoJudge> judge_;
+  std::optional<ServoSight> last_;  // In which the arm was seen.
+  std::string unseen_because_;
+  double seen_since_ = 0;
+  long ticks_ = 0;
+  ArmState sent_;
+  ServoResult result_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const ServoLawKind*) {
+  static const std::vector<std::string> names = {"shape", "points", "chords", "moments", "potential"};
+  return names;
+}
+
+const std::vector<std::string>& names_of(const ServoJacobian*) {
+  static const std::vector<std::string> names = {"model", "broyden", "recursive"};
+  return names;
+}
+
+ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
+                             ServoWatcher& watcher) {
+  check(ports, believed, config);
+  return Session(ports, believed, config, watcher).run();
+}
+
+}  // namespace flexura

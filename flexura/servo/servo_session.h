@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/calibrate/rig_model.h"
+#include "flexura/control/limiter.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/model/backbone.h"
+#include "flexura/port/rig_ports.h"
+#include "flexura/servo/servo_config.h"
+
+namespace flexura {
+
+/// How far a shape is from another one: distances between points of equal shares of their lengths, as shares
+/// of the arm's length.
+struct ServoError {
+  double rms = 0, most = 0, tip = 0;
+};
+[[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
+[[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
+
+/// What two pictures of one instant told.
+struct ServoSight {
+  double time = 0;               ///< Middle of the exposures, s.
+  std::array<Frame, 2> frames;   ///< Of both cameras.
+  std::array<Sighting, 2> seen;  ///< Median axes and bands, in the views as believed.
+  ShapeEstimate estimate;
+  std::array<std::string, 2> reasons;  ///< Why a picture shows no arm; "" when it does.
+};
+
+/// One command, and what it was made of.
+struct ServoStep {
+  double time = 0;                  ///< When it was sent, s.
+  std::optional<double> seen_at;    ///< Of the sight that it goes by; none before the first.
+  ArmState desired;                 ///< At the time of that sight.
+  std::optional<ArmState> seen;     ///< By that sight.
+  std::optional<ServoError> error;  ///< Of that, from desired.
+  ArmState believed;                ///< What the drives say.
+  ArmState sent;
+  /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
+  /// law's own units (rad^2, px^2, share of the length squared).
+  double potential = 0;
+  bool is_fresh = false;     ///< The sight is new.
+  bool is_singular = false;  ///< Of the law: some motion shows in nothing that is seen.
+  std::string limited;       ///< What held the law back; "": nothing.
+};
+
+/// Sees a servo as it goes. What it does with that changes nothing of it.
+class ServoWatcher {
+ public:
+  virtual ~ServoWatcher() = default;
+  ServoWatcher() = default;
+  ServoWatcher(const ServoWatcher&) = delete;
+  ServoWatcher& operator=(const ServoWatcher&) = delete;
+
+  virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
+  virtual void camera_sent(double /*time*/, const RigStance& /*stance*/) {}
+  virtual void seen(const ServoSight& /*sight*/) {}
+  virtual void stepped(const ServoStep& /*step*/) {}
+  /// Something happened that is worth a line: "camera side does not see the arm: ...".
+  virtual void told(double /*time*/, const std::string& /*what*/) {}
+  /// Whether the servo shall end early.
+  virtual bool is_cancelled() { return false; }
+};
+
+/// How a servo went.
+struct ServoResult {
+  bool is_done = false;
+  std::string reason;  ///< Why it is not; the arm rests.
+  std::vector<ServoStep> steps;
+  double start = 0;                     ///< s
+  std::optional<double> settled;        ///< Time from the start to 2 % for good, s.
+  double overshoot = 0;                 ///< By how much the tip went past its goal, share of its way.
+  std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
+  std::optional<LimiterFault> fault;    ///< What is kept of it.
+  std::optional<ServoSight> first, last;
+};
+
+/// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest
+/// pictures are measured, the shape of the arm at their time is estimated, the law says where to send it, a
+/// limiter stands between. Everything goes through the ports; what goes wrong ends with the arm at rest and
+/// says why. The same rig, readings and pictures give the same result. std::invalid_argument: no goals, goals
+/// whose times do not rise from 0, numbers out of range, ports for other cameras than the model's.
+[[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
+                                           const ServoConfig& config, ServoWatcher& watcher);
+
+}  // namespace flexura

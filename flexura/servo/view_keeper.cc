@@ -1,0 +1,69 @@
+#include "flexura/servo/view_keeper.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+double within(double value, const std::array<double, 2>& limits) {
+  return std::clamp(value, limits[0], limits[1]);
+}
+
+// What the picture shows of the arm: none where part of it is behind the camera.
+std::optional<Eigen::AlignedBox2d> seen_box(const Arm& arm, const ArmState& state, const View& view) {
+  constexpr int points = 20;
+  const Backbone backbone(arm, state);
+  Eigen::AlignedBox2d box;
+  for (int i = 0; i <= points; ++i) {
+    const auto pixel = view.project(backbone.pose(backbone.length() * i / points).position);
+    if (!pixel) return std::nullopt;
+    box.extend(*pixel);
+  }
+  return box;
+}
+
+}  // namespace
+
+ViewKeeper::ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2>& cameras)
+    : arm_(believed.arm) {
+  for (const std::size_t camera : cameras) cameras_.emplace_back(believed.cameras.at(camera).config);
+}
+
+std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const RigStance& stands,
+                                            const View& view) const {
+  // Shares of the picture: beyond the first of them the head turns, beyond the second it zooms out.
+  constexpr double quiet = 0.15, full = 0.9;
+  const auto box = seen_box(arm_, state, view);
+  if (!box) return std::nullopt;
+  const Eigen::Vector2d size(view.width, view.height), middle = 0.5 * (size - Eigen::Vector2d::Ones());
+  const Eigen::Vector2d off = box->center() - middle;
+  const bool is_aside = (off.cwiseAbs().array() > quiet * size.array()).any();
+  const double filled = (box->sizes().array() / size.array()).maxCoeff();
+  if (!is_aside && filled <= full) return std::nullopt;
+  HeadState head = stands.head;
+  const auto& axes = cameras_[i].head_axes();
+  const Intrinsics& lens = view.lens.intrinsics();
+  if (is_aside) {
+    head.pan = within(head.pan - std::atan(off.x() / lens.fx), axes[0].limits);
+    head.tilt = within(head.tilt - std::atan(off.y() / lens.fy), axes[1].limits);
+  }
+  if (filled > full) {
+    // The nearest zoom with a focal length so much shorter, among a hundred.
+    constexpr int tries = 100;
+    const double wanted = lens.fx * full / filled;
+    double best = std::abs(cameras_[i].lens().at(head.zoom).fx - wanted);
+    for (int k = 0; k <= tries; ++k) {
+      const double zoom = axes[2].limits[0] + (axes[2].limits[1] - axes[2].limits[0]) * k / tries;
+      const double miss = std::abs(cameras_[i].lens().at(zoom).fx - wanted);
+      if (miss < best) best = miss, head.zoom = zoom;
+    }
+  }
+  return head == stands.head ? std::nullopt : std::optional(head);
+}
+
+}  // namespace flexura

@@ -94,11 +94,46 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
   return sight;
 }
 
+namespace {
+
+// Where a place of the shape is seen, and how far across the curve the measured axis lies there.
+struct Place {
+  Eigen::Vector2d pixel = {0, 0}, across = {0, 0};
+  std::optional<double> offset;  // px; none where no axis was measured.
+};
+
+// Of what is farther from the shape's image than that, px, nothing is the arm there.
+constexpr double farthest = 20;
+
+std::optional<double> offset_at(const Place& place, const std::vector<CurvePoint>& points) {
+  const Eigen::Vector2d heading(place.across.y(), -place.across.x());
+  std::optional<double> nearest;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Eigen::Vector2d &a = points[i - 1].pixel, &b = points[i].pixel;
+    const auto share = meeting(a, b, place.pixel, heading);
+    if (!share || (b - a).norm() > farthest) continue;
+    const double offset = place.across.dot(a + *share * (b - a) - place.pixel);
+    if (std::abs(offset) < std::abs(nearest.value_or(farthest))) nearest = offset;
+  }
+  return nearest;
+}
+
+// What is not measured, at the ends and behind something, is off by as much as the nearest that is.
+double offset_near(const std::vector<Place>& places, const std::vector<double>& shares, std::size_t k) {
+  double offset = 0, nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double distance = std::abs(shares[i] - shares[k]);
+    if (places[i].offset && distance < nearest) nearest = distance, offset = *places[i].offset;
+  }
+  return offset;
+}
+
+}  // namespace
+
 std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
                                                 const Sighting& seen, const std::vector<double>& shares) {
-  constexpr double farthest = 20;  // px: what is farther from the shape's image is not the arm there.
   const Backbone backbone(arm, estimate);
-  Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
+  std::vector<Place> places(shares.size());
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const double s = std::min(arc_length_of(arm, estimate, material_point(arm, shares[k] * arm.length())),
                               backbone.length());
@@ -107,20 +142,16 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
     const auto at = seen.view.project(X_WS.position),
                next = seen.view.project(X_WS.position + ahead * X_WS.rotation.col(2));
     if (!at || !next) return std::nullopt;
-    pixels.col(static_cast<Eigen::Index>(k)) = *at;
-    const double length = (*next - *at).norm();
-    if (!(length > 0)) continue;
-    const Eigen::Vector2d heading = (*next - *at) / length;
-    double nearest = farthest;
-    for (std::size_t i = 1; i < seen.points.size(); ++i) {
-      const Eigen::Vector2d &a = seen.points[i - 1].pixel, &b = seen.points[i].pixel;
-      const auto share = meeting(a, b, *at, heading);
-      if (!share) continue;
-      const Eigen::Vector2d point = a + *share * (b - a);
-      const double distance = (point - *at).norm();
-      if (!(distance < nearest)) continue;
-      nearest = distance, pixels.col(static_cast<Eigen::Index>(k)) = point;
-    }
+    places[k].pixel = *at;
+    const Eigen::Vector2d way = *next - *at;
+    if (!(way.norm() > 0)) continue;
+    places[k].across = Eigen::Vector2d(-way.y(), way.x()) / way.norm();
+    places[k].offset = offset_at(places[k], seen.points);
+  }
+  Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const double offset = places[k].offset ? *places[k].offset : offset_near(places, shares, k);
+    pixels.col(static_cast<Eigen::Index>(k)) = places[k].pixel + offset * places[k].across;
   }
   return pixels;
 }

@@ -125,7 +125,9 @@ class Session {
     if (!last_ || is_blind || limiter_->fault()) {
       command = limiter_->brake();
     } else {
-      command = limiter_->next(asked(now, step));
+      const ArmState wish = asked(now, step);
+      command = limiter_->next(wish);
+      if (command.reason.empty()) command.reason = at_its_limit(wish);
     }
     if (now - seen_since_ > config_.patience.lost) result_.reason = "out of view: " + unseen_because_;
     step.limited = command.reason;
@@ -155,7 +157,7 @@ class Session {
     }
     for (std::size_t i = 0; i < 2; ++i)
       if (!rig_.silence()[i].empty())
-        tell_unseen(now, fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]));
+        return tell_unseen(now, fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]));
     if (now - seen_since_ > config_.patience.blind) tell_unseen(now, "no pictures come");
   }
 
@@ -197,6 +199,20 @@ class Session {
                                            .next = goals_->at(since + config_.step).state});
     step.is_singular = wish.is_singular, step.potential = wish.potential;
     return wish.asked;
+  }
+
+  // Which section a state bends or stretches as far as it goes, in words.
+  [[nodiscard]] std::string at_its_limit(const ArmState& state) const {
+    constexpr double nearly = 1 - 1e-6;
+    for (std::size_t i = 0; i < state.bends.size(); ++i) {
+      const Section& section = model_.arm.sections[i];
+      if (state.bends[i].norm() >= nearly * section.max_bend)
+        return fmt::format("section {} is bent as far as it goes", i + 1);
+      const auto& [least, most] = section.stretch_limits;
+      if (least < most && (state.stretches[i] * nearly <= least || state.stretches[i] >= nearly * most))
+        return fmt::format("section {} is stretched as far as it goes", i + 1);
+    }
+    return "";
   }
 
   void follow(double now) {

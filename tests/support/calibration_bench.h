@@ -12,8 +12,7 @@
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/ideal_picture.h"
-#include "flexura/experiment/photographer.h"
-#include "flexura/sim/simulated_rig.h"
+#include "tests/support/rig_bench.h"
 
 namespace flexura {
 
@@ -26,60 +25,48 @@ class NobodyWatches : public RigSessionWatcher {
 };
 
 /// A calibration at the ports alone, with nothing of a run around it: the file's first task.
-class CalibrationBench {
+class CalibrationBench : public RigBench {
  public:
-  explicit CalibrationBench(const std::string& text)
-      : experiment_(parse_experiment(text, "x.toml")),
-        photographer_(experiment_),
-        rig_(
-            experiment_.model_rig(), experiment_.true_rig(),
-            [this](const Shot& shot) { return photographer_.take(shot); }, 1) {}
+  using RigBench::RigBench;
 
-  SimulatedRig& rig() { return rig_; }
-  RigPorts ports() { return rig_.ports(); }
   LoopResult calibrate() { return calibrate(ports()); }
   LoopResult calibrate(const RigPorts& ports) {
     NobodyWatches nobody;
     return calibrate(ports, nobody);
   }
   LoopResult calibrate(const RigPorts& ports, RigSessionWatcher& watcher) {
-    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
-    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
-    LoopConfig config = loop_config(task, experiment_.arm, experiment_.cameras(), experiment_.stand);
-    config.draw = ideal_pictures(experiment_);
+    const auto& task = std::get<CalibrateTask>(experiment().task.front());
+    const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
+    LoopConfig config = loop_config(task, experiment().arm, experiment().cameras(), experiment().stand);
+    config.draw = ideal_pictures(experiment());
     return calibrate_by_loop(ports, believed, config, watcher);
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports) {
-    const auto& task = std::get<CalibrateTask>(experiment_.task.front());
-    const RigModel believed = rig_model(experiment_.arm.arm(), experiment_.cameras());
+    const auto& task = std::get<CalibrateTask>(experiment().task.front());
+    const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
     NobodyWatches nobody;
     return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
-                                    session_config(task, experiment_.arm, experiment_.cameras()), nobody);
+                                    session_config(task, experiment().arm, experiment().cameras()), nobody);
   }
   /// What truly remains where the cameras stand.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }
   RigRemainder truth(const Eigen::Vector3d& target) {
-    const RigConfig truth = experiment_.true_rig();
-    const double now = rig_.clock().now();
+    const RigConfig truth = experiment().true_rig();
+    const double now = rig().clock().now();
     std::array<RigStance, 2> stances;
     for (std::size_t i = 0; i < 2; ++i)
-      stances[i] = {i, rig_.camera(i).head().truth(now), rig_.camera(i).stage().truth(now)};
+      stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
     return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, target);
   }
   /// Whether heads and stages are where the file starts them.
   void expect_back() {
-    for (std::size_t i = 0; i < rig_.camera_count(); ++i) {
-      const auto head = rig_.camera(i).head().read().value().state;
+    for (std::size_t i = 0; i < rig().camera_count(); ++i) {
+      const auto head = rig().camera(i).head().read().value().state;
       EXPECT_NEAR(head.pan, 0, 1e-9);
       EXPECT_NEAR(head.tilt, 0, 1e-9);
-      EXPECT_NEAR(rig_.camera(i).stage().read().value().state.offset.norm(), 0, 1e-9);
+      EXPECT_NEAR(rig().camera(i).stage().read().value().state.offset.norm(), 0, 1e-9);
     }
   }
-
- private:
-  Experiment experiment_;
-  Photographer photographer_;
-  SimulatedRig rig_;
 };
 
 /// An arm whose sections bend by other shares of what they are told, and do not know it.

@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "flexura/experiment/run.h"
+#include "flexura/picture/image_file.h"
+#include "tests/support/quiet.h"
+#include "tests/support/servo_bench.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+
+class ServoLaws : public testing::TestWithParam<std::string> {};
+
+TEST_P(ServoLaws, BringTheArmToAShape) {
+  const std::string law = GetParam();
+  ServoBench bench(servo_file(fmt::format("law = \"{}\"\n", law) + servo_target));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  const ServoError left = bench.truth(wanted);
+  std::printf("%s: settled in %.2f s, %.4f %% of the length left\n", law.c_str(), *result.settled,
+              100 * left.rms);
+  EXPECT_LT(left.rms, 0.005);
+  EXPECT_LT(*result.settled, 2);
+  EXPECT_LT(result.overshoot, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ServoLaws, testing::Values("shape", "points", "chords", "potential"));
+
+// Without delay and noise an arm that does what it is sent leaves its law's potential falling.
+class IdealServo : public testing::TestWithParam<std::string> {};
+
+TEST_P(IdealServo, PotentialFallsAllTheWay) {
+  ServoSetup rig;
+  rig.sensor = "delay = 0, exposure = 0";
+  ServoBench bench(servo_file(
+      fmt::format("law = \"{}\"\ntolerance = 0.002\nsettle = 1\n", GetParam()) + servo_target, rig));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  double before = 1e300, first = 0;
+  int fell = 0;
+  for (const ServoStep& step : result.steps) {
+    if (!step.is_fresh) continue;
+    if (before > 1e299) first = step.potential;
+    // Of what is that small, pictures of 8 bits tell little more.
+    const bool is_told = before > 1e-3 * first;
+    if (is_told) {
+      EXPECT_LT(step.potential, before) << "at " << step.time << " s";
+      if (step.potential < before) ++fell;
+    }
+    before = step.potential;
+  }
+  EXPECT_GT(fell, 15);
+  EXPECT_LT(before, 2e-3 * first);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IdealServo, testing::Values("shape", "points", "chords", "potential"));
+
+TEST(Servo, GoesAlongATrajectory) {
+  ServoBench bench(
+      servo_file("tolerance = 0.004\n[[task.target]]\nbends = [[0, 0], [0, 0], [0, 0]]\n"
+                 "[[task.target]]\ntime = 1.5\nbends = [[0.8, 0.3], [-0.7, 0.9], [1.0, -0.6]]\n"
+                 "[[task.target]]\ntime = 3\nbends = [[0, 0.5], [0.5, 0], [0, -0.5]]\n"));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth({{{0, 0.5}, {0.5, 0}, {0, -0.5}}, {1, 1, 1}}).rms, 0.004);
+  // On the way it keeps up: what is wanted next is sent ahead of the error.
+  double worst = 0;
+  for (const ServoStep& step : result.steps)
+    if (step.error) worst = std::max(worst, step.error->rms);
+  std::printf("worst on the way: %.4f of the length\n", worst);
+  EXPECT_LT(worst, 0.02);
+}
+
+TEST(Servo, WaitsWhileACameraIsCovered) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  CoveredCamera covered(*ports.cameras[1].camera, *ports.clock, CoveredCamera::Kind::dark, 0.3, 1.3);
+  ports.cameras[1].camera = &covered;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_TRUE(notes.has("camera side does not see the arm")) << notes.lines.size();
+  EXPECT_TRUE(notes.has("the arm is seen again"));
+  // It stopped on the way: commands that differ in nothing.
+  int still = 0;
+  for (std::size_t i = 1; i < notes.sent.size(); ++i)
+    if (notes.sent[i].first < 1.3 && notes.sent[i].second.bends == notes.sent[i - 1].second.bends) ++still;
+  EXPECT_GT(still, 10);
+  EXPECT_LT(bench.truth(wanted).rms, 0.006);
+}
+
+TEST(Servo, GivesUpWithoutACamera) {
+  ServoBench bench(servo_file("lost = 1\n" + servo_target));
+  RigPorts ports = bench.ports();
+  CoveredCamera dead(*ports.cameras[1].camera, *ports.clock, CoveredCamera::Kind::dead, 0.4, 1e9);
+  ports.cameras[1].camera = &dead;
+  const ServoResult result = bench.servo(ports);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("out of view: camera side: link lost"), std::string::npos) << result.reason;
+  EXPECT_FALSE(bench.ports().arm->read().value().moving);
+  EXPECT_LT(result.steps.back().time, 2.0);
+}
+
+TEST(Servo, StopsWhenTheArmFails) {
+  for (const auto& [kind, words] : {std::pair{BrokenArm::Kind::refuses, "the arm: refused: not today"},
+                                    std::pair{BrokenArm::Kind::nowhere, "tell of no shape"},
+                                    std::pair{BrokenArm::Kind::gone, "the arm: link lost: no answer"}}) {
+    ServoBench bench(servo_file(servo_target));
+    RigPorts ports = bench.ports();
+    BrokenArm broken(*ports.arm, *ports.clock, kind, 0.4);
+    ports.arm = &broken;
+    ServoNotes notes;
+    const ServoResult result = bench.servo(ports, notes);
+    EXPECT_FALSE(result.is_done);
+    EXPECT_NE(result.reason.find(words), std::string::npos) << result.reason;
+    ASSERT_TRUE(result.fault);
+    EXPECT_TRUE(result.fault->observed);
+    EXPECT_FALSE(result.fault->sent.bends.empty());
+    EXPECT_LT(result.steps.back().time, 1.5);
+    bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
+    EXPECT_FALSE(bench.ports().arm->read().value().moving) << words;
+    for (const auto& [time, state] : notes.sent)
+      for (const Eigen::Vector2d& bend : state.bends) EXPECT_TRUE(bend.allFinite());
+  }
+}
+
+TEST(Servo, RefusesWhatIsOutOfReachBeforeItMoves) {
+  ServoBench bench(servo_file("[[task.target]]\nposition = [0, 0.2, 1.2]\n"));
+  ServoNotes notes;
+  const ServoResult result = bench.servo(bench.ports(), notes);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_TRUE(result.reason.starts_with("not reachable: the nearest shape")) << result.reason;
+  EXPECT_TRUE(notes.sent.empty());
+}
+
+TEST(Servo, SaysThatItIsHeldBack) {
+  // An arm that truly bends half of what it is told cannot come there within its limits.
+  ServoSetup rig;
+  rig.arm = "max_bend_deg = 60";
+  ServoBench bench(servo_file("timeout = 3\n[[task.target]]\nbends = [[1.0, 0], [0, 0], [0, 0]]\n", rig));
+  class HalfArm : public ArmPort {
+   public:
+    explicit HalfArm(ArmPort& arm) : arm_(arm) {}
+    CommandOutcome command(const ArmState& state, double duration) override {
+      ArmState half = state;
+      for (Eigen::Vector2d& bend : half.bends) bend *= 0.5;
+      return arm_.command(half, duration);
+    }
+    CommandOutcome halt() override { return arm_.halt(); }
+    Outcome<ArmReading> read() override {
+      ArmReading reading = arm_.read().value();
+      for (Eigen::Vector2d& bend : reading.state.bends) bend *= 2;
+      return reading;
+    }
+
+   private:
+    ArmPort& arm_;
+  };
+  RigPorts ports = bench.ports();
+  HalfArm half(*ports.arm);
+  ports.arm = &half;
+  const ServoResult result = bench.servo(ports);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_TRUE(result.reason.starts_with("saturated: ")) << result.reason;
+}
+
+TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
+  // Both cameras are turned by half a degree, of which nobody knows; the pictures were taken by them.
+  ServoSetup rig;
+  rig.rest =
+      "[[truth.camera]]\nname = \"front\"\ninitial = { pan_deg = 0.5, tilt_deg = -0.3 }\n"
+      "[[truth.camera]]\nname = \"side\"\ninitial = { pan_deg = -0.4, tilt_deg = 0.5 }\n";
+  ServoBench bench(servo_file("tolerance = 0.002\nsettle = 1\n" + servo_target, rig));
+  RigBench other(servo_file(servo_target,
+                            {rig.sensor, rig.arm + "\n",
+                             "[arm.initial]\nbends = [[0.8, 0.3], [-0.7, 0.9], [1.0, -0.6]]\n" + rig.rest}));
+  ServoConfig config = bench.config();
+  RecordedViews views;
+  for (std::size_t i = 0; i < 2; ++i) views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
+  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points}) {
+    config.goals = {{0, views}}, config.law = law;
+    ServoNotes notes;
+    const RigModel model = bench.believed();
+    const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
+    ASSERT_TRUE(result.is_done) << result.reason;
+    const ServoError left = bench.truth(wanted);
+    std::printf("from pictures: %.4f %% of the length left\n", 100 * left.rms);
+    EXPECT_LT(left.rms, 0.003);
+  }
+}
+
+TEST(ServoTask, RunsFromAFile) {
+  const TemporaryFolder temporary;
+  const auto folder = temporary.path() / "results";
+  std::filesystem::create_directory(folder);
+  Quiet quiet;
+  const RunResult result =
+      run_experiment(parse_experiment(servo_file(servo_target), "x.toml"), folder, quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
+  const Node* servos = result.summary.find("servos");
+  ASSERT_NE(servos, nullptr);
+  const Node& servo = servos->as<Node::Array>()->front();
+  EXPECT_TRUE(*servo.find("done")->as<bool>());
+  EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.005);
+  EXPECT_TRUE(std::filesystem::exists(folder / "figures" / "servo-1-errors.svg"));
+}
+
+}  // namespace
+}  // namespace flexura

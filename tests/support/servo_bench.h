@@ -1,0 +1,143 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flexura/experiment/servo_run.h"
+#include "flexura/servo/servo_session.h"
+#include "tests/support/rig_bench.h"
+
+namespace flexura {
+
+/// Two small cameras before an arm of three sections. `sensor`: more of it; `rest`: more of the file.
+struct ServoSetup {
+  std::string sensor = "read_noise = 1, delay = 0.06, exposure = 0.002";
+  std::string arm = "max_bend_deg = 120\nmax_bend_rate_deg = 90";
+  std::string rest = "";
+};
+
+inline std::string servo_file(const std::string& task, const ServoSetup& rig = {}) {
+  std::string text = "[clock]\nstep = 0.05\n[arm]\nkind = \"spatial\"\n";
+  for (const double length : {0.35, 0.35, 0.3})
+    text += fmt::format("[[arm.section]]\nlength = {}\nradius = 0.02\n{}\n", length, rig.arm);
+  for (const bool is_side : {false, true})
+    text += fmt::format(
+        "[[camera]]\nname = \"{}\"\nmount = {{ position = [{}, 0.5, {}], look_at = [0, 0.5, 0] }}\n"
+        "lens = {{ fx = 400 }}\nsensor = {{ width = 320, height = 240, frame_rate = 30, psf = 0.7, full_well "
+        "= "
+        "20000, {} }}\n",
+        is_side ? "side" : "front", is_side ? -2.5 : 0, is_side ? 0 : 2.5, rig.sensor);
+  return text + rig.rest + "[[task]]\nkind = \"servo\"\n" + task;
+}
+
+inline const std::string servo_target = "[[task.target]]\nbends = [[0.8, 0.3], [-0.7, 0.9], [1.0, -0.6]]\n";
+
+/// Keeps what a servo tells.
+class ServoNotes : public ServoWatcher {
+ public:
+  std::vector<std::pair<double, std::string>> lines;
+  std::vector<std::pair<double, ArmState>> sent;
+  std::function<bool()> cancelled = [] { return false; };
+
+  void arm_sent(double time, const ArmState& state, double) override { sent.emplace_back(time, state); }
+  void told(double time, const std::string& what) override { lines.emplace_back(time, what); }
+  bool is_cancelled() override { return cancelled(); }
+  [[nodiscard]] bool has(const std::string& part) const {
+    for (const auto& [time, line] : lines)
+      if (line.find(part) != std::string::npos) return true;
+    return false;
+  }
+};
+
+/// A servo at the ports alone: the file's first task.
+class ServoBench : public RigBench {
+ public:
+  using RigBench::RigBench;
+
+  [[nodiscard]] ServoConfig config() {
+    const auto& task = std::get<ServoTask>(experiment().task.front());
+    return servo_config(experiment(), task, believed(), ports().arm->read().value().state);
+  }
+  [[nodiscard]] RigModel believed() const {
+    return rig_model(experiment().arm.arm(), experiment().cameras());
+  }
+
+  ServoResult servo() { return servo(ports()); }
+  ServoResult servo(const RigPorts& ports) {
+    ServoNotes notes;
+    return servo(ports, notes);
+  }
+  ServoResult servo(const RigPorts& ports, ServoNotes& notes) {
+    const RigModel model = believed();
+    return servo_in_session(ports, model, config(), notes);
+  }
+  /// How far the arm truly is from a state now.
+  [[nodiscard]] ServoError truth(const ArmState& wanted) {
+    const Arm arm = experiment().arm.arm();
+    return servo_error(rig().arm().backbone(rig().clock().now()), Backbone(arm, wanted), arm.length());
+  }
+};
+
+/// A camera whose pictures are all dark, or that does not answer, from one time to another.
+class CoveredCamera : public CameraPort {
+ public:
+  enum class Kind { dark, dead };
+  CoveredCamera(CameraPort& camera, ClockPort& clock, Kind kind, double from, double to)
+      : camera_(camera), clock_(clock), kind_(kind), from_(from), to_(to) {}
+  Outcome<std::optional<Frame>> newest() override { return covered(camera_.newest()); }
+  Outcome<std::optional<Frame>> wait(double timeout) override { return covered(camera_.wait(timeout)); }
+
+ private:
+  Outcome<std::optional<Frame>> covered(Outcome<std::optional<Frame>> outcome) {
+    if (clock_.now() < from_ || clock_.now() >= to_) return outcome;
+    if (kind_ == Kind::dead) return PortFault{FaultKind::link_lost, "camera side is dead"};
+    if (outcome.fault() || !outcome.value()) return outcome;
+    Frame frame = *outcome.value();
+    const auto& image = std::get<Image<std::uint8_t>>(*frame.picture);
+    frame.picture =
+        std::make_shared<const Picture>(Image<std::uint8_t>(image.width(), image.height(), image.channels()));
+    return std::optional(frame);
+  }
+
+  CameraPort& camera_;
+  ClockPort& clock_;
+  Kind kind_;
+  double from_, to_;
+};
+
+/// An arm that refuses commands, or says that it is nowhere, from a time on.
+class BrokenArm : public ArmPort {
+ public:
+  enum class Kind { refuses, nowhere, gone };
+  BrokenArm(ArmPort& arm, ClockPort& clock, Kind kind, double from)
+      : arm_(arm), clock_(clock), kind_(kind), from_(from) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    if (kind_ == Kind::refuses && is_broken()) return PortFault{FaultKind::refused, "not today"};
+    if (kind_ == Kind::gone && is_broken()) return PortFault{FaultKind::link_lost, "no answer"};
+    return arm_.command(state, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    auto reading = arm_.read();
+    if (!is_broken() || kind_ == Kind::refuses) return reading;
+    if (kind_ == Kind::gone) return PortFault{FaultKind::link_lost, "no answer"};
+    ArmReading nowhere = reading.value();
+    nowhere.state.bends[1].x() = std::numeric_limits<double>::quiet_NaN();
+    return nowhere;
+  }
+
+ private:
+  [[nodiscard]] bool is_broken() const { return clock_.now() >= from_; }
+  ArmPort& arm_;
+  ClockPort& clock_;
+  Kind kind_;
+  double from_;
+};
+
+}  // namespace flexura

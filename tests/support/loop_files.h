@@ -37,6 +37,7 @@ struct LoopRig {
   double size = 1;                       ///< Of the pictures.
   double travel = 0.6;                   ///< Of the stages, to both sides, m.
   std::string sensor = {};               ///< More of it: ", drop = 1".
+  double frame_rate = 20;                ///< 1/s
 };
 
 /// A camera of it, as believed or as it truly is: its head and stage count from there.
@@ -62,10 +63,11 @@ inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) 
       "head = {{ pan = {{ limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }}, tilt = {{ "
       "limits_deg = "
       "[-45, 45], max_rate_deg = 200, resolution_deg = 0.075 }} }}\n"
-      "sensor = {{ width = {}, height = {}, pixels = \"color\", frame_rate = 20, psf = 0.7, read_noise = 2, "
+      "sensor = {{ width = {}, height = {}, pixels = \"color\", frame_rate = {}, psf = 0.7, read_noise = 2, "
       "full_well = "
       "20000{} }}\ninitial = {{ zoom = {} }}\n",
-      static_cast<int>(640 * rig.size), static_cast<int>(480 * rig.size), rig.sensor, rig.wrong[i].zoom);
+      static_cast<int>(640 * rig.size), static_cast<int>(480 * rig.size), rig.frame_rate, rig.sensor,
+      rig.wrong[i].zoom);
   return "[[camera]]\n" + text;
 }
 

@@ -1,0 +1,278 @@
+// Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
+// [TARGETS] [SEED] [THREADS]. docs/studies/servo.md
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "flexura/servo/servo_session.h"
+#include "tests/support/calibration_bench.h"
+#include "tests/support/loop_files.h"
+#include "tests/support/servo_bench.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t targets_a_rig = 10;
+
+enum class Cameras { calibrated, wrong, recorded };
+
+// What one target's run came to; errors are the simulated truth's, shares of the length.
+struct Arrival {
+  bool is_done = false;
+  std::string reason;
+  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0, floor = 0;
+};
+
+ArmState random_target(TestRandom& random) {
+  ArmState state = ArmState::straight(3);
+  for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-1.2, 1.2);
+  return state;
+}
+
+// Steps between sights are of a frame; sensors as the issue of real cameras has them: late, short exposures.
+LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
+  LoopRig rig = arcs_cameras(wrong);
+  rig.sensor = ", delay = 0.06, exposure = 0.002", rig.frame_rate = 30;
+  return rig;
+}
+
+std::string file_of(const LoopRig& rig) {
+  std::string text = arcs_rig("method = \"bundle\"\n", rig);
+  const std::string limit = "max_bend_deg = 120\n";
+  for (std::size_t at = text.find(limit); at != std::string::npos; at = text.find(limit, at + 1))
+    text.insert(at + limit.size(), "max_bend_rate_deg = 90\n");
+  return text;
+}
+
+// 0.5 degrees about each axis and 1 % of focal length, either way.
+std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
+  std::array<WrongStart, 2> wrong;
+  constexpr double half = 0.5 * std::numbers::pi / 180;
+  const auto either = [&](double size) { return random.uniform(-1, 1) < 0 ? -size : size; };
+  for (WrongStart& one : wrong) one.pan = either(half), one.tilt = either(half), one.roll = either(half);
+  return wrong;
+}
+
+// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise,
+// for the wanted shape: what cameras that are wrong leave at best.
+double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2>& truth,
+                const std::array<View, 2>& believed) {
+  ShapePrior prior;
+  prior.arm = arm;
+  EstimatorConfig config;
+  config.most_rms = 1000;
+  ShapeEstimator estimator(prior, config);
+  ArmState state = wanted;
+  for (int turn = 0; turn < 30; ++turn) {
+    std::vector<Sighting> seen(2);
+    const Backbone backbone(arm, state);
+    for (std::size_t i = 0; i < 2; ++i) {
+      seen[i].view = believed[i];
+      constexpr int count = 80;
+      for (int k = 0; k <= count; ++k) {
+        const auto pixel = truth[i].project(backbone.pose(backbone.length() * k / count).position);
+        if (pixel) seen[i].points.push_back({*pixel, 0.1});
+      }
+    }
+    const ShapeEstimate estimate = estimator.follow(seen, {arm, wanted});
+    if (!estimate.is_found) return std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < state.bends.size(); ++i)
+      state.bends[i] += wanted.bends[i] - estimate.shape.state.bends[i];
+  }
+  return servo_error(arm, state, wanted).rms;
+}
+
+// How near to its limits the arm was sent, share of them.
+double nearest_limit(const Arm& arm, const ServoResult& result) {
+  double nearest = 1;
+  for (const ServoStep& step : result.steps)
+    for (std::size_t i = 0; i < step.sent.bends.size(); ++i)
+      nearest = std::min(nearest, 1 - step.sent.bends[i].norm() / arm.sections[i].max_bend);
+  return nearest;
+}
+
+// The rig of one group of targets, calibrated where that is asked for.
+class StudyRig {
+ public:
+  StudyRig(Cameras cameras, std::uint64_t seed)
+      : random_(seed), cameras_(cameras), bench_(file_of(study_rig(wrong(cameras)))) {
+    believed_ = rig_model(bench_.experiment().arm.arm(), bench_.experiment().cameras());
+    if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
+      // And 1 % of focal length, believed.
+      for (RigCamera& camera : believed_.cameras)
+        camera.config.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
+      return;
+    }
+    const RigSessionResult result = bench_.calibrate_bundle(bench_.ports());
+    is_ready_ = result.is_done;
+    if (is_ready_) believed_ = result.found.model;
+  }
+
+  [[nodiscard]] bool is_ready() const { return is_ready_; }
+
+  Arrival go(ServoLawKind law, const ArmState& target) {
+    ServoConfig config;
+    config.law = law, config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1;
+    config.patience.timeout = 8;
+    const Arm arm = bench_.experiment().arm.arm();
+    for (const Marker& marker : bench_.experiment().arm.look.markers(arm))
+      config.markers.push_back(marker.at);
+    config.goals = {{0, target}};
+    if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(target)}};
+    rest_at_start(arm);
+    ServoNotes notes;
+    const ServoResult result = servo_in_session(bench_.ports(), believed_, config, notes);
+    Arrival arrival;
+    arrival.is_done = result.is_done, arrival.reason = result.reason;
+    arrival.settled = result.settled.value_or(0), arrival.overshoot = result.overshoot;
+    const ServoError left = servo_error(bench_.rig().arm().backbone(bench_.rig().clock().now()),
+                                        Backbone(arm, target), arm.length());
+    arrival.rms = left.rms, arrival.most = left.most, arrival.tip = left.tip;
+    arrival.limit = nearest_limit(arm, result);
+    if (cameras_ == Cameras::wrong) arrival.floor = floor_of(arm, target, true_views(), believed_views());
+    return arrival;
+  }
+
+ private:
+  std::array<WrongStart, 2> wrong(Cameras cameras) {
+    if (cameras == Cameras::calibrated) return {wrong_start(random_), wrong_start(random_)};
+    return half_a_degree(random_);
+  }
+  void rest_at_start(const Arm& arm) {
+    (void)bench_.ports().arm->command(ArmState::straight(arm.sections.size()), 3).value();
+    bench_.rig().clock().wait_until(bench_.rig().clock().now() + 4);
+  }
+  RecordedViews pictures_of(const ArmState& target) {
+    (void)bench_.ports().arm->command(target, 3).value();
+    bench_.rig().clock().wait_until(bench_.rig().clock().now() + 4);
+    RecordedViews views;
+    for (std::size_t i = 0; i < 2; ++i) {
+      (void)bench_.ports().cameras[i].camera->newest();
+      views[i] = *bench_.ports().cameras[i].camera->wait(1).value()->picture;
+    }
+    return views;
+  }
+  std::array<View, 2> true_views() {
+    const double now = bench_.rig().clock().now();
+    return {bench_.rig().camera(0).view(now), bench_.rig().camera(1).view(now)};
+  }
+  std::array<View, 2> believed_views() {
+    std::array<View, 2> views;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const CameraPorts& camera = bench_.ports().cameras[i];
+      views[i] = view_of(believed_, {.camera = i,
+                                     .head = camera.head->read().value().state,
+                                     .stage = camera.stage->read().value().state});
+    }
+    return views;
+  }
+
+  TestRandom random_;
+  Cameras cameras_;
+  CalibrationBench bench_;
+  RigModel believed_;
+  bool is_ready_ = true;
+};
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
+}
+
+template <class Of>
+std::vector<double> of_done(const std::vector<Arrival>& arrivals, Of of) {
+  std::vector<double> values;
+  for (const Arrival& one : arrivals)
+    if (one.is_done) values.push_back(of(one));
+  return values;
+}
+
+void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bool has_floor) {
+  const std::vector<double> settled = of_done(arrivals, [](const Arrival& a) { return a.settled; }),
+                            over = of_done(arrivals,
+                                           [](const Arrival& a) { return 100 * std::max(0.0, a.overshoot); }),
+                            rms = of_done(arrivals, [](const Arrival& a) { return 100 * a.rms; }),
+                            most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
+                            tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
+                            limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
+                            floor = of_done(arrivals, [](const Arrival& a) { return 100 * a.floor; });
+  fmt::print("| {} | {}/{} | {:.2f} / {:.2f} | {:.1f} | {:.3f} / {:.3f} | {:.3f} | {:.3f} | {:.2f} | {} |\n",
+             name, rms.size(), arrivals.size(), quantile(settled, 0.5), quantile(settled, 0.95),
+             quantile(over, 0.95), quantile(rms, 0.5), quantile(rms, 0.95), quantile(most, 1),
+             quantile(tip, 0.95),
+             quantile(limit, 1.0 / std::max<double>(1, static_cast<double>(limit.size()))),
+             has_floor ? fmt::format("{:.3f} / {:.3f}", quantile(floor, 0.5), quantile(floor, 0.95)) : "-");
+}
+
+void print_reasons(const std::string& name, const std::vector<Arrival>& arrivals) {
+  std::map<std::string, int> reasons;
+  for (const Arrival& one : arrivals)
+    if (!one.is_done) ++reasons[one.reason.substr(0, one.reason.find(':'))];
+  for (const auto& [reason, count] : reasons) fmt::print("- {}: {} ended with \"{}\"\n", name, count, reason);
+}
+
+constexpr std::array laws = {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
+                             ServoLawKind::potential};
+
+std::string name_of(ServoLawKind law) { return names_of(&law)[static_cast<std::size_t>(law)]; }
+
+void study(Cameras cameras, std::size_t targets, std::uint64_t seed, unsigned threads) {
+  const std::size_t rigs = (targets + targets_a_rig - 1) / targets_a_rig;
+  std::map<ServoLawKind, std::vector<Arrival>> arrivals;
+  for (const ServoLawKind law : laws) arrivals[law].resize(targets);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < rigs; i = next++) {
+      StudyRig rig(cameras, seed + i);
+      for (std::size_t k = i * targets_a_rig; k < std::min(targets, (i + 1) * targets_a_rig); ++k) {
+        TestRandom random(1000 * seed + k);
+        const ArmState target = random_target(random);
+        for (const ServoLawKind law : laws)
+          arrivals[law][k] = rig.is_ready() ? rig.go(law, target) : Arrival{.reason = "not calibrated"};
+      }
+      std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
+    }
+  };
+  std::vector<std::thread> pool;
+  for (unsigned i = 0; i < threads; ++i) pool.emplace_back(work);
+  for (std::thread& one : pool) one.join();
+  fmt::print(
+      "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
+      "left, most, % "
+      "(largest) | tip, % (95 %) | nearest to a limit | floor, rms, % (median / 95 %) |\n"
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  for (const ServoLawKind law : laws) print_row(name_of(law), arrivals[law], cameras == Cameras::wrong);
+  fmt::print("\n");
+  for (const ServoLawKind law : laws) print_reasons(name_of(law), arrivals[law]);
+  fmt::print("\n");
+}
+
+}  // namespace
+}  // namespace flexura
+
+int main(int count, char** arguments) {
+  using namespace flexura;
+  const std::size_t targets = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 200;
+  const std::uint64_t seed = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
+  const auto threads = static_cast<unsigned>(count > 3 ? std::strtoul(arguments[3], nullptr, 10) : 2);
+  fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
+  study(Cameras::calibrated, targets, seed, threads);
+  fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
+  study(Cameras::wrong, targets, seed, threads);
+  fmt::print("## The same cameras, targets that they recorded\n\n");
+  study(Cameras::recorded, targets, seed, threads);
+  return 0;
+}

@@ -190,19 +190,23 @@ void check_whole(const Experiment& experiment, const Node& document) {
 }
 
 // What is wrong with the pictures that servos are to reach.
-void check_recorded(const Experiment& experiment) {
+void check_recorded(const Experiment& experiment, const Node& document) {
   std::vector<Problem> problems;
   const std::vector<CameraConfig> cameras = experiment.cameras();
-  for (const TaskConfig& task : experiment.task) {
-    const auto* servo = std::get_if<ServoTask>(&task);
+  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
+    const auto* servo = std::get_if<ServoTask>(&experiment.task[i]);
     if (servo == nullptr) continue;
+    const Node& task = document.find("task")->as<Node::Array>()->at(i);
     const auto [first, second] = servo_cameras(*servo, cameras);
-    for (const ServoTargetConfig& target : servo->target) {
-      if (target.pictures.empty()) continue;
+    for (std::size_t k = 0; k < servo->target.size(); ++k) {
+      if (servo->target[k].pictures.empty()) continue;
       try {
-        (void)recorded_views(target, {cameras[first], cameras[second]}, experiment.folder);
+        (void)recorded_views(servo->target[k], {cameras[first], cameras[second]}, experiment.folder);
       } catch (const InputError& error) {
-        append(problems, error);
+        const Node& target = task.find("target")->as<Node::Array>()->at(k);
+        for (const Problem& problem : error.problems())
+          problems.push_back({target.find("pictures")->where,
+                              fmt::format("task[{}].target[{}].pictures: {}", i, k, problem.what)});
       }
     }
   }
@@ -252,7 +256,7 @@ Experiment load_experiment(const std::filesystem::path& file, const Overrides& o
   auto experiment = read_with_keyframes(document, file.parent_path(), std::move(repeated));
   if (experiment.title.empty()) experiment.title = file.stem().string();
   experiment.folder = file.parent_path();
-  check_recorded(experiment);
+  check_recorded(experiment, document);
   check_whole(experiment, document);
   return experiment;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flexura/kinematics/shape.h"
+#include "flexura/math/arrays.h"
 #include "flexura/model/backbone.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
@@ -37,10 +38,15 @@ Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, Mot
 void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
   legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
   duration_ += motion->duration();
+  if (const auto* servo = std::get_if<ServoTask>(&task)) add_missed(*servo);
   const auto target = tip_target(task);
   if (!target) return;
   const double missed = (Backbone(arm_, motion->at(motion->duration())).tip().position - *target).norm();
-  if (missed <= target_tolerance * arm_.length()) return;
+  if (missed > target_tolerance * arm_.length()) add_missed(missed, target);
+}
+
+// Of the last task.
+void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& target) {
   missed_targets_.push_back({.hazard = Hazard::workspace,
                              .start = legs_.back().start,
                              .end = duration_,
@@ -48,6 +54,19 @@ void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
                              .name = legs_.back().name,
                              .value = missed,
                              .target = target});
+}
+
+// A servo's targets of which the nearest shape of the arm stays farther away than it may.
+void Schedule::add_missed(const ServoTask& servo) {
+  ArmState from = legs_.back().motion->at(0);
+  for (const ServoTargetConfig& target : servo.target) {
+    if (!target.pictures.empty()) continue;
+    const ServoTargetShape shape = servo_target_shape(target, arm_, from);
+    from = shape.state;
+    if (shape.missed <= servo.tolerance) continue;
+    const auto place = target.position ? std::optional(vector(*target.position)) : std::nullopt;
+    add_missed(shape.missed * arm_.length(), place);
+  }
 }
 
 double Schedule::time_of_step(std::size_t step) const {

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "flexura/model/backbone.h"
+#include "flexura/servo/motion_history.h"
+#include "flexura/servo/servo_eyes.h"
+#include "flexura/servo/servo_features.h"
+#include "flexura/servo/servo_judge.h"
+#include "flexura/servo/view_keeper.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/servo_views.h"
+
+namespace flexura {
+namespace {
+
+TEST(MotionHistory, IsStraightBetweenReadings) {
+  const auto blend = [](double a, double b, double share) { return a + share * (b - a); };
+  MotionHistory<double, decltype(blend)> history(1.0, blend);
+  EXPECT_FALSE(history.at(0));
+  history.add(0, 1);
+  EXPECT_EQ(history.at(-5), 1);
+  EXPECT_EQ(history.at(5), 1);
+  history.add(0.5, 2);
+  history.add(0.5, 100);  // Not newer: passed over.
+  EXPECT_DOUBLE_EQ(*history.at(0.25), 1.5);
+  EXPECT_EQ(history.at(7), 2);
+  for (int i = 1; i <= 100; ++i) history.add(0.5 + i, 2 + i);
+  EXPECT_DOUBLE_EQ(*history.at(100), 101.5);
+  EXPECT_GE(*history.at(0), 99);  // Forgotten, but for one.
+}
+
+// What the law takes for derivatives are those of what it measures, near a target.
+TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
+  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
+                                 ServoLawKind::moments, ServoLawKind::potential}) {
+    for_random_cases(20, [&](TestRandom& random) {
+      const Arm arm = servo_arm();
+      const std::array<View, 2> views = servo_views();
+      const auto features = servo_features(law, arm, 8);
+      const ArmState state = random_servo_state(random, arm, 0.6);
+      const auto desired = features->foreseen(state, views);
+      ASSERT_TRUE(desired);
+      const auto at = features->error(*desired, *desired, state, views);
+      ASSERT_TRUE(at);
+      EXPECT_NEAR(at->error.norm(), 0, 1e-12);
+      for (std::size_t i = 0; i < state.bends.size(); ++i) {
+        for (Eigen::Index axis = 0; axis < 2; ++axis) {
+          constexpr double step = 1e-4;
+          ArmState moved = state;
+          moved.bends[i][axis] += step;
+          const auto seen = features->foreseen(moved, views);
+          ASSERT_TRUE(seen);
+          const Eigen::VectorXd by = features->error(*seen, *desired, state, views)->error / step;
+          const Eigen::VectorXd column = at->by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
+          // The plane angles are read as if from afar: near, and never the other way.
+          const bool is_parallel = law == ServoLawKind::potential;
+          EXPECT_LT((by - column).norm(), (is_parallel ? 0.35 : 2e-3) * column.norm() + 1e-6);
+          EXPECT_GT(by.dot(column), 0.8 * by.norm() * column.norm());
+        }
+      }
+    });
+  }
+}
+
+TEST(MeasuredPixels, LieOnTheAxisThatIsSeen) {
+  for_random_cases(30, [&](TestRandom& random) {
+    const Arm arm = servo_arm();
+    const View view = servo_views()[0];
+    const ArmState state = random_servo_state(random, arm, 0.8);
+    // The axis of the same shape, seen a little aside.
+    const Eigen::Vector2d aside = random.vector<2>(-2, 2);
+    const Backbone backbone(arm, state);
+    Sighting seen{view, {}, {}, {}};
+    constexpr int count = 400;
+    for (int k = 4; k <= count - 4; ++k)
+      seen.points.push_back(
+          {*view.project(backbone.pose(backbone.length() * k / count).position) + aside, 0.1});
+    const std::vector<double> shares = {0, 0.2, 0.5, 0.8, 1};
+    const auto pixels = measured_pixels(arm, state, seen, shares);
+    ASSERT_TRUE(pixels);
+    for (std::size_t i = 1; i + 1 < shares.size(); ++i) {
+      double nearest = 1e9;
+      const Eigen::Vector2d pixel = pixels->col(static_cast<Eigen::Index>(i));
+      for (const CurvePoint& point : seen.points) nearest = std::min(nearest, (point.pixel - pixel).norm());
+      EXPECT_LT(nearest, 1.0);
+    }
+    // And on the shape's own image where no axis is seen.
+    const auto own = measured_pixels(arm, state, {view, {}, {}, {}}, shares);
+    EXPECT_LT((own->col(4) - *view.project(backbone.tip().position)).norm(), 1e-9);
+  });
+}
+
+ServoStep step_at(double time, double rms) {
+  ServoStep step;
+  step.time = time, step.seen_at = time, step.is_fresh = true;
+  step.error = ServoError{rms, rms, rms};
+  return step;
+}
+
+TEST(ServoJudge, KnowsTheEnd) {
+  ServoConfig config;
+  config.tolerance = 0.01, config.settle = 0.5, config.patience.timeout = 3;
+  {
+    ServoJudge judge(config, 10, 1);
+    for (int k = 0; k < 60 && !judge.is_done(); ++k) judge.add(step_at(10 + k / 30.0, 0.001));
+    // Before the goal's time nothing counts.
+    EXPECT_TRUE(judge.is_done());
+  }
+  {
+    ServoJudge judge(config, 0, 0);
+    int k = 0;
+    for (; k < 300 && !judge.hopeless(); ++k) judge.add(step_at(k / 30.0, 0.02));
+    ASSERT_TRUE(judge.hopeless());
+    EXPECT_TRUE(judge.hopeless()->starts_with("not settled")) << *judge.hopeless();
+    EXPECT_NEAR(k / 30.0, 3, 0.1);
+  }
+  {
+    ServoJudge judge(config, 0, 0);
+    for (int k = 0; k < 300 && !judge.hopeless(); ++k) judge.add(step_at(k / 30.0, 0.02 + 0.1 * k / 30.0));
+    ASSERT_TRUE(judge.hopeless());
+    EXPECT_TRUE(judge.hopeless()->starts_with("diverging")) << *judge.hopeless();
+  }
+  {
+    ServoJudge judge(config, 0, 0);
+    ServoStep step;
+    for (int k = 0; k < 300 && !judge.hopeless(); ++k) {
+      step = step_at(k / 30.0, 0.02), step.is_singular = true;
+      judge.add(step);
+    }
+    EXPECT_TRUE(judge.hopeless()->starts_with("singular")) << *judge.hopeless();
+  }
+}
+
+}  // namespace
+}  // namespace flexura

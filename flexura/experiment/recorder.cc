@@ -137,16 +137,17 @@ void Recorder::calibration(const CalibrationDecisionMessage& message) {
   channels_->write(channels_->calibration_decisions, calibration_decisions_topic, message.time, message);
 }
 
-void Recorder::image(const std::string& camera, const Frame& frame) {
+std::string picture_file(const Frame& frame) {
+  // A run waits for every frame: quickly made rather than small.
+  constexpr PngConfig quick{.level = 1};
+  return std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture);
+}
+
+void Recorder::image(const std::string& camera, const Frame& frame, std::string file) {
   const std::string topic = image_topic(camera);
   const auto [channel, is_new] = channels_->images.try_emplace(camera);
   if (is_new) channel->second = channels_->add<ImageMessage>(topic);
-  // A run waits for every frame: quickly made rather than small.
-  constexpr PngConfig quick{.level = 1};
-  const ImageMessage message{
-      time_message(nanoseconds(frame.time)),
-      topic.substr(1),
-      {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
+  const ImageMessage message{time_message(nanoseconds(frame.time)), topic.substr(1), {std::move(file)}};
   channels_->write(channel->second, nanoseconds(frame.received), message);
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <utility>
+#include <string>
 
 #include "flexura/experiment/recorder.h"
 #include "flexura/safety/motion_check.h"
@@ -50,8 +50,9 @@ std::vector<FilmedFrame> Filming::new_frames() {
   std::vector<std::vector<FilmedFrame>> films(due.size());
   crew_.run(due.size(), [&](std::size_t place) {
     const std::size_t camera = due[place];
+    const std::string& name = cameras_[camera].name;
     for (const Frame& frame : rig_.camera(camera).camera().all_new())
-      films[place].push_back({cameras_[camera].name, frame, picture_file(frame)});
+      films[place].push_back({name, frame, logged_image(name, frame)});
   });
   std::vector<FilmedFrame> frames;
   for (auto& film : films) std::ranges::move(film, std::back_inserter(frames));
@@ -65,7 +66,7 @@ void Filming::play_to(double time, const ArmState& state, const TakeFrame& take)
   (void)ports.arm->command(state, time - ports.clock->now()).value();
   do {
     ports.clock->wait_until(std::min(time, ports.clock->now() + stretch_));
-    for (FilmedFrame& filmed : new_frames()) take(std::move(filmed));
+    for (const FilmedFrame& filmed : new_frames()) take(filmed);
   } while (ports.clock->now() < time);
 }
 

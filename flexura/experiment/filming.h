@@ -24,7 +24,7 @@ namespace flexura {
 struct FilmedFrame {
   std::string camera;
   Frame frame;
-  std::string file;  ///< picture_file's
+  std::string message;  ///< Its logged_image.
 };
 
 /// Plays an experiment's motion on its simulated rig and hands out the frames that its cameras deliver on the
@@ -35,7 +35,7 @@ class Filming {
   explicit Filming(const Experiment& experiment);
   Filming(const Experiment& experiment, std::size_t threads);
 
-  using TakeFrame = std::function<void(FilmedFrame)>;
+  using TakeFrame = std::function<void(const FilmedFrame&)>;
 
   /// Commands the arm to be in `state` at `time` s, not before the call's before, and gives every frame
   /// received until then, in the order of time and then of the cameras. Those that cameras deliver during one

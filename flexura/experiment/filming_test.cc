@@ -67,7 +67,7 @@ Film film_of(const std::string& text, double step = 0.05, std::size_t threads = 
   for (int i = 0; i <= steps; ++i) {
     const double time = i * step;
     filming.play_to(time, schedule.state_at(time), [&](const FilmedFrame& filmed) {
-      EXPECT_EQ(filmed.file, picture_file(filmed.frame));
+      EXPECT_EQ(filmed.message, logged_image(filmed.camera, filmed.frame));
       film.emplace_back(filmed.camera, filmed.frame);
     });
   }

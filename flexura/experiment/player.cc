@@ -93,8 +93,8 @@ Played Player::play() {
 void Player::film_to(double time, const ArmState& state) {
   if (!filming_) return;
   if (experiment_.record.cameras) {
-    filming_->play_to(time, state, [this](FilmedFrame filmed) {
-      witness_.image(filmed.camera, filmed.frame, std::move(filmed.file));
+    filming_->play_to(time, state, [this](const FilmedFrame& filmed) {
+      witness_.image(filmed.camera, filmed.frame, filmed.message);
     });
   } else {
     filming_->pass_to(time, state);

@@ -137,18 +137,20 @@ void Recorder::calibration(const CalibrationDecisionMessage& message) {
   channels_->write(channels_->calibration_decisions, calibration_decisions_topic, message.time, message);
 }
 
-std::string picture_file(const Frame& frame) {
+std::string logged_image(const std::string& camera, const Frame& frame) {
   // A run waits for every frame: quickly made rather than small.
   constexpr PngConfig quick{.level = 1};
-  return std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture);
+  const ImageMessage message{
+      time_message(nanoseconds(frame.time)),
+      image_topic(camera).substr(1),
+      {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
+  return write_json(Codec<ImageMessage>::write(message));
 }
 
-void Recorder::image(const std::string& camera, const Frame& frame, std::string file) {
-  const std::string topic = image_topic(camera);
+void Recorder::image(const std::string& camera, const Frame& frame, std::string_view message) {
   const auto [channel, is_new] = channels_->images.try_emplace(camera);
-  if (is_new) channel->second = channels_->add<ImageMessage>(topic);
-  const ImageMessage message{time_message(nanoseconds(frame.time)), topic.substr(1), {std::move(file)}};
-  channels_->write(channel->second, nanoseconds(frame.received), message);
+  if (is_new) channel->second = channels_->add<ImageMessage>(image_topic(camera));
+  channels_->log.write(channel->second, nanoseconds(frame.received), message);
 }
 
 void Recorder::close() { channels_->log.close(); }

@@ -15,8 +15,8 @@
 
 namespace flexura {
 
-/// A frame's picture as logs have it: PNG, made quickly.
-[[nodiscard]] std::string picture_file(const Frame& frame);
+/// What logs have of a camera's frame: an ImageMessage as JSON.
+[[nodiscard]] std::string logged_image(const std::string& camera, const Frame& frame);
 
 /// Writes a run's log.mcap: the arm's state, the poses of its sections, and events (docs/log-format.md).
 /// Times are the experiment's, in s from its start.
@@ -49,8 +49,9 @@ class Recorder {
   void calibration(const CalibrationSightingMessage& message, double received);
   void calibration(const CalibrationDecisionMessage& message);
 
-  /// A frame, and the file of its picture. The first one of a camera opens its channel.
-  void image(const std::string& camera, const Frame& frame, std::string file);
+  /// A frame; `message` is its logged_image, which takes longest and needs no log. The first one of a camera
+  /// opens its channel.
+  void image(const std::string& camera, const Frame& frame, std::string_view message);
 
   /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
   void close();

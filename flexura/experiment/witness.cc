@@ -50,8 +50,8 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
   states_.push_back(state);
 }
 
-void Witness::image(const std::string& camera, const Frame& frame, std::string file) {
-  recorder_.image(camera, frame, std::move(file));
+void Witness::image(const std::string& camera, const Frame& frame, std::string_view message) {
+  recorder_.image(camera, frame, message);
   ++frames_[camera];
 }
 

@@ -184,10 +184,6 @@ bool is_close(const LightImage& quick, const LightImage& exact) {
   return true;
 }
 
-}  // namespace
-
-namespace {
-
 void count(const TruthMaps& maps) {
   bool sees_arm = false, sees_more = false;
   for (const std::uint16_t value : maps.label.values()) {
@@ -199,6 +195,16 @@ void count(const TruthMaps& maps) {
   ++tally.drawn;
   if (sees_arm) ++tally.with_arm;
   if (sees_more) ++tally.with_stand;
+}
+
+// Whether both ways draw the scene as it is: sections that have a length, and a lens that is all but linear
+// within a pixel.
+bool is_comparable(const Scene& scene, const View& view) {
+  constexpr double shortest = 1e-6, widest = 1.0 / 16;  // m; of a pixel, rad
+  const Intrinsics& lens = view.lens.intrinsics();
+  const bool is_linear = !lens.is_distorted() || std::min(lens.fx, lens.fy) * widest > 1;
+  return is_linear &&
+         std::ranges::all_of(scene.arm.tube, [](const TubeArc& arc) { return arc.arc.length > shortest; });
 }
 
 }  // namespace
@@ -216,7 +222,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     renderer.render(scene, view, pixels, quick);
     renderer.render(scene, view, pixels, picture, true);
     const auto limit = static_cast<float>(1.001 * brightest(scene) + 1e-3);
-    if (!is_close(quick, picture)) std::abort();
+    if (is_comparable(scene, view) && !is_close(quick, picture)) std::abort();
     for (const LightImage* one : {&quick, &picture}) {
       for (const float value : one->light.values())
         if (!std::isfinite(value) || value < -1e-4F || value > limit) std::abort();

@@ -166,7 +166,7 @@ describe('a recording', () => {
 
   test('one request for a time is outstanding at a time, and the last time asked for is reached', async () => {
     server.log.length = 0;
-    server.delay_ms = 150;
+    server.delay_ms = 600;
     server.most_outstanding = 0;
     for (let i = 0; i < 30; ++i) await slide(page, '#scrub', (6 * i) / 29);
     await until(async () => Math.abs((await shown_time()) - 6) < 1e-6);

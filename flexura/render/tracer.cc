@@ -321,7 +321,8 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
   };
   for (std::size_t i = 0; i < sights.count; ++i) {
     const Border& border = sights.borders[i];
-    const double margin = 1e-6 * trace.hit.depth + 2 * slope * (1 + border.distance);
+    // What is seen recedes at another rate where the border is.
+    const double margin = 1e-6 * trace.hit.depth + 4 * slope * (1 + border.distance);
     if (!(border.depth <= trace.hit.depth + margin)) continue;
     if (!border.is_ring) trace.clear = std::min(trace.clear, border.distance);
     if (border < trace.nearest) {

@@ -15,9 +15,14 @@ export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS
 # As many at a time as there are cores; each in a folder of its own, for the input that it leaves when it fails.
 run_target() {
   local target=$1 folder=$PWD/build/studies/fuzz/$1 root=$PWD
+  # Any bytes are a scene: most of them are drawn at random rather than changed from the corpus. A text of random bytes
+  # is refused at its first.
+  local fresh=0
+  [ "$target" != render_fuzz ] || fresh=0.9
   mkdir -p "$folder"
   cd "$folder"
-  "$root/build/asan/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$cases" --seed "$seed" >log 2>&1 || {
+  "$root/build/asan/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$cases" --seed "$seed" --fresh "$fresh" \
+    >log 2>&1 || {
     echo "FAILED: $folder/log" >&2
     return 1
   }
@@ -32,10 +37,11 @@ row_of() {
     awk -v target="$1" -v seed="$seed" -v commit="$(git rev-parse --short HEAD)" '
       / files, seed / { files = $1 }
       / cases\/s$/ { speed = $1 }
+      / random throughout$/ { fresh = $1 }
       / cases, no failure$/ { cases = $1 }
       END {
         if (cases == "") exit 1
-        printf "| `%s` | %d | %d | %d | 0 | %d | %s |\n", target, files, cases, seed, speed, commit
+        printf "| `%s` | %d | %d | %d | %d | 0 | %d | %s |\n", target, files, cases, fresh, seed, speed, commit
       }
     ' "build/studies/fuzz/$1/log"
   else
@@ -43,21 +49,33 @@ row_of() {
   fi
 }
 
+# What a target says of its cases itself.
+words_of() {
+  if [[ " ${targets[*]} " == *" $1 "* ]]; then
+    sed -n "s/^\([0-9]* scenes drawn.*\)/\`$1\`: \1./p" "build/studies/fuzz/$1/log"
+  else
+    grep "^\`$1\`: " "$page" 2>/dev/null || true
+  fi
+}
+
 mkdir -p docs/studies
 {
   echo "# Fuzzing"
   echo
-  echo "Every reader of foreign text, pictures and protocols, fed its committed corpus (\`tests/corpus/TARGET\`) and seeded"
-  echo "mutations of it, under AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
+  echo "Every reader of foreign text, pictures and protocols, fed its committed corpus (\`tests/corpus/TARGET\`), seeded"
+  echo "mutations of it and, where any bytes mean something, bytes that are random throughout, under AddressSanitizer,"
+  echo "LeakSanitizer and UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
   echo "A case fails when the target crashes, lets an exception out, or takes more than half a minute."
   echo
   echo '```console'
   echo "\$ ./dev study fuzz 1000000 1"
   echo '```'
   echo
-  echo "| target | corpus files | mutated cases | seed | failures | cases a second | commit |"
-  echo "| --- | ---: | ---: | ---: | ---: | ---: | --- |"
+  echo "| target | corpus files | cases | random throughout | seed | failures | cases a second | commit |"
+  echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
   for target in "${all[@]}"; do row_of "$target"; done
+  echo
+  for target in "${all[@]}"; do words_of "$target"; done
   echo
   echo "As many targets ran at a time as there are cores ($(nproc)); the speed is of the sanitized build."
   echo "The command runs all targets; with their names behind it only those, and the other rows stay."

@@ -1,7 +1,11 @@
-// Runs a fuzz target without libFuzzer: on the files of a corpus, then on seeded mutations of them.
+// Runs a fuzz target without libFuzzer: on the files of a corpus, then on seeded mutations of them, or on
+// bytes that are random throughout.
 //
-//   TARGET --corpus DIR [--cases N] [--seed S]    corpus, then N mutated inputs; tokens from DIR.dict if it
-//   exists TARGET FILE...                                these inputs only, to see a failure again
+//   TARGET --corpus DIR [--cases N] [--seed S] [--fresh SHARE]
+//       corpus, then N more inputs; SHARE of them (0 to 1, else none) random bytes, the others mutated, with
+//       tokens from DIR.dict if it exists
+//   TARGET FILE...
+//       these inputs only, to see a failure again
 //
 // When the target dies, its input is written to fuzz-failure.bin and the exit status is not 0. Letting an
 // exception out is dying; so is taking more than half a minute of processor time for one input.
@@ -201,21 +205,38 @@ std::vector<Input> read_dictionary(const std::filesystem::path& path) {
 
 class Mutator {
  public:
-  Mutator(std::vector<Input> corpus, std::vector<Input> tokens, std::uint64_t seed)
-      : corpus_(std::move(corpus)), tokens_(std::move(tokens)), random_(seed) {
+  Mutator(std::vector<Input> corpus, std::vector<Input> tokens, std::uint64_t seed, double fresh_share)
+      : corpus_(std::move(corpus)), tokens_(std::move(tokens)), random_(seed), fresh_share_(fresh_share) {
     for (const std::string_view text : number_texts) tokens_.emplace_back(text.begin(), text.end());
-    for (const Input& input : corpus_) max_size_ = std::max(max_size_, 2 * input.size());
+    for (const Input& input : corpus_) {
+      max_size_ = std::max(max_size_, 2 * input.size());
+      fresh_size_ = std::max(fresh_size_, 2 * input.size());
+    }
   }
 
-  /// A corpus file after one to eight changes; valid until the next call.
+  /// A corpus file after one to eight changes, or random bytes; valid until the next call.
   const Input& next() {
+    if (fresh_share_ > 0 && static_cast<double>(random_.next() >> 11) * 0x1p-53 < fresh_share_) {
+      ++fresh_;
+      return fresh();
+    }
     input_ = random_.of(corpus_);
     for (std::size_t changes = std::size_t{1} << random_.below(4); changes > 0; --changes) change();
     if (input_.size() > max_size_) input_.resize(max_size_);
     return input_;
   }
 
+  /// How many inputs were random throughout.
+  [[nodiscard]] std::uint64_t fresh_count() const { return fresh_; }
+
  private:
+  // Twice as long as the longest file of the corpus: no target runs out of them on its way.
+  const Input& fresh() {
+    input_.resize(fresh_size_);
+    for (std::uint8_t& byte : input_) byte = static_cast<std::uint8_t>(random_.next());
+    return input_;
+  }
+
   void change() {
     constexpr std::size_t short_piece = 16;
     const std::size_t at = random_.below(input_.size() + 1);
@@ -291,7 +312,9 @@ class Mutator {
   std::vector<Input> corpus_;
   std::vector<Input> tokens_;
   Random random_;
-  std::size_t max_size_ = 4096;
+  std::size_t max_size_ = 4096, fresh_size_ = 64;
+  double fresh_share_;
+  std::uint64_t fresh_ = 0;
   Input input_;
 };
 
@@ -299,6 +322,7 @@ struct Options {
   std::filesystem::path corpus;
   std::uint64_t cases = 0;
   std::uint64_t seed = 1;
+  double fresh_share = 0;
   std::vector<std::filesystem::path> files;
 };
 
@@ -318,6 +342,10 @@ Options parse(int count, char** arguments) {
       options.cases = std::stoull(value);
     } else if (name == "--seed") {
       options.seed = std::stoull(value);
+    } else if (name == "--fresh") {
+      options.fresh_share = std::stod(value);
+      if (!(options.fresh_share >= 0 && options.fresh_share <= 1))
+        throw std::runtime_error("--fresh " + value + ": expected 0 to 1");
     } else {
       throw std::runtime_error("unknown option " + std::string(name));
     }
@@ -347,6 +375,8 @@ void run_mutations(Mutator mutator, std::uint64_t cases) {
   for (std::uint64_t i = 0; i < cases; ++i) run(mutator.next());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   if (cases > 0) std::printf("%.0f cases/s\n", static_cast<double>(cases) / took.count());
+  if (mutator.fresh_count() > 0)
+    std::printf("%llu random throughout\n", static_cast<unsigned long long>(mutator.fresh_count()));
   std::printf("%llu cases, no failure\n", static_cast<unsigned long long>(cases));
 }
 
@@ -369,7 +399,8 @@ int main(int count, char** arguments) {
   watch_for_death();
   for (const Input& input : inputs) run(input);
   if (options.files.empty()) {
-    run_mutations(Mutator(std::move(inputs), std::move(tokens), options.seed), options.cases);
+    run_mutations(Mutator(std::move(inputs), std::move(tokens), options.seed, options.fresh_share),
+                  options.cases);
   }
   return EXIT_SUCCESS;
 }

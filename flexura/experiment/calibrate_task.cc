@@ -50,7 +50,10 @@ class LoggedSession : public RigSessionWatcher {
     witness_.recorder().calibration(message);
   }
   void seen(const RigSight& sight) override {
-    if (keeps_images_) witness_.image(name_of(sight.stance.camera), sight.frame);
+    if (keeps_images_) {
+      const std::string& camera = name_of(sight.stance.camera);
+      witness_.image(camera, sight.frame, logged_image(camera, sight.frame));
+    }
     CalibrationSightingMessage message;
     message.time = sight.frame.time, message.look = static_cast<std::int64_t>(sight.look);
     message.camera = name_of(sight.stance.camera), message.frame = sight.frame.number;

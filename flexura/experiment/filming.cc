@@ -1,45 +1,73 @@
 #include "flexura/experiment/filming.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <iterator>
+#include <string>
 
+#include "flexura/experiment/recorder.h"
 #include "flexura/safety/motion_check.h"
 #include "flexura/sim/simulated_camera.h"
 
 namespace flexura {
+namespace {
 
-Filming::Filming(const Experiment& experiment)
-    : photographer_(experiment),
+std::vector<std::unique_ptr<Photographer>> photographers(const Experiment& experiment, std::size_t count) {
+  std::vector<std::unique_ptr<Photographer>> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back(std::make_unique<Photographer>(experiment));
+  return all;
+}
+
+// No camera has more pictures than this at once in the memory, however long a step of the clock is.
+double few_frames(const std::vector<CameraConfig>& cameras) {
+  constexpr double few = 4;
+  double fastest = 1;
+  for (const CameraConfig& camera : cameras) fastest = std::max(fastest, camera.sensor.frame_rate);
+  return few / fastest;
+}
+
+}  // namespace
+
+Filming::Filming(const Experiment& experiment) : Filming(experiment, experiment.true_rig().cameras.size()) {}
+
+Filming::Filming(const Experiment& experiment, std::size_t threads)
+    : cameras_(experiment.true_rig().cameras),
+      photographers_(photographers(experiment, cameras_.size())),
       rig_(
-          experiment.model_rig(), experiment.true_rig(),
-          [this](const Shot& shot) { return photographer_.take(shot); },
+          experiment.model_rig(), experiment.true_rig(), [this](const Shot& shot) { return take(shot); },
           static_cast<std::uint64_t>(experiment.seed)),
       seed_(static_cast<std::uint64_t>(experiment.seed)),
-      cameras_(experiment.true_rig().cameras),
-      frames_(cameras_.size(), 0) {}
+      stretch_(few_frames(cameras_)),
+      crew_(threads) {}
 
-Filming::Next Filming::next() const {
-  Next first{0, 0, std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    const double received = frame_times(cameras_[i].sensor, frames_[i]).received;
-    if (received < first.received) first = {i, frames_[i], received};
-  }
-  return first;
+// Of all cameras, in the order of time and then of the cameras.
+std::vector<FilmedFrame> Filming::new_frames() {
+  std::vector<std::size_t> due;
+  for (std::size_t i = 0; i < cameras_.size(); ++i)
+    if (rig_.camera(i).camera().has_new()) due.push_back(i);
+  std::vector<std::vector<FilmedFrame>> films(due.size());
+  crew_.run(due.size(), [&](std::size_t place) {
+    const std::size_t camera = due[place];
+    const std::string& name = cameras_[camera].name;
+    for (const Frame& frame : rig_.camera(camera).camera().all_new())
+      films[place].push_back({name, frame, logged_image(name, frame)});
+  });
+  std::vector<FilmedFrame> frames;
+  for (auto& film : films) std::ranges::move(film, std::back_inserter(frames));
+  std::ranges::stable_sort(frames, {}, [](const FilmedFrame& filmed) { return filmed.frame.received; });
+  return frames;
 }
 
 void Filming::play_to(double time, const ArmState& state, const TakeFrame& take) {
   const RigPorts ports = rig_.ports();
   // The simulated rig has no links that are lost: a fault here is a fault of the program.
   (void)ports.arm->command(state, time - ports.clock->now()).value();
-  for (Next frame = next(); frame.received <= time; frame = next()) {
-    ports.clock->wait_until(frame.received);
-    const auto received = ports.cameras[frame.camera].camera->newest().value();
-    if (received) take(ports.cameras[frame.camera].name, *received);
-    ++frames_[frame.camera];
-  }
-  ports.clock->wait_until(time);
+  do {
+    ports.clock->wait_until(std::min(time, ports.clock->now() + stretch_));
+    for (const FilmedFrame& filmed : new_frames()) take(filmed);
+  } while (ports.clock->now() < time);
 }
 
 void Filming::pass_to(double time, const ArmState& state) {
@@ -49,8 +77,7 @@ void Filming::pass_to(double time, const ArmState& state) {
 }
 
 void Filming::skip_to_now() {
-  for (std::size_t i = 0; i < cameras_.size(); ++i)
-    while (frame_times(cameras_[i].sensor, frames_[i]).received <= rig_.clock().now()) ++frames_[i];
+  for (std::size_t i = 0; i < cameras_.size(); ++i) rig_.camera(i).camera().pass_over();
 }
 
 RigStance Filming::true_stance(std::size_t camera) {

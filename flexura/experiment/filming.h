@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,20 +16,31 @@
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_ports.h"
+#include "flexura/sim/crew.h"
 #include "flexura/sim/simulated_rig.h"
 
 namespace flexura {
 
+/// A frame that was filmed.
+struct FilmedFrame {
+  std::string camera;
+  Frame frame;
+  std::string message;  ///< Its logged_image.
+};
+
 /// Plays an experiment's motion on its simulated rig and hands out the frames that its cameras deliver on the
-/// way.
+/// way. The same frames, whatever number of threads draws them.
 class Filming {
  public:
+  /// One thread a camera.
   explicit Filming(const Experiment& experiment);
+  Filming(const Experiment& experiment, std::size_t threads);
 
-  using TakeFrame = std::function<void(const std::string& camera, const Frame& frame)>;
+  using TakeFrame = std::function<void(const FilmedFrame&)>;
 
   /// Commands the arm to be in `state` at `time` s, not before the call's before, and gives every frame
-  /// received until then, in the order of time and then of the cameras.
+  /// received until then, in the order of time and then of the cameras. Those that cameras deliver during one
+  /// call are drawn at the same time.
   void play_to(double time, const ArmState& state, const TakeFrame& take);
 
   /// The same, and no frame is taken on the way.
@@ -55,25 +67,21 @@ class Filming {
   /// What the camera in this place would expose from `start` s on, up to which the motion must have been
   /// played; at the start of a frame, that frame.
   [[nodiscard]] Shot shot(std::size_t camera, double start);
-  [[nodiscard]] Picture take(const Shot& shot) { return photographer_.take(shot); }
+  [[nodiscard]] Picture take(const Shot& shot) { return photographers_[shot.camera]->take(shot); }
   /// What stands before the camera of `shot` at a time since its start.
   [[nodiscard]] ShownScene shown(const Shot& shot, double time) const {
-    return {photographer_.scene(shot.backbone(time)), shot.view(time)};
+    return {photographers_[shot.camera]->scene(shot.backbone(time)), shot.view(time)};
   }
 
  private:
-  struct Next {
-    std::size_t camera;
-    std::int64_t frame;
-    double received;
-  };
-  [[nodiscard]] Next next() const;
+  [[nodiscard]] std::vector<FilmedFrame> new_frames();
 
-  Photographer photographer_;
+  std::vector<CameraConfig> cameras_;
+  std::vector<std::unique_ptr<Photographer>> photographers_;  // each camera's own: they draw at the same time
   SimulatedRig rig_;
   std::uint64_t seed_;
-  std::vector<CameraConfig> cameras_;
-  std::vector<std::int64_t> frames_;  // that each camera has delivered or lost
+  double stretch_;  // of time that is filmed at once, s: a few frames of the fastest camera
+  Crew crew_;
 };
 
 }  // namespace flexura

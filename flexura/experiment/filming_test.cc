@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <numbers>
@@ -15,6 +16,7 @@
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/messages.h"
+#include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
@@ -56,16 +58,18 @@ to = { bends = [[0.8, 0.5], [-0.4, 1.2]] }
 
 using Film = std::vector<std::pair<std::string, Frame>>;
 
-Film film_of(const std::string& text, double step = 0.05) {
+Film film_of(const std::string& text, double step = 0.05, std::size_t threads = 2) {
   const Experiment experiment = parse_experiment(text, "x.toml");
   const Schedule schedule(experiment);
-  Filming filming(experiment);
+  Filming filming(experiment, threads);
   Film film;
   const auto steps = static_cast<int>(std::lround(schedule.duration() / step));
   for (int i = 0; i <= steps; ++i) {
     const double time = i * step;
-    filming.play_to(time, schedule.state_at(time),
-                    [&](const std::string& camera, const Frame& frame) { film.emplace_back(camera, frame); });
+    filming.play_to(time, schedule.state_at(time), [&](const FilmedFrame& filmed) {
+      EXPECT_EQ(filmed.message, logged_image(filmed.camera, filmed.frame));
+      film.emplace_back(filmed.camera, filmed.frame);
+    });
   }
   return film;
 }
@@ -93,6 +97,33 @@ TEST(Filming, GivesTheSamePicturesTwice) {
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i)
     EXPECT_EQ(*first[i].second.picture, *second[i].second.picture) << i;
+}
+
+void expect_same_film(const Film& film, const Film& other) {
+  ASSERT_EQ(film.size(), other.size());
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    EXPECT_EQ(film[i].first, other[i].first) << i;
+    const Frame &a = film[i].second, &b = other[i].second;
+    EXPECT_EQ(a.number, b.number) << i;
+    EXPECT_EQ(a.time, b.time) << i;
+    EXPECT_EQ(a.received, b.received) << i;
+    EXPECT_EQ(*a.picture, *b.picture) << i;
+  }
+}
+
+TEST(Filming, GivesTheSameFilmForAnyNumberOfThreads) {
+  const std::string lossy = replaced(small_pictures, "delay_ms = 20", "delay_ms = 20, drop = 0.3");
+  const Film one = film_of(lossy, 0.05, 1);
+  EXPECT_LT(one.size(), 14U) << "some frames are lost";
+  for (const std::size_t threads : {0U, 2U, 3U, 8U}) expect_same_film(one, film_of(lossy, 0.05, threads));
+}
+
+TEST(Filming, GivesTheSameFilmForAnyStepOfAnArmThatStands) {
+  const std::string still = replaced(small_pictures, "to = { bends = [[0.8, 0.5], [-0.4, 1.2]] }",
+                                     "to = { bends = [[0, 0], [0, 0]] }");
+  const Film film = film_of(still, 0.05);
+  EXPECT_EQ(film.size(), 15U);
+  for (const double step : {0.005, 0.25, 1.0}) expect_same_film(film, film_of(still, step));
 }
 
 TEST(Filming, ShowsTheArmMoving) {

@@ -61,7 +61,7 @@ ImageStudy::Measured ImageStudy::measured_difference() const {
   return result;
 }
 
-ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras) {
+ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras, std::uint64_t seed) {
   const CameraConfig* config = camera_of(task, cameras);
   const std::vector<Variation> varied = variations(task.vary);
   if (config == nullptr || varied.size() != 1 || task.points < 2)
@@ -69,7 +69,8 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
   const Camera camera(*config);
   const StudyTarget target(task.target);
   Renderer renderer;
-  MeasuredTarget measured_target(target, config->sensor);
+  const auto place = static_cast<std::uint64_t>(config - cameras.data());
+  MeasuredTarget measured_target(target, config->sensor, {seed, place, 0});
   ImageStudy study{.name = task.name.empty() ? "study" : task.name,
                    .camera = config->name,
                    .variation = varied.front(),

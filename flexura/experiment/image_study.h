@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,7 +49,8 @@ struct ImageStudy {
 };
 
 /// Makes a study that check_study has passed, through the camera of that name among `cameras`, from where it
-/// stands at the start.
-[[nodiscard]] ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras);
+/// stands at the start. The noise of its pictures is that of `seed`, the camera's place and the value's.
+[[nodiscard]] ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras,
+                                      std::uint64_t seed);
 
 }  // namespace flexura

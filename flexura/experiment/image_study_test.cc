@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -40,7 +41,7 @@ ImageStudy study(VaryConfig::Values VaryConfig::* parameter, double first, doubl
   task.vary.*parameter = {{first, last}};
   task.points = points;
   task.target.radius = circle_radius;
-  return study_images(task, {camera});
+  return study_images(task, {camera}, 1);
 }
 
 // The features at the last value of a study, by the formulas.
@@ -111,7 +112,7 @@ TEST(ImageStudy, MeasuresInPicturesThroughADistortedLensAndItsNoise) {
     task.vary.orbit = {{-50 * degree, 50 * degree}};
     task.points = 7, task.measure = true;
     task.target.radius = circle_radius;
-    const ImageStudy study = study_images(task, {camera});
+    const ImageStudy study = study_images(task, {camera}, 1);
     ASSERT_EQ(study.columns.size(), 3U);
     EXPECT_EQ(study.columns[2].source, "measured");
     const auto [count, rms] = study.measured_difference();
@@ -119,6 +120,30 @@ TEST(ImageStudy, MeasuresInPicturesThroughADistortedLensAndItsNoise) {
     EXPECT_LT(rms, 0.1);
     EXPECT_GT(rms, 1e-4);
   }
+}
+
+TEST(ImageStudy, MeasuresInTheNoiseOfTheSeedAndTheCamera) {
+  CameraConfig front = front_camera(), side = front;
+  front.sensor.width = 640, front.sensor.height = 480, front.sensor.read_noise = 2;
+  side = front;
+  side.name = "side";
+  StudyTask task;
+  task.vary.orbit = {{-20 * degree, 20 * degree}};
+  task.points = 2, task.measure = true;
+  task.target.radius = circle_radius;
+  const auto measured = [&](const std::vector<CameraConfig>& cameras, const char* name, std::uint64_t seed) {
+    task.camera = name;
+    const ImageStudy study = study_images(task, cameras, seed);
+    EXPECT_LT(study.measured_difference().rms, 0.1);
+    EXPECT_EQ(study.measured_difference().count, 2 * length_features);
+    return study.columns[2].features;
+  };
+  const auto first = measured({front, side}, "front", 1);
+  EXPECT_EQ(measured({front, side}, "front", 1), first);
+  EXPECT_EQ(measured({front}, "front", 1), first);
+  EXPECT_NE(measured({front, side}, "front", 2), first) << "another seed";
+  EXPECT_NE(measured({front, side}, "side", 1), first) << "another camera in the same place";
+  EXPECT_EQ(measured({side, front}, "side", 1), first) << "the cameras' places count, not their names";
 }
 
 TEST(ImageStudy, ZoomsLinearly) {
@@ -149,7 +174,7 @@ TEST(ImageStudy, ItsTwoColumnsAgreeForEveryParameterOfACameraInGeneralPosition) 
     if (field.name[0] == 'c' || field.name[0] == 'f') values = "[400, 500]";  // px
     const auto task =
         read_as<StudyTask>(parse_toml(fmt::format("vary.{} = {}\npoints = 5", field.name, values), "x.toml"));
-    const ImageStudy found = study_images(task, {camera});
+    const ImageStudy found = study_images(task, {camera}, 1);
     EXPECT_EQ(found.variation.name, field.name);
     EXPECT_TRUE(found.is_seen(0));
     EXPECT_GT((*found.images[0].circle[top_right] - *found.images[4].circle[top_right]).norm(), 1e-6);
@@ -258,7 +283,7 @@ TEST(ImageStudy, MeasuresTargetsSmallerThanAPixel) {
   task.vary.orbit = {{-0.5, 0.5}};
   task.points = 3;
   task.target.radius = 1e-4;  // 0.03 px
-  const ImageStudy tiny = study_images(task, {front_camera()});
+  const ImageStudy tiny = study_images(task, {front_camera()}, 1);
   EXPECT_NEAR(*tiny.columns[1].features[1][0], focal_length * std::numbers::sqrt2 * 1e-4 / distance, 1e-9);
   EXPECT_LE(tiny.largest_difference()[0], 1e-9);
 }
@@ -323,15 +348,15 @@ TEST(AxesRatio, IsZeroOnALineAndNoneWhereNothingIsAnEllipse) {
 TEST(ImageStudy, RefusesWhatNoCheckHasPassed) {
   const std::vector<CameraConfig> cameras = {front_camera()};
   StudyTask task;
-  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "nothing to vary";
+  EXPECT_THROW((void)study_images(task, cameras, 1), std::invalid_argument) << "nothing to vary";
   task.vary.pan = {{0, 1}};
-  EXPECT_THROW((void)study_images(task, {}), std::invalid_argument) << "no camera";
-  EXPECT_EQ(study_images(task, cameras).values.size(), 101U);
+  EXPECT_THROW((void)study_images(task, {}, 1), std::invalid_argument) << "no camera";
+  EXPECT_EQ(study_images(task, cameras, 1).values.size(), 101U);
   task.vary.tilt = {{0, 1}};
-  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "two parameters";
+  EXPECT_THROW((void)study_images(task, cameras, 1), std::invalid_argument) << "two parameters";
   task.vary.tilt.reset();
   task.points = 1;
-  EXPECT_THROW((void)study_images(task, cameras), std::invalid_argument) << "one value";
+  EXPECT_THROW((void)study_images(task, cameras, 1), std::invalid_argument) << "one value";
 }
 
 }  // namespace

@@ -90,8 +90,9 @@ std::optional<Eigen::Matrix3d> homography(const std::array<Vector2d, 4>& from,
 
 }  // namespace
 
-MeasuredTarget::MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor)
-    : target_(target), sensor_(gray_sensor(sensor)) {
+MeasuredTarget::MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor,
+                               const NoiseStream& stream)
+    : target_(target), sensor_(gray_sensor(sensor)), stream_(stream) {
   const double side = std::numbers::sqrt2 * target.radius();
   Screen& square = scene_.screens.emplace_back();
   square.X_WS = target.frame();
@@ -110,7 +111,8 @@ TargetImage MeasuredTarget::image(const View& view, std::uint64_t frame) {
     expected[i] = p_CP.head<2>() / p_CP.z();
   }
   renderer_.render(scene_, view, PixelKind::gray, light_);
-  sensor_.read(light_.light, {0, 0, frame}, rows_, picture_);
+  stream_.frame = frame;
+  sensor_.read(light_.light, stream_, rows_, picture_);
   const FigureBorder figure = largest_figure(picture_);
   if (!figure.reason.empty() || figure.touches_border) return {};
   std::array<std::vector<Vector2d>, 4> edges;

@@ -15,7 +15,8 @@ namespace flexura {
 /// distortion undone. What the corners tell of the plane places the centre and the circle in the image.
 class MeasuredTarget {
  public:
-  MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor);
+  /// `stream` has the seed and the camera of the pictures' noise.
+  MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor, const NoiseStream& stream);
 
   /// In picture number `frame`, whose noise is its own. Nothing where the square is not wholly in the image,
   /// or is seen from its edge. Which edge is which is told by where the formulas have them.
@@ -24,6 +25,7 @@ class MeasuredTarget {
  private:
   const StudyTarget& target_;
   Sensor sensor_;
+  NoiseStream stream_;
   Scene scene_;
   Renderer renderer_;
   LightImage light_;

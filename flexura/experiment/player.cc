@@ -95,8 +95,8 @@ Played Player::play() {
 void Player::film_to(double time, const ArmState& state) {
   if (!filming_) return;
   if (experiment_.record.cameras) {
-    filming_->play_to(time, state, [this](const std::string& camera, const Frame& frame) {
-      witness_.image(camera, frame);
+    filming_->play_to(time, state, [this](const FilmedFrame& filmed) {
+      witness_.image(filmed.camera, filmed.frame, filmed.message);
     });
   } else {
     filming_->pass_to(time, state);

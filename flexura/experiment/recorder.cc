@@ -146,17 +146,20 @@ void Recorder::servo(const ServoSightingMessage& message, double received) {
   channels_->write(channels_->servo_sightings, servo_sightings_topic, received, message);
 }
 
-void Recorder::image(const std::string& camera, const Frame& frame) {
-  const std::string topic = image_topic(camera);
-  const auto [channel, is_new] = channels_->images.try_emplace(camera);
-  if (is_new) channel->second = channels_->add<ImageMessage>(topic);
+std::string logged_image(const std::string& camera, const Frame& frame) {
   // A run waits for every frame: quickly made rather than small.
   constexpr PngConfig quick{.level = 1};
   const ImageMessage message{
       time_message(nanoseconds(frame.time)),
-      topic.substr(1),
+      image_topic(camera).substr(1),
       {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
-  channels_->write(channel->second, nanoseconds(frame.received), message);
+  return write_json(Codec<ImageMessage>::write(message));
+}
+
+void Recorder::image(const std::string& camera, const Frame& frame, std::string_view message) {
+  const auto [channel, is_new] = channels_->images.try_emplace(camera);
+  if (is_new) channel->second = channels_->add<ImageMessage>(image_topic(camera));
+  channels_->log.write(channel->second, nanoseconds(frame.received), message);
 }
 
 void Recorder::close() { channels_->log.close(); }

@@ -15,6 +15,9 @@
 
 namespace flexura {
 
+/// What logs have of a camera's frame: an ImageMessage as JSON.
+[[nodiscard]] std::string logged_image(const std::string& camera, const Frame& frame);
+
 /// Writes a run's log.mcap: the arm's state, the poses of its sections, and events (docs/log-format.md).
 /// Times are the experiment's, in s from its start.
 class Recorder {
@@ -50,8 +53,9 @@ class Recorder {
   void servo(const ServoStepMessage& message);
   void servo(const ServoSightingMessage& message, double received);
 
-  /// A frame, as PNG. The first one of a camera opens its channel.
-  void image(const std::string& camera, const Frame& frame);
+  /// A frame; `message` is its logged_image, which takes longest and needs no log. The first one of a camera
+  /// opens its channel.
+  void image(const std::string& camera, const Frame& frame, std::string_view message);
 
   /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
   void close();

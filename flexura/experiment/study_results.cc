@@ -42,7 +42,8 @@ std::vector<ImageStudy> studies_of(const Experiment& experiment) {
   for (const TaskConfig& task : experiment.task) {
     const auto* config = std::get_if<StudyTask>(&task);
     if (config == nullptr) continue;
-    ImageStudy& study = studies.emplace_back(study_images(*config, experiment.cameras()));
+    ImageStudy& study = studies.emplace_back(
+        study_images(*config, experiment.cameras(), static_cast<std::uint64_t>(experiment.seed)));
     const std::string wanted = file_name_of(study.name);
     study.name = wanted;
     for (int i = 2; !names.insert(study.name).second; ++i) study.name = fmt::format("{}-{}", wanted, i);

@@ -174,6 +174,17 @@ TEST_F(Study, LeavesCellsEmptyForATargetBehindTheCamera) {
   EXPECT_THAT(text_of(unseen, "figures/study-edges.svg"), HasSubstr("edges of the square"));
 }
 
+TEST_F(Study, MeasuresInTheNoiseOfTheExperimentsSeed) {
+  const std::string noisy = replaced(study_with("points = 5", "points = 2\nmeasure = true"),
+                                     "name = \"front\"", "name = \"front\"\nsensor = { read_noise = 2 }");
+  const auto measured = [](const std::string& text) {
+    return studies_of(parse_experiment(text, "x.toml")).at(0).columns.at(2).features;
+  };
+  const auto first = measured("seed = 1\n" + noisy);
+  EXPECT_EQ(measured("seed = 1\n" + noisy), first);
+  EXPECT_NE(measured("seed = 2\n" + noisy), first);
+}
+
 TEST_F(Study, VariesDownwardsAsWell) {
   const RunResult up = run(parse_experiment(good_study, "x.toml"));
   const RunResult down = run(parse_experiment(study_with("[-60, 60]", "[60, -60]"), "x.toml"));

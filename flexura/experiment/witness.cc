@@ -50,8 +50,8 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
   states_.push_back(state);
 }
 
-void Witness::image(const std::string& camera, const Frame& frame) {
-  recorder_.image(camera, frame);
+void Witness::image(const std::string& camera, const Frame& frame, std::string_view message) {
+  recorder_.image(camera, frame, message);
   ++frames_[camera];
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexura/experiment/drive_commands.h"
@@ -29,7 +30,7 @@ class Witness {
   /// What programs that draw logs are to draw.
   void draw_scene(const Experiment& experiment);
   void state(std::size_t step, double time, const ArmState& state);
-  void image(const std::string& camera, const Frame& frame);
+  void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// What the devices of the rig say of themselves, once for each time of its clock.
   void readings(const RigPorts& rig);
   /// Of each camera that gave any.

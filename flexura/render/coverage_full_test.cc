@@ -1,31 +1,18 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "flexura/render/cell.h"
 #include "flexura/render/ray_field.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/tracer.h"
+#include "tests/support/coverage_errors.h"
 #include "tests/support/frustums.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/render_scenes.h"
 
 namespace flexura {
 namespace {
-
-struct Errors {
-  double squares = 0, largest = 0;
-  int count = 0;
-
-  void add(double error) {
-    squares += error * error;
-    largest = std::max(largest, std::abs(error));
-    ++count;
-  }
-  [[nodiscard]] double rms() const { return std::sqrt(squares / std::max(1, count)); }
-};
 
 // The share of `samples` x `samples` points of pixel (u, v) at which the tube shows an s that is_counted.
 template <typename IsCounted>
@@ -45,16 +32,11 @@ double sampled(const std::vector<FrustumTube::Frustum>& frustums, const View& vi
   return static_cast<double>(hits) / (samples * samples);
 }
 
-// What both ways to draw are off by.
-struct BothErrors {
-  Errors exact, quick;
-};
-
 // Draws `scene`, in which the tube shows 1 where its s is_counted and 0 elsewhere, both ways, and adds the
 // errors of the border pixels.
 template <typename IsCounted>
 void compare(const Scene& scene, const FrustumTube& tube, const View& view, IsCounted&& is_counted,
-             BothErrors& errors) {
+             BothCoverageErrors& errors) {
   Renderer renderer;
   LightImage exact, quick;
   renderer.render(scene, view, PixelKind::gray, exact, true);
@@ -77,31 +59,18 @@ void compare(const Scene& scene, const FrustumTube& tube, const View& view, IsCo
   }
 }
 
-// The demand, px.
-void expect_small(const char* name, const Errors& errors, double largest = 0.05) {
-  std::printf("%s: %d border pixels: rms %.5f, largest %.5f px\n", name, errors.count, errors.rms(),
-              errors.largest);
-  EXPECT_GT(errors.count, 200);
-  EXPECT_LT(errors.rms(), 0.01) << name;
-  EXPECT_LT(errors.largest, largest) << name;
-}
-void expect_small(const BothErrors& errors) {
-  expect_small("exact", errors.exact);
-  expect_small("quick", errors.quick);
-}
-
 constexpr int frustums_a_section = 300;
 
 // The arm in white alone.
 void compare_silhouettes(const BentArm& bent, const Backbone& backbone, const View& view,
-                         BothErrors& errors) {
+                         BothCoverageErrors& errors) {
   Scene scene = plain_scene();
   scene.arm.tube = tube_of(bent.arm, backbone);
   scene.arm.albedo = {1, 1, 1};
   compare(
       scene, FrustumTube(bent.arm, backbone, frustums_a_section), view, [](double) { return true; }, errors);
 }
-void compare_silhouettes(TestRandom& random, double taper, BothErrors& errors) {
+void compare_silhouettes(TestRandom& random, double taper, BothCoverageErrors& errors) {
   const BentArm bent = random_bent_arm(random, taper);
   const Backbone backbone = bent.backbone();
   compare_silhouettes(bent, backbone, random_view_of(random, backbone), errors);
@@ -114,20 +83,20 @@ View aimed(const View& view, const Backbone& backbone, double s, double focal_le
 }
 
 TEST(Coverage, OfTubesIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0, errors); });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 TEST(Coverage, OfTaperedTubesIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0.006, errors); });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 // The narrower side of a step in white, the rest in black.
 TEST(Coverage, OfTubesWhoseRadiusStepsIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(10, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0, 0.006);
     const Backbone backbone = bent.backbone();
@@ -143,7 +112,7 @@ TEST(Coverage, OfTubesWhoseRadiusStepsIsThatOfManySamples) {
         scene, FrustumTube(bent.arm, backbone, frustums_a_section), view,
         [&](double s) { return s > from && s < to; }, errors);
   });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 // Arms without taper are drawn the quick way, others the exact one.
@@ -151,7 +120,7 @@ double taper_or_none(TestRandom& random, double taper) { return random.integer(0
 
 // The arm in black, with rings in white.
 void compare_rings(const BentArm& bent, const Backbone& backbone, const View& view, double pitch,
-                   BothErrors& errors) {
+                   BothCoverageErrors& errors) {
   Scene scene = plain_scene();
   scene.arm.tube = tube_of(bent.arm, backbone);
   scene.arm.albedo = Color::Zero();
@@ -167,29 +136,29 @@ void compare_rings(const BentArm& bent, const Backbone& backbone, const View& vi
 }
 
 TEST(Coverage, OfMarkerRingsIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(10, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, taper_or_none(random, 0.004));
     const Backbone backbone = bent.backbone();
     compare_rings(bent, backbone, random_view_of(random, backbone), 0.1, errors);
   });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 TEST(Coverage, OfRingsFinerThanPixelsIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(6, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, taper_or_none(random, 0.004));
     const Backbone backbone = bent.backbone();
     const double pitch = random.uniform(0.0004, 0.01);
     compare_rings(bent, backbone, random_view_of(random, backbone), pitch, errors);
   });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 // From a tube of 2 px to one that fills the picture, with lenses of all kinds.
 TEST(Coverage, AtAnyZoomIsThatOfManySamples) {
-  BothErrors errors;
+  BothCoverageErrors errors;
   for_random_cases(8, [&](TestRandom& random) {
     BentArm bent = random_bent_arm(random, taper_or_none(random, 0.003), taper_or_none(random, 0.003));
     const double thickness = std::exp(random.uniform(-1.5, 0.7));
@@ -207,7 +176,7 @@ TEST(Coverage, AtAnyZoomIsThatOfManySamples) {
     compare_silhouettes(bent, backbone, view, errors);
     compare_rings(bent, backbone, view, 0.11, errors);  // None over a step.
   });
-  expect_small(errors);
+  errors.expect_small();
 }
 
 // The mean of what samples x samples rays of a pixel show.
@@ -223,7 +192,7 @@ double mean_of_rays(const Tracer& tracer, const Ray& pixel, int samples) {
 }
 
 // The errors of the exact picture against the same surfaces, sampled.
-void compare_with_rays(const Scene& scene, const View& view, Errors& errors) {
+void compare_with_rays(const Scene& scene, const View& view, CoverageErrors& errors) {
   Renderer renderer;
   LightImage picture;
   renderer.render(scene, view, PixelKind::gray, picture, true);
@@ -240,7 +209,7 @@ void compare_with_rays(const Scene& scene, const View& view, Errors& errors) {
 
 // Where everything stands in the way of everything.
 TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
-  Errors errors;
+  CoverageErrors errors;
   for_random_cases(5, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0.003);
     const Backbone backbone = bent.backbone();
@@ -250,12 +219,12 @@ TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
     view.lens = Lens(lens);
     compare_with_rays(crowded_scene(random, bent, backbone), view, errors);
   });
-  expect_small("crowded", errors);
+  errors.expect_small("crowded");
 }
 
 // Disks where the radius steps, and a second one; seen near by. With `wildness` 1 the arm keeps clear of its
 // disks, with more it passes through them.
-void compare_disks(TestRandom& random, double wildness, Errors& errors) {
+void compare_disks(TestRandom& random, double wildness, CoverageErrors& errors) {
   BentArm bent = random_bent_arm(random, 0, 0.008);
   for (Eigen::Vector2d& bend : bent.state.bends) bend *= wildness;
   const Backbone backbone = bent.backbone();
@@ -269,16 +238,15 @@ void compare_disks(TestRandom& random, double wildness, Errors& errors) {
 }
 
 TEST(Coverage, OfDisksOnStepsOfTheRadiusIsThatOfTheirRays) {
-  Errors errors;
+  CoverageErrors errors;
   for_random_cases(12, [&](TestRandom& random) { compare_disks(random, 1, errors); });
-  expect_small("disks", errors);
+  errors.expect_small("disks");
 }
 
 TEST(Coverage, OfDisksThatTheArmPassesThroughIsThatOfTheirRays) {
-  Errors errors;
+  CoverageErrors errors;
   for_random_cases(12, [&](TestRandom& random) { compare_disks(random, 2.5, errors); });
-  // Three surfaces in one place: a limit that docs/renderer.md tells.
-  expect_small("cut disks", errors, 0.1);
+  errors.expect_small("cut disks");
 }
 
 }  // namespace

@@ -23,8 +23,9 @@ void QuickPicture::leave(const ImageRegion& region) {
 bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics,
                         PixelKind pixels, LightImage& picture) {
   width_ = picture.depth.width(), height_ = picture.depth.height();
-  constexpr double farthest = 1e6;  // Of the principal point, px: single precision.
-  const bool is_lens_known = std::abs(intrinsics.cx) < farthest && std::abs(intrinsics.cy) < farthest;
+  constexpr double most = 1e6;  // Of the principal point and of focal lengths, px: single precision.
+  const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
+                             intrinsics.fx < most && intrinsics.fy < most;
   const bool is_known = is_lens_known && stage.scene->light.shadow == 0 && stage.planes.empty() &&
                         width_ >= static_cast<int>(span_step);
   if (!is_known) return false;

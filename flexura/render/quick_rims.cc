@@ -5,7 +5,6 @@
 #include "flexura/render/quick_picture.h"
 
 namespace flexura {
-namespace {}  // namespace
 
 // The arm's flat ends; where the skin at one is not drawn the quick way, and of all other discs, the exact
 // way draws all.

@@ -98,7 +98,9 @@ void draw_screen(const SpanScreen screen, int begin, int end, bool is_first, Spa
     const Wide nearness = at(screen.nearness, place), depth = 1 / nearness, before = wide_load(row.depth + u);
     WideMask is_inside = (nearness > 0) & is_asked, is_edge{};
     if (!is_straight) {
-      WideMask is_around = is_inside;
+      // Also where the middle of the pixel looks past the screen's plane: a screen seen aslant ends near its
+      // horizon.
+      WideMask is_around = is_asked;
       for (const Linear& edge : screen.edges) {
         const Wide in = at(edge, place);
         is_inside &= in > 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "flexura/render/ray.h"
 
@@ -18,12 +19,13 @@ const T& at(const std::vector<T>& list, std::uint32_t index) {
 // Hits that are closer together in depth, by this share, are one.
 constexpr double same_hit = 1e-9;
 
-// The two nearest surfaces and all borders near a ray, as the parts tell them.
+// The three nearest surfaces and all borders near a ray, as the parts tell them: where two bodies are all but
+// in one place and a third cuts through both, the third is what is seen next to the first.
 struct Sights {
   static constexpr std::size_t most = 12;
   std::array<Border, most> borders;
   std::size_t count = 0;
-  Hit first, second;
+  Hit first, second, third;
 
   void add(const Border& border) {
     if (!(border.distance < border_reach)) return;
@@ -39,17 +41,13 @@ struct Sights {
   }
   void add_hit(double depth, Part part) {
     // Where two pieces of a tube overlap by a hair both tell of it.
-    if (std::abs(depth - first.depth) <= same_hit * depth) return;
-    Hit* place = nullptr;
-    if (depth < first.depth) {
-      second = first;
-      place = &first;
-    } else if (depth < second.depth) {
-      place = &second;
-    }
-    if (place == nullptr) return;
-    place->depth = depth;
-    place->part = part;
+    for (const Hit* hit : {&first, &second})
+      if (std::abs(depth - hit->depth) <= same_hit * depth) return;
+    if (!(depth < third.depth)) return;
+    third.depth = depth;
+    third.part = part;
+    if (third.depth < second.depth) std::swap(second, third);
+    if (second.depth < first.depth) std::swap(first, second);
   }
 };
 
@@ -323,7 +321,8 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
   };
   for (std::size_t i = 0; i < sights.count; ++i) {
     const Border& border = sights.borders[i];
-    const double margin = 1e-6 * trace.hit.depth + 2 * slope * (1 + border.distance);
+    // What is seen recedes at another rate where the border is.
+    const double margin = 1e-6 * trace.hit.depth + 4 * slope * (1 + border.distance);
     if (!(border.depth <= trace.hit.depth + margin)) continue;
     if (!border.is_ring) trace.clear = std::min(trace.clear, border.distance);
     if (border < trace.nearest) {
@@ -333,6 +332,20 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
       trace.second = border;
     }
   }
+}
+
+// Where the first surface meets another one behind it, if there is one, and tubes that come out of it.
+void add_meeting(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& first,
+                 const Hit& other, Sights& sights) {
+  // A tube and a flat surface meet where the tube's gap is zero on the flat one: that runs more evenly over
+  // the image than the difference of their depths.
+  const auto is_piece = [](const Hit& hit) { return hit.part.kind == Part::Kind::piece; };
+  const Hit& flat = is_piece(first) ? other : first;
+  const bool is_known = !flat.is_none() && !is_piece(flat) &&
+                        add_tube_borders(stage, parts, ray, flat, is_piece(first) ? first : other, sights);
+  if (is_known || other.is_none()) return;
+  const Eigen::Vector2d slope = depth_slope(other, ray) - depth_slope(first, ray);
+  if (slope.allFinite()) sights.add(border_of(other.depth - first.depth, slope, ray, first.depth));
 }
 
 }  // namespace
@@ -347,20 +360,11 @@ Hit Tracer::hit(const Ray& ray) const {
 Trace Tracer::trace(const Ray& ray) const {
   Sights sights;
   for (const Part part : parts_) meet(stage_, part, ray, sights);
-  complete(stage_, ray, sights.first);
-  complete(stage_, ray, sights.second);
-  const Hit &first = sights.first, &second = sights.second;
-  // A tube and a flat surface meet where the tube's gap is zero on the flat one: that runs more evenly over
-  // the image than the difference of their depths.
-  const auto is_piece = [](const Hit& hit) { return hit.part.kind == Part::Kind::piece; };
-  const Hit& flat = is_piece(first) ? second : first;
-  const bool is_known = !flat.is_none() && !is_piece(flat) &&
-                        add_tube_borders(stage_, parts_, ray, flat, is_piece(first) ? first : second, sights);
-  if (!second.is_none() && !is_known) {
-    const Eigen::Vector2d slope = depth_slope(second, ray) - depth_slope(first, ray);
-    if (slope.allFinite()) sights.add(border_of(second.depth - first.depth, slope, ray, first.depth));
-  }
-  if (!first.is_none() && is_piece(first)) {
+  for (Hit* hit : {&sights.first, &sights.second, &sights.third}) complete(stage_, ray, *hit);
+  const Hit& first = sights.first;
+  add_meeting(stage_, parts_, ray, first, sights.second, sights);
+  if (!sights.third.is_none()) add_meeting(stage_, parts_, ray, first, sights.third, sights);
+  if (!first.is_none() && first.part.kind == Part::Kind::piece) {
     Border contour = own_contour(stage_, ray, first);
     contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
     sights.add(contour);

@@ -82,4 +82,18 @@ Outcome<std::optional<Frame>> SimulatedCamera::wait(double timeout) {
   return newest();
 }
 
+bool SimulatedCamera::has_new() const {
+  for (std::int64_t frame = next_, last = last_received(clock_->now()); frame <= last; ++frame)
+    if (!is_lost(frame)) return true;
+  return false;
+}
+
+std::vector<Frame> SimulatedCamera::all_new() {
+  std::vector<Frame> frames;
+  for (std::int64_t frame = next_, last = last_received(clock_->now()); frame <= last; ++frame)
+    if (!is_lost(frame)) frames.push_back(take(frame));
+  pass_over();
+  return frames;
+}
+
 }  // namespace flexura

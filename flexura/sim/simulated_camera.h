@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "flexura/camera/camera.h"
 #include "flexura/model/backbone.h"
@@ -47,7 +48,8 @@ inline constexpr int frames_kept = 16;
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
 /// A camera that exposes frames at its rate from time 0 on, delays and loses them. Nothing is rendered but
-/// what is asked for.
+/// what is asked for. Several cameras of a rig can be asked at once, each by a thread of its own, while
+/// nobody waits for the clock or commands: their takers of pictures must bear that.
 class SimulatedCamera : public CameraPort {
  public:
   /// `shot` says what its frames show; its frame and start are filled in for each.
@@ -55,6 +57,14 @@ class SimulatedCamera : public CameraPort {
 
   Outcome<std::optional<Frame>> newest() override;
   Outcome<std::optional<Frame>> wait(double timeout) override;
+
+  /// Every frame that can be had now and was neither given nor passed over, from the oldest on, whatever the
+  /// link does: for who films, not for algorithms.
+  [[nodiscard]] std::vector<Frame> all_new();
+  /// Whether there is one.
+  [[nodiscard]] bool has_new() const;
+  /// None of those is given any more.
+  void pass_over() { next_ = last_received(clock_->now()) + 1; }
 
   [[nodiscard]] SimulatedLink& link() { return link_; }
 

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
+#include <vector>
 
+#include "flexura/sim/crew.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rigs.h"
 
@@ -123,6 +127,34 @@ TEST(SimulatedRig, RefusesAWorldThatTheModelCannotBeBelievedIn) {
   refuses([](RigConfig& truth) { truth.cameras[0].sensor.width = 32; });
 }
 
+TEST(SimulatedRig, ShowsTheSameToThreadsThatAskItsCamerasAtOnce) {
+  const RigConfig config = with_slow_cameras();
+  const auto films_by = [&](std::size_t threads) {
+    SimulatedRig rig(config, config, numbers_renderer, 5);
+    const RigPorts ports = rig.ports();
+    Crew crew(threads);
+    TestRandom random(7);
+    std::vector<std::vector<Frame>> films(rig.camera_count());
+    for (int step = 1; step < 100; ++step) {
+      ArmState state = ArmState::straight(2);
+      for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-1, 1);
+      EXPECT_TRUE(ports.arm->command(state, 0.05));
+      ports.clock->wait_until(0.05 * step);
+      crew.run(films.size(), [&](std::size_t i) {
+        if (const auto frame = ports.cameras[i].camera->newest().value()) films[i].push_back(*frame);
+        (void)ports.cameras[i].head->read();
+      });
+    }
+    return films;
+  };
+  const auto one = films_by(1), two = films_by(2);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_GT(one[i].size(), 20U);
+    ASSERT_EQ(one[i].size(), two[i].size());
+    for (std::size_t j = 0; j < one[i].size(); ++j) expect_same(one[i][j], two[i][j]);
+  }
+}
+
 // Follows an arm's command with the newest frames, and knows nothing of who answers.
 class SimulatedCameraTest : public testing::Test {
  protected:
@@ -166,6 +198,49 @@ TEST_F(SimulatedCameraTest, WaitsForTheNextFrameAndNoLonger) {
   EXPECT_FALSE(camera().wait(0.04).value());
   EXPECT_NEAR(clock().now(), 0.29, 1e-15);
   EXPECT_EQ(camera().wait(0.1).value()->number, 2);
+}
+
+TEST_F(SimulatedCameraTest, GivesAllThatIsNewToWhoFilms) {
+  start(10, 0.02, 0.13, 0);
+  SimulatedCamera& film = rig_->camera(0).camera();
+  EXPECT_FALSE(film.has_new());
+  EXPECT_TRUE(film.all_new().empty());
+  clock().wait_until(0.56);
+  EXPECT_TRUE(film.has_new());
+  const std::vector<Frame> frames = film.all_new();
+  ASSERT_EQ(frames.size(), 5U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].number, static_cast<std::int64_t>(i));
+    EXPECT_NEAR(frames[i].received, 0.15 + 0.1 * static_cast<double>(i), 1e-12);
+  }
+  EXPECT_FALSE(film.has_new());
+  EXPECT_TRUE(film.all_new().empty());
+  EXPECT_FALSE(camera().newest().value()) << "given before";
+  clock().wait_until(0.76);
+  EXPECT_EQ(camera().newest().value()->number, 6);
+  EXPECT_FALSE(film.has_new()) << "passed over, or given";
+  clock().wait_until(0.96);
+  film.pass_over();
+  EXPECT_FALSE(film.has_new());
+  clock().wait_until(1.06);
+  EXPECT_EQ(film.all_new().at(0).number, 9);
+}
+
+TEST_F(SimulatedCameraTest, FilmsWhatIsNotLostHoweverManyAreLostInARow) {
+  start(100, 0, 0, 0.95);
+  SimulatedCamera& film = rig_->camera(0).camera();
+  std::int64_t last = -1, longest = 0, count = 0;
+  for (int second = 1; second <= 10; ++second) {
+    clock().wait_until(second);
+    for (const Frame& frame : film.all_new()) {
+      EXPECT_GT(frame.number, last);
+      longest = std::max(longest, frame.number - last);
+      last = frame.number, ++count;
+    }
+    EXPECT_FALSE(film.has_new());
+  }
+  EXPECT_GT(longest, frames_kept);
+  EXPECT_NEAR(static_cast<double>(count) / 1000, 0.05, 0.021);  // three standard deviations
 }
 
 TEST_F(SimulatedCameraTest, RefusesToWaitForATimeThatIsNotFinite) {

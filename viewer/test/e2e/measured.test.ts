@@ -1,12 +1,10 @@
 // What the program measures in the pictures, upon them and in the 3D view: the fake one, and the program itself.
 import { fileURLToPath } from 'node:url';
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { spatial_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist, launch, open_page, slide, stage_at_rest, until } from './browser';
-import { Program, program } from './program';
-import type { Served } from './rig_tests';
+import type { Page } from 'playwright-core';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { slide, stage_at_rest, until } from './browser';
+import { faked, opened_before, recorded, started, type Served } from './opened';
+import { program } from './program';
 
 const measured = fileURLToPath(new URL('measured.toml', import.meta.url));
 
@@ -27,23 +25,13 @@ const colored = (page: Page, color: string) => page.locator('.picture canvas').f
 const chip = (page: Page, label: string) => page.getByRole('button', { name: new RegExp(`^${label}: `) });
 
 function measured_tests(start: () => Promise<Served>, is_recording: boolean): void {
-  let browser: Browser;
-  let served: Served;
+  const opened = opened_before(start, is_recording ? 'recording' : 'live');
   let page: Page;
-  let complaints: string[];
 
   beforeAll(async () => {
-    browser = await launch();
-    served = await start();
-    ({ page, complaints } = await open_page(browser, served.url, { width: 1280, height: 720 }));
-    await page.waitForSelector(`.badge[data-kind="${is_recording ? 'recording' : 'live'}"]`);
+    ({ page } = opened);
     if (is_recording) await slide(page, '#scrub', 2);
     await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
-  });
-
-  afterAll(async () => {
-    await browser?.close();
-    await served?.stop();
   });
 
   test('nothing is drawn before anybody asks', async () => {
@@ -106,31 +94,10 @@ function measured_tests(start: () => Promise<Served>, is_recording: boolean): vo
     await until(async () => (await page.locator('.chip[aria-pressed="true"]').count()) === 1);
     await until(async () => (await page.locator('.picture .none').count()) === 0, 15000);
     await until(async () => (await colored(page, '#ffd43b')).count > 60, 15000, 'it is not kept');
-    expect(complaints).toEqual([]);
+    expect(opened.complaints).toEqual([]);
   });
 }
 
-describe('a rig', () => measured_tests(async () => {
-  const server = new FakeServer(dist, spatial_rig());
-  await server.start();
-  return server;
-}, false));
-
-describe.skipIf(!program)('the program’s rig', () => measured_tests(async () => {
-  const served = new Program(measured);
-  await served.start();
-  return served;
-}, false));
-
-describe.skipIf(!program)('a recording that was filmed', () => measured_tests(async () => {
-  const made = new Program();
-  const recorded = new Program(['view', made.record(measured)]);
-  await recorded.start();
-  return {
-    url: recorded.url,
-    stop: async () => {
-      await recorded.stop();
-      await made.stop();
-    },
-  };
-}, true));
+describe('a rig', () => measured_tests(faked, false));
+describe.skipIf(!program)('the program’s rig', () => measured_tests(() => started(measured), false));
+describe.skipIf(!program)('a recording that was filmed', () => measured_tests(() => recorded(measured), true));

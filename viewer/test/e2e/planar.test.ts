@@ -1,29 +1,16 @@
 // A planar arm's own ways of saying its shape: the fake one, and the one that `flexura view` shows without a file.
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { Page } from 'playwright-core';
+import { beforeAll, describe, expect, test } from 'vitest';
 import { planar_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { colors_in, dist, launch, open_page, server_state, slide, stage_at_rest, tip_on_screen, until } from './browser';
-import { Program, program } from './program';
-import type { Served } from './rig_tests';
+import { colors_in, server_state, slide, stage_at_rest, tip_on_screen, until } from './browser';
+import { faked, opened_before, started, type Served } from './opened';
+import { program } from './program';
 
 function planar_tests(start: () => Promise<Served>): void {
-  let browser: Browser;
-  let served: Served;
+  const opened = opened_before(start, 'live');
   let page: Page;
-  let complaints: string[];
-
-  beforeAll(async () => {
-    browser = await launch();
-    served = await start();
-    ({ page, complaints } = await open_page(browser, served.url, { width: 1280, height: 720 }));
-    await page.waitForSelector('.badge[data-kind="live"]');
-    await page.waitForSelector('.section .slider');
-  });
-
-  afterAll(async () => {
-    await browser?.close();
-    await served?.stop();
+  beforeAll(() => {
+    ({ page } = opened);
   });
 
   const pressed = () => page.locator('.segmented button[aria-pressed="true"]').textContent();
@@ -69,22 +56,14 @@ function planar_tests(start: () => Promise<Served>): void {
       }
     }
     expect(await colors_in(page, await stage_at_rest(page))).toBeGreaterThan(10);
-    expect(complaints).toEqual([]);
+    expect(opened.complaints).toEqual([]);
   });
 }
 
 describe('a planar arm', () => {
-  planar_tests(async () => {
-    const server = new FakeServer(dist, planar_rig());
-    await server.start();
-    return server;
-  });
+  planar_tests(() => faked(planar_rig()));
 });
 
 describe.skipIf(!program)('the paper’s arm, before the cameras that stand there without a word', () => {
-  planar_tests(async () => {
-    const served = new Program();
-    await served.start();
-    return served;
-  });
+  planar_tests(started);
 });

@@ -3,6 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import type { Browser } from 'playwright-core';
 import { launch, open_page, until } from './browser';
+import { started } from './opened';
 import { Program, program } from './program';
 import { rig_tests } from './rig_tests';
 
@@ -10,11 +11,7 @@ const rig = fileURLToPath(new URL('rig.toml', import.meta.url));
 
 describe.skipIf(!program)('the program', () => {
   describe('with its rig', () => {
-    rig_tests(async () => {
-      const served = new Program(rig);
-      await served.start();
-      return served;
-    });
+    rig_tests(() => started(rig));
   });
 
   describe('started again', () => {

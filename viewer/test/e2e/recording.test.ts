@@ -1,37 +1,22 @@
 // A recording: scrubbing, playing, plots, marks; the fake one, and one that `flexura run` made.
 import { fileURLToPath } from 'node:url';
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { Page } from 'playwright-core';
+import { beforeAll, describe, expect, test } from 'vitest';
 import { planar_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist, launch, legends, open_page, server_state, slide, stage_at_rest, until } from './browser';
-import { Program, program } from './program';
-import type { Served } from './rig_tests';
+import type { FakeServer } from '../fake/server';
+import { legends, server_state, slide, stage_at_rest, until } from './browser';
+import { faked, opened_before, recorded, started, type Served } from './opened';
+import { program } from './program';
 
 const file = fileURLToPath(new URL('recording.toml', import.meta.url));
-const fresh = async (): Promise<FakeServer> => {
-  const server = new FakeServer(dist, planar_rig(), 'recording');
-  await server.start();
-  return server;
-};
-
-let browser: Browser;
-let served: Served;
 let page: Page;
 let complaints: string[];
 
-function opened_before(start: () => Promise<Served>, kind: 'recording' | 'live'): void {
-  beforeAll(async () => {
-    browser = await launch();
-    served = await start();
-    ({ page, complaints } = await open_page(browser, served.url, { width: 1280, height: 720 }));
-    await page.waitForSelector(`.badge[data-kind="${kind}"]`);
-    await page.waitForSelector('.section .slider');
-  });
-
-  afterAll(async () => {
-    await browser?.close();
-    await served?.stop();
+/** The group's page is the one above. */
+function on(start: () => Promise<Served>, kind: 'recording' | 'live'): void {
+  const opened = opened_before(start, kind);
+  beforeAll(() => {
+    ({ page, complaints } = opened);
   });
 }
 
@@ -177,11 +162,11 @@ function recording_tests(a_state: number, interval: number, title: string): void
 describe('a recording', () => {
   const a_state = 1e-6;
   let server: FakeServer;
-  opened_before(async () => (server = await fresh()), 'recording');
+  on(async () => (server = await faked(planar_rig(), 'recording')), 'recording');
 
   test('one request for a time is outstanding at a time, and the last time asked for is reached', async () => {
     server.log.length = 0;
-    server.delay_ms = 150;
+    server.delay_ms = 600;
     server.most_outstanding = 0;
     for (let i = 0; i < 30; ++i) await slide(page, '#scrub', (6 * i) / 29);
     await until(async () => Math.abs((await shown_time()) - 6) < 1e-6);
@@ -248,28 +233,13 @@ describe('a recording', () => {
 });
 
 describe.skipIf(!program)('what the program ran', () => {
-  opened_before(async () => {
-    const made = new Program();
-    const recorded = new Program(['view', made.record(file)]);
-    await recorded.start();
-    return {
-      url: recorded.url,
-      stop: async () => {
-        await recorded.stop();
-        await made.stop();
-      },
-    };
-  }, 'recording');
+  on(() => recorded(file), 'recording');
 
   recording_tests(0.02, 0.02, 'A recording');
 });
 
 describe.skipIf(!program)('the program’s rig, its refusals and its run', () => {
-  opened_before(async () => {
-    const rig = new Program(file);
-    await rig.start();
-    return rig;
-  }, 'live');
+  on(() => started(file), 'live');
 
   test('a way into an obstacle is refused where screen readers hear it', async () => {
     await slide(page, '#arm-bends-0', 2);
@@ -294,11 +264,7 @@ describe.skipIf(!program)('a run that is watched', () => {
   /** Takes some seconds to be run. */
   const watched_s = 4000;
 
-  opened_before(async () => {
-    const run = new Program(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']);
-    await run.start();
-    return run;
-  }, 'live');
+  on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
 
   test('it is shown as it goes on, is not to be cancelled here, and is a recording when it is over', async () => {
     const { time } = await server_state(page);
@@ -318,18 +284,7 @@ describe.skipIf(!program)('a run that is watched', () => {
 describe.skipIf(!program)('a calibration, when it is over', () => {
   const calibration = fileURLToPath(new URL('../../../examples/05_calibration/experiment.toml', import.meta.url));
 
-  opened_before(async () => {
-    const made = new Program();
-    const recorded = new Program(['view', made.record(calibration)]);
-    await recorded.start();
-    return {
-      url: recorded.url,
-      stop: async () => {
-        await recorded.stop();
-        await made.stop();
-      },
-    };
-  }, 'recording');
+  on(() => recorded(calibration), 'recording');
 
   /** Position, pan, tilt and stage of the front camera, as the page has them. */
   const front = () => page.evaluate(() => {

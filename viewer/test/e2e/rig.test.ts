@@ -1,12 +1,7 @@
-import { spatial_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist } from './browser';
+import type { FakeServer } from '../fake/server';
+import { faked } from './opened';
 import { rig_tests } from './rig_tests';
 
 let server: FakeServer | null = null;
 
-rig_tests(async () => {
-  server = new FakeServer(dist, spatial_rig());
-  await server.start();
-  return server;
-}, () => server);
+rig_tests(async () => (server = await faked()), () => server);

@@ -1,0 +1,63 @@
+// A page that the tests of a group share, and who serves it.
+import type { Browser } from 'playwright-core';
+import { afterAll, beforeAll } from 'vitest';
+import { spatial_rig } from '../fake/rigs';
+import { FakeServer } from '../fake/server';
+import { dist, launch, open_page, type Opened } from './browser';
+import { Program } from './program';
+
+export interface Served {
+  readonly url: string;
+  stop(): Promise<void>;
+}
+
+/** Of the tests of the group where it is called: their page is there from the first of them on, and gone after the last. */
+export function opened_before(
+  start: () => Promise<Served>, kind: 'recording' | 'live', size: { width?: number; height?: number } = { width: 1280, height: 720 },
+): Opened {
+  const opened = {} as Opened;
+  let browser: Browser;
+  let served: Served;
+
+  beforeAll(async () => {
+    browser = await launch();
+    served = await start();
+    Object.assign(opened, await open_page(browser, served.url, size));
+    await opened.page.waitForSelector(`.badge[data-kind="${kind}"]`);
+    await opened.page.waitForSelector('.section .slider');
+  });
+
+  afterAll(async () => {
+    await browser?.close();
+    await served?.stop();
+  });
+
+  return opened;
+}
+
+/** The fake server of a rig, or of a recording of it. */
+export async function faked(rig = spatial_rig(), kind: 'live' | 'recording' = 'live'): Promise<FakeServer> {
+  const server = new FakeServer(dist, rig, kind);
+  await server.start();
+  return server;
+}
+
+/** The program, asked for an experiment's file or by whole words. */
+export async function started(what: string | string[] = ['view']): Promise<Served> {
+  const served = new Program(what);
+  await served.start();
+  return served;
+}
+
+/** The program on what it recorded of an experiment's file. */
+export async function recorded(file: string): Promise<Served> {
+  const made = new Program();
+  const shown = await started(['view', made.record(file)]);
+  return {
+    url: shown.url,
+    stop: async () => {
+      await shown.stop();
+      await made.stop();
+    },
+  };
+}

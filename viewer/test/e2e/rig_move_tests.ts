@@ -1,0 +1,207 @@
+// How one moves a live rig: sliders, keys, its tasks, the hand on the tip.
+import type { Page } from 'playwright-core';
+import { beforeAll, expect, test } from 'vitest';
+import type { FakeServer } from '../fake/server';
+import { type Opened, server_state, slide, tip_on_screen, until } from './browser';
+
+/** Of the arm and the cameras. */
+export function move_tests(opened: Opened, fake: () => FakeServer | null): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
+  });
+
+  test('a slider moves the arm, as another client sees', async () => {
+    const before = await server_state(page);
+    const slider = page.locator('.section .slider input[type="range"]').first();
+    const max = Number(await slider.getAttribute('max'));
+    await slide(page, `#${await slider.getAttribute('id')}`, 0.3 * max);
+    await until(async () => {
+      const { bends } = await server_state(page);
+      return Math.abs(bends[0] - before.bends[0]) > 0.1;
+    });
+    if (fake()) await until(async () => Math.abs((await server_state(page)).bends[0] - 0.3 * max) < 0.01);
+  });
+
+  test('the arrow keys move a slider that has the focus, and do not step the time', async () => {
+    const slider = page.locator('.section .slider input[type="range"]').first();
+    await slider.focus();
+    const before = Number(await slider.inputValue());
+    await page.keyboard.press('ArrowLeft');
+    await until(async () => Number(await slider.inputValue()) < before);
+    expect(await page.locator('.badge[data-kind="live"]').count()).toBe(1);
+    await slider.blur();
+  });
+
+  test('a tendon’s slider stays where it was put, and takes the others along', async () => {
+    await page.keyboard.press('Backspace');
+    await until(async () => Math.hypot(...(await server_state(page)).bends) < 1e-3);
+    await page.getByRole('button', { name: 'Tendons' }).click();
+    const slider = page.locator('#arm-tendons-0');
+    await until(async () => Math.abs(Number(await slider.inputValue())) < 1e-4);
+    await slide(page, '#arm-tendons-0', 0.006);
+    await until(async () => Math.abs((await server_state(page)).displacements[0] - 0.006) < 1e-4);
+    const { displacements } = await server_state(page);
+    expect(displacements[1]).toBeCloseTo(-0.003, 3);
+    expect(displacements[2]).toBeCloseTo(-0.003, 3);
+    expect(Math.abs(displacements[3])).toBeGreaterThan(1e-3);
+    await page.waitForTimeout(1500);
+    expect(Number(await slider.inputValue())).toBeCloseTo(0.006, 3);
+    expect(Number(await page.locator('#arm-tendons-1').inputValue())).toBeCloseTo(-0.003, 3);
+    await page.getByRole('button', { name: 'Bends' }).click();
+  });
+
+  test('H stops the arm on its way; Backspace brings everything back, and so does Reset', async () => {
+    const bend = async () => (await server_state(page)).bends[0];
+    for (const reset of [() => page.keyboard.press('Backspace'), () => page.getByRole('button', { name: 'Reset' }).click()]) {
+      await slide(page, '.section .slider input[type="range"]', -1.8);
+      await until(async () => Math.abs(await bend()) > 0.02);
+      await page.keyboard.press('h');
+      await page.waitForTimeout(300);
+      const stopped = await bend();
+      expect(stopped).toBeGreaterThan(-1.7);
+      await page.waitForTimeout(400);
+      expect(await bend()).toBeCloseTo(stopped, 5);
+      await reset();
+      await until(async () => Math.abs(await bend()) < 1e-6);
+    }
+  });
+
+  test('a run of tasks keeps hands off, and Halt ends it', async () => {
+    await page.keyboard.press('r');
+    await until(async () => (await server_state(page)).is_running);
+    await until(() => page.locator('.section .slider input').first().isDisabled());
+    expect(await page.getByLabel('Tip’s X, m').isDisabled()).toBe(true);
+    await page.getByRole('tab', { name: 'Cameras' }).click();
+    expect(await page.locator('input[id^="head-"]').first().isDisabled()).toBe(true);
+    await page.getByRole('tab', { name: 'Arm' }).click();
+    await page.getByRole('button', { name: 'Halt' }).click();
+    await until(async () => !(await server_state(page)).is_running);
+    await until(async () => !(await page.locator('.section .slider input').first().isDisabled()));
+    await page.getByRole('button', { name: 'Dismiss' }).first().click();
+    await page.keyboard.press('Backspace');
+  });
+
+  test('a camera’s head turns, tilts and zooms by its sliders', async () => {
+    await page.getByRole('tab', { name: 'Cameras' }).click();
+    const places = { pan: 7, tilt: 8, zoom: 9 };
+    const goes_to = async (axis: keyof typeof places, value: number): Promise<void> => {
+      await slide(page, `[id="head-front-${axis}"]`, value);
+      await until(async () => Math.abs((await server_state(page)).camera[places[axis]] - value) < 0.02);
+    };
+    const focal = async () => (await server_state(page)).camera[13];
+    const before = await focal();
+    for (const [axis, value] of [['pan', 0.1], ['tilt', -0.08], ['zoom', 1.5]] as const) await goes_to(axis, value);
+    expect((await focal()) / before).toBeCloseTo(1.5, 1);
+    for (const [axis, value] of [['pan', 0], ['tilt', 0], ['zoom', 1]] as const) await goes_to(axis, value);
+  });
+
+  test('limits are marked, and what lies beyond them is shaded', async () => {
+    await page.getByRole('tab', { name: 'Arm' }).click();
+    const slider = page.locator('.section .slider').first();
+    const shaded = () => slider.locator('.unreachable').evaluateAll((all) => all.map((each) => each.getBoundingClientRect().width));
+    await until(async () => Math.abs((await shaded())[0] - (await shaded())[1]) < 2);
+    const [before] = await shaded();
+    expect(before).toBeGreaterThan(2);
+    expect(await slider.locator('.limit').count()).toBe(2);
+    // A bend towards y leaves less of the same limit towards x.
+    const other = page.locator('.section .slider input[type="range"]').nth(1);
+    await slide(page, `#${await other.getAttribute('id')}`, 1.9);
+    await until(async () => (await shaded())[0] > 1.5 * before);
+    await page.keyboard.press('Backspace');
+    await until(async () => Math.abs((await shaded())[0] - before) < 1);
+    await page.getByRole('tab', { name: 'Cameras' }).click();
+  });
+
+  test('a camera’s stage moves by its slider', async () => {
+    await slide(page, '[id="stage-front-x"]', 0.1);
+    await until(async () => Math.abs((await server_state(page)).camera[10] - 0.1) < 1e-3);
+    await slide(page, '[id="stage-front-x"]', 0);
+    await until(async () => Math.abs((await server_state(page)).camera[10]) < 1e-3);
+  });
+
+  test('the tip follows the hand by inverse kinematics', async () => {
+    await page.getByRole('tab', { name: 'Arm' }).click();
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('1');
+    await page.waitForTimeout(600);
+    const from = await tip_on_screen(page);
+    const before = (await server_state(page)).tip;
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    await page.mouse.move(from.x - 50, from.y + 30, { steps: 8 });
+    await page.waitForSelector('#tip-note');
+    await page.waitForTimeout(400);
+    await page.mouse.up();
+    expect(await page.locator('#tip-note').count()).toBe(0);
+    await until(async () => {
+      const { tip } = await server_state(page);
+      return tip[0] < before[0] - 0.01 && tip[1] < before[1];
+    });
+    if (fake()) {
+      const tips = fake()!.log.filter((request) => request.do === 'tip');
+      expect(tips.length).toBeGreaterThan(0);
+      const { tip } = await server_state(page);
+      const asked = tips.at(-1)!.position as number[];
+      await until(async () => Math.hypot(...(await server_state(page)).tip.map((p, i) => p - asked[i])) < 0.01);
+      expect(Math.hypot(...tip)).toBeGreaterThan(0);
+    }
+  });
+}
+
+/** Of points of the backbone, with a mouse and without. */
+export function pick_tests(opened: Opened): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
+  });
+
+  test('a click on the arm picks a point of the backbone and says what is true of it', async () => {
+    await page.keyboard.press('0');
+    await page.waitForTimeout(600);
+    // The base is in the middle of the view, a little way below: from there up to find the arm's foot.
+    const base = await tip_on_screen(page, 0);
+    await page.mouse.click(base.x, base.y - 3);
+    await page.waitForSelector('.picked', { timeout: 5000 });
+    const text = await page.locator('.picked').textContent();
+    for (const word of ['Curvature', 'Bending plane', 'Position', 'section']) expect(text).toContain(word);
+    const before = await page.locator('.picked dd').first().textContent();
+    await slide(page, '#picked-s', 0.1);
+    expect(await page.locator('.picked dd').first().textContent()).not.toBe(before);
+    await page.keyboard.press('Escape');
+    expect(await page.locator('.picked').count()).toBe(0);
+  });
+
+  test('without a mouse: K picks the tip, the rest is Tab, Enter and arrows', async () => {
+    const tab_to = async (selector: string): Promise<void> => {
+      for (let i = 0; i < 150; ++i) {
+        await page.keyboard.press('Tab');
+        if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) ?? false, selector)) return;
+      }
+      throw new Error(`Tab does not come to ${selector}`);
+    };
+    await page.keyboard.press('k');
+    const s = page.locator('.picked dd').first();
+    const at_tip = await s.textContent();
+    expect(at_tip).toContain('section 3');
+    await tab_to('#picked-s');
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('PageDown');
+    await until(async () => (await s.textContent()) !== at_tip);
+    await tab_to('button[aria-label="Pick nothing"], .picked button');
+    await page.keyboard.press('Enter');
+    expect(await page.locator('.picked').count()).toBe(0);
+    await page.keyboard.press('k');
+    await page.keyboard.press('k');
+    expect(await page.locator('.picked').count()).toBe(0);
+    await tab_to('.view-switch button:nth-child(2)');
+    await page.keyboard.press('Enter');
+    expect(await page.locator('.view-switch button[aria-pressed="true"]').textContent()).toBe('front');
+    await page.keyboard.press('Escape');
+    await tab_to('.section .slider input[type="range"]');
+    const before = (await server_state(page)).bends[0];
+    await page.keyboard.press('ArrowRight');
+    await until(async () => (await server_state(page)).bends[0] > before + 0.01);
+    await page.evaluate(() => (document.activeElement as HTMLElement).blur());
+    await page.keyboard.press('Backspace');
+  });
+}

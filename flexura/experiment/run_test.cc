@@ -360,7 +360,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
     return std::string("no error");
   };
   EXPECT_THAT(error("arm.section.0.length=-1"),
-              HasSubstr(":1:22: arm.section[0].length = -1: expected a number above 0 m"));
+              HasSubstr(":1:22: arm.section[0].length = -1: expected a number from 1e-06 m"));
   EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of 8"));
   EXPECT_THAT(error("arm.base.position.1=3"), HasSubstr("there is no array to set entry 1 of"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));

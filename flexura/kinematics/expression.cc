@@ -91,6 +91,7 @@ struct Expression::Parser {
 Expression::Expression(const std::string& text) : parser_(std::make_unique<Parser>()) {
   check_text(text);
   try {
+    parser_->parser.ClearConst();  // Its own _pi is off in the 13th digit.
     parser_->parser.DefineConst("pi", std::numbers::pi);
     parser_->parser.DefineVar("t", &parser_->t);
     parser_->parser.DefineVar("T", &parser_->T);

@@ -20,7 +20,7 @@ class ExpressionError : public std::runtime_error {
 
 /// A formula of time as a user writes it, "0.3*sin(2*pi*t/T)": muParser's operators and functions (sin, cos,
 /// exp, min, max, abs, if-then-else with ? :, ...), the variables t (time in the task, s), T (the task's
-/// duration, s) and i (the section's number from 1), and the constants pi, _pi and _e. One thread at a time.
+/// duration, s) and i (the section's number from 1), and pi. One thread at a time.
 class Expression {
  public:
   /// Throws ExpressionError: not a formula, an unknown name, an assignment, more than 1000 characters.

@@ -99,17 +99,16 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     const Descent ended = descend(problem, variables.bounds(), limits, x, memory);
     found.keep_better(x, memory.r.squaredNorm(), ended);
     ++found.starts;
-    problem.linearise(found.x, memory.r, memory.J);
-    error = problem.largest_error(memory.r);
+    error = problem.largest_distance(found.x);
     if (error <= tolerance) break;
   }
 
   if (error > tolerance && found.ended == Descent::exhausted) {
     const int settling = affordable_iterations(problem, variables, settling_iterations);
     settle(problem, variables, settling, found, memory);
-    problem.linearise(found.x, memory.r, memory.J);
-    error = problem.largest_error(memory.r);
+    error = problem.largest_distance(found.x);
   }
+  problem.linearise(found.x, memory.r, memory.J);
 
   InverseResult result;
   result.state = variables.state(found.x);

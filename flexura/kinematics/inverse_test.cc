@@ -334,7 +334,7 @@ TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
     } else {
       EXPECT_EQ(result.converged(), error <= cap);
     }
-    EXPECT_NEAR(distance_from_curve(arm, result.state, target), error, 0.05 * error + 1e-9);
+    EXPECT_NEAR(distance_from_curve(arm, result.state, target), error, 0.02 * error + 1e-9);
     coarse += result.converged() && error > 1e-3 * arm.length() ? 1 : 0;
     too_coarse += result.converged() ? 0 : 1;
     // What the caller allows is what counts.

@@ -87,13 +87,15 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
        file_with("[[task]]",
                  "[[obstacle]]\nkind = 'plane'\nname = 'sphere 2'\n[[obstacle]]\n"
                  "kind = 'sphere'\ncenter = [9, 9, 9]\nradius = 1\n[[task]]"),
-       "obstacle[1]: \"sphere 2\" is the name of another obstacle"},
+       "x.toml:10:1: obstacle[1].name: \"sphere 2\" is the name of another obstacle"},
       {"a table for an array of them", file_with("[[task]]", "[task]"),
-       "x.toml:7:2: task is a table: expected several, as tables [[task]]"},
+       "x.toml:7:1: task is a table: expected several, as tables [[task]]"},
       {"a section for several", "[arm]\n[arm.section]\nlength = 1\n",
-       "x.toml:2:6: arm.section is a table: expected several, as tables [[arm.section]]"},
+       "x.toml:2:1: arm.section is a table: expected several, as tables [[arm.section]]"},
       {"a misspelt word", file_with("duration = 2.0", "law = 'linaer'\nduration = 2.0"),
-       "expected one of \"linear\", \"trapezoid\""},
+       "x.toml:9:7: task[0].law = \"linaer\": expected one of \"linear\", \"minimum_jerk\", \"trapezoid\"; "
+       "did you "
+       "mean \"linear\"?"},
       {"a word in capitals", file_with("\"planar\"", "'Planar'"), "did you mean \"planar\"?"},
       {"a misspelt kind", file_with("\"move\"", "\"mvoe\""), "did you mean \"move\"?"},
       {"a bend of hundreds of turns", file_with("archings_pi = [0.1, 0.2]", "archings = [501, 0]"),

@@ -29,7 +29,9 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
 
 void add_state(double time, const Schedule& schedule, ReportData& data) {
   const auto next = std::ranges::lower_bound(data.times, time);
-  if (next == data.times.end() || *next == time) return;
+  constexpr double same = 1e-9;  // s: nobody tells such times apart
+  const bool is_there = next != data.times.begin() && time - *(next - 1) <= same;
+  if (is_there || next == data.times.end() || *next - time <= same) return;
   ArmState state = schedule.state_at(time);
   if (!is_possible(state)) return;
   data.states.insert(data.states.begin() + (next - data.times.begin()), std::move(state));

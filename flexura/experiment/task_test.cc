@@ -260,7 +260,7 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n\n2,0,0\n1,0,0\n"),
               HasSubstr("wave.csv:5:1: column time: time 1: expected more"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1, 0, 501\n"),
-              HasSubstr("wave.csv:3:5: column arching_2: angle 501 rad: expected from -500 rad to 500 rad"));
+              HasSubstr("wave.csv:3:6: column arching_2: angle 501 rad: expected from -500 rad to 500 rad"));
   EXPECT_THAT(error_with("wave.csv", "\n arching_1 ,\"arching_2\",time\n0,0,0\n1,0,0\n\n1,0,-2\n"),
               HasSubstr("wave.csv:4:5: column time: time 0: expected more than the 0 before it\n"));
   EXPECT_THAT(error_with("wave.csv", "\n\ntime,arching_1,arching_3\n0,0,0\n1,0,0\n"),

@@ -115,7 +115,7 @@ TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
   const std::size_t border = end.find("class=\"warning-tube\"");
   const std::size_t gap = end.find("class=\"gap-tube\"", border);
   EXPECT_LT(gap, end.find("class=\"tube s1\"", border));
-  EXPECT_EQ(svg_of(figures, "arm-start.svg").find("gap-"), std::string::npos);
+  EXPECT_EQ(svg_of(figures, "arm-start.svg").find("class=\"gap-"), std::string::npos);
 }
 
 TEST(Report, DrawsViolationsAtTheirWorstMoments) {

@@ -112,7 +112,7 @@ bool print_unreachable(const char* name, int way, long count, std::uint64_t seed
     if (result.outcome == InverseOutcome::not_reachable && result.is_proven) ++refused;
     if (result.position_error >= at_least * (1 - 1e-12) && is_within_limits(arm, result.state)) ++bounds_kept;
     const double by = beaten_by(random, arm, target, result);
-    if (by > nearer_by) ++beaten;
+    if (by > nearer_by(target)) ++beaten;
     furthest = std::max(furthest, by);
   }
   std::printf("| %s | %ld | %ld | %ld | %ld | %.1e |\n", name, count, refused, bounds_kept, beaten, furthest);

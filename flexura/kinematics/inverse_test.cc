@@ -86,7 +86,8 @@ TEST(Inverse, RefusesTargetsProvablyOutOfReachWithTheNearestPose) {
     const auto miss = [&](const ArmState& state) { return miss_of(arm, target, state); };
     for (int i = 0; i < 3; ++i) {
       const ArmState start = i == 0 ? result.state : random_state_within(random, arm);
-      EXPECT_GE(random_descent(random, arm, start, 300, miss), miss(result.state) * (1 - nearer_by)) << i;
+      EXPECT_GE(random_descent(random, arm, start, 300, miss), miss(result.state) * (1 - nearer_by(target)))
+          << i;
     }
     if (way == 3) return;
     for (int i = 0; i < 100; ++i) {
@@ -298,9 +299,9 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double part
 double distance_from_curve(const Arm& arm, const ArmState& state, const CurveTarget& target) {
   const Backbone backbone(arm, state);
   double largest = 0.0;
-  for (int k = 0; k <= 200; ++k) {
-    const Eigen::Vector3d p = backbone.pose(backbone.length() * k / 200).position;
-    largest = std::max(largest, (p - point_at(target.points, k / 200.0)).norm());
+  for (int k = 0; k <= 1000; ++k) {
+    const Eigen::Vector3d p = backbone.pose(backbone.length() * k / 1000).position;
+    largest = std::max(largest, (p - point_at(target.points, k / 1000.0)).norm());
   }
   return largest;
 }
@@ -334,7 +335,9 @@ TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
     } else {
       EXPECT_EQ(result.converged(), error <= cap);
     }
-    EXPECT_NEAR(distance_from_curve(arm, result.state, target), error, 0.02 * error + 1e-9);
+    const double sampled = distance_from_curve(arm, result.state, target);
+    EXPECT_LE(sampled, error + 1e-9);
+    EXPECT_GE(sampled, 0.9 * error - 1e-9);
     coarse += result.converged() && error > 1e-3 * arm.length() ? 1 : 0;
     too_coarse += result.converged() ? 0 : 1;
     // What the caller allows is what counts.

@@ -82,8 +82,9 @@ inline double miss_of(const Arm& arm, const TipTarget& target, const ArmState& s
   return std::hypot(position, std::atan2(z.cross(d).norm(), z.dot(d)));
 }
 
-/// What counts as nearer than the answer's pose, of the answer's own distance.
-inline constexpr double nearer_by = 1e-6;
+/// What counts as nearer than the answer's pose, in parts of the answer's own distance: with a direction the
+/// valleys are long and flat, and the search ends a little before their bottom.
+inline double nearer_by(const TipTarget& target) { return target.direction ? 1e-4 : 1e-6; }
 
 /// The least of `measure` that a descent by chance finds from `state` on, within the limits on bends: tries
 /// steps at random, shorter ones after failures and longer ones after successes. Knows no derivatives.

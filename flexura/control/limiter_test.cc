@@ -170,7 +170,9 @@ TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
     const Arm arm = limited_arm(random);
     LimiterSettings settings{.step = 0.05, .looks_ahead = false};
     settings.drive = limited_drive(random, arm);
-    for (Axis& axis : settings.drive->axes) axis.motor.max_position = 1e9;
+    for (Axis& axis : settings.drive->axes) {
+      axis.motor.max_position = std::numeric_limits<double>::infinity();
+    }
     ArmState wish = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, settings, wish);
     for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);

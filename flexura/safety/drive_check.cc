@@ -151,6 +151,7 @@ std::vector<MotorPlace> places_of(const MotorCommander& commander, const Drive& 
                                   const TendonDisplacements& wanted) {
   const std::vector<double> exact = motor_positions(drive, wanted);
   std::vector<MotorPlace> places;
+  places.reserve(exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i)
     places.push_back({static_cast<double>(commander.positions()[i]), commander.targets()[i], exact[i]});
   return places;
@@ -222,6 +223,7 @@ void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t 
 void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
   const auto say = [&](bool AxisNotes::* note, const std::string& what) {
     std::vector<char> is_meant;
+    is_meant.reserve(axes.size());
     for (const AxisCheck& axis : axes) is_meant.push_back(axis.notes().*note ? 1 : 0);
     const std::string names = names_of(is_meant, drive);
     if (!names.empty()) report.caveats.push_back(fmt::format(fmt::runtime(what), names, step));

@@ -19,6 +19,11 @@ mkdir -p docs/studies
   echo "has its tip. Solved from nothing, with the default tolerances (1e-9 of the arm's length; 1e-9 rad) and"
   echo "starts. \"Wrong\" would be an answer that the model's own forward kinematics does not confirm to twice that."
   echo "The targets out of reach are so by construction, without the code under test ([how](../../tests/support/inverse_targets.h))."
+  echo "The pose answered as the nearest to one is \"beaten\" when something that knows neither derivatives nor the search"
+  echo "comes nearer by more than 1e-6 of its distance (with a direction, of the position over the arm's length and the"
+  echo "angle together, and by more than 1e-4, for the search ends a little before the bottom of long valleys): 1,000 random poses, and descents of 400 random steps each from the pose itself and"
+  echo "from the five best of these. The study fails when one is beaten, an answer is wrong, or fewer than 99.9 % of the"
+  echo "targets in reach are found (bends up to 360 degrees: 99 %)."
   echo
   echo '```console'
   echo "\$ ./dev study ik $targets $unreachable $seed"

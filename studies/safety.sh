@@ -15,8 +15,9 @@ mkdir -p docs/studies
   echo "# Checks of motions against dense samples"
   echo
   echo "Random arms of one to six sections, every fourth of them planar, with random limits and radii, each among a random"
-  echo "plane, ball, rod and box. Six motions each: hold, linear with minimum jerk, trapezoid, sine, linear and smooth"
-  echo "keyframes. Each is checked as"
+  echo "plane, ball, rod and box. Eight motions each: hold, linear with minimum jerk, trapezoid, sine, linear and smooth"
+  echo "keyframes, a trapezoid by rates and accelerations of each section, a move of the tip to a place; and of planar arms"
+  echo "two more, a move of the cord angles with a law for each section and a swing of these. Each is checked as"
   echo "[safety](../safety.md) tells, and then sampled at $samples even steps by other code"
   echo "([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)); the motions, the sections' frames and"
   echo "the distance from a point to an obstacle are the simulator's own."

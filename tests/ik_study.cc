@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "flexura/math/so3.h"
 #include "tests/support/inverse_targets.h"
@@ -58,7 +59,9 @@ Tally reachable(TargetKind kind, double max_bend, long count, std::uint64_t seed
   return tally;
 }
 
-bool print_reachable(const char* name, TargetKind kind, double max_bend, long count, std::uint64_t seed) {
+// `least_rate`: of the targets, that must be found.
+bool print_reachable(const char* name, TargetKind kind, double max_bend, double least_rate, long count,
+                     std::uint64_t seed) {
   const Tally t = reachable(kind, max_bend, count, seed);
   const auto asked = static_cast<double>(t.asked);
   std::printf("| %s | %ld | %ld | %.3f %% | %.1f %% | %ld | %ld | %ld | %.1e | %.1e | %.1f |\n", name,
@@ -66,7 +69,33 @@ bool print_reachable(const char* name, TargetKind kind, double max_bend, long co
               100.0 * static_cast<double>(t.at_first_start) / asked, t.wrong, t.outside_limits,
               t.wrongly_proven, t.worst_position, t.worst_angle, static_cast<double>(t.iterations) / asked);
   std::fflush(stdout);
-  return t.wrong == 0 && t.outside_limits == 0 && t.wrongly_proven == 0;
+  const bool is_found = static_cast<double>(t.converged) >= least_rate * asked;
+  return is_found && t.wrong == 0 && t.outside_limits == 0 && t.wrongly_proven == 0;
+}
+
+// How much nearer something comes that knows no derivatives, and nothing of the search, in parts of the
+// answer's own distance: a thousand random poses, and descents from the pose found and from the best of these
+// on.
+double beaten_by(TestRandom& random, const Arm& arm, const TipTarget& target, const InverseResult& result) {
+  constexpr int poses = 1000;
+  constexpr int descents = 6;
+  constexpr int tries = 400;
+  const auto miss = [&](const ArmState& state) { return miss_of(arm, target, state); };
+  const double own = miss(result.state);
+  std::vector<std::pair<double, ArmState>> starts{{0.0, result.state}};
+  double least = own;
+  for (int k = 0; k < poses; ++k) {
+    ArmState state = random_state_within(random, arm);
+    const double found = miss(state);
+    least = std::min(least, found);
+    starts.emplace_back(found, std::move(state));
+  }
+  const auto nearer = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::ranges::partial_sort(starts, starts.begin() + descents, nearer);
+  for (int k = 0; k < descents; ++k)
+    least =
+        std::min(least, random_descent(random, arm, starts[static_cast<std::size_t>(k)].second, tries, miss));
+  return 1 - least / own;
 }
 
 bool print_unreachable(const char* name, int way, long count, std::uint64_t seed) {
@@ -74,6 +103,7 @@ bool print_unreachable(const char* name, int way, long count, std::uint64_t seed
   long refused = 0;
   long bounds_kept = 0;
   long beaten = 0;
+  double furthest = 0.0;
   for (long i = 0; i < count; ++i) {
     Arm arm = random_three_sections(random);
     double at_least = 0.0;
@@ -81,17 +111,13 @@ bool print_unreachable(const char* name, int way, long count, std::uint64_t seed
     const InverseResult result = solve_inverse(arm, target);
     if (result.outcome == InverseOutcome::not_reachable && result.is_proven) ++refused;
     if (result.position_error >= at_least * (1 - 1e-12) && is_within_limits(arm, result.state)) ++bounds_kept;
-    // The nearest in position, where the position is out of reach: does chance find a nearer one?
-    bool is_beaten = false;
-    for (int k = 0; k < 1000 && way != 3; ++k) {
-      const Eigen::Vector3d p = tip_pose(arm, random_state_within(random, arm)).position;
-      is_beaten = is_beaten || (p - target.position).norm() < result.position_error * (1 - 1e-9);
-    }
-    if (is_beaten) ++beaten;
+    const double by = beaten_by(random, arm, target, result);
+    if (by > nearer_by(target)) ++beaten;
+    furthest = std::max(furthest, by);
   }
-  std::printf("| %s | %ld | %ld | %ld | %s |\n", name, count, refused, bounds_kept,
-              way == 3 ? "-" : std::to_string(beaten).c_str());
-  return refused == count && bounds_kept == count;
+  std::printf("| %s | %ld | %ld | %ld | %ld | %.1e |\n", name, count, refused, bounds_kept, beaten, furthest);
+  std::fflush(stdout);
+  return refused == count && bounds_kept == count && beaten == 0;
 }
 
 }  // namespace
@@ -112,17 +138,20 @@ int main(int count, char** arguments) {
       "worst position / length | worst angle, rad | iterations |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   bool is_good = true;
-  is_good &= flexura::print_reachable("position", TargetKind::position, 0, targets, seed);
-  is_good &= flexura::print_reachable("position and direction", TargetKind::direction, 0, targets, seed);
-  is_good &= flexura::print_reachable("full pose", TargetKind::pose, 0, targets, seed);
+  // Bent by more than half a turn each, three sections have many valleys, and one target in hundreds is lost.
+  constexpr double nearly_all = 0.999, most = 0.99;
+  is_good &= flexura::print_reachable("position", TargetKind::position, 0, nearly_all, targets, seed);
+  is_good &=
+      flexura::print_reachable("position and direction", TargetKind::direction, 0, nearly_all, targets, seed);
+  is_good &= flexura::print_reachable("full pose", TargetKind::pose, 0, nearly_all, targets, seed);
   is_good &= flexura::print_reachable("full pose, bends up to 180 degrees", TargetKind::pose, turn / 2,
-                                      targets / 5, seed);
-  is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn,
+                                      nearly_all, targets / 5, seed);
+  is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn, most,
                                       targets / 20, seed);
   std::puts(
       "\n| out of reach | asked | refused with proof | as far as constructed or further | "
-      "nearest pose beaten by 1,000 random ones |");
-  std::puts("| --- | ---: | ---: | ---: | ---: |");
+      "nearest pose beaten | by at most |");
+  std::puts("| --- | ---: | ---: | ---: | ---: | ---: |");
   is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);
   is_good &=
       flexura::print_unreachable("behind an arm that turns less than 90 degrees", 1, unreachable, seed);

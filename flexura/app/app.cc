@@ -59,7 +59,10 @@ void add_run(CLI::App& app, Command& chosen) {
   CLI::App* run = app.add_subcommand("run", "Run an experiment and write its results into a new folder");
   run->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
   run->add_option("--out", arguments->out, "Folder to make for the results (default: results/NAME)")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check([](const std::string& name) {
+        return name.empty() ? std::string("expected the name of a folder") : std::string();
+      });
   run->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);

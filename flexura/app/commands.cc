@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <istream>
 #include <memory>
 #include <optional>
 #include <ostream>
 
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
+#include "flexura/app/json_lines.h"
 #include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/app/view.h"
@@ -71,37 +71,6 @@ class WatchedRun {
   OpenViewer viewer_;
 };
 
-// A line of input without its end; what is longer than the bound is dropped, and `too_long` says so.
-bool read_line(std::istream& in, std::string& line, bool& too_long) {
-  constexpr std::size_t longest = std::size_t{1} << 24;
-  line.clear();
-  too_long = false;
-  std::streambuf& buffer = *in.rdbuf();
-  for (int c = buffer.sbumpc(); c != std::char_traits<char>::eof(); c = buffer.sbumpc()) {
-    if (c == '\n') return true;
-    if (line.size() < longest) {
-      line += static_cast<char>(c);
-    } else {
-      too_long = true;
-    }
-  }
-  return !line.empty();
-}
-
-// Answers every line of `in` about the arm in a file.
-int answer_lines(const std::string& arm_file, std::istream& in, std::ostream& out,
-                 std::string (*answer)(const Arm&, std::string_view)) {
-  const Arm arm = load_experiment(arm_file).arm.arm();
-  std::string line;
-  bool too_long = false;
-  while (read_line(in, line, too_long)) {
-    out << (too_long ? R"({"error":"the line is longer than 16 MiB"})" : answer(arm, line)) << '\n';
-    // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
-    if (in.rdbuf()->in_avail() <= 0) out.flush();
-  }
-  return exit_done;
-}
-
 }  // namespace
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
@@ -159,11 +128,13 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
 }
 
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  return answer_lines(arm_file, in, out, answer_forward);
+  answer_lines(load_experiment(arm_file).arm.arm(), answer_forward, in, out);
+  return exit_done;
 }
 
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  return answer_lines(arm_file, in, out, answer_inverse);
+  answer_lines(load_experiment(arm_file).arm.arm(), answer_inverse, in, out);
+  return exit_done;
 }
 
 int export_command(const std::string& results, const std::string& format, std::ostream& out,

@@ -35,9 +35,9 @@ const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
           .field("cord_angles", &ForwardRequest::cord_angles,
                  {.meaning = "cords' angles from +X", .unit = Unit::radian, .range = angle_range})
           .field("archings", &ForwardRequest::archings,
-                 {.meaning = "archings", .unit = Unit::radian, .range = angle_range})
+                 {.meaning = "archings", .unit = Unit::radian, .range = arching_range})
           .field("bends", &ForwardRequest::bends,
-                 {.meaning = "bend vectors", .unit = Unit::radian, .range = angle_range})
+                 {.meaning = "bend vectors", .unit = Unit::radian, .range = bend_range})
           .field("stretches", &ForwardRequest::stretches,
                  {.meaning = "factors on the sections' lengths", .range = above_up_to(0, 100)})
           .field("at", &ForwardRequest::at,
@@ -70,6 +70,7 @@ ForwardRequest read_request(const Arm& arm, std::string_view line) {
     if (!shape.cord_angles && !shape.archings && !shape.bends && !shape.stretches) {
       reader.problem("says no shape: expected cord_angles, archings, bends or stretches");
     }
+    if (reader.problems().empty()) check_bends(arm, shape, "", reader);
   }
   if (request.at && reader.problems().empty()) {
     const double length = Backbone(arm, arm_state(arm, request.shape())).length();

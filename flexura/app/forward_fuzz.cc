@@ -1,13 +1,19 @@
-// Any bytes as a line of `flexura fk`, on a planar and a spatial arm: always one line of JSON without NaN.
+// Any bytes as the input of `flexura fk`, on a planar and a spatial arm: for each line, one line of JSON
+// without NaN.
 #include <cstdint>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "flexura/app/forward.h"
+#include "flexura/app/json_lines.h"
 #include "flexura/store/json.h"
 
 namespace {
+
+// Short enough for inputs that are longer.
+constexpr std::size_t longest = 1000;
 
 flexura::Arm arm_of(flexura::ArmKind kind) {
   flexura::Arm arm;
@@ -16,11 +22,34 @@ flexura::Arm arm_of(flexura::ArmKind kind) {
   return arm;
 }
 
-void check_answer(const std::string& answer) {
-  if (answer.find('\n') != std::string::npos) std::abort();
+void check_answer(std::string_view answer, std::string_view line) {
   const flexura::Node node = flexura::parse_json(answer, "answer");
-  if ((node.find("tip") == nullptr) == (node.find("error") == nullptr)) std::abort();
-  if (answer.find("null") != std::string::npos && node.find("error") == nullptr) std::abort();
+  const flexura::Node* error = node.find("error");
+  if ((node.find("tip") == nullptr) == (error == nullptr)) std::abort();
+  if (answer.find("null") != std::string_view::npos && error == nullptr) std::abort();
+  if (line.size() > longest && error == nullptr) std::abort();
+}
+
+// What stands before the next line end, which is taken, too.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+void check_input(const flexura::Arm& arm, std::string_view input) {
+  std::istringstream in{std::string(input)};
+  std::ostringstream out;
+  flexura::answer_lines(arm, flexura::answer_forward, in, out, longest);
+  const std::string all = out.str();
+  std::string_view answers = all;
+  while (!input.empty()) {
+    const std::string_view line = take_line(input);
+    if (answers.empty()) std::abort();
+    check_answer(take_line(answers), line);
+  }
+  if (!answers.empty()) std::abort();
 }
 
 }  // namespace
@@ -28,8 +57,8 @@ void check_answer(const std::string& answer) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const flexura::Arm planar = arm_of(flexura::ArmKind::planar);
   static const flexura::Arm spatial = arm_of(flexura::ArmKind::spatial);
-  const std::string_view line(reinterpret_cast<const char*>(data), size);
-  check_answer(flexura::answer_forward(planar, line));
-  check_answer(flexura::answer_forward(spatial, line));
+  const std::string_view input(reinterpret_cast<const char*>(data), size);
+  check_input(planar, input);
+  check_input(spatial, input);
   return 0;
 }

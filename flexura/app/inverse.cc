@@ -97,6 +97,7 @@ InverseRequest read_request(const Arm& arm, std::string_view line) {
   if (fields_of(static_cast<const InverseRequest*>(nullptr)).read(document, reader, request)) {
     check_target(request, reader);
     if (request.start) check_shape(*request.start, arm.kind, arm.sections.size(), "start", reader);
+    if (request.start && reader.problems().empty()) check_bends(arm, *request.start, "start", reader);
   }
   reader.throw_if_any();
   return request;
@@ -143,6 +144,7 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
   Node::Table members{{"converged", {}, {result.converged(), {}}},
                       {"reason", {}, {std::string(name_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);
+  if (request.curve) members.push_back({"tolerance", {}, {result.position_tolerance, {}}});
   if (!result.converged()) {
     members.push_back({"nearest", {}, point_node(result.tip)});
     members.push_back({"distance", {}, {result.position_error, {}}});

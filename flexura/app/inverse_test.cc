@@ -108,6 +108,7 @@ TEST(AnswerInverse, LaysTheArmAlongACurve) {
   const Node straight = parsed(answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0,0.9,0]]})"));
   EXPECT_TRUE(flag(straight, "converged"));
   EXPECT_LE(number(straight, "position_error"), 1e-9);
+  EXPECT_NEAR(number(straight, "tolerance"), 0.9e-3, 1e-15);
   const Node longer = parsed(answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0,1.9,0]]})"));
   EXPECT_EQ(text(longer, "reason"), "not_reachable");
 }
@@ -118,8 +119,11 @@ TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWh
       R"("curve":[[0.0,0.0,0],[0.02936,0.22242,0],[0.11544,0.42961,0],[0.25233,0.60736,0],[0.43065,0.74351,0]])";
   const Node plain = parsed(answer_inverse(limited_arm(), "{" + points + "}"));
   EXPECT_TRUE(flag(plain, "converged")) << number(plain, "position_error");
+  EXPECT_NEAR(number(plain, "tolerance"), 0.009, 1e-12)
+      << "a hundredth of the arm, and not all they leave open";
   const Node strict = parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":1e-9})"));
   EXPECT_FALSE(flag(strict, "converged"));
+  EXPECT_EQ(number(strict, "tolerance"), 1e-9);
   const Node loose = parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":0.05})"));
   EXPECT_TRUE(flag(loose, "converged"));
   EXPECT_EQ(text(parsed(answer_inverse(limited_arm(), R"({"position":[0,0.8,0],"tolerance":0.1})")), "error"),
@@ -127,6 +131,14 @@ TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWh
   EXPECT_NE(text(parsed(answer_inverse(limited_arm(), "{" + points + R"(,"tolerance":0})")), "error")
                 .find("tolerance"),
             std::string::npos);
+}
+
+TEST(AnswerInverse, OfACoarseCurveThatTheArmMissesSaysSo) {
+  // Four points on an arc of a full turn, of which each section bends by its limit of 90 degrees at most.
+  const Node missed = parsed(
+      answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0.15,0.25,0],[0.42,0.25,0],[0.6,0.02,0]]})"));
+  EXPECT_FALSE(flag(missed, "converged"));
+  EXPECT_GT(number(missed, "distance"), 0.009);
 }
 
 TEST(AnswerInverse, SaysWhatIsNearestInEveryAnswerThatDidNotConverge) {

@@ -1,13 +1,17 @@
 // The program as a user starts it: exit statuses, what goes to stdout and what to stderr, and being killed.
 #include "tests/support/program.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -20,8 +24,10 @@
 namespace flexura {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
   const Ended ended = run("run " + paper_file);
@@ -106,7 +112,8 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
                                 "view --port 70000",
                                 "view --address nowhere --no-browser",
                                 "view --address 127.0.0.1.5 --no-browser",
-                                "run x.toml --no-browser"}) {
+                                "run x.toml --no-browser",
+                                "run x.toml --out ''"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 2) << arguments;
     EXPECT_THAT(ended.out, IsEmpty()) << arguments;
@@ -117,6 +124,54 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
               HasSubstr("--address: \"nowhere\": expected an IP address of this machine"));
   EXPECT_EQ(run("run " + paper_file + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
+}
+
+// A terminal that a program can be started at, and what appeared on it.
+class Terminal {
+ public:
+  Terminal() : screen_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    if (screen_ < 0 || grantpt(screen_) != 0 || unlockpt(screen_) != 0) return;
+    name_ = ptsname(screen_);
+    end_ = open(name_.c_str(), O_RDWR | O_NOCTTY);  // Held open: what was written stays to be read.
+  }
+  ~Terminal() {
+    if (end_ >= 0) close(end_);
+    if (screen_ >= 0) close(screen_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  [[nodiscard]] bool is_there() const { return end_ >= 0; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  // Until the process has ended.
+  std::string shown_by(pid_t process) {
+    std::string text;
+    for (bool has_ended = false;;) {
+      std::array<char, 4096> part{};
+      const ssize_t count = read(screen_, part.data(), part.size());
+      if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
+      if (count <= 0 && has_ended) return text;
+      if (count <= 0) has_ended = waitpid(process, nullptr, WNOHANG) != 0;
+      if (count <= 0 && !has_ended) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+ private:
+  int screen_ = -1;
+  int end_ = -1;
+  std::string name_;
+};
+
+TEST_F(Program, ShowsAPersonAtATerminalHowFarItIsAndNobodyElse) {
+  Terminal terminal;
+  ASSERT_TRUE(terminal.is_there());
+  const std::string shown = terminal.shown_by(start("run " + paper_file, path("out"), terminal.name()));
+  // Each line is put in the place of the one before, and the last is taken away.
+  const std::string cleared = "\r\x1b[K";
+  EXPECT_THAT(shown, StartsWith(cleared + "  0 % [.............................."));
+  EXPECT_THAT(shown, EndsWith(cleared));
+  EXPECT_EQ(shown.find('\n'), std::string::npos) << shown;
+  EXPECT_THAT(run("run " + paper_file).err, IsEmpty()) << "a file is no person";
 }
 
 TEST_F(Program, EndsWithThreeWhenTheSystemFails) {

@@ -7,6 +7,21 @@
 #include <utility>
 
 namespace flexura {
+namespace {
+
+// "task[0].loop" as a header of TOML has it: "task.loop".
+std::string without_indices(std::string_view path) {
+  std::string names;
+  bool is_index = false;
+  for (const char c : path) {
+    if (c == '[') is_index = true;
+    if (!is_index) names += c;
+    if (c == ']') is_index = false;
+  }
+  return names;
+}
+
+}  // namespace
 
 Reader::Scope::Scope(Reader& reader, std::string_view name, const SourcePosition& where)
     : Scope(reader, name, name, where) {}
@@ -71,6 +86,17 @@ void Reader::unexpected(const Node& node, std::string_view expected) {
   problems_.push_back({node.where, path_ + " " + what});
 }
 
+void Reader::unexpected_choice(const Node& node, const std::vector<std::string>& choices) {
+  std::string expected = fmt::format("one of \"{}\"", fmt::join(choices, "\", \""));
+  if (const auto* word = node.as<std::string>()) {
+    std::string small = *word;
+    for (char& c : small) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (const std::string_view near = nearest_name(small, choices); !near.empty())
+      expected += fmt::format("; did you mean \"{}\"?", near);
+  }
+  unexpected(node, expected);
+}
+
 void Reader::throw_if_any() const {
   if (!problems_.empty()) throw InputError(problems_);
 }
@@ -123,9 +149,14 @@ bool Reader::text(const Node& node, std::string& value) {
   return true;
 }
 
-const Node::Array* Reader::array(const Node& node, const Count& count) {
+const Node::Array* Reader::array(const Node& node, const Count& count, Type::Kind item) {
   const auto* entries = node.as<Node::Array>();
   if (entries != nullptr && entries->size() >= count.min && entries->size() <= count.max) return entries;
+  const bool is_of_tables = item == Type::Kind::table || item == Type::Kind::one_of;
+  if (is_of_tables && node.as<Node::Table>() != nullptr) {
+    unexpected(node, fmt::format("several, as tables [[{}]]", without_indices(path_)));
+    return nullptr;
+  }
   constexpr std::size_t no_bound = std::numeric_limits<std::size_t>::max();
   if (count.min == count.max) {
     unexpected(node, fmt::format("an array of {}", count.min));

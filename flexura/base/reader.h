@@ -43,6 +43,8 @@ class Reader {
   void problem_in_text(std::string_view path, const std::string& text, std::size_t offset, std::string what);
   /// "PATH = VALUE: expected ...".
   void unexpected(const Node& node, std::string_view expected);
+  /// The same where a word out of `choices` is expected, with the one that may be meant.
+  void unexpected_choice(const Node& node, const std::vector<std::string>& choices);
 
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
   /// Throws every problem as one InputError, if there are any.
@@ -58,8 +60,9 @@ class Reader {
   bool integer(const Node& node, const Spec& spec, std::int64_t& value);
   /// A text without control characters: one that is printed cannot pass for more than it is.
   bool text(const Node& node, std::string& value);
-  /// The array, when the node is one and has the right number of entries; a problem and null otherwise.
-  const Node::Array* array(const Node& node, const Count& count);
+  /// The array, when the node is one and has the right number of entries; a problem and null otherwise. One
+  /// of `item`s, which tells how to write an array of tables where a single table stands.
+  const Node::Array* array(const Node& node, const Count& count, Type::Kind item);
 
  private:
   [[nodiscard]] std::string below(std::string_view name) const;

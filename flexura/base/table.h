@@ -177,7 +177,7 @@ struct Codec<E> {
     for (std::size_t i = 0; written != nullptr && i < names().size(); ++i) {
       if (names()[i] == *written) return value = static_cast<E>(i), true;
     }
-    return reader.unexpected(node, fmt::format("one of \"{}\"", fmt::join(names(), "\", \""))), false;
+    return reader.unexpected_choice(node, names()), false;
   }
   static Node write(E value) { return {names()[static_cast<std::size_t>(value)], {}}; }
 };
@@ -196,6 +196,13 @@ struct Codec<std::optional<T>> {
 };
 
 namespace codec_detail {
+
+// Of one entry of an array.
+template <class T>
+Type::Kind kind_of() {
+  static const Type::Kind kind = Codec<T>::type().kind;
+  return kind;
+}
 
 // Reads the entries of an array into values[0..]; every bad entry is reported.
 template <class T, class Values>
@@ -229,7 +236,7 @@ struct Codec<std::vector<T>> {
       value.assign(1, T{});
       return Codec<T>::read(node, spec, reader, value.front());
     }
-    const Node::Array* entries = reader.array(node, spec.count);
+    const Node::Array* entries = reader.array(node, spec.count, codec_detail::kind_of<T>());
     if (entries == nullptr) return false;
     value.assign(entries->size(), T{});
     return codec_detail::read_entries<T>(*entries, spec, reader, value);
@@ -250,7 +257,7 @@ struct Codec<std::array<T, n>> {
       value.fill(one);
       return true;
     }
-    const Node::Array* entries = reader.array(node, {n, n});
+    const Node::Array* entries = reader.array(node, {n, n}, codec_detail::kind_of<T>());
     return entries != nullptr && codec_detail::read_entries<T>(*entries, spec, reader, value);
   }
   static Node write(const std::array<T, n>& value) { return codec_detail::write_entries(value); }
@@ -277,10 +284,11 @@ struct Codec<std::variant<S...>> {
   static bool read(const Node& node, const Spec&, Reader& reader, Value& value) {
     if (node.as<Node::Table>() == nullptr) return reader.unexpected(node, "a table"), false;
     const std::vector<std::string> kinds{Codec<S>::table().info().name...};
-    const std::string expected = fmt::format("one of \"{}\"", fmt::join(kinds, "\", \""));
     const Node* kind = node.find(tag);
-    if (kind == nullptr)
-      return reader.problem(fmt::format("{} is missing: expected {}", tag, expected)), false;
+    if (kind == nullptr) {
+      reader.problem(fmt::format("{} is missing: expected one of \"{}\"", tag, fmt::join(kinds, "\", \"")));
+      return false;
+    }
     const auto* name = kind->as<std::string>();
     bool known = false;
     bool read_well = false;
@@ -292,7 +300,7 @@ struct Codec<std::variant<S...>> {
     (try_one(std::type_identity<S>{}), ...);
     if (!known) {
       const Reader::Scope scope(reader, tag, kind->where);
-      reader.unexpected(*kind, expected);
+      reader.unexpected_choice(*kind, kinds);
     }
     return read_well;
   }

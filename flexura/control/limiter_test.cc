@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -40,12 +41,14 @@ Arm limited_arm(TestRandom& random) {
 }
 
 Drive limited_drive(TestRandom& random, const Arm& arm) {
+  constexpr std::int64_t finer = 1'000'000'000;
   Drive drive = random_drive(random, arm);
   for (Axis& axis : drive.axes) {
-    axis.spool.backlash = 0;  // Taking it up is the drive's own.
+    axis.spool.backlash = 0;  // Taking it up is the drive's own, and so is rounding:
+    axis.motor.microsteps *= finer;
     axis.motor.max_speed = random.uniform(5, 60);
     axis.motor.max_acceleration = random.uniform(20, 400);
-    axis.motor.max_step_rate = random.uniform(2000, 40000);
+    axis.motor.max_step_rate = random.uniform(2000, 40000) * finer;
     axis.motor.max_position = axis.microsteps_a_metre() * random.uniform(0.01, 0.03);
   }
   if (random.integer(0, 3) == 0) drive.disks = 5;
@@ -167,7 +170,9 @@ TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
     const Arm arm = limited_arm(random);
     LimiterSettings settings{.step = 0.05, .looks_ahead = false};
     settings.drive = limited_drive(random, arm);
-    for (Axis& axis : settings.drive->axes) axis.motor.max_position = 1e9;
+    for (Axis& axis : settings.drive->axes) {
+      axis.motor.max_position = std::numeric_limits<double>::infinity();
+    }
     ArmState wish = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, settings, wish);
     for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);

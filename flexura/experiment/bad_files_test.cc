@@ -42,13 +42,13 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "x.toml:2:11: arm.section is an empty array: expected an array of 1 to 1000"},
       {"no length", file_with("length = 2.0\n", ""), "x.toml:3:1: arm.section[0].length: missing: expected"},
       {"negative length", file_with("2.0", "-2.0"),
-       "x.toml:4:10: arm.section[0].length = -2: expected a number above 0 m"},
+       "x.toml:4:10: arm.section[0].length = -2: expected a number from 1e-06 m to 1000000 m"},
       {"zero length", file_with("2.0", "0"),
-       "x.toml:4:10: arm.section[0].length = 0: expected a number above 0 m"},
+       "x.toml:4:10: arm.section[0].length = 0: expected a number from 1e-06 m to 1000000 m"},
       {"huge length", file_with("2.0", "1e300"),
-       "x.toml:4:10: arm.section[0].length = 1e+300: expected a number above 0 m"},
+       "x.toml:4:10: arm.section[0].length = 1e+300: expected a number from 1e-06 m to 1000000 m"},
       {"NaN", file_with("2.0", "nan"),
-       "x.toml:4:10: arm.section[0].length = nan: expected a number above 0 m"},
+       "x.toml:4:10: arm.section[0].length = nan: expected a number from 1e-06 m to 1000000 m"},
       {"infinity", file_with("2.0", "-inf"), "x.toml:4:10: arm.section[0].length = -inf: expected"},
       {"text for a number", file_with("2.0", "'2.0'"),
        "x.toml:4:10: arm.section[0].length = \"2.0\": expected a number"},
@@ -76,6 +76,54 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "x.toml:8:8: task[0].kind = \"jump\": expected one of \"move\", \"hold\""},
       {"task without a kind", file_with("kind = \"move\"\n", ""),
        "x.toml:7:1: task[0]: kind is missing: expected one of"},
+      {"a length that no coordinate can tell", file_with("2.0", "1e-200"),
+       "x.toml:4:10: arm.section[0].length = 1e-200: expected a number from 1e-06 m to 1000000 m"},
+      {"a radius of nothing", file_with("length = 2.0", "length = 2.0\nradius_mm = 1e-9"),
+       "x.toml:5:13: arm.section[0].radius_mm = 1e-09: expected a number from 0.001 mm to 1000000000 mm"},
+      {"cameras that stand on the base",
+       file_with("[arm]", "stand.camera_distances = [1, 1e-12]\n[arm]\nbase.position = [1e6, 0, 0]"),
+       "x.toml:1:7: stand.camera_distances: puts camera \"side\" where the arm's base is"},
+      {"two obstacles of one name",
+       file_with("[[task]]",
+                 "[[obstacle]]\nkind = 'plane'\nname = 'sphere 2'\n[[obstacle]]\n"
+                 "kind = 'sphere'\ncenter = [9, 9, 9]\nradius = 1\n[[task]]"),
+       "x.toml:10:1: obstacle[1].name: \"sphere 2\" is the name of another obstacle"},
+      {"a table for an array of them", file_with("[[task]]", "[task]"),
+       "x.toml:7:1: task is a table: expected several, as tables [[task]]"},
+      {"a section for several", "[arm]\n[arm.section]\nlength = 1\n",
+       "x.toml:2:1: arm.section is a table: expected several, as tables [[arm.section]]"},
+      {"a misspelt word", file_with("duration = 2.0", "law = 'linaer'\nduration = 2.0"),
+       "x.toml:9:7: task[0].law = \"linaer\": expected one of \"linear\", \"minimum_jerk\", \"trapezoid\"; "
+       "did you "
+       "mean \"linear\"?"},
+      {"a word in capitals", file_with("\"planar\"", "'Planar'"), "did you mean \"planar\"?"},
+      {"a misspelt kind", file_with("\"move\"", "\"mvoe\""), "did you mean \"move\"?"},
+      {"a bend of hundreds of turns", file_with("archings_pi = [0.1, 0.2]", "archings = [501, 0]"),
+       "x.toml:10:16: task[0].to.archings[0] = 501: expected a number from -500 rad to 500 rad"},
+      {"the same as a bend", file_with("archings_pi = [0.1, 0.2]", "bends = [[1001, 0], [0, 0]]"),
+       "task[0].to.bends[0][0] = 1001: expected a number from -1000 rad to 1000 rad"},
+      {"and as an angle of its cord", file_with("archings_pi = [0.1, 0.2]", "cord_angles = [600, 0]"),
+       "x.toml:10:4: task[0].to.cord_angles: bends section 1 by 1196.86 rad: expected at most 1000 rad"},
+      {"in both directions at once",
+       "[arm]\nkind = 'spatial'\ninitial.bends = [[800, 800]]\n[[arm.section]]\nlength = 1\n",
+       "x.toml:3:9: arm.initial.bends: bends section 1 by 1131.37 rad: expected at most 1000 rad"},
+      {"keyframes without rows",
+       file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
+                 "kind = 'keyframes'\ncolumns = ['time', 'arching_1', 'arching_2']\nrows = []"),
+       "x.toml:10:1: task[0].rows: 0 rows: expected at least 2"},
+      {"keyframes with one row",
+       file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
+                 "kind = 'keyframes'\ncolumns = ['time', 'arching_1', 'arching_2']\nrows = [[0, 0, 0]]"),
+       "x.toml:10:1: task[0].rows: 1 row: expected at least 2"},
+      {"keyframes of too many turns",
+       file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
+                 "kind = 'keyframes'\ncolumns = ['time', 'arching_1', 'arching_2']\n"
+                 "rows = [[0, 0, 0], [1, 501, 0]]"),
+       "task[0].rows[1][1]: angle 501 rad: expected from -500 rad to 500 rad"},
+      {"a text in a formula",
+       file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
+                 "kind = 'expression'\nduration = 2.0\narchings = 't + \"1\"'"),
+       "x.toml:10:17: task[0].archings[0]: holds a text: expected numbers, names and operators"},
       {"negative duration", file_with("duration = 2.0", "duration = -2.0"),
        "x.toml:9:12: task[0].duration = -2: expected a number above 0 s"},
       {"no target", file_with("to.archings_pi = [0.1, 0.2]\n", ""),
@@ -122,9 +170,9 @@ TEST(BadFiles, SeveralErrorsAreReportedAtOnceInOneLineEach) {
   EXPECT_EQ(
       error_of_file("[arm]\nknid = 'planar'\n[[arm.section]]\nlength = -1\nradius = 0\n[[arm.section]]\n"),
       "x.toml:2:1: arm.knid: unknown key; did you mean \"kind\"?\n"
-      "x.toml:4:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m\n"
-      "x.toml:5:10: arm.section[0].radius = 0: expected a number above 0 m and at most 1000000 m\n"
-      "x.toml:6:1: arm.section[1].length: missing: expected a number above 0 m and at most 1000000 m "
+      "x.toml:4:10: arm.section[0].length = -1: expected a number from 1e-06 m to 1000000 m\n"
+      "x.toml:5:10: arm.section[0].radius = 0: expected a number from 1e-06 m to 1000000 m\n"
+      "x.toml:6:1: arm.section[1].length: missing: expected a number from 1e-06 m to 1000000 m "
       "(Arc length of the section's centreline when not stretched.)");
 }
 
@@ -157,7 +205,7 @@ TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {
       error_of_file("[arm]\nkind = 'planar'\nkind = 'spatial'\n[[arm.section]]\nlength = -1\nlength = 2\n"),
       "x.toml:3:8: 'kind' is written twice: expected each key once\n"
       "x.toml:6:10: 'length' is written twice: expected each key once\n"
-      "x.toml:5:10: arm.section[0].length = -1: expected a number above 0 m and at most 1000000 m");
+      "x.toml:5:10: arm.section[0].length = -1: expected a number from 1e-06 m to 1000000 m");
   EXPECT_EQ(error_of_file("[arm]\nkind = 'planar'\nkind = [\n 1]\n[[arm.section]]\nlength = -1\n"),
             "x.toml:3:8: 'kind' is written twice: expected each key once")
       << "what follows a value of several lines is not judged";

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <sstream>
 
 #include "flexura/experiment/experiment.h"
@@ -118,6 +120,51 @@ TEST_F(LaboratoryArm, FollowsItsCommandsToHalfAMicrostepThroughThePlay) {
     const ArmState found = fit_state(arm, drive, made).state;
     for (std::size_t i = 0; i < 3; ++i) ASSERT_LE((found.bends[i] - wanted.bends[i]).norm(), 1e-4);
   }
+}
+
+// What commands.csv asks of a motor, against its limits: single microsteps in rows too short for one are let
+// pass, and told.
+::testing::AssertionResult keeps_to(const std::vector<Row>& rows, std::size_t axis,
+                                    const StepperMotor& motor) {
+  const double most =
+      std::min(motor.max_step_rate, motor.max_speed * motor.resolution() / (2 * std::numbers::pi));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto position = static_cast<double>(rows[k].positions[axis]);
+    if (std::abs(position) > motor.max_position)
+      return ::testing::AssertionFailure() << "position " << position;
+    if (k == 0) continue;
+    const double rate = std::abs(rows[k].rates[axis]);
+    const bool is_single = std::abs(rows[k].positions[axis] - rows[k - 1].positions[axis]) <= 1;
+    if (rate > most * (1 + 1e-9) && !is_single)
+      return ::testing::AssertionFailure()
+             << rate << " microsteps/s at " << rows[k].time << " s, limit " << most;
+  }
+  return ::testing::AssertionSuccess();
+}
+
+TEST_F(LaboratoryArm, ASafeListKeepsToTheLimitsOfItsMotors) {
+  Experiment experiment = load_experiment(laboratory_arm);
+  const std::vector<Row> all = rows_of(run(experiment).folder, 9);
+  double fastest = 0;
+  for (const Row& row : all)
+    for (const double rate : row.rates) fastest = std::max(fastest, std::abs(rate));
+  int safe = 0;
+  constexpr int limits = 8;
+  for (int k = 0; k < limits; ++k) {
+    // About the fastest row of the list, and by less than one microstep a row from it.
+    const double limit = fastest + (k - limits / 2 + 0.5) * 0.3 / experiment.clock.step;
+    experiment.drive->motor.max_step_rate = limit;
+    const RunResult result = run(experiment);
+    const bool is_within = limit >= fastest;
+    EXPECT_EQ(result.outcome, is_within ? RunOutcome::done : RunOutcome::unsafe)
+        << limit << " of " << fastest;
+    if (result.outcome != RunOutcome::done) continue;
+    ++safe;
+    const std::vector<Row> rows = rows_of(result.folder, 9);
+    const Drive drive = experiment.drive->drive();
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_TRUE(keeps_to(rows, i, drive.axes[i].motor)) << "axis " << i;
+  }
+  EXPECT_EQ(safe, limits / 2);
 }
 
 TEST_F(LaboratoryArm, LogsTheCommandsOfItsTable) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/study_config.h"
+#include "flexura/kinematics/shape.h"
 
 namespace flexura {
 namespace {
@@ -14,7 +16,53 @@ constexpr std::size_t max_tasks = 10000;
 constexpr std::size_t max_obstacles = 1000;
 constexpr std::size_t max_cameras = 100;
 
+// The default cameras look at the arm's base; far from the origin a small distance from it is rounded away.
+void check_default_cameras(const Experiment& experiment, Reader& reader) {
+  for (const CameraConfig& camera : experiment.cameras()) {
+    if (camera.mount.look_at != camera.mount.position) continue;
+    reader.problem_at("stand.camera_distances",
+                      fmt::format("puts camera \"{}\" where the arm's base is: expected distances that the "
+                                  "base's coordinates can tell",
+                                  camera.name));
+  }
+}
+
+void check_obstacle_names(const std::vector<ObstacleConfig>& configs, Reader& reader) {
+  const std::vector<Obstacle> all = obstacles(configs);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (names.insert(all[i].name).second) continue;
+    reader.problem_at(fmt::format("obstacle[{}].name", i),
+                      fmt::format("\"{}\" is the name of another obstacle", all[i].name));
+  }
+}
+
+void check_task_at(const Experiment& experiment, std::size_t index, Reader& reader) {
+  const TaskConfig& task = experiment.task[index];
+  const std::string path = fmt::format("task[{}]", index);
+  const std::size_t problems_before = reader.problems().size();
+  check_task(task, experiment.arm.kind, experiment.arm.section.size(), path, reader);
+  if (const auto* study = std::get_if<StudyTask>(&task))
+    check_study(*study, experiment.cameras(), path, reader);
+  if (const auto* calibration = std::get_if<CalibrateTask>(&task))
+    check_calibration(*calibration, experiment.arm, experiment.cameras(), experiment.stand, path, reader);
+  const auto* servo = std::get_if<ServoTask>(&task);
+  if (servo != nullptr) check_servo(*servo, experiment.arm, experiment.cameras(), path, reader);
+  if (reader.problems().size() > problems_before) return;  // Shapes fit the arm from here on.
+  const Arm arm = experiment.arm.arm();
+  if (const auto* move = std::get_if<MoveTask>(&task)) check_bends(arm, move->to, path + ".to", reader);
+  if (const auto* calibration = std::get_if<CalibrateTask>(&task)) {
+    for (std::size_t i = 0; i < calibration->pose.size(); ++i)
+      check_bends(arm, calibration->pose[i], fmt::format("{}.pose[{}]", path, i), reader);
+  }
+  for (std::size_t i = 0; servo != nullptr && i < servo->target.size(); ++i)
+    check_bends(arm, servo->target[i], fmt::format("{}.target[{}]", path, i), reader);
+}
+
 void check_experiment(const Experiment& experiment, Reader& reader) {
+  check_bends(experiment.arm.arm(), experiment.arm.initial, "arm.initial", reader);
+  check_obstacle_names(experiment.obstacle, reader);
+  if (experiment.camera.empty()) check_default_cameras(experiment, reader);
   if (experiment.drive) check_drive(*experiment.drive, experiment.arm, "drive", reader);
   check_cameras(experiment.camera, "camera", reader);
   if (experiment.stand.camera_distances && !experiment.camera.empty())
@@ -29,17 +77,7 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
     const std::string problem = truth_problem(experiment.model_rig(), experiment.true_rig());
     if (!problem.empty()) reader.problem_at("truth", problem);
   }
-  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
-    check_task(experiment.task[i], experiment.arm.kind, experiment.arm.section.size(),
-               fmt::format("task[{}]", i), reader);
-    if (const auto* study = std::get_if<StudyTask>(&experiment.task[i]))
-      check_study(*study, experiment.cameras(), fmt::format("task[{}]", i), reader);
-    if (const auto* calibration = std::get_if<CalibrateTask>(&experiment.task[i]))
-      check_calibration(*calibration, experiment.arm, experiment.cameras(), experiment.stand,
-                        fmt::format("task[{}]", i), reader);
-    if (const auto* servo = std::get_if<ServoTask>(&experiment.task[i]))
-      check_servo(*servo, experiment.arm, experiment.cameras(), fmt::format("task[{}]", i), reader);
-  }
+  for (std::size_t i = 0; i < experiment.task.size(); ++i) check_task_at(experiment, i, reader);
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ struct Overrides {
 [[nodiscard]] Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides = {});
 
 /// The same from TOML text, without includes and files of keyframes; `source` names it in errors.
-[[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source);
+[[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source,
+                                          const Overrides& overrides = {});
 
 /// The experiment as a TOML file, every value and default in base units.
 [[nodiscard]] std::string experiment_toml(const Experiment& experiment);

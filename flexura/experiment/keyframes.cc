@@ -38,6 +38,12 @@ std::optional<Column> parse_column(std::string_view name) {
   return std::nullopt;
 }
 
+// Of a column of angles.
+const NumberRange& range_of(const Column& column) {
+  if (column.quantity == "cord_angle") return angle_range;
+  return column.quantity == "arching" ? arching_range : bend_range;
+}
+
 bool has(const std::vector<Column>& columns, std::string_view quantity, std::size_t section) {
   return std::ranges::any_of(columns,
                              [&](const Column& c) { return c.quantity == quantity && c.section == section; });
@@ -61,33 +67,35 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
       return c.quantity == column.quantity && c.section == column.section;
     };
     if (std::ranges::count_if(columns, same) > 1) {
-      problems.push_back({-1, i, fmt::format("column {} is there twice", names[i])});
+      problems.push_back({header_row, i, fmt::format("column {} is there twice", names[i])});
     }
     if (column.section >= sections) {
-      problems.push_back({-1, i, fmt::format("column {}: the arm has {} sections", names[i], sections)});
+      problems.push_back(
+          {header_row, i, fmt::format("column {}: the arm has {} sections", names[i], sections)});
     }
     const bool is_planar_word = column.quantity == "cord_angle" || column.quantity == "arching";
     if (is_planar_word && kind == ArmKind::spatial) {
       problems.push_back(
-          {-1, i, fmt::format("column {} is for planar arms: expected bend_x_1, bend_y_1, ...", names[i])});
+          {header_row, i,
+           fmt::format("column {} is for planar arms: expected bend_x_1, bend_y_1, ...", names[i])});
     }
     if (column.quantity == "bend_y" && kind == ArmKind::planar) {
-      problems.push_back({-1, i, fmt::format("column {} is for spatial arms", names[i])});
+      problems.push_back({header_row, i, fmt::format("column {} is for spatial arms", names[i])});
     }
   }
-  if (!has_any(columns, "time")) problems.push_back({-1, 0, "no column time"});
+  if (!has_any(columns, "time")) problems.push_back({header_row, 0, "no column time"});
   const auto ways = ways_to_bend(kind);
   const auto used =
       std::ranges::count_if(ways, [&](const auto& way) { return has_any(columns, way.front()); });
   if (used > 1)
     problems.push_back(
-        {-1, 0, "says the bends in more than one way: expected one of cord_angle, arching, bend_x"});
+        {header_row, 0, "says the bends in more than one way: expected one of cord_angle, arching, bend_x"});
   for (const auto& way : ways) {
     if (used == 1 && !has_any(columns, way.front())) continue;
     for (const std::string_view quantity : way) {
       for (std::size_t section = 0; section < sections && used == 1; ++section) {
         if (!has(columns, quantity, section)) {
-          problems.push_back({-1, 0,
+          problems.push_back({header_row, 0,
                               fmt::format("no column {}_{}: expected one for each of {} sections", quantity,
                                           section + 1, sections)});
         }
@@ -96,7 +104,7 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
   }
   if (used == 0)
     problems.push_back(
-        {-1, 0, "no columns for the bends: expected arching_1, cord_angle_1 or bend_x_1, ..."});
+        {header_row, 0, "no columns for the bends: expected arching_1, cord_angle_1 or bend_x_1, ..."});
 }
 
 // `last`: the time of the row before, s.
@@ -115,7 +123,9 @@ std::string time_problem(double time, std::optional<double> last) {
 void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
                 std::vector<KeyframeProblem>& problems) {
   if (task.rows.size() < 2)
-    problems.push_back({-1, 0, fmt::format("{} rows: expected at least 2", task.rows.size())});
+    problems.push_back(
+        {all_rows, 0,
+         fmt::format("{} row{}: expected at least 2", task.rows.size(), task.rows.size() == 1 ? "" : "s")});
   double last = 0;
   for (std::size_t r = 0; r < task.rows.size(); ++r) {
     const auto row = static_cast<std::ptrdiff_t>(r);
@@ -134,10 +144,10 @@ void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
         const bool is_possible = value > 0 && value <= 100;
         if (!is_possible)
           problems.push_back({row, c, fmt::format("stretch {}: expected above 0 and at most 100", value)});
-      } else if (!angle_range.contains(value)) {
-        problems.push_back({row, c,
-                            fmt::format("angle {} rad: expected {}", value,
-                                        angle_range.text(spellings(Unit::radian).front()))});
+      } else if (const NumberRange& range = range_of(columns[c]); !range.contains(value)) {
+        problems.push_back(
+            {row, c,
+             fmt::format("angle {} rad: expected {}", value, range.text(spellings(Unit::radian).front()))});
       }
     }
   }
@@ -150,7 +160,7 @@ std::vector<Column> columns_of(const std::vector<std::string>& names,
     if (const auto column = parse_column(names[i])) {
       columns.push_back(*column);
     } else {
-      problems.push_back({-1, i,
+      problems.push_back({header_row, i,
                           fmt::format("unknown column {}: expected time, arching_1, cord_angle_1, bend_x_1, "
                                       "bend_y_1 or stretch_1, ...",
                                       Node{names[i], {}}.brief())});

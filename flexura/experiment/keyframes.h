@@ -8,10 +8,13 @@
 
 namespace flexura {
 
-/// What is wrong with a table of keyframes, and where: `row` counts data rows from 0; a row of -1 is the
-/// header.
+/// Rows of a KeyframeProblem that hold no data: the names of the columns, and all rows as one.
+inline constexpr std::ptrdiff_t header_row = -1;
+inline constexpr std::ptrdiff_t all_rows = -2;
+
+/// What is wrong with a table of keyframes, and where: `row` counts data rows from 0.
 struct KeyframeProblem {
-  std::ptrdiff_t row = -1;
+  std::ptrdiff_t row = header_row;
   std::size_t column = 0;
   std::string what;
 };

@@ -25,22 +25,26 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
   return shown;
 }
 
-// Between the steps of the clock, too.
+}  // namespace
+
 void add_state(double time, const Schedule& schedule, ReportData& data) {
   const auto next = std::ranges::lower_bound(data.times, time);
-  if (next == data.times.end() || *next == time) return;
+  constexpr double same = 1e-9;  // s: nobody tells such times apart
+  const bool is_there = next != data.times.begin() && time - *(next - 1) <= same;
+  if (is_there || next == data.times.end() || *next - time <= same) return;
   ArmState state = schedule.state_at(time);
   if (!is_possible(state)) return;
   data.states.insert(data.states.begin() + (next - data.times.begin()), std::move(state));
   data.times.insert(next, time);
 }
 
-}  // namespace
-
 void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data) {
   data.safety = shown_safety(safety);
-  for (const std::size_t i : most_telling(safety, max_pictured_violations)) {
-    const double when = safety.violations[i].worst_time;
+  SafetyReport worst;  // One of each group: what comes again and again looks the same each time.
+  for (const ViolationGroup& group : grouped(safety))
+    worst.violations.push_back(safety.violations[group.worst]);
+  for (const std::size_t i : most_telling(worst, max_pictured_violations)) {
+    const double when = worst.violations[i].worst_time;
     // What else is at its worst then stands in the same picture.
     for (std::size_t k = 0; k < safety.violations.size(); ++k) {
       if (safety.violations[k].worst_time == when) data.safety->violations[k].pictured_at = when;

@@ -223,7 +223,7 @@ TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
   EXPECT_EQ(*violations[0].find("obstacle")->as<std::string>(), "ball");
   const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
   EXPECT_THAT(report, HasSubstr("section 1: contact with ball, "));
-  EXPECT_THAT(report, HasSubstr("class=\"warning\""));
+  EXPECT_THAT(report, HasSubstr("class=\"warning-tube\""));
 }
 
 TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
@@ -239,7 +239,7 @@ TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
   EXPECT_THAT(report, HasSubstr("\"times\":[0,0.2,0.3,0.4,0.6]"));
   const std::string figure =
       read_text_file(result.folder / figures_folder_name / "arm-unsafe-1.svg", 1 << 24);
-  EXPECT_THAT(figure, HasSubstr("class=\"warning\""));
+  EXPECT_THAT(figure, HasSubstr("class=\"warning-tube\""));
 }
 
 TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
@@ -262,6 +262,20 @@ TEST_F(Run, LogsTheLastStateWhateverTheRate) {
     if (message.channel->topic == "/arm/state") times.push_back(message.log_time);
   }
   EXPECT_THAT(times, ::testing::ElementsAre(0, 700000000, 1400000000, 2000000000));
+}
+
+TEST_F(Run, PicturesTheMiddleHoweverFewStatesAreRecorded) {
+  Experiment experiment = load_experiment(paper_arm);
+  const auto heading = [&] {
+    const std::string svg = read_text_file(run(experiment).folder / "figures" / "arm-middle.svg", 1 << 24);
+    const std::size_t tip = svg.find(">E(");
+    return svg.substr(svg.find("middle, t = "), 20) + svg.substr(tip, svg.find('<', tip) - tip);
+  };
+  const std::string all = heading();
+  EXPECT_THAT(all, HasSubstr("middle, t = "));
+  EXPECT_THAT(all, HasSubstr(">E("));
+  experiment.record.every = 1'000'000;
+  EXPECT_EQ(heading(), all);
 }
 
 TEST_F(Run, KeepsWithinADurationThatIsNoWholeNumberOfSteps) {
@@ -360,7 +374,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
     return std::string("no error");
   };
   EXPECT_THAT(error("arm.section.0.length=-1"),
-              HasSubstr(":1:22: arm.section[0].length = -1: expected a number above 0 m"));
+              HasSubstr(":1:22: arm.section[0].length = -1: expected a number from 1e-06 m"));
   EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of 8"));
   EXPECT_THAT(error("arm.base.position.1=3"), HasSubstr("there is no array to set entry 1 of"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));

@@ -154,6 +154,29 @@ TEST(Report, ShowsWhatIsMissedAndTheSectionThatAMotorBends) {
   EXPECT_THAT(write_json(safety_node(schedule.check())), HasSubstr("\"target\":[2"));
 }
 
+TEST(Report, PicturesWhatComesAgainAndAgainOnce) {
+  // Four swings beyond the limit of section 1, the third of which is the widest, and one of section 2's.
+  Experiment experiment = parse(
+      "[[task]]\nkind = 'keyframes'\ncolumns = ['time', 'bend_x_1', 'bend_y_1', 'bend_x_2', 'bend_y_2']\n"
+      "rows = [[0, 0, 0, 0, 0], [1, 1.2, 0, 0, 0], [2, 0, 0, 0, 0], [3, 1.3, 0, 0, 0], [4, 0, 0, 0, 0], "
+      "[5, 1.4, 0, 0, 0], [6, 0, 0, 0, 0], [7, 1.2, 0, 0, 0], [8, 0, 0, 1.1, 0], [9, 0, 0, 0, 0]]\n");
+  for (Section& section : experiment.arm.section) section.max_bend = 1;
+  const Schedule schedule(experiment);
+  ReportData data;
+  data.arm = experiment.arm.arm();
+  data.times = {0, 9};
+  data.states = {schedule.state_at(0), schedule.state_at(9)};
+  const SafetyReport report = schedule.check();
+  EXPECT_GE(report.violations.size(), 5U);
+  add_safety(report, schedule, data);
+  std::vector<double> pictured;
+  for (const auto& violation : data.safety->violations)
+    if (violation.pictured_at) pictured.push_back(*violation.pictured_at);
+  ASSERT_EQ(pictured.size(), 2U);
+  EXPECT_NEAR(pictured[0], 5, 1e-3);
+  EXPECT_NEAR(pictured[1], 8, 1e-3);
+}
+
 TEST(MotorLimits, OfAFileAreChecked) {
   const std::string drive =
       "[drive]\nmotor = { max_speed = 20 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, angle_deg = "

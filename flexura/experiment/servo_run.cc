@@ -48,7 +48,8 @@ class LoggedServo : public ServoWatcher {
   }
   void seen(const ServoSight& sight) override {
     for (std::size_t i = 0; i < 2; ++i) {
-      if (keeps_images_) witness_.image(run_.cameras[i], sight.frames[i]);
+      if (keeps_images_)
+        witness_.image(run_.cameras[i], sight.frames[i], logged_image(run_.cameras[i], sight.frames[i]));
       ServoSightingMessage message;
       message.time = sight.frames[i].time, message.camera = run_.cameras[i];
       message.frame = sight.frames[i].number;

@@ -77,9 +77,9 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
     return;
   }
   for (const KeyframeProblem& problem : keyframe_problems(task, kind, sections)) {
-    const std::string place = problem.row < 0
-                                  ? fmt::format("{}.columns[{}]", path, problem.column)
-                                  : fmt::format("{}.rows[{}][{}]", path, problem.row, problem.column);
+    std::string place = fmt::format("{}.rows", path);
+    if (problem.row == header_row) place = fmt::format("{}.columns[{}]", path, problem.column);
+    if (problem.row >= 0) place += fmt::format("[{}][{}]", problem.row, problem.column);
     reader.problem_at(place, problem.what);
   }
 }

@@ -259,6 +259,13 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
   EXPECT_THAT(error_with("wave.csv", header), HasSubstr("wave.csv:1:1: 0 rows: expected at least 2"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n\n2,0,0\n1,0,0\n"),
               HasSubstr("wave.csv:5:1: column time: time 1: expected more"));
+  EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1, 0, 501\n"),
+              HasSubstr("wave.csv:3:6: column arching_2: angle 501 rad: expected from -500 rad to 500 rad"));
+  EXPECT_THAT(error_with("wave.csv", "\n arching_1 ,\"arching_2\",time\n0,0,0\n1,0,0\n\n1,0,-2\n"),
+              HasSubstr("wave.csv:4:5: column time: time 0: expected more than the 0 before it\n"));
+  EXPECT_THAT(error_with("wave.csv", "\n\ntime,arching_1,arching_3\n0,0,0\n1,0,0\n"),
+              HasSubstr("wave.csv:3:16: column arching_3: the arm has 2 sections"));
+  EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n"), HasSubstr("wave.csv:1:1: 1 row: expected"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1,0,x\n"),
               HasSubstr("wave.csv:3:5: \"x\": expected a finite number"));
   EXPECT_THAT(

@@ -96,6 +96,8 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
                   .tension = experiment.record.tension,
                   .chapters = {}};
   add_safety(safety, schedule, data);
+  // However few states are recorded, the picture in the middle is of the middle.
+  if (!data.times.empty()) add_state((data.times.front() + data.times.back()) / 2, schedule, data);
   return data;
 }
 

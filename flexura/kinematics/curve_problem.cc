@@ -141,11 +141,25 @@ void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index
   }
 }
 
-double CurveProblem::largest_error(const Residual& r) const {
+double CurveProblem::largest_distance(const Eigen::VectorXd& x) {
+  constexpr std::size_t finer = 8;
+  const std::size_t count = finer * wanted_.size();
+  std::vector<double> fractions = parts_;
+  for (std::size_t k = 1; k < count; ++k)
+    fractions.push_back(static_cast<double>(k) / static_cast<double>(count));
+  std::ranges::sort(fractions);
+  place(x);
+  const double total = placed_.back().s + placed_.back().length;
+  std::size_t section = 0;
   double largest = 0.0;
-  for (Eigen::Index row = 0; row < r.size(); row += 3) largest = std::max(largest, r.segment<3>(row).norm());
-  // The base stands where it stands.
-  return std::max(largest / scale_, points_.front().norm());
+  for (const double fraction : fractions) {
+    while (section + 1 < placed_.size() && fraction * total > placed_[section + 1].s) ++section;
+    const Placed& own = placed_[section];
+    const double part = std::clamp((fraction * total - own.s) / own.length, 0.0, 1.0);
+    const Eigen::Vector3d p = own.X_BS * arc_motion(part * own.bend, part * own.length).position;
+    largest = std::max(largest, (p - at(fraction)).norm());
+  }
+  return largest;
 }
 
 }  // namespace flexura

@@ -25,8 +25,10 @@ class CurveProblem {
   void linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J);
   /// A curve is fitted as well as it can be: met only where nothing is left to gain.
   [[nodiscard]] static bool is_met(const Residual& r) { return r.squaredNorm() < 1e-26; }
-  /// The largest distance in the residual `r`, m.
-  [[nodiscard]] double largest_error(const Residual& r) const;
+  /// How far the backbone of state x is from the polyline, m: the largest distance of points at the same
+  /// parts of either's length, at all of the polyline's own points and at many between them, where the
+  /// residual looks at a few.
+  [[nodiscard]] double largest_distance(const Eigen::VectorXd& x);
 
   /// The state that turns each section's end along the curve's tangent there.
   [[nodiscard]] Eigen::VectorXd start_along_tangents() const;

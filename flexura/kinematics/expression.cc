@@ -36,6 +36,9 @@ void check_text(const std::string& text) {
     throw ExpressionError("holds a character that no formula has",
                           static_cast<std::size_t>(odd - text.begin()));
   }
+  if (const std::size_t at = text.find('"'); at != std::string::npos) {
+    throw ExpressionError("holds a text: expected numbers, names and operators", at);
+  }
   if (const std::size_t at = find_assignment(text); at != std::string::npos) {
     throw ExpressionError("assigns a value: expected == to compare", at);
   }
@@ -88,6 +91,7 @@ struct Expression::Parser {
 Expression::Expression(const std::string& text) : parser_(std::make_unique<Parser>()) {
   check_text(text);
   try {
+    parser_->parser.ClearConst();  // Its own _pi is off in the 13th digit.
     parser_->parser.DefineConst("pi", std::numbers::pi);
     parser_->parser.DefineVar("t", &parser_->t);
     parser_->parser.DefineVar("T", &parser_->T);

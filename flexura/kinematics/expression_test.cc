@@ -31,6 +31,8 @@ Wrong wrong(const std::string& text) {
 TEST(Expression, KnowsTimeDurationSectionAndPi) {
   EXPECT_DOUBLE_EQ(Expression("0.3*sin(2*pi*t/T)").value(0.25, 1, 1), 0.3);
   EXPECT_DOUBLE_EQ(Expression("i + t/T").value(1, 4, 3), 3.25);
+  EXPECT_EQ(Expression("pi").value(0, 1, 1), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(Expression("ln(exp(1))").value(0, 1, 1), 1);
   EXPECT_DOUBLE_EQ(Expression("t < 1 ? 5 : t^2").value(3, 4, 1), 9);
 }
 
@@ -42,6 +44,10 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(wrong("t = 3").what, HasSubstr("assigns a value"));
   EXPECT_EQ(wrong("t = 3").position, 2U);
   EXPECT_EQ(wrong("t == 3 ? 1 : (t >= 2) + (t != 1)").what, "no error");
+  EXPECT_EQ(wrong("sin(\"t\")").what, "holds a text: expected numbers, names and operators");
+  EXPECT_EQ(wrong("t + \"1\"").position, 4U);
+  EXPECT_EQ(wrong("2*_pi").what, "unexpected token \"_pi\"") << "muParser's own, which has 12 digits";
+  EXPECT_EQ(wrong("_e").what, "unexpected token \"_e\"");
   EXPECT_THAT(wrong("1, 2").what, HasSubstr("several values"));
   EXPECT_THAT(wrong("2*\n3").what, HasSubstr("character"));
   EXPECT_THAT(wrong(std::string(1001, '1')).what, HasSubstr("longer than"));

@@ -87,6 +87,7 @@ InverseResult describe(const Question& q, const Found& found) {
   }
   if (q.target.rotation) result.angle_error = so3_log(q.target.rotation->transpose() * X_WT.rotation).norm();
   result.starts = found.starts;
+  result.position_tolerance = q.position_tolerance;
   return result;
 }
 

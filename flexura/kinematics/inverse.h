@@ -45,7 +45,8 @@ struct InverseOptions {
   std::optional<ArmState> start = {};
   InverseWish wish = InverseWish::none;
   /// m; when left out 1e-9 of the arm's greatest length, and for curves 1e-3 of it and twice
-  /// polyline_error().
+  /// polyline_error(), together at most 1e-2 of it: what a coarse polyline leaves open beyond that is the
+  /// caller's to allow.
   std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< rad.
   int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.
@@ -69,8 +70,9 @@ struct InverseResult {
   Eigen::Vector3d tip;          ///< p_WT of `state`, m.
   double position_error = 0.0;  ///< Of `state`, m: the tip's distance; the largest along the arm for a curve.
   double angle_error = 0.0;     ///< Of `state`, rad, from the direction or rotation asked for; else 0.
-  int iterations = 0;           ///< Evaluations of the arm and its Jacobian.
-  int starts = 0;               ///< Descents made.
+  double position_tolerance = 0.0;  ///< The largest position_error that converges, m.
+  int iterations = 0;               ///< Evaluations of the arm and its Jacobian.
+  int starts = 0;                   ///< Descents made.
 
   [[nodiscard]] bool converged() const { return outcome == InverseOutcome::converged; }
 };

@@ -18,6 +18,8 @@ namespace {
 // A curve says much about the arm: a few starts are enough, and each costs a whole backbone an iteration.
 constexpr int most_starts = 8;
 constexpr int most_iterations = 100;  // From one start.
+// Of the arm's length: an arm further off would not be called "along the curve" by whoever sees it.
+constexpr double most_allowance = 1e-2;
 
 std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
   const Pose X_BW = arm.X_WB.inverse();
@@ -74,7 +76,8 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   const ArmVariables variables(arm);
   const double length = variables.max_length();
   const std::vector<Eigen::Vector3d> points = in_base(arm, target.points);
-  const double tolerance = options.position_tolerance.value_or(1e-3 * length + 2.0 * polyline_error(points));
+  const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
+  const double tolerance = options.position_tolerance.value_or(allowance);
   CurveProblem problem(variables, points, length);
   DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
   std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
@@ -96,22 +99,22 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     const Descent ended = descend(problem, variables.bounds(), limits, x, memory);
     found.keep_better(x, memory.r.squaredNorm(), ended);
     ++found.starts;
-    problem.linearise(found.x, memory.r, memory.J);
-    error = problem.largest_error(memory.r);
+    error = problem.largest_distance(found.x);
     if (error <= tolerance) break;
   }
 
   if (error > tolerance && found.ended == Descent::exhausted) {
     const int settling = affordable_iterations(problem, variables, settling_iterations);
     settle(problem, variables, settling, found, memory);
-    problem.linearise(found.x, memory.r, memory.J);
-    error = problem.largest_error(memory.r);
+    error = problem.largest_distance(found.x);
   }
+  problem.linearise(found.x, memory.r, memory.J);
 
   InverseResult result;
   result.state = variables.state(found.x);
   result.tip = tip_pose(arm, result.state).position;
   result.position_error = error;
+  result.position_tolerance = tolerance;
   result.iterations = memory.iterations;
   result.starts = found.starts;
   if (error <= tolerance) {

@@ -82,8 +82,14 @@ TEST(Inverse, RefusesTargetsProvablyOutOfReachWithTheNearestPose) {
     EXPECT_TRUE(is_within_limits(arm, result.state));
     EXPECT_GE(result.position_error, at_least * (1 - 1e-12));
     EXPECT_EQ(result.tip, tip_pose(arm, result.state).position);
+    // Neither local descents, from there and from elsewhere, nor chance find anything nearer.
+    const auto miss = [&](const ArmState& state) { return miss_of(arm, target, state); };
+    for (int i = 0; i < 3; ++i) {
+      const ArmState start = i == 0 ? result.state : random_state_within(random, arm);
+      EXPECT_GE(random_descent(random, arm, start, 300, miss), miss(result.state) * (1 - nearer_by(target)))
+          << i;
+    }
     if (way == 3) return;
-    // Nothing found by chance, nor nearby, is nearer.
     for (int i = 0; i < 100; ++i) {
       ArmState other = i < 50 ? random_state_within(random, arm) : result.state;
       for (std::size_t k = 0; k < 3 && i >= 50; ++k) {
@@ -276,28 +282,88 @@ TEST(Inverse, APolylineIsAsFarFromItsCurveAsThisSays) {
   EXPECT_EQ(polyline_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}), 0.0) << "a corner";
 }
 
+// The point of a polyline at a part of its length.
+Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double part) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  double left = part * length;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double piece = (points[i] - points[i - 1]).norm();
+    if (left <= piece) return points[i - 1] + (left / piece) * (points[i] - points[i - 1]);
+    left -= piece;
+  }
+  return points.back();
+}
+
+// How far the arm is from the polyline, by the parts of either's length.
+double distance_from_curve(const Arm& arm, const ArmState& state, const CurveTarget& target) {
+  const Backbone backbone(arm, state);
+  double largest = 0.0;
+  for (int k = 0; k <= 1000; ++k) {
+    const Eigen::Vector3d p = backbone.pose(backbone.length() * k / 1000).position;
+    largest = std::max(largest, (p - point_at(target.points, k / 1000.0)).norm());
+  }
+  return largest;
+}
+
+// Of a random state of the arm, `pieces` of the same length for each section.
+CurveTarget random_polyline(TestRandom& random, const Arm& arm, int pieces) {
+  const Backbone backbone(arm, random_state_within(random, arm));
+  CurveTarget target;
+  const int all = pieces * static_cast<int>(arm.sections.size());
+  for (int k = 0; k <= all; ++k) target.points.push_back(backbone.pose(backbone.length() * k / all).position);
+  return target;
+}
+
 TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
+  int fitting = 0;
   int coarse = 0;
-  for_random_cases(200, [&](TestRandom& random) {
+  int too_coarse = 0;
+  for_random_cases(300, [&](TestRandom& random) {
     Arm arm = random_arm(random);
     arm.kind = random.integer(0, 1) == 0 ? ArmKind::planar : ArmKind::spatial;
     for (Section& section : arm.sections) section.max_bend = 1.5;
-    const Backbone backbone(arm, random_state_within(random, arm));
-    CurveTarget target;
-    const int pieces = 3 * static_cast<int>(arm.sections.size());
-    for (int k = 0; k <= pieces; ++k)
-      target.points.push_back(backbone.pose(backbone.length() * k / pieces).position);
+    const CurveTarget target = random_polyline(random, arm, random.integer(3, 9));
+    const double open = (1e-3 + 2 * polyline_error(target.points) / arm.length());
     const InverseResult result = solve_inverse(arm, target);
-    EXPECT_TRUE(result.converged()) << result.position_error / arm.length() << " and "
-                                    << polyline_error(target.points) / arm.length();
-    coarse += result.position_error > 1e-3 * arm.length() ? 1 : 0;
-    // What the caller allows is what counts.
     const double error = result.position_error;
+    const double cap = 1e-2 * arm.length();
+    EXPECT_NEAR(result.position_tolerance, std::min(open * arm.length(), cap), 1e-12 * arm.length());
+    if (open <= 1e-2) {  // What its points leave open is within what is allowed.
+      EXPECT_TRUE(result.converged()) << error / arm.length() << " of " << open;
+      ++fitting;
+    } else {
+      EXPECT_EQ(result.converged(), error <= cap);
+    }
+    const double sampled = distance_from_curve(arm, result.state, target);
+    EXPECT_LE(sampled, 1.01 * error + 1e-9);
+    EXPECT_GE(sampled, 0.9 * error - 1e-9);
+    coarse += result.converged() && error > 1e-3 * arm.length() ? 1 : 0;
+    too_coarse += result.converged() ? 0 : 1;
+    // What the caller allows is what counts.
     if (error < 1e-6) return;
     EXPECT_TRUE(solve_inverse(arm, target, {.position_tolerance = 1.01 * error}).converged());
     EXPECT_FALSE(solve_inverse(arm, target, {.position_tolerance = 0.3 * error}).converged());
   });
-  EXPECT_GE(coarse, 10) << "no polyline was coarse enough to matter";
+  EXPECT_GE(fitting, 50 / one_case_of);
+  EXPECT_GE(coarse, 20 / one_case_of) << "no polyline was coarse enough to matter";
+  EXPECT_GE(too_coarse, 1) << "none was too coarse";
+}
+
+TEST(Inverse, NeverFollowsACoarseCurveThatItMisses) {
+  int missed = 0;
+  for_random_cases(200, [&](TestRandom& random) {
+    Arm arm = random_arm(random);
+    for (Section& section : arm.sections) section.max_bend = 2.8;
+    const CurveTarget target = random_polyline(random, arm, 3);
+    for (Section& section : arm.sections) section.max_bend = 0.5;
+    const InverseResult result = solve_inverse(arm, target);
+    const double apart = distance_from_curve(arm, result.state, target) / arm.length();
+    if (apart <= 1.1e-2) return;
+    EXPECT_FALSE(result.converged()) << apart;
+    missed += apart > 0.05 ? 1 : 0;
+  });
+  EXPECT_GE(missed, 100 / one_case_of) << "by so much that anyone sees it";
 }
 
 TEST(Inverse, DecidesOnCurvesThatTheArmCannotFollow) {

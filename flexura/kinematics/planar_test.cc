@@ -76,6 +76,38 @@ TEST(Planar, AnErrorInOneCordAlternatesWithGain2) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(archings[i], expected[i], 1e-15) << i;
 }
 
+TEST(Planar, ANoisyCordIsFivefoldInTheArchingOfTheEighthSection) {
+  // Errors of the same size in every cord, each on its own: the root of the sum of their squared effects.
+  double squares = 0.0;
+  const std::vector<double> exact = archings_from_cord_angles(paper_cord_angles(), pi / 2);
+  for (std::size_t i = 0; i < 8; ++i) {
+    auto noisy = paper_cord_angles();
+    constexpr double error = 1e-3;
+    noisy[i] += error;
+    const double effect = (archings_from_cord_angles(noisy, pi / 2)[7] - exact[7]) / error;
+    squares += effect * effect;
+  }
+  EXPECT_NEAR(std::sqrt(squares), std::sqrt(1.0 + 7 * 4.0), 1e-9);  // Its own cord, and twice each before it.
+  EXPECT_NEAR(std::sqrt(squares), 5.39, 5e-3);
+}
+
+TEST(Planar, Equations9And10AsPrintedEndElsewhere) {
+  // Every cord at the angle that eq. 5 gives for n = 8, the end effector: it has no arching of its own.
+  const Arm arm = paper_arm();
+  const std::vector<double> archings = archings_from_cord_angles(paper_cord_angles(), pi / 2);
+  double angle = pi / 2;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    angle += 2 * archings[i];
+    sum += arm.sections[i].length * std::sin(archings[i]) / archings[i];
+  }
+  EXPECT_NEAR(sum * std::cos(angle), 9.038, 5e-4);
+  EXPECT_NEAR(sum * std::sin(angle), 12.440, 5e-4);
+  // With the angle of the section that is being summed, the same sum is the paper's E.
+  EXPECT_NEAR(paper_end_effector(1.0).x(), -10.738, 5e-4);
+  EXPECT_NEAR(paper_end_effector(1.0).y(), 5.201, 5e-4);
+}
+
 TEST(Planar, TheCordIsWhatTheArcSpans) {
   EXPECT_EQ(cord_length(3.0, 0.0), 3.0);
   EXPECT_DOUBLE_EQ(cord_length(pi, pi / 2), 2.0);  // Half a circle of radius 1.

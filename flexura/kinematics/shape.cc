@@ -1,5 +1,7 @@
 #include "flexura/kinematics/shape.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -36,6 +38,18 @@ ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {
     state.stretches = *shape.stretches;
   }
   return state;
+}
+
+void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& path, Reader& reader) {
+  const ArmState state = arm_state(arm, shape);
+  const char* const way = shape.cord_angles ? "cord_angles" : shape.archings ? "archings" : "bends";
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    const double bend = state.bends[i].norm();
+    if (bend <= largest_bend) continue;
+    reader.problem_at(fmt::format("{}{}{}", path, path.empty() ? "" : ".", way),
+                      fmt::format("bends section {} by {:.6g} rad: expected at most {:.6g} rad", i + 1, bend,
+                                  largest_bend));
+  }
 }
 
 std::vector<double> archings(const ArmState& state) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "flexura/model/arm.h"
@@ -14,6 +15,10 @@ namespace flexura {
 /// The state of `arm` that `shape` means; what is left out is straight and unstretched. `shape` fits the arm
 /// (check_shape); std::invalid_argument otherwise.
 [[nodiscard]] ArmState arm_state(const Arm& arm, const ShapeConfig& shape);
+
+/// Reports to `reader` the sections that `shape` at `path`, which fits the arm, bends by more than
+/// largest_bend: what no range of a table can say of cord angles and of bends in two directions.
+void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& path, Reader& reader);
 
 /// Each section's arching of a planar arm, rad, counter-clockwise.
 [[nodiscard]] std::vector<double> archings(const ArmState& state);

@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// No section bends by as much, rad: thousands of turns are a mistake.
+/// No section bends by more, rad: hundreds of turns are a mistake.
 inline constexpr double largest_bend = 1000;
 
 /// Planar: bends in one plane only, the world's XOY plane for the paper's arm. Spatial: in any direction.

@@ -14,6 +14,9 @@ namespace {
 // More than any robot has; keeps a mistaken file from filling the memory.
 constexpr std::size_t max_sections = 1000;
 
+// A micrometre: as far from the origin as coordinates go, doubles still tell such lengths apart.
+constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
+
 void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
   if (given == sections) return;
   reader.problem_at(path, fmt::format("{} given: expected {}, one for each section", given, sections));
@@ -44,12 +47,12 @@ const Table<Section>& fields_of(const Section*) {
           .field("length", &Section::length,
                  {.meaning = "Arc length of the section's centreline when not stretched.",
                   .unit = Unit::metre,
-                  .range = above_up_to(0, 1e6),
+                  .range = size_range,
                   .required = true})
           .field("radius", &Section::radius,
                  {.meaning = "Radius of the tube; two numbers for a taper, at the section's base and end.",
                   .unit = Unit::metre,
-                  .range = above_up_to(0, 1e6),
+                  .range = size_range,
                   .one_for_all = true})
           .field("max_bend", &Section::max_bend,
                  {.meaning = "Largest bend angle of the section (twice the arching).",
@@ -84,13 +87,13 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
           .field("archings", &ShapeConfig::archings,
                  {.meaning = "Planar arms: each section's arching, half its bend, counter-clockwise.",
                   .unit = Unit::radian,
-                  .range = angle_range,
+                  .range = arching_range,
                   .default_text = "not set"})
           .field("bends", &ShapeConfig::bends,
                  {.meaning =
                       "Each section's bend vector: the bend towards the x and the y of its own base frame.",
                   .unit = Unit::radian,
-                  .range = angle_range,
+                  .range = bend_range,
                   .default_text = "not set"})
           .field("stretches", &ShapeConfig::stretches,
                  {.meaning = "The factor on each section's length.",

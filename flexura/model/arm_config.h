@@ -14,6 +14,9 @@ namespace flexura {
 
 /// The angles that files and requests take, rad: many turns, and small enough that their sums stay exact.
 inline constexpr NumberRange angle_range = {.min = -1e4, .max = 1e4};
+/// Of those, the ones that a section can bend by, each component of a bend and its arching.
+inline constexpr NumberRange bend_range = {.min = -largest_bend, .max = largest_bend};
+inline constexpr NumberRange arching_range = {.min = -largest_bend / 2, .max = largest_bend / 2};
 
 /// A shape of the arm as a person writes it: one of three ways to say the bends, and the stretches. What it
 /// means for a given arm is `kinematics/shape.h`'s to say. Nothing written is the straight, unstretched arm.

@@ -75,7 +75,7 @@ void check_arm(const ArmLook& arm) {
     for (const double radius : at.radius) require_positive(radius, place("radius"));
     require_finite(at.arc.s, place("s"));
     for (const double bend : at.arc.bend) require_finite(bend, place("bend"));
-    if (!(at.arc.bend.norm() < largest_bend))
+    if (!(at.arc.bend.norm() <= largest_bend))
       refuse("{}: a bend of {} rad", place().text(), at.arc.bend.norm());
     if (at.section >= most_parts) refuse("{}: section {}", place().text(), at.section);
     if (i == 0) continue;

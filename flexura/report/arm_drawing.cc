@@ -14,7 +14,8 @@
 namespace flexura {
 namespace {
 
-constexpr double warning_border = 4.0;  // Around a tube, page units.
+constexpr double warning_border = 5.0;  // Around a tube, page units.
+constexpr double warning_gap = 1.8;     // Between the two, for tubes as red as the border.
 constexpr double thinnest_tube = 5.0;   // Of a tube, page units.
 
 std::string moment(const ReportMotion& motion, std::size_t i) {
@@ -38,24 +39,23 @@ void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Repo
   const std::string colour = fmt::format("s{}", section % 8);
   std::array<double, 2> radius = motion.arm.sections[section].radius;
   for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2);
-  if (radius[0] == radius[1]) {
-    if (is_unsafe) {
-      svg.leaf("path", {{"class", "warning"},
-                        {"stroke-width", page_number(2 * (radius[0] + warning_border))},
+  const bool tapers = radius[0] != radius[1];
+  const auto draw = [&](const std::string& name, const std::string& more, double border) {
+    if (tapers) {
+      const std::array<double, 2> wider = {radius[0] + border, radius[1] + border};
+      svg.leaf("path", {{"class", name + "taper" + more},
+                        {"d", taper_path(arc, scene.views[v], scene.frames[v], wider)}});
+    } else {
+      svg.leaf("path", {{"class", name + "tube" + more},
+                        {"stroke-width", page_number(2 * (radius[0] + border))},
                         {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
     }
-    svg.leaf("path", {{"class", "tube " + colour},
-                      {"stroke-width", page_number(2 * radius[0])},
-                      {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
-    return;
-  }
+  };
   if (is_unsafe) {
-    const std::array<double, 2> border = {radius[0] + warning_border, radius[1] + warning_border};
-    svg.leaf("path",
-             {{"class", "warning-taper"}, {"d", taper_path(arc, scene.views[v], scene.frames[v], border)}});
+    draw("warning-", "", warning_border);
+    draw("gap-", "", warning_gap);
   }
-  svg.leaf("path",
-           {{"class", "taper " + colour}, {"d", taper_path(arc, scene.views[v], scene.frames[v], radius)}});
+  draw("", " " + colour, 0);
 }
 
 // The line of the chosen drawing curve; arcs are the tube itself.

@@ -141,6 +141,7 @@ ReportMotion motion_of(const ReportData& data) {
   const std::size_t most = std::clamp<std::size_t>(max_shown_numbers / numbers, 2, max_shown_states);
   std::vector<std::size_t> kept = kept_indices(data.times, marks, most);
   for (const double time : pictured_times(motion)) kept.push_back(nearest_index(data.times, time));
+  kept.push_back(nearest_index(data.times, (data.times.front() + data.times.back()) / 2));
   keep_each_once(kept);
   for (const std::size_t i : kept) {
     motion.times.push_back(data.times[i]);

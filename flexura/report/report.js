@@ -84,7 +84,8 @@
   }
 
   const thinnest = 2.5; // Half of a tube's width, page units.
-  const border = 4; // Of a warning around a tube, page units.
+  const border = 5; // Of a warning around a tube, page units.
+  const gap = 1.8; // Between the two, for tubes as red as the border.
   const parts = run.lengths.map((_, section) => {
     const radii = run.radii.slice(2 * section, 2 * section + 2);
     return { section, radii, tapered: radii[0] !== radii[1] };
@@ -98,12 +99,14 @@
     const page = (p) => text(at(p));
     const trail = run.times.map((time) => page(tipOf(stateAt(time))));
     add(group, "path", { class: "trail faint", d: `M${trail.join("L")}` });
+    const around = (name, more) => parts.map((part) => add(group, "path", part.tapered ? { class: `${name}-taper` } : {
+      class: `${name}-tube`, "stroke-width": 2 * (Math.max(part.radii[0] * scale, thinnest) + more),
+    }));
     return {
       across, scale, at, text, page, trail,
       way: add(group, "path", { class: "trail" }),
-      warnings: parts.map((part) => add(group, "path", part.tapered ? { class: "warning-taper" } : {
-        class: "warning", "stroke-width": 2 * (Math.max(part.radii[0] * scale, thinnest) + border),
-      })),
+      warnings: around("warning", border),
+      gaps: around("gap", gap),
       tubes: parts.map((part) => add(group, "path", part.tapered ? { class: `taper s${part.section % 8}` } : {
         class: `tube s${part.section % 8}`, "stroke-width": 2 * Math.max(part.radii[0] * scale, thinnest),
       })),
@@ -198,6 +201,7 @@
         const path = (more) => (part.tapered ? outline(view, part, frame, q, more) : `M${start}C${rest.join(" ")}`);
         view.tubes[k].setAttribute("d", path(0));
         view.warnings[k].setAttribute("d", unsafe.has(k) ? path(border) : "");
+        view.gaps[k].setAttribute("d", unsafe.has(k) ? path(gap) : "");
       }
       frame = arcEnd(frame, q.x, q.y, q.length);
     });

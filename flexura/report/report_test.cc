@@ -92,8 +92,8 @@ std::string xml_fault(std::string_view xml) {
 
 std::size_t warnings_in(const std::string& svg) {
   std::size_t count = 0;
-  for (std::size_t at = svg.find("class=\"warning\""); at != std::string::npos;
-       at = svg.find("class=\"warning\"", at + 1))
+  for (std::size_t at = svg.find("class=\"warning-tube\""); at != std::string::npos;
+       at = svg.find("class=\"warning-tube\"", at + 1))
     ++count;
   return count;
 }
@@ -109,7 +109,13 @@ TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   const std::vector<FigureFile> figures = report_figures(data);
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-start.svg")), 0U);
-  EXPECT_EQ(warnings_in(svg_of(figures, "arm-end.svg")), 2U);
+  const std::string& end = svg_of(figures, "arm-end.svg");
+  EXPECT_EQ(warnings_in(end), 2U);
+  // Between the border and a tube as red as it lies a gap, drawn after the one and before the other.
+  const std::size_t border = end.find("class=\"warning-tube\"");
+  const std::size_t gap = end.find("class=\"gap-tube\"", border);
+  EXPECT_LT(gap, end.find("class=\"tube s1\"", border));
+  EXPECT_EQ(svg_of(figures, "arm-start.svg").find("class=\"gap-"), std::string::npos);
 }
 
 TEST(Report, DrawsViolationsAtTheirWorstMoments) {

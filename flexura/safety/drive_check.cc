@@ -33,14 +33,16 @@ class AxisLimit {
                .name = drive.axis_name(axis),
                .limit = limit} {}
 
-  void add(Span span, double value, SafetyReport& report) {
+  // Whether it is broken.
+  bool add(Span span, double value, SafetyReport& report) {
     if (value <= found_.limit * (1 + limit_tolerance)) {
       close(report);
-      return;
+      return false;
     }
     if (!std::exchange(is_open_, true)) found_.start = span.start, found_.value = 0;
     found_.end = span.end;
     if (value > found_.value) found_.value = value, found_.worst_time = span.end;
+    return true;
   }
   void close(SafetyReport& report) {
     if (std::exchange(is_open_, false)) report.violations.push_back(found_);
@@ -51,47 +53,86 @@ class AxisLimit {
   bool is_open_ = false;
 };
 
+// Where a motor is in a row, microsteps: what is commanded, and what that is rounded from, once with the play
+// and once without.
+struct MotorPlace {
+  double position = 0;
+  double target = 0;
+  double without_play = 0;
+};
+
+// What a caveat tells of an axis beside its violations.
+struct AxisNotes {
+  bool has_single_steps = false;  // Rows of one microstep were let pass.
+  bool is_rounded_over = false;   // Nothing but the rounding breaks a limit.
+  bool takes_up_play = false;     // Where it is too fast or too sudden.
+};
+
 // Follows one axis from row to row.
 class AxisCheck {
  public:
   AxisCheck(const Drive& drive, std::size_t axis)
       : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
+        most_(std::min(drive.axes[axis].motor.max_step_rate, drive.axes[axis].motor.max_speed / to_radians_) *
+              (1 + limit_tolerance)),
+        play_(drive.axes[axis].play()),
         speed_(Hazard::motor_speed, drive, axis, drive.axes[axis].motor.max_speed),
         step_rate_(Hazard::step_rate, drive, axis, drive.axes[axis].motor.max_step_rate),
         acceleration_(Hazard::motor_acceleration, drive, axis, drive.axes[axis].motor.max_acceleration),
         position_(Hazard::motor_position, drive, axis, drive.axes[axis].motor.max_position) {}
 
-  void start(double time, double position, SafetyReport& report) {
-    last_position_ = position;
-    position_.add({time, time}, std::abs(position), report);
+  [[nodiscard]] const AxisNotes& notes() const { return notes_; }
+
+  void start(double time, const MotorPlace& place, SafetyReport& report) {
+    last_ = place;
+    position_.add({time, time}, std::abs(place.position), report);
   }
   // `last` and `now` are the steps before and up to this row; the first step comes after one of standing.
-  void row(Span last, Span now, double position, SafetyReport& report) {
-    const double rate = (position - last_position_) / (now.end - now.start);
-    step_rate_.add(now, std::abs(rate), report);
-    speed_.add(now, std::abs(rate) * to_radians_, report);
-    change_rate(last, now, rate, report);
-    position_.add({now.end, now.end}, std::abs(position), report);
-    last_position_ = position;
+  void row(Span last, Span now, const MotorPlace& place, SafetyReport& report) {
+    const double time = now.end - now.start;
+    const double wanted = (place.target - last_.target) / time;
+    const double taken_up = (place.target - place.without_play) - (last_.target - last_.without_play);
+    const bool took_up = std::abs(taken_up) > std::max(play_ / 2, 1e-3);  // else it is rounding
+    const double rate = judged_rate(place.position - last_.position, wanted, time);
+    const bool is_frequent = step_rate_.add(now, std::abs(rate), report);
+    const bool is_fast = speed_.add(now, std::abs(rate) * to_radians_, report) || is_frequent;
+    const bool is_sudden = change_rate(now.start, (now.end - last.start) / 2, wanted, report);
+    if (is_fast && std::abs(wanted) <= most_) notes_.is_rounded_over = true;
+    if ((is_fast && took_up) || (is_sudden && (took_up || took_up_))) notes_.takes_up_play = true;
+    position_.add({now.end, now.end}, std::abs(place.position), report);
+    last_ = place;
+    took_up_ = took_up;
   }
-  // The motor stands after the last step.
-  void stop(Span last, SafetyReport& report) {
-    change_rate(last, {last.end, 2 * last.end - last.start}, 0, report);
+  // The motor stands after the last step, which a run that is no multiple of `step` makes shorter: it has at
+  // least a whole one to stop in.
+  void stop(Span last, double step, SafetyReport& report) {
+    const bool is_sudden = change_rate(last.end, std::max(last.end - last.start, step), 0, report);
+    if (is_sudden && took_up_) notes_.takes_up_play = true;
     for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_, &position_}) limit->close(report);
   }
 
  private:
-  void change_rate(Span last, Span now, double rate, SafetyReport& report) {
-    const double time = (now.end - last.start) / 2;
+  // The rate of a row, microsteps/s. A single microstep is the least that a motor can do: where the row is so
+  // short that already this is too fast, what counts is how fast the motion is that was rounded.
+  double judged_rate(double moved, double wanted, double time) {
+    if (std::abs(moved) > 1 || 1 / time <= most_) return moved / time;
+    if (moved != 0) notes_.has_single_steps = true;
+    return wanted;
+  }
+  bool change_rate(double start, double time, double rate, SafetyReport& report) {
     const double acceleration = std::abs(rate - last_rate_) * to_radians_ / time;
-    acceleration_.add({now.start, now.start}, acceleration, report);
     last_rate_ = rate;
+    return acceleration_.add({start, start}, acceleration, report);
   }
 
   double to_radians_;  // a microstep of the motor
+  double most_;        // microsteps/s, by either limit
+  double play_;        // microsteps
   AxisLimit speed_, step_rate_, acceleration_, position_;
-  double last_position_ = 0;  // microsteps
-  double last_rate_ = 0;      // microsteps/s
+  MotorPlace last_;
+  double last_rate_ = 0;  // microsteps/s, before rounding
+  bool took_up_ = false;  // the play, in the last row
+  AxisNotes notes_;
 };
 
 // The displacements in a state, if motors can be sent there.
@@ -104,6 +145,16 @@ std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive&
     if (!(farthest + drive.axes[i].play() < max_countable)) return std::nullopt;
   }
   return wanted;
+}
+
+std::vector<MotorPlace> places_of(const MotorCommander& commander, const Drive& drive,
+                                  const TendonDisplacements& wanted) {
+  const std::vector<double> exact = motor_positions(drive, wanted);
+  std::vector<MotorPlace> places;
+  places.reserve(exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    places.push_back({static_cast<double>(commander.positions()[i]), commander.targets()[i], exact[i]});
+  return places;
 }
 
 bool is_acceleration(const Violation& violation) { return violation.hazard == Hazard::motor_acceleration; }
@@ -144,6 +195,14 @@ std::vector<char> unproven_axes(const Arm& arm, const Drive& drive, const Span& 
   return is_unproven;
 }
 
+std::string names_of(const std::vector<char>& is_meant, const Drive& drive) {
+  std::string names;
+  for (std::size_t i = 0; i < is_meant.size(); ++i) {
+    if (is_meant[i] != 0) names += (names.empty() ? "" : ", ") + drive.axis_name(i);
+  }
+  return names;
+}
+
 // What the rows break is told already.
 void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t found_before, double step,
                  SafetyReport& report) {
@@ -154,14 +213,32 @@ void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t 
       if (drive.axis_name(i) == found.name) is_unproven[i] = 0;
     }
   }
-  std::string names;
-  for (std::size_t i = 0; i < is_unproven.size(); ++i) {
-    if (is_unproven[i] != 0) names += (names.empty() ? "" : ", ") + drive.axis_name(i);
-  }
+  const std::string names = names_of(is_unproven, drive);
   if (names.empty()) return;
   report.caveats.push_back(fmt::format(
       "motor speed and step rate of {}: sampled every {:.6g} s; the law may be faster between two steps",
       names, step));
+}
+
+void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
+  const auto say = [&](bool AxisNotes::* note, const std::string& what) {
+    std::vector<char> is_meant;
+    is_meant.reserve(axes.size());
+    for (const AxisCheck& axis : axes) is_meant.push_back(axis.notes().*note ? 1 : 0);
+    const std::string names = names_of(is_meant, drive);
+    if (!names.empty()) report.caveats.push_back(fmt::format(fmt::runtime(what), names, step));
+  };
+  say(&AxisNotes::has_single_steps,
+      "motor speed and step rate of {}: one microstep in a row of {:.6g} s is beyond the limit already; "
+      "single "
+      "ones pass where the motion that they are rounded from keeps to it");
+  say(&AxisNotes::is_rounded_over,
+      "motor speed and step rate of {}: the motion keeps to the limit, rounded to microsteps it does not: up "
+      "to one more in {:.6g} s");
+  say(&AxisNotes::takes_up_play,
+      "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
+      "the "
+      "shorter that is, the more it asks");
 }
 
 }  // namespace
@@ -173,10 +250,11 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
   const auto first = displacements_in(arm, drive, state_at(times[0]));
   if (!first) return;
   MotorCommander commander(drive, *first);
+  std::vector<MotorPlace> places = places_of(commander, drive, *first);
   std::vector<AxisCheck> axes;
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     axes.emplace_back(drive, i);
-    axes.back().start(times[0], commander.targets()[i], report);
+    axes.back().start(times[0], places[i], report);
   }
   Span last{2 * times[0] - times[1], times[0]};
   for (std::size_t k = 1; k < times.size(); ++k) {
@@ -184,17 +262,19 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
     if (!wanted) break;
     commander.follow(*wanted);
     const Span now{times[k - 1], times[k]};
-    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, commander.targets()[i], report);
+    places = places_of(commander, drive, *wanted);
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, places[i], report);
     last = now;
   }
-  for (AxisCheck& axis : axes) axis.stop(last, report);
-  say_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before,
-              times[1] - times[0], report);
+  const double step = times[1] - times[0];
+  for (AxisCheck& axis : axes) axis.stop(last, step, report);
+  say_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before, step, report);
+  say_notes(axes, drive, step, report);
   if (!std::ranges::any_of(report.violations, is_acceleration)) return;
   report.caveats.push_back(fmt::format(
       "motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that starts "
       "or turns at once the value goes with that step",
-      times[1] - times[0]));
+      step));
 }
 
 }  // namespace flexura

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -15,10 +16,12 @@ namespace flexura {
 namespace {
 
 constexpr double step = 0.01;  // s
+constexpr std::int64_t fine_steps = 100'000'000;
+constexpr std::int64_t fine_microsteps = 1000;
 
 // One planar section of 0.5 m; a tendon on either side, 20 mm from the backbone, on spools of 10 mm behind
-// gears of 5 to 1. A bend of 1 rad takes 20 mm of cable, 2 rad of the spool and 10 of the motor: so many
-// turns that 3000 microsteps each make 15000/pi.
+// gears of 5 to 1. A bend of 1 rad takes 20 mm of cable, 2 rad of the spool and 10 of the motor, in
+// microsteps so small that rounding to them is seen in no value, if a test does not make them larger.
 class DriveCheck : public ::testing::Test {
  protected:
   DriveCheck() {
@@ -26,13 +29,18 @@ class DriveCheck : public ::testing::Test {
     arm_.sections[0].length = 0.5;
     for (const double angle : {0.0, std::numbers::pi}) {
       drive_.tendons.push_back({0, 0.02, angle});
-      drive_.axes.push_back({.motor = {}, .spool = {.radius = 0.01, .gear = 5}, .reversed = angle > 0});
+      drive_.axes.push_back({.motor = {.steps = fine_steps, .microsteps = fine_microsteps},
+                             .spool = {.radius = 0.01, .gear = 5},
+                             .reversed = angle > 0});
     }
   }
   SafetyReport check(const MotionPtr& motion) const {
     std::vector<double> times;
     const auto steps = static_cast<int>(std::lround(motion->duration() / step));
     for (int k = 0; k <= steps; ++k) times.push_back(motion->duration() * k / steps);
+    return check(motion, times);
+  }
+  SafetyReport check(const MotionPtr& motion, const std::vector<double>& times) const {
     SafetyReport report;
     const auto rates = [&](double a, double b) -> std::optional<std::vector<SectionRates>> {
       const auto known = motion->rates(0, a, b);
@@ -68,7 +76,7 @@ class DriveCheck : public ::testing::Test {
 };
 
 TEST_F(DriveCheck, FindsEveryLimitJustBeyondItAndNotJustWithin) {
-  const double microsteps = 10 / (2 * std::numbers::pi) * 3000;
+  const double microsteps = 10 / (2 * std::numbers::pi) * fine_steps * fine_microsteps;
   expect_limit(&StepperMotor::max_speed, 10, Hazard::motor_speed);
   expect_limit(&StepperMotor::max_step_rate, microsteps, Hazard::step_rate);
   expect_limit(&StepperMotor::max_position, microsteps, Hazard::motor_position);
@@ -142,7 +150,72 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_NEAR(report.violations[0].start, 1, 1e-12);
   EXPECT_NEAR(report.violations[0].end, 1 + step, 1e-12);
-  EXPECT_NEAR(report.violations[0].value, 13, 1e-9);
+  EXPECT_NEAR(report.violations[0].value, 13, 1e-7);
+  ASSERT_EQ(report.caveats.size(), 1U);
+  EXPECT_EQ(
+      report.caveats[0],
+      "motors of 1.1: where a tendon reverses its play is taken up within one step of the clock, 0.01 s; "
+      "the shorter that is, the more it asks");
+  // A motion that is too fast all the way, play or not, is another matter.
+  drive_.axes[0].motor.max_speed = 2;
+  drive_.axes[0].spool.backlash = 0;
+  EXPECT_TRUE(check(there_and_back).caveats.empty());
+  drive_.axes[0].motor.max_speed = 12;
+  EXPECT_TRUE(check(there_and_back).is_safe()) << "without play there is nothing to take up";
+}
+
+TEST_F(DriveCheck, JudgesTheListAsItIsRounded) {
+  drive_.axes[0].motor.steps = 100;
+  drive_.axes[0].motor.microsteps = 1;  // 1.5915 a row, which are 1 and 2.
+  drive_.axes[0].motor.max_step_rate = 2 / step;
+  EXPECT_TRUE(check_bend(1).is_safe());
+  EXPECT_TRUE(check_bend(1).caveats.empty());
+  drive_.axes[0].motor.max_step_rate = 1.99 / step;
+  const SafetyReport rounded = check_bend(1);
+  ASSERT_FALSE(rounded.is_safe());
+  for (const Violation& violation : rounded.violations) {
+    EXPECT_EQ(violation.hazard, Hazard::step_rate);
+    EXPECT_NEAR(violation.value, 2 / step, 1e-9);
+  }
+  ASSERT_EQ(rounded.caveats.size(), 1U);
+  EXPECT_EQ(rounded.caveats[0],
+            "motor speed and step rate of 1.1: the motion keeps to the limit, rounded to microsteps it does "
+            "not: up to one more in 0.01 s");
+  drive_.axes[0].motor.max_step_rate = 1.5 / step;
+  EXPECT_TRUE(check_bend(1).caveats.empty()) << "too fast without any rounding";
+  // 159.15 microsteps in all, of which the list counts 159.
+  drive_.axes[0].motor.max_step_rate = std::numeric_limits<double>::infinity();
+  drive_.axes[0].motor.max_position = 159;
+  EXPECT_TRUE(check_bend(1).is_safe());
+  drive_.axes[0].motor.max_position = 158.9;
+  EXPECT_FALSE(check_bend(1).is_safe());
+}
+
+TEST_F(DriveCheck, LetsSingleMicrostepsPassWhereARowIsTooShortForOne) {
+  drive_.axes[0].motor.steps = 30;
+  drive_.axes[0].motor.microsteps = 1;              // 0.477 a row: none, or one
+  drive_.axes[0].motor.max_step_rate = 0.6 / step;  // less than one a row
+  const SafetyReport slow = check_bend(1);
+  EXPECT_TRUE(slow.is_safe());
+  ASSERT_EQ(slow.caveats.size(), 1U);
+  EXPECT_EQ(slow.caveats[0],
+            "motor speed and step rate of 1.1: one microstep in a row of 0.01 s is beyond the limit already; "
+            "single ones pass where the motion that they are rounded from keeps to it");
+  EXPECT_FALSE(check_bend(1.3).is_safe()) << "0.62 a row";
+  drive_.axes[0].motor.max_step_rate = 1 / step;
+  EXPECT_TRUE(check_bend(1).caveats.empty()) << "one a row is within the limit";
+}
+
+TEST_F(DriveCheck, TheLastStepOfARunMayBeShort) {
+  drive_.axes[0].motor.max_acceleration = 10 / step * (1 + 1e-6);
+  const double end = 1 + step / 100;  // no whole number of steps
+  const auto even = point_to_point_motion(state(0), state(end), {Profile::linear(end)});
+  std::vector<double> times;
+  for (int k = 0; k <= 100; ++k) times.push_back(k * step);
+  times.push_back(end);
+  EXPECT_TRUE(check(even, times).is_safe()) << "stops within a whole step, as it would after another";
+  drive_.axes[0].motor.max_acceleration = 10 / step * (1 - 1e-6);
+  EXPECT_EQ(check(even, times).violations.size(), 2U);
 }
 
 TEST_F(DriveCheck, RoundingToMicrostepsIsNoAcceleration) {

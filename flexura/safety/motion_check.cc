@@ -48,7 +48,7 @@ bool is_possible(const ArmState& state) { return !impossible_section(state); }
 std::optional<std::size_t> impossible_section(const ArmState& state) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const double stretch = state.stretches[i];
-    const bool is_bent = state.bends[i].norm() < largest_bend;  // Not where it is no number.
+    const bool is_bent = state.bends[i].norm() <= largest_bend;  // Not where it is no number.
     if (!is_bent || !std::isfinite(stretch) || stretch <= 0) return i;
   }
   return std::nullopt;

@@ -29,7 +29,7 @@ struct TimedMotion {
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 
-/// Whether the arm can stand in this state at all: bends below `largest_bend`, finite lengths above 0.
+/// Whether the arm can stand in this state at all: bends up to `largest_bend`, finite lengths above 0.
 [[nodiscard]] bool is_possible(const ArmState& state);
 
 /// The first section that cannot, from 0.

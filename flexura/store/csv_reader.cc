@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t max_rows = 1'000'000;
 constexpr std::size_t max_problems = 20;
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 struct Cell {
   std::string text;
@@ -89,6 +90,7 @@ class CsvParser {
   }
 
   void header(const std::vector<Cell>& cells, int number) {
+    table_.header_line = number;
     // As spreadsheets write it in half of the world: one line says more than an error for each row.
     const std::size_t other = cells.size() == 1 ? cells[0].text.find_first_of(";\t") : std::string::npos;
     if (other != std::string::npos) {
@@ -141,8 +143,14 @@ class CsvParser {
 
 }  // namespace
 
+std::vector<int> cell_columns(std::string_view line) {
+  if (line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
+  std::vector<int> columns;
+  for (const Cell& cell : split(line).value_or(std::vector<Cell>{})) columns.push_back(cell.column);
+  return columns;
+}
+
 NumberTable parse_csv(std::string_view text, const std::string& source) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   CsvParser parser(source);
   for (int number = 1; !text.empty() && !parser.is_lost(); ++number) {

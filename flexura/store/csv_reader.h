@@ -10,7 +10,8 @@ namespace flexura {
 struct NumberTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;  ///< Finite; one entry a column.
-  std::vector<int> lines;                 ///< The line of the source that each row stands in, from 1.
+  int header_line = 1;                    ///< The line of the source that the names stand in, from 1.
+  std::vector<int> lines;                 ///< That of each row.
 };
 
 /// Parses CSV (RFC 4180, "\n" or "\r\n"): a line of names, then lines of as many numbers; blank lines are
@@ -19,5 +20,8 @@ struct NumberTable {
 /// separated by semicolons or tabs, an unclosed
 /// quote, more than 10^6 rows.
 [[nodiscard]] NumberTable parse_csv(std::string_view text, const std::string& source);
+/// Where each cell of a line of CSV starts, from 1: behind the comma before it. Empty for a line that is
+/// none.
+[[nodiscard]] std::vector<int> cell_columns(std::string_view line);
 
 }  // namespace flexura

@@ -93,12 +93,12 @@ Node convert(const toml::node& node, const Source& source) {
   return result;
 }
 
-constexpr int max_include_depth = 8;
+constexpr std::size_t max_include_depth = 8;
 constexpr int max_included_files = 100;
 
 // Where a reading has come to: files include files, a few of which could name each other without end.
 struct Including {
-  int depth = 0;
+  std::vector<std::filesystem::path> open = {};  // From the first file to the one that is being read.
   int files = 0;
   std::vector<Problem>* repeated = nullptr;  // As for parse_toml.
 };
@@ -107,16 +107,15 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
 
 Node read_with_includes(const std::filesystem::path& file, Including& including) {
   Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string(), including.repeated);
-  ++including.depth;
+  including.open.push_back(std::filesystem::weakly_canonical(file));
   lay_upon_includes(document, file, including);
-  --including.depth;
+  including.open.pop_back();
   return document;
 }
 
 std::filesystem::path included_file(const Node& entry, const std::filesystem::path& folder) {
   const auto* name = entry.as<std::string>();
-  if (name == nullptr || name->empty())
-    throw InputError({{entry.where, "include: expected file names in quotes"}});
+  if (name == nullptr) throw InputError({{entry.where, "include: expected file names in quotes"}});
   try {
     return file_inside(folder, *name);
   } catch (const InputError& error) {
@@ -124,15 +123,25 @@ std::filesystem::path included_file(const Node& entry, const std::filesystem::pa
   }
 }
 
+// A file that is being read already would be read without end.
+void check_is_new(const std::filesystem::path& file, const Node& entry, const Including& including) {
+  const auto& open = including.open;
+  const auto found = std::ranges::find(open, std::filesystem::weakly_canonical(file));
+  if (found == open.end()) return;
+  std::string between;
+  for (auto way = found + 1; way != open.end(); ++way)
+    between += fmt::format("{}{}", between.empty() ? ", by way of " : ", ", way->filename().string());
+  throw InputError(
+      {{entry.where, fmt::format("include: {} includes itself{}", found->filename().string(), between)}});
+}
+
 void lay_upon_includes(Node& document, const std::filesystem::path& file, Including& including) {
   const Node* include = document.find("include");
   if (include == nullptr) return;
   const auto* names = include->as<Node::Array>();
   if (names == nullptr) throw InputError({{include->where, "include: expected an array of file names"}});
-  if (including.depth > max_include_depth) {
-    throw InputError(
-        {{include->where,
-          fmt::format("include: more than {} files deep; does a file include itself?", max_include_depth)}});
+  if (including.open.size() > max_include_depth) {
+    throw InputError({{include->where, fmt::format("include: more than {} files deep", max_include_depth)}});
   }
   Node below{Node::Table{}, document.where};
   std::vector<Problem> problems;
@@ -141,7 +150,9 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
       throw InputError({{name.where, fmt::format("include: more than {} files in all", max_included_files)}});
     }
     try {
-      merge(below, read_with_includes(included_file(name, file.parent_path()), including));
+      const std::filesystem::path included = included_file(name, file.parent_path());
+      check_is_new(included, name, including);
+      merge(below, read_with_includes(included, including));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }

@@ -157,7 +157,21 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   write("number.toml", "include = [3]");
   write("word.toml", "include = 'circle.toml'");
   write("folder.toml", "include = ['.']");
-  EXPECT_THAT(error("circle.toml"), HasSubstr("does a file include itself?"));
+  EXPECT_THAT(error("circle.toml"), HasSubstr("circle.toml:1:12: include: circle.toml includes itself"));
+  EXPECT_EQ(error("circle.toml").find("by way of"), std::string::npos);
+  write("a.toml", "x = 1\ninclude = ['b.toml']");
+  write("b.toml", "include = ['leaf.toml', './c.toml']");
+  write("c.toml", "include = ['a.toml']");
+  EXPECT_THAT(error("a.toml"),
+              HasSubstr("c.toml:1:12: include: a.toml includes itself, by way of b.toml, c.toml"));
+  write("twice.toml", "include = ['leaf.toml', 'leaf.toml']");
+  EXPECT_EQ(write_json(read("twice.toml")), R"({"x":1})") << "twice is not itself";
+  for (int i = 0; i < 10; ++i)
+    write("deep" + std::to_string(i) + ".toml", "include = ['deep" + std::to_string(i + 1) + ".toml']");
+  write("deep10.toml", "x = 1");
+  EXPECT_THAT(error("deep0.toml"), HasSubstr("include: more than 8 files deep"));
+  write("nameless.toml", "include = ['']");
+  EXPECT_THAT(error("nameless.toml"), HasSubstr("nameless.toml:1:12: include: expected a file's name"));
   EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));
   EXPECT_THAT(error("number.toml"), HasSubstr("expected file names in quotes"));
   EXPECT_THAT(error("word.toml"), HasSubstr("expected an array of file names"));

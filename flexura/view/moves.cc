@@ -78,6 +78,7 @@ ArmState within_limits(const Arm& arm, ArmState state) {
 ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape) {
   Reader reader;
   check_shape(shape, arm.kind, arm.sections.size(), "", reader);
+  if (reader.problems().empty()) check_bends(arm, shape, "", reader);
   if (!reader.problems().empty()) throw ViewRefusal(joined(reader.problems()));
   return arm_state(arm, shape);
 }

@@ -22,11 +22,11 @@ template <class S>
 Table<S> with_shape(const char* name, const char* meaning) {
   return Table<S>(name, meaning)
       .field("bends", static_cast<decltype(ShapeConfig::bends) S::*>(&S::bends),
-             {.meaning = "bend vectors", .range = angle_range, .count = {0, most_sections}})
+             {.meaning = "bend vectors", .range = bend_range, .count = {0, most_sections}})
       .field("cord_angles", static_cast<decltype(ShapeConfig::cord_angles) S::*>(&S::cord_angles),
              {.meaning = "cords' angles from +X", .range = angle_range, .count = {0, most_sections}})
       .field("archings", static_cast<decltype(ShapeConfig::archings) S::*>(&S::archings),
-             {.meaning = "archings", .range = angle_range, .count = {0, most_sections}})
+             {.meaning = "archings", .range = arching_range, .count = {0, most_sections}})
       .field("stretches", static_cast<decltype(ShapeConfig::stretches) S::*>(&S::stretches),
              {.meaning = "factors on the sections' lengths",
               .range = above_up_to(0, 100),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/spatial.h"
@@ -68,6 +69,41 @@ inline Eigen::Vector3d random_unit(TestRandom& random) {
   Eigen::Vector3d v = random.vector<3>(-1.0, 1.0);
   while (v.norm() > 1.0 || v.norm() < 0.1) v = random.vector<3>(-1.0, 1.0);
   return v.normalized();
+}
+
+/// What a search for a target makes small: the position error over the arm's length and the angle error, in
+/// rad, together. What the nearest pose to a target out of reach is the nearest by.
+inline double miss_of(const Arm& arm, const TipTarget& target, const ArmState& state) {
+  const Pose X_WT = tip_pose(arm, state);
+  const double position = (X_WT.position - target.position).norm() / arm.length();
+  if (!target.direction) return position;
+  const Eigen::Vector3d z = X_WT.rotation.col(2);
+  const Eigen::Vector3d d = target.direction->normalized();
+  return std::hypot(position, std::atan2(z.cross(d).norm(), z.dot(d)));
+}
+
+/// What counts as nearer than the answer's pose, in parts of the answer's own distance: with a direction the
+/// valleys are long and flat, and the search ends a little before their bottom.
+inline double nearer_by(const TipTarget& target) { return target.direction ? 1e-4 : 1e-6; }
+
+/// The least of `measure` that a descent by chance finds from `state` on, within the limits on bends: tries
+/// steps at random, shorter ones after failures and longer ones after successes. Knows no derivatives.
+template <class Measure>
+double random_descent(TestRandom& random, const Arm& arm, ArmState state, int tries, const Measure& measure) {
+  double best = measure(state);
+  double step = 0.3;
+  for (int i = 0; i < tries; ++i) {
+    ArmState other = state;
+    for (std::size_t k = 0; k < arm.sections.size(); ++k) {
+      other.bends[k] += step * random.vector<2>(-1.0, 1.0);
+      if (arm.kind == ArmKind::planar) other.bends[k].y() = 0.0;
+      other.bends[k] *= std::min(1.0, arm.sections[k].max_bend / other.bends[k].norm());
+    }
+    const double found = measure(other);
+    step = found < best ? std::min(1.0, 1.3 * step) : 0.93 * step;
+    if (found < best) best = found, state = std::move(other);
+  }
+  return best;
 }
 
 /// A target that no state of an arm of random_three_sections reaches, by construction, in one of four ways

@@ -1,8 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
+#include "flexura/kinematics/cord_motion.h"
+#include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/motion.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/kinematics/spatial.h"
 #include "flexura/model/arm.h"
 #include "tests/support/random_cases.h"
 
@@ -22,8 +29,56 @@ inline ArmState random_keyframe(TestRandom& random, const Arm& arm) {
   return state;
 }
 
+/// As a move in cord angles with a law for each section, and a swing of these: laws in which a section's bend
+/// follows all the cords before it. Planar arms.
+inline std::vector<MotionPtr> random_cord_motions(TestRandom& random, const Arm& arm) {
+  const double duration = random.uniform(0.2, 5);
+  const ArmState from = random_keyframe(random, arm);
+  const ArmState to = random_keyframe(random, arm);
+  std::vector<double> changes = cord_angles(arm, to);
+  const std::vector<double> first = cord_angles(arm, from);
+  std::vector<Profile> profiles;
+  std::vector<double> amplitudes;
+  std::vector<double> phases;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    changes[i] -= first[i];
+    profiles.push_back(random.integer(0, 1) == 0 ? Profile::linear(duration)
+                                                 : Profile::minimum_jerk(duration));
+    amplitudes.push_back(random.uniform(-0.7, 0.7));
+    phases.push_back(random.uniform(-4, 4));
+  }
+  return {cord_point_to_point_motion(from, to, changes, profiles),
+          cord_sine_motion(from, amplitudes, phases, random.uniform(0.2, 3), duration)};
+}
+
+/// The fastest trapezoid between two states that keeps to a rate and an acceleration of each section's own.
+inline MotionPtr random_trapezoids(TestRandom& random, const Arm& arm) {
+  const ArmState from = random_keyframe(random, arm);
+  const ArmState to = random_keyframe(random, arm);
+  double rate = 1e3;
+  double acceleration = 1e3;
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const double way =
+        std::max((to.bends[i] - from.bends[i]).norm(), std::abs(to.stretches[i] - from.stretches[i]));
+    rate = std::min(rate, random.uniform(0.5, 10) / way);
+    acceleration = std::min(acceleration, random.uniform(0.5, 30) / way);
+  }
+  return point_to_point_motion(
+      from, to, std::vector<Profile>(arm.sections.size(), Profile::trapezoid(1, rate, acceleration)));
+}
+
+/// To a place for the tip, as a move to a position: with the state that inverse kinematics answers.
+inline MotionPtr random_move_of_tip(TestRandom& random, const Arm& arm) {
+  const ArmState from = random_keyframe(random, arm);
+  const Eigen::Vector3d place = tip_pose(arm, random_keyframe(random, arm)).position;
+  const InverseResult there = solve_inverse(arm, {.position = place}, {.start = from, .max_starts = 4});
+  const std::vector<Profile> profiles(arm.sections.size(), Profile::minimum_jerk(random.uniform(0.2, 5)));
+  return point_to_point_motion(from, there.state, profiles);
+}
+
 /// One motion of every kind that knows its rates: hold, point to point (linear with minimum jerk, trapezoid),
-/// sine, keyframes linear and smooth.
+/// sine, keyframes linear and smooth, trapezoids by limits of each section, a move of the tip, and of a
+/// planar arm a move and a swing of its cords.
 inline std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm) {
   const std::size_t n = arm.sections.size();
   const auto state = [&] { return random_keyframe(random, arm); };
@@ -45,12 +100,17 @@ inline std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm)
     times.push_back(times.back() + random.uniform(0.05, 2));
     states.push_back(state());
   }
-  return {hold_motion(state(), duration),
-          point_to_point_motion(state(), state(), profiles),
-          point_to_point_motion(state(), state(), trapezoids),
-          sine_motion(state(), amplitudes, phases, random.uniform(0.2, 3), duration),
-          keyframe_motion(times, states, Interpolation::linear),
-          keyframe_motion(times, states, Interpolation::smooth)};
+  std::vector<MotionPtr> motions{hold_motion(state(), duration),
+                                 point_to_point_motion(state(), state(), profiles),
+                                 point_to_point_motion(state(), state(), trapezoids),
+                                 sine_motion(state(), amplitudes, phases, random.uniform(0.2, 3), duration),
+                                 keyframe_motion(times, states, Interpolation::linear),
+                                 keyframe_motion(times, states, Interpolation::smooth),
+                                 random_trapezoids(random, arm),
+                                 random_move_of_tip(random, arm)};
+  if (arm.kind == ArmKind::spatial) return motions;
+  for (MotionPtr& motion : random_cord_motions(random, arm)) motions.push_back(std::move(motion));
+  return motions;
 }
 
 }  // namespace flexura

@@ -29,8 +29,11 @@ struct Ended {
 class Program : public ::testing::Test {
  protected:
   // Starts the program in the test's folder; arguments are given as a person types them, without quoting.
+  // What it says to people goes to the file or terminal `err`.
   pid_t start(const std::string& arguments, const std::string& out) {
-    const std::string err = path("err");
+    return start(arguments, out, path("err"));
+  }
+  pid_t start(const std::string& arguments, const std::string& out, const std::string& err) {
     const pid_t child = fork();
     if (child == 0) {
       const std::string command = "cd " + folder_.path().string() + " && exec " + program + " " + arguments +

@@ -63,9 +63,10 @@ ViewStart start_of(const std::string& what) {
 void require_hosts(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!is_host(name))
-      throw input_error("--name", fmt::format("{}: expected the name or the address of a host, with a port or "
-                                              "without, such as lab.example, lab.example:8421 or [::1]",
-                                              text_node(name).brief()));
+      throw input_error("--name",
+                        fmt::format("{}: expected the name or the address of a host, with a port or "
+                                    "without, such as lab.example, lab.example:8421 or [::1]",
+                                    text_node(name).brief()));
   }
 }
 

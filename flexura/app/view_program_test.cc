@@ -96,7 +96,7 @@ TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
 }
 
 TEST_F(ViewerProgram, RefusesANameByWhichNobodyCanCallIt) {
-  for (const std::string& name : {"''", "'a b'", "x:99999", "http://x"}) {
+  for (const char* name : {"''", "'a b'", "x:99999", "http://x"}) {
     for (const std::string& command : {std::string("view "), "run " + paper_file + " --view "}) {
       const Ended ended = run(command + "--no-browser --port 0 --name " + name);
       EXPECT_EQ(ended.status, 2) << command << name;

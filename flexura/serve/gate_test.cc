@@ -105,7 +105,7 @@ TEST(Gate, TellsANameFromWhatIsNone) {
              std::string("x\0y", 3),
              std::string(64, 'a'),
              std::string(50, 'a') + '.' + std::string(63, 'b') + '.' + std::string(63, 'c') + '.' +
-                 std::string(63, 'd') + '.' + std::string(10, 'e')}) {
+                 std::string(63, 'd') + '.' + std::string(11, 'e')}) {
     EXPECT_FALSE(is_host(host)) << host;
   }
 }

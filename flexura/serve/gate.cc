@@ -4,9 +4,12 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "flexura/serve/token.h"
 
@@ -29,10 +32,12 @@ constexpr std::uint16_t http_port = 80;
 
 // Of the port, without its colon.
 bool is_port(std::string_view text) {
-  std::uint16_t port = 0;
-  const char* end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, port);
-  return error == std::errc() && last == end && port != 0;
+  constexpr std::size_t longest = 5;
+  constexpr int most = 65535;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.empty() || text.size() > longest || !std::ranges::all_of(text, is_digit)) return false;
+  const int port = std::stoi(std::string(text));
+  return port > 0 && port <= most;
 }
 
 // RFC 1123, 2.1, and the underscores that there are all the same.

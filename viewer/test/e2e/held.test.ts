@@ -109,6 +109,17 @@ test('while nothing is heard of the rig nothing can be moved, by a hand or a key
   expect(await page.getByRole('button', { name: 'Reset' }).isDisabled()).toBe(false);
 });
 
+test('the clock and the line of time say one time, that of the state that is shown', async () => {
+  await page.getByRole('button', { name: 'Hold the view' }).click();
+  await page.waitForSelector('.badge[data-kind="held"]');
+  for (let i = 0; i < 8; ++i) {
+    await page.getByRole('button', { name: 'One step back' }).click();
+    await page.waitForTimeout(150);
+    const [clock, line] = [await page.locator('#clock').textContent(), await page.locator('#time').textContent()];
+    expect(line!.trim()).toBe(clock);
+  }
+});
+
 test('a number is what people write as one', async () => {
   const field = page.getByLabel('Section 1, towards x, °');
   await field.fill('0x10');

@@ -11,8 +11,10 @@
 #include <ostream>
 #include <random>
 #include <span>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "embedded/experiment_toml.h"
 #include "embedded/page.h"
@@ -24,6 +26,7 @@
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/results.h"
+#include "flexura/serve/gate.h"
 #include "flexura/store/gzip.h"
 #include "flexura/view/recording.h"
 
@@ -56,6 +59,17 @@ ViewStart start_of(const std::string& what) {
   return start;
 }
 
+// What no browser could say would let nobody in, and nobody would know why.
+void require_hosts(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (!is_host(name))
+      throw input_error("--name",
+                        fmt::format("{}: expected the name or the address of a host, with a port or "
+                                    "without, such as lab.example, lab.example:8421 or [::1]",
+                                    text_node(name).brief()));
+  }
+}
+
 std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments& arguments,
                                   std::span<const Asset> assets) {
   std::array<unsigned char, sizeof(in6_addr)> parsed{};
@@ -64,6 +78,7 @@ std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments&
     throw input_error("--address",
                       fmt::format("{}: expected an IP address of this machine, such as 127.0.0.1 or ::1",
                                   text_node(arguments.address).brief()));
+  require_hosts(arguments.names);
   ServerConfig config;
   config.address = arguments.address;
   config.names = arguments.names;

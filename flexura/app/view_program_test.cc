@@ -95,6 +95,18 @@ TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
   EXPECT_EQ(opened_by("--name localhost").second, "") << "no screen, no browser";
 }
 
+TEST_F(ViewerProgram, RefusesANameByWhichNobodyCanCallIt) {
+  for (const char* name : {"''", "'a b'", "x:99999", "http://x"}) {
+    for (const std::string& command : {std::string("view "), "run " + paper_file + " --view "}) {
+      const Ended ended = run(command + "--no-browser --port 0 --name " + name);
+      EXPECT_EQ(ended.status, 2) << command << name;
+      EXPECT_THAT(ended.err, HasSubstr("--name: ")) << name;
+      EXPECT_THAT(ended.err, HasSubstr("expected the name or the address of a host")) << name;
+      EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+    }
+  }
+}
+
 TEST_F(ViewerProgram, KeepsTheTokenOfAPortWhenItIsStartedAgain) {
   // What a viewer prints, started once and ended.
   const auto printed = [this](const std::string& options) {

@@ -26,8 +26,8 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   constexpr double most = 1e6;  // Of the principal point and of focal lengths, px: single precision.
   const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
                              intrinsics.fx < most && intrinsics.fy < most;
-  const bool is_known = is_lens_known && stage.scene->light.shadow == 0 && stage.planes.empty() &&
-                        width_ >= static_cast<int>(span_step);
+  const bool is_known =
+      is_lens_known && stage.scene->light.shadow == 0 && width_ >= static_cast<int>(span_step);
   if (!is_known) return false;
   intrinsics_ = intrinsics;
   picture_ = &picture;
@@ -38,6 +38,7 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   start(stage);
   if (!plan_pieces(stage) || !plan_rims(stage)) return false;
   if (!std::ranges::all_of(stage.faces, [&](const FacePart& face) { return leave_face(face); })) return false;
+  for (const PlanePart& plane : stage.planes) leave_plane(plane);
   plan_screens(stage);
   for (int v = 0; v < height_; ++v) {
     SpanRow row = row_of(v);
@@ -91,6 +92,19 @@ bool QuickPicture::leave_face(const FacePart& part) {
   const auto region = ImageRegion::of(intrinsics_, middle, middle, (part.face.corners[0] - middle).norm());
   if (region) leave(*region);
   return region.has_value();
+}
+
+// Such as a floor: what lies below its horizon, and a little more. From behind it is not seen.
+void QuickPicture::leave_plane(const PlanePart& plane) {
+  if (!(plane.normal.dot(plane.point) < 0)) return;
+  constexpr double more = 3;  // px
+  const double above = more * pixel_ * plane.normal.head<2>().norm();
+  for (int v = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u) {
+      const auto ray = rays_->ray(u, v);
+      if (!ray || plane.normal.dot(ray->direction) < above) leave(u, v);
+    }
+  }
 }
 
 // Of the pixels from number `begin` on; where there are too few, the last one stands for the rest.

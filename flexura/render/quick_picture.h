@@ -34,7 +34,7 @@ class QuickPicture {
   explicit QuickPicture(SimdPath path = best_simd_path());
 
   /// Draws into `picture`, whose images have the right size. False, with nothing of use drawn, for what it
-  /// does not know: shadows, infinite planes, a camera close to something, pictures less than span_step wide.
+  /// does not know: shadows, a camera close to something, pictures less than span_step wide.
   bool draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics, PixelKind pixels,
             LightImage& picture);
 
@@ -86,6 +86,7 @@ class QuickPicture {
   bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
   void draw_pieces(SpanRow& row);
   bool leave_face(const FacePart& part);
+  void leave_plane(const PlanePart& plane);
 
   bool plan_rims(const Stage& stage);
   void fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const;

@@ -38,6 +38,15 @@ Scene busy_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, c
     scene.obstacles.push_back(
         {SphereConfig{.center = {at.x(), at.y(), at.z()}, .radius = 0.05}, {0.4, 0.5, 0.4}});
   }
+  // A floor under the arm, which some of it passes, as the camera sees it: its horizon runs through the
+  // picture.
+  if (scene.screens.size() == 1) {
+    const Eigen::Vector3d foot = backbone.pose(0.2 * backbone.length()).position;
+    const Eigen::Vector3d up = -view.X_WC.rotation.col(1) - 0.1 * ahead + 0.1 * view.X_WC.rotation.col(0);
+    scene.obstacles.push_back(
+        {PlaneConfig{.point = {foot.x(), foot.y(), foot.z()}, .normal = {up.x(), up.y(), up.z()}},
+         {0.3, 0.3, 0.35}});
+  }
   return scene;
 }
 
@@ -199,9 +208,32 @@ TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
   Scene shadowed = scene;
   shadowed.light.shadow = 0.5;
   EXPECT_FALSE(is_drawn(shadowed, view));
-  Scene grounded = scene;
-  grounded.obstacles.push_back({PlaneConfig{}});
-  EXPECT_FALSE(is_drawn(grounded, view));
+}
+
+// Upright before a floor: of an empty scene all below the horizon is left out, and three rows above.
+TEST(QuickPicture, LeavesOutWhatLiesBelowAFloorsHorizon) {
+  for (const double height : {1.0, -1.0}) {
+    Scene scene;
+    scene.obstacles.push_back({PlaneConfig{}});
+    Eigen::Matrix3d R_WC;
+    R_WC << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    const View view = pinhole_view({R_WC, {0, height, 2}}, 64, 49, 200);
+    Renderer renderer;
+    renderer.prepare(scene, view);
+    LightImage picture{Image<float>(64, 49, 1), Image<float>(64, 49, 1)};
+    QuickPicture quick;
+    ASSERT_TRUE(
+        quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    const auto& left = quick.left_out();
+    if (height < 0) {
+      EXPECT_TRUE(left.empty()) << "from below it is not seen";
+      continue;
+    }
+    ASSERT_FALSE(left.empty());
+    const double horizon = view.lens.intrinsics().cy;
+    EXPECT_NEAR(left.front().v, horizon - 3, 1);
+    EXPECT_EQ(left.size(), static_cast<std::size_t>((49 - left.front().v) * 64));
+  }
 }
 
 }  // namespace

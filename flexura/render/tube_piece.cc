@@ -149,12 +149,13 @@ double minimum_between(const TubePiece& piece, const LocalRay& ray, double low, 
   double depth = 0.5 * (low + high);
   for (int step = 0; step < 60; ++step) {
     const Inside at = inside_at(piece, ray, depth);
+    const double newton = at.curving > 0 ? -at.slope / at.curving : infinity;
+    // Where the slope is zero but for rounding the step may end upon the bracket: no reason to halve that.
+    if (std::abs(newton) < 1e-10 * (1 + depth)) return std::clamp(depth + newton, low, high);
     (at.slope < 0 ? low : high) = depth;
-    double next = at.curving > 0 ? depth - at.slope / at.curving : low;
-    if (!(next > low) || !(next < high)) next = 0.5 * (low + high);
-    const double move = std::abs(next - depth);
-    depth = next;
-    if (move < 1e-10 * (1 + depth)) break;
+    depth += newton;
+    if (!(depth > low) || !(depth < high)) depth = 0.5 * (low + high);
+    if (high - low < 1e-10 * (1 + depth)) break;
   }
   return depth;
 }
@@ -164,12 +165,12 @@ double root_between(const TubePiece& piece, const LocalRay& ray, double low, dou
   if (!(depth > low) || !(depth < high)) depth = 0.5 * (low + high);
   for (int step = 0; step < 80; ++step) {
     const Inside at = inside_at(piece, ray, depth);
+    const double newton = at.slope < 0 ? -at.value / at.slope : infinity;
+    if (std::abs(newton) < 1e-13 * depth) return std::clamp(depth + newton, low, high);  // As above.
     (at.value > 0 ? low : high) = depth;
-    double next = at.slope < 0 ? depth - at.value / at.slope : low;
-    if (!(next > low) || !(next < high)) next = 0.5 * (low + high);
-    const double move = std::abs(next - depth);
-    depth = next;
-    if (move < 1e-13 * depth || low >= high) break;
+    depth += newton;
+    if (!(depth > low) || !(depth < high)) depth = 0.5 * (low + high);
+    if (high - low < 1e-13 * depth) break;
   }
   return depth;
 }

@@ -1,8 +1,15 @@
 #include "flexura/serve/gate.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "flexura/serve/token.h"
 
@@ -22,6 +29,42 @@ std::string with_port(std::string_view host, std::uint16_t port) {
 }
 
 constexpr std::uint16_t http_port = 80;
+
+// Of the port, without its colon.
+bool is_port(std::string_view text) {
+  constexpr std::size_t longest = 5;
+  constexpr int most = 65535;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.empty() || text.size() > longest || !std::ranges::all_of(text, is_digit)) return false;
+  const int port = std::stoi(std::string(text));
+  return port > 0 && port <= most;
+}
+
+// RFC 1123, 2.1, and the underscores that there are all the same.
+bool is_label(std::string_view text) {
+  constexpr std::size_t longest = 63;
+  const auto is_sign = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+  };
+  return !text.empty() && text.size() <= longest && std::ranges::all_of(text, is_sign) &&
+         text.front() != '-' && text.back() != '-';
+}
+
+bool is_name(std::string_view text) {
+  constexpr std::size_t longest = 253;
+  if (text.size() > longest) return false;
+  for (std::size_t from = 0;;) {
+    const std::size_t dot = std::min(text.find('.', from), text.size());
+    if (!is_label(text.substr(from, dot - from))) return false;
+    if (dot == text.size()) return true;
+    from = dot + 1;
+  }
+}
+
+bool is_v6(std::string_view text) {
+  in6_addr parsed{};
+  return ::inet_pton(AF_INET6, std::string(text).c_str(), &parsed) == 1;
+}
 
 bool is_loopback(std::string_view address) { return address.starts_with("127.") || address == "::1"; }
 
@@ -69,6 +112,16 @@ bool Gate::has_token(const RequestHead& head) const {
 
 std::string Gate::cookie() const {
   return cookie_name_ + '=' + ticket_ + "; Path=/; HttpOnly; SameSite=Strict";
+}
+
+bool is_host(std::string_view text) {
+  const bool is_bracketed = text.starts_with('[');
+  const std::size_t end = is_bracketed ? text.find(']') : std::min(text.find(':'), text.size());
+  if (end == std::string_view::npos) return false;
+  const std::string_view host = is_bracketed ? text.substr(1, end - 1) : text.substr(0, end);
+  const std::string_view rest = text.substr(is_bracketed ? end + 1 : end);
+  if (!rest.empty() && !(rest.starts_with(':') && is_port(rest.substr(1)))) return false;
+  return is_bracketed ? is_v6(host) : is_name(host);
 }
 
 std::string url_host(std::string_view address) {

@@ -39,6 +39,10 @@ class Gate {
   std::string cookie_name_;
 };
 
+/// Whether a browser can call a server so: a name of letters, digits, - and _ between single dots, or an IP
+/// address (of version 6 in brackets), with or without ":port". What else stands in an address does not.
+[[nodiscard]] bool is_host(std::string_view text);
+
 /// "127.0.0.1" and "[::1]" as they stand in a URL.
 std::string url_host(std::string_view address);
 

@@ -50,6 +50,66 @@ TEST(Gate, KnowsNoOtherHost) {
   }
 }
 
+TEST(Gate, TellsANameFromWhatIsNone) {
+  for (const std::string& host :
+       Texts{"localhost", "Lab.example", "a", "lab-2.uni_x.example", "tunnel:9000", "tunnel:65535",
+             "192.168.0.7", "192.168.0.7:80", "[::1]", "[fe80::1]:8421", "xn--bcher-kva.example",
+             std::string(63, 'a') + ".example"}) {
+    EXPECT_TRUE(is_host(host)) << host;
+    const bool has_port = !host.ends_with(']') && host.find(':') != std::string::npos;
+    EXPECT_TRUE(
+        Gate(8421, {host}, gate_token, ticket).knows_host(has_port ? host : host + ":8421", "10.0.0.1"))
+        << host;
+  }
+  for (const std::string& host :
+       Texts{"",
+             " ",
+             "a b",
+             " lab",
+             "lab ",
+             "x:99999",
+             "x:65536",
+             "x:0",
+             "x:",
+             "x:8a",
+             "x:+1",
+             "x:-1",
+             "x: 1",
+             "x:80:80",
+             ":8421",
+             "http://x",
+             "http://x:80",
+             "x/",
+             "x/y",
+             "user@x",
+             ".",
+             ".x",
+             "x.",
+             "a..b",
+             "-x",
+             "x-",
+             "a.-b",
+             "::1",
+             "[::1",
+             "[]",
+             "[x]",
+             "[::1]x",
+             "[::1]:0",
+             "[127.0.0.1]",
+             "x?",
+             "x#",
+             "x%2e",
+             "b\u00fccher",
+             "x,y",
+             "*.example",
+             std::string("x\0y", 3),
+             std::string(64, 'a'),
+             std::string(50, 'a') + '.' + std::string(63, 'b') + '.' + std::string(63, 'c') + '.' +
+                 std::string(63, 'd') + '.' + std::string(11, 'e')}) {
+    EXPECT_FALSE(is_host(host)) << host;
+  }
+}
+
 TEST(Gate, KnowsItsOwnPagesOnly) {
   EXPECT_TRUE(gate().knows_origin("http://localhost:8421", "127.0.0.1"));
   EXPECT_TRUE(gate().knows_origin("http://127.0.0.1:8421", "127.0.0.1"));

@@ -337,7 +337,11 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
   const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
   if (run_ == nullptr || !news_.time) return rig_.shot(camera, number);
   const CameraStance stance = run_stances().at(camera);
-  const double start = frame_times(viewed()->sensors[camera], number).start;
+  const SensorConfig& sensor = viewed()->sensors[camera];
+  // As the states: the time is the page's own, or that of a run which it watches from the start to the end.
+  // So a picture's exposure has its middle at the time of the state that it shows.
+  const double start = is_watched_run() ? *news_.time - times_of_frame_at(sensor, 0).middle
+                                        : frame_times(sensor, number).start;
   return value_shot(viewed(), camera, number, start, {{start, news_.state, stance.head, stance.stage}});
 }
 

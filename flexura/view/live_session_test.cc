@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -21,6 +24,18 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+
+// What an image's message says of itself.
+double image_time(const std::string& message) {
+  double time = 0;
+  std::memcpy(&time, message.data() + 8, sizeof(time));
+  return time;
+}
+std::uint32_t image_number(const std::string& message) {
+  std::uint32_t number = 0;
+  std::memcpy(&number, message.data() + 4, sizeof(number));
+  return number;
+}
 
 TEST_F(LiveSessionTest, SendsStatesAtTheRateOfItsClock) {
   const StateMessage state = pass(1);
@@ -314,6 +329,38 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   watched.advance(100.2);
   EXPECT_TRUE(watched.is_over());
   EXPECT_EQ(*messenger_.last(other, "progress").find("text")->as<std::string>(), "section 1: bend");
+}
+
+// A run may be many times as fast as the clock, or slower: a picture's time says of which state it is.
+TEST_F(LiveSessionTest, GivesPicturesOfAWatchedRunTheTimeOfTheStateTheyShow) {
+  auto run = std::make_shared<RunLink>();
+  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
+  watched.opened(other);
+  watched.take(other, ImagesRequest{"side", 30, 80}, [](const ViewAnswer&) {});
+  std::string before;
+  double clock = 100.5;
+  for (const double time : {0.25, 7.25, 1907.5, 1907.625}) {
+    run->state(time, {{{0.1 * std::fmod(time, 3), 0.2}, {0.3, 0.4}}, {1, 1}}, {});
+    watched.advance(clock += 0.1);
+    const std::string image = last_image(other, 2);
+    EXPECT_NEAR(image_time(image), messenger_.state(other).time, 1e-9) << time;
+    EXPECT_EQ(messenger_.state(other).time, time);
+    EXPECT_NE(image.substr(16), before) << "another shape, another picture";
+    before = image.substr(16);
+    watched.take(other, AckRequest{"side", image_number(image)}, [](const ViewAnswer&) {});
+  }
+}
+
+// What the page starts goes by the page's time, which goes on: its pictures too.
+TEST_F(LiveSessionTest, GivesPicturesTheTimeOfTheStatesOfAFreeRig) {
+  ask(ImagesRequest{"front", 30, 80});
+  for (int i = 0; i < 5; ++i) {
+    const StateMessage state = pass(0.4);  // The first of these ticks took it.
+    const std::string image = last_image(me, 1);
+    EXPECT_LE(image_time(image), state.time);
+    EXPECT_GT(image_time(image), state.time - 0.45);
+    ask(AckRequest{"front", image_number(image)});
+  }
 }
 
 // The arm is believed to stand where its way is free.

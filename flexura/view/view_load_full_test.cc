@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,34 +85,44 @@ ViewedRigPtr rig_with_large_pictures() {
   return viewed_rig(text);
 }
 
+// Of so many numbers (an odd count).
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values.at(values.size() / 2);
+}
+
+// Others may work on the machine too, and now more, now less: so times with and without the deaf clients take
+// turns, each is compared with the one beside it, and what counts is the median of many.
 TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
-  constexpr double seconds = 4;
+  constexpr double seconds = 0.6;
+  constexpr int rounds = 9;
   ViewServer server({.session = "1", .rig = rig_with_large_pictures()}, {}, {});
   RawClient good = watching(server);
   good.say(R"({"id":2,"do":"arm","bends":[[-0.8,0.3],[0.4,0.5]],"duration":60})");
-  const Seen alone = watch(good, seconds);
+  (void)watch(good, seconds);
   const std::size_t before = resident_bytes();
-  std::vector<RawClient> deaf;
-  deaf.reserve(4);
-  for (int i = 0; i < 4; ++i) deaf.push_back(watching(server, 4096));
   std::size_t most = 0;
-  Seen among;
-  for (int round = 0; round < 4; ++round) {
-    const Seen part = watch(good, seconds / 4);
-    among.states += part.states;
-    among.made += part.made;
-    among.images += part.images;
-    among.simulated += part.simulated;
-    among.wall += part.wall;
+  std::vector<double> seen, states, images, pace;  // shares of what there was, or is without deaf ones
+  for (int round = 0; round < rounds; ++round) {
+    const Seen alone = watch(good, seconds);
+    std::vector<RawClient> deaf;
+    deaf.reserve(4);
+    for (int i = 0; i < 4; ++i) deaf.push_back(watching(server, 4096));
+    const Seen among = watch(good, seconds);
     most = std::max(most, resident_bytes());
+    ASSERT_GT(std::min({alone.made, alone.images, among.made}), 0);
+    seen.push_back(static_cast<double>(among.states) / among.made);
+    states.push_back(among.made / among.wall / (alone.made / alone.wall));
+    images.push_back(among.images / among.wall / (alone.images / alone.wall));
+    pace.push_back(among.simulated / among.wall);
   }
-  ASSERT_GT(alone.states, 0);
-  // Of what there was to see next to nothing is lost.
-  EXPECT_GT(among.states, 9 * among.made / 10) << "of " << among.made;
-  // Two thirds, for a machine on which others work too: a client that is waited for would stop everything.
-  EXPECT_GT(among.made, 2 * alone.made / 3) << "of " << alone.made;
-  EXPECT_GT(among.images, alone.images / 2) << "of " << alone.images;
-  EXPECT_GT(among.simulated, 0.8 * among.wall);
+  std::cout << "of the states there are " << median(seen) << " are seen; states " << median(states)
+            << " and pictures " << median(images) << " of what comes without deaf clients; pace "
+            << median(pace) << '\n';
+  EXPECT_GT(median(seen), 0.9) << "of what there was to see next to nothing is lost";
+  EXPECT_GT(median(states), 0.9);
+  EXPECT_GT(median(images), 0.8);
+  EXPECT_GT(median(pace), 0.8);
   EXPECT_LT(most, before + (std::size_t{64} << 20));
 }
 

@@ -16,15 +16,15 @@ export function is_in_sight({ group }: Binding, route: App['route']['value']): b
 function time({ viewer: { playback } }: App): Binding[] {
   const group = 'Time';
   return [
-    { group, keys: ['Space'], shown: 'Space', what: 'Play or pause; live: hold the view, or back to now', run: () => playback.toggle() },
-    { group, keys: ['ArrowRight'], shown: '→', what: 'One step forward', run: () => playback.step(1) },
-    { group, keys: ['ArrowLeft'], shown: '←', what: 'One step back', run: () => playback.step(-1) },
-    { group, keys: ['Shift+ArrowRight'], shown: 'Shift →', what: 'Half a second forward', run: () => playback.skip(0.5) },
-    { group, keys: ['Shift+ArrowLeft'], shown: 'Shift ←', what: 'Half a second back', run: () => playback.skip(-0.5) },
-    { group, keys: ['+', 'NumpadAdd', '='], shown: '+', what: 'Play faster', run: () => playback.faster(1) },
-    { group, keys: ['-', 'NumpadSubtract'], shown: '−', what: 'Play slower', run: () => playback.faster(-1) },
-    { group, keys: ['Home'], shown: 'Home', what: 'To the start', run: () => playback.seek(0) },
-    { group, keys: ['End'], shown: 'End', what: 'To the end; live: to now', run: () => (playback.mode.value === 'live' ? playback.go_live() : playback.seek(Infinity)) },
+    { group, keys: ['Space'], what: 'Play or pause; live: hold the view, or back to now', run: () => playback.toggle() },
+    { group, keys: ['ArrowRight'], what: 'One step forward', run: () => playback.step(1) },
+    { group, keys: ['ArrowLeft'], what: 'One step back', run: () => playback.step(-1) },
+    { group, keys: ['Shift+ArrowRight'], what: 'Half a second forward', run: () => playback.skip(0.5) },
+    { group, keys: ['Shift+ArrowLeft'], what: 'Half a second back', run: () => playback.skip(-0.5) },
+    { group, keys: ['+', 'NumpadAdd', '='], what: 'Play faster', run: () => playback.faster(1) },
+    { group, keys: ['-', 'NumpadSubtract'], what: 'Play slower', run: () => playback.faster(-1) },
+    { group, keys: ['Home'], what: 'To the start', run: () => playback.seek(0) },
+    { group, keys: ['End'], what: 'To the end; live: to now', run: () => (playback.mode.value === 'live' ? playback.go_live() : playback.seek(Infinity)) },
   ];
 }
 
@@ -54,26 +54,26 @@ function view(app: App): Binding[] {
     app.view.value?.invalidate();
   };
   return [
-    { group, keys: ['Numpad1', '1'], shown: '1', what: 'From the front, as camera 1 (numpad too)', run: look(0, 0) },
-    { group, keys: ['Numpad3', '3'], shown: '3', what: 'From the side, as camera 2', run: look(-Math.PI / 2, 0) },
-    { group, keys: ['Numpad7', '7'], shown: '7', what: 'From above', run: look(0, Math.PI / 2) },
-    { group, keys: ['Numpad0', '0', 'a'], shown: '0', what: 'All of the arm in view', run: () => (app.views.free(), app.view.value?.frame_all()) },
-    { group, keys: ['NumpadDecimal', '.'], shown: '.', what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
-    { group, keys: ['k'], shown: 'K', what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
-    { group, keys: [']', 'BracketRight'], shown: ']', what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
-    { group, keys: ['[', 'BracketLeft'], shown: '[', what: 'The view before', run: () => app.views.cycle(-1) },
-    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], shown: 'Alt ←', what: 'Turn the view to the left', run: orbit(-turn, 0) },
-    { group, keys: ['Alt+ArrowRight', 'Numpad6'], shown: 'Alt →', what: 'Turn it to the right', run: orbit(turn, 0) },
-    { group, keys: ['Alt+ArrowUp', 'Numpad8'], shown: 'Alt ↑', what: 'Rise', run: orbit(0, turn) },
-    { group, keys: ['Alt+ArrowDown', 'Numpad2'], shown: 'Alt ↓', what: 'Sink', run: orbit(0, -turn) },
-    { group, keys: ['Alt+Shift+ArrowLeft'], shown: 'Alt Shift ←', what: 'Move the view to the left', run: pan(0.04, 0) },
-    { group, keys: ['Alt+Shift+ArrowRight'], shown: 'Alt Shift →', what: 'Move it to the right', run: pan(-0.04, 0) },
-    { group, keys: ['Alt+Shift+ArrowUp'], shown: 'Alt Shift ↑', what: 'Move it up', run: pan(0, -0.04) },
-    { group, keys: ['Alt+Shift+ArrowDown'], shown: 'Alt Shift ↓', what: 'Move it down', run: pan(0, 0.04) },
-    { group, keys: ['PageUp'], shown: 'Page Up', what: 'Nearer', run: zoom(0.9) },
-    { group, keys: ['PageDown'], shown: 'Page Down', what: 'Farther', run: zoom(1 / 0.9) },
-    { group, keys: ['t'], shown: 'T', what: 'Trail of the tip, on or off', run: () => toggle_hidden('trail') },
-    { group, keys: ['p'], shown: 'P', what: 'Plots, shown or not', run: () => (preferences.show_plots.value = !preferences.show_plots.value) },
+    { group, keys: ['Numpad1', '1'], what: 'From the front, as camera 1', run: look(0, 0) },
+    { group, keys: ['Numpad3', '3'], what: 'From the side, as camera 2', run: look(-Math.PI / 2, 0) },
+    { group, keys: ['Numpad7', '7'], what: 'From above', run: look(0, Math.PI / 2) },
+    { group, keys: ['Numpad0', '0', 'a'], what: 'All of the arm in view', run: () => (app.views.free(), app.view.value?.frame_all()) },
+    { group, keys: ['NumpadDecimal', '.'], what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
+    { group, keys: ['k'], what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
+    { group, keys: [']', 'BracketRight'], what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
+    { group, keys: ['[', 'BracketLeft'], what: 'The view before', run: () => app.views.cycle(-1) },
+    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Turn the view to the left', run: orbit(-turn, 0) },
+    { group, keys: ['Alt+ArrowRight', 'Numpad6'], what: 'Turn it to the right', run: orbit(turn, 0) },
+    { group, keys: ['Alt+ArrowUp', 'Numpad8'], what: 'Rise', run: orbit(0, turn) },
+    { group, keys: ['Alt+ArrowDown', 'Numpad2'], what: 'Sink', run: orbit(0, -turn) },
+    { group, keys: ['Alt+Shift+ArrowLeft'], what: 'Move the view to the left', run: pan(0.04, 0) },
+    { group, keys: ['Alt+Shift+ArrowRight'], what: 'Move it to the right', run: pan(-0.04, 0) },
+    { group, keys: ['Alt+Shift+ArrowUp'], what: 'Move it up', run: pan(0, -0.04) },
+    { group, keys: ['Alt+Shift+ArrowDown'], what: 'Move it down', run: pan(0, 0.04) },
+    { group, keys: ['PageUp'], what: 'Nearer', run: zoom(0.9) },
+    { group, keys: ['PageDown'], what: 'Farther', run: zoom(1 / 0.9) },
+    { group, keys: ['t'], what: 'Trail of the tip, on or off', run: () => toggle_hidden('trail') },
+    { group, keys: ['p'], what: 'Plots, shown or not', run: () => (preferences.show_plots.value = !preferences.show_plots.value) },
   ];
 }
 
@@ -93,19 +93,19 @@ function rig({ viewer }: App): Binding[] {
   const group = 'Rig';
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
-    { group, keys: ['Backspace'], shown: 'Backspace', what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : ask('reset')()) },
-    { group, keys: ['h'], shown: 'H', what: 'Halt: everything stops', run: ask('halt') },
-    { group, keys: ['r'], shown: 'R', what: 'Run the tasks', run: ask('run') },
-    { group, keys: ['c'], shown: 'C', what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
+    { group, keys: ['Backspace'], what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
+    { group, keys: ['h'], what: 'Halt: everything stops', run: ask('halt') },
+    { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
+    { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
   ];
 }
 
 function page(app: App): Binding[] {
   const group = 'Page';
   return [
-    { group, keys: ['F1', '?'], shown: 'F1', what: 'This help', run: () => (app.dialog.value = app.dialog.value === 'help' ? null : 'help') },
-    { group, keys: ['Escape'], shown: 'Esc', what: 'Close; then the free view; then pick nothing', run: () => escape(app) },
-    { group, keys: ['l'], shown: 'L', what: 'Light or dark', run: toggle_theme },
+    { group, keys: ['F1', '?'], what: 'This help', run: () => (app.dialog.value = app.dialog.value === 'help' ? null : 'help') },
+    { group, keys: ['Escape'], what: 'Close; then the free view; then pick nothing', run: () => escape(app) },
+    { group, keys: ['l'], what: 'Light or dark', run: toggle_theme },
   ];
 }
 

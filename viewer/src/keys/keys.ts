@@ -1,13 +1,32 @@
 // Keys, what they do, and how the help lists them: one list (bindings.ts), so that no key can be missing from the help.
 
 export interface Binding {
-  /** As `event.code` or `event.key`, with "Shift+", "Alt+" before it. */
+  /** As `event.code` or `event.key`, with "Shift+", "Alt+" before it. The help lists each of them. */
   keys: string[];
-  /** How the help writes them. */
-  shown: string;
   what: string;
   group: string;
   run(event: KeyboardEvent): void;
+}
+
+/** How the help writes what is not written on the key itself; on the numpad, and by their place. */
+const labels: Record<string, string> = {
+  ArrowLeft: '←', ArrowRight: '→', ArrowUp: '↑', ArrowDown: '↓', PageUp: 'Page Up', PageDown: 'Page Down', Escape: 'Esc', '-': '−',
+  NumpadAdd: 'Numpad +', NumpadSubtract: 'Numpad −', NumpadDecimal: 'Numpad .',
+  BracketLeft: '1st right of P', BracketRight: '2nd right of P',
+};
+
+/** A key as the help writes it. */
+export function label_of(key: string): string {
+  const parts = key.length > 1 ? key.split(/\+(?=.)/) : [key];
+  return parts.map((part) => labels[part] ?? part.replace(/^Numpad(\d)$/, 'Numpad $1').replace(/^[a-z]$/, (letter) => letter.toUpperCase())).join(' ');
+}
+
+/** What the help says of the bindings: groups, and in each what is done by which keys. */
+export function help_of(bindings: Binding[]): { group: string; rows: { keys: string[]; what: string }[] }[] {
+  return [...new Set(bindings.map(({ group }) => group))].map((group) => ({
+    group,
+    rows: bindings.filter((binding) => binding.group === group).map(({ keys, what }) => ({ keys: keys.map(label_of), what })),
+  }));
 }
 
 export interface KeyOptions {

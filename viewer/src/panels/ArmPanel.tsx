@@ -1,3 +1,4 @@
+import type { State } from '../protocol/state';
 import type { Range } from '../protocol/types';
 import { preferences, type ArmMode } from '../state/preferences';
 import { use_app } from '../ui/app';
@@ -22,10 +23,13 @@ export function ArmPanel() {
   const mode = modes.find((each) => each === preferences.arm_mode.value) ?? modes[0];
   const start = start_tangent(scene.arm.base);
   const actual = values_of(mode, kind, state, start);
-  const values = draft.value?.values.length === actual.length ? draft.value.values : actual;
-  const stretches = draft.value?.stretches ?? Array.from(state.stretches);
+  const shape_in = (from: State): Shape => ({
+    values: draft.value?.values.length === actual.length ? draft.value.values : values_of(mode, kind, from, start),
+    stretches: draft.value?.stretches ?? Array.from(from.stretches),
+    bends: draft.value?.bends ?? Array.from(from.bends),
+  });
+  const { values, stretches, bends } = shape_in(state);
   const { still } = viewer;
-  const bends = draft.value?.bends ?? Array.from(state.bends);
   const stretchable = controls.sections.some(({ stretch }) => stretch[1] > stretch[0]);
 
   const send = (shape: Shape): void => {
@@ -35,16 +39,23 @@ export function ArmPanel() {
   const reach = (i: number): Range => mode === 'tendons'
     ? tendon_reach(kind, controls, { displacements: values, bends }, i)
     : reach_of(mode, kind, controls, values, i, start);
+  // What is not changed stays as it is now, and not as a view shows it that is held at an instant before.
+  const now = (): Shape => shape_in(viewer.newest ?? state);
   const change = (i: number, value: number): void => {
-    if (mode !== 'tendons') return send({ values: changed(mode, kind, controls, values, i, value, start), stretches, bends });
-    const pulled = pull(kind, controls, { displacements: values, bends }, i, value);
-    send({ values: pulled.displacements, bends: pulled.bends, stretches });
+    const from = now();
+    if (mode !== 'tendons') return send({ ...from, values: changed(mode, kind, controls, from.values, i, value, start) });
+    const pulled = pull(kind, controls, { displacements: from.values, bends: from.bends }, i, value);
+    send({ ...from, values: pulled.displacements, bends: pulled.bends });
+  };
+  const stretch = (section: number, value: number): void => {
+    const from = now();
+    send({ ...from, stretches: from.stretches.map((f, j) => (j === section ? value : f)) });
   };
   const slots = slots_of(mode, kind, controls);
   // One slider a section needs no heading of its own.
   const plain = kind === 'planar' && mode !== 'tendons' && !stretchable;
   const set_mode = (next: ArmMode): void => {
-    draft.set({ values: [], stretches, bends: Array.from(state.bends) });
+    draft.set({ values: [], stretches: now().stretches, bends: Array.from((viewer.newest ?? state).bends) });
     preferences.arm_mode.value = next;
   };
   return (
@@ -81,7 +92,7 @@ export function ArmPanel() {
               id={`arm-stretch-${section}`} label="stretch" title={`Section ${section + 1}, stretch`}
               value={stretches[section]} actual={state.stretches[section]}
               span={wider(control.stretch)} reach={control.stretch} scale={100} unit="%" places={1} disabled={still}
-              change={(value) => send({ values, bends, stretches: stretches.map((f, j) => (j === section ? value : f)) })}
+              change={(value) => stretch(section, value)}
             />
           )}
         </fieldset>

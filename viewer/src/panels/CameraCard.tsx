@@ -3,6 +3,7 @@ import { effect, type Signal } from '@preact/signals';
 import { color_of } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
 import type { Layer, SceneCamera } from '../protocol/types';
+import type { History } from '../state/history';
 import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
 import { format_time } from '../ui/format';
@@ -14,7 +15,7 @@ interface Props {
   pixel: Signal<Pixel | null>;
 }
 
-/** A live picture that is so much older than the newest state is not of now. */
+/** A live picture that newer states have followed for so long is not of now. */
 const late_s = 1;
 
 export function CameraCard({ camera, pixel }: Props) {
@@ -30,7 +31,7 @@ export function CameraCard({ camera, pixel }: Props) {
   viewer.tick.value;
   const picture = viewer.picture_of.get(camera.name);
   const measured = viewer.measured.pictures.value[camera.name]?.value;
-  const old = age(viewer.freshness.value, picture?.time, viewer.history.newest?.time);
+  const old = age(viewer.freshness.value, picture?.time, viewer.history);
   const point = (event: PointerEvent): void => {
     const { clientWidth, clientHeight } = canvas.current!;
     const u = Math.floor((event.offsetX / clientWidth) * camera.width);
@@ -81,11 +82,11 @@ function exact(name: string, viewer: Viewer): string {
 }
 
 /** Why a picture is not of now; null where it is, or where nobody says so. */
-function age(freshness: string, time: number | undefined, newest: number | undefined): string | null {
+function age(freshness: string, time: number | undefined, history: History): string | null {
   if (time === undefined || freshness === 'recording') return null;
   if (freshness === 'lost' || freshness === 'stale') return `Old: of ${format_time(time)}`;
-  if (newest !== undefined && newest - time > late_s) return `${(newest - time).toFixed(1)} s old`;
-  return null;
+  const outdated = history.outdated_for(time);
+  return outdated > late_s ? `${outdated.toFixed(1)} s old` : null;
 }
 
 function inside({ width, height }: SceneCamera, u: number, v: number): { u: number; v: number } {

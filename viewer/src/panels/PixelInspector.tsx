@@ -29,11 +29,17 @@ export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
       <dl>
         <div><dt>Pixel</dt><dd>{at ? `${at.camera} (${at.u}, ${at.v})` : 'point at a picture'}</dd></div>
         <div><dt>Value</dt><dd>{exact ? `${exact.value.join(', ')} of ${2 ** exact.bits - 1}` : '–'}</dd></div>
-        <div><dt>Is</dt><dd>{exact ? exact.label + (exact.s !== null ? ` at s ${fixed(exact.s, places)} m` : '') : '–'}</dd></div>
+        <div><dt>Is</dt><dd>{what_is(exact, places)}</dd></div>
         <div><dt>Depth</dt><dd>{exact && exact.depth !== null ? `${fixed(exact.depth, places)} m` : '–'}</dd></div>
       </dl>
     </section>
   );
+}
+
+/** What is seen there, as far as it is known: of a picture that was filmed it is not. */
+function what_is(exact: PixelResult | null, places: number): string {
+  if (!exact?.label) return '–';
+  return exact.label + (exact.s === null ? '' : ` at s ${fixed(exact.s, places)} m`);
 }
 
 function enlarge(canvas: HTMLCanvasElement, at: Pixel | null, bitmap: ImageBitmap | null): void {

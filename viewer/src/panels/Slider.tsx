@@ -1,6 +1,7 @@
 // A slider that shows its limits and what cannot be reached now, with a field for exact values beside it.
 import type { Range } from '../protocol/types';
 import { useRef, useState } from 'preact/hooks';
+import { number_of } from '../ui/format';
 
 export interface SliderProps {
   id: string;
@@ -78,8 +79,8 @@ export function NumberField({ label, value, places, disabled, change }: NumberFi
   const [typed, set_typed] = useState<string | null>(null);
   const field = useRef<HTMLInputElement>(null);
   const take = (): void => {
-    const number = Number((typed ?? '').replace(',', '.').replace('−', '-'));
-    if (typed !== null && typed.trim() !== '' && Number.isFinite(number)) change(number);
+    const number = number_of(typed ?? '');
+    if (number !== null) change(number);
     set_typed(null);
   };
   const shown = value.toFixed(places);

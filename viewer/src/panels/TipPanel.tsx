@@ -1,3 +1,4 @@
+import { sample_stride } from '../protocol/state';
 import type { Vector3 } from '../protocol/types';
 import { total_length } from '../scene/rings';
 import { obstruction } from '../state/commander';
@@ -12,8 +13,7 @@ export function TipPanel() {
   const samples = viewer.shown?.samples;
   const scene = viewer.scene.value;
   if (!samples || !scene) return null;
-  const at = samples.length - 7;
-  const tip = [samples[at], samples[at + 1], samples[at + 2]] as Vector3;
+  const tip = tip_of(samples);
   const places = length_places(total_length(scene.arm));
   const { still } = viewer;
   const go = (position: Vector3): void => {
@@ -31,8 +31,9 @@ export function TipPanel() {
             <span aria-hidden="true">{axis}</span>
             <NumberField label={`Tip’s ${axis}, m`} value={tip[i]} places={places} disabled={still}
               change={(value) => {
-                const next = tip.map((old, j) => (j === i ? value : old)) as Vector3;
-                go(next);
+                // Also while the view is held at an instant before, the others stay as they are now.
+                const now = tip_of(viewer.newest?.samples ?? samples);
+                go(now.map((old, j) => (j === i ? value : old)) as Vector3);
               }} />
           </label>
         ))}
@@ -40,4 +41,9 @@ export function TipPanel() {
       {why && <p class="bad" role="status">{why}</p>}
     </fieldset>
   );
+}
+
+function tip_of(samples: Float32Array): Vector3 {
+  const at = samples.length - sample_stride + 1;
+  return [samples[at], samples[at + 1], samples[at + 2]];
 }

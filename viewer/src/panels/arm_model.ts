@@ -89,6 +89,15 @@ export function reach_of(
   return [tangent - limit / 2, tangent + limit / 2];
 }
 
+/** More than that to a side of the base's tangent is no way to see what a slider does: rad. */
+const widest_cord = 1.25 * Math.PI;
+
+/** How far the cord of the section i can lean from the base's tangent when all before lean that way too, rad. */
+function cord_reach({ sections }: Controls, i: number): number {
+  const limit = (j: number): number => sections[j].bend ?? Infinity;
+  return sections.slice(0, i).reduce((sum, _, j) => sum + limit(j), limit(i) / 2);
+}
+
 /** The ends of the slider i: the limits and a bit more, so that one sees them. */
 export function span_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Controls, i: number, value: number, start = Math.PI / 2): Range {
   if (mode === 'tendons') {
@@ -97,7 +106,8 @@ export function span_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Con
     return [low - margin, high + margin];
   }
   if (mode === 'cord_angles') {
-    return [Math.min(start - 1.25 * Math.PI, value), Math.max(start + 1.25 * Math.PI, value)];
+    const most = Math.min(widest_cord, 1.06 * cord_reach(controls, i));
+    return [Math.min(start - most, value), Math.max(start + most, value)];
   }
   const limit = controls.sections[kind === 'spatial' ? i >> 1 : i].bend ?? 2 * Math.PI;
   const most = 1.06 * (mode === 'archings' ? limit / 2 : limit);

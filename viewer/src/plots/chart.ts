@@ -44,7 +44,7 @@ export function make_chart({ host, names, unit, now, hover, seek }: ChartOptions
       {},
       ...names.map((name, i) => ({
         label: name, stroke: palette[i % palette.length], width: 1.5, points: { show: false },
-        dash: i >= palette.length ? [6, 3] : undefined, value: (_: uPlot, v: number | null) => `${v ?? '–'} ${unit}`,
+        dash: i >= palette.length ? [6, 3] : undefined, gaps: visible, value: (_: uPlot, v: number | null) => `${v ?? '–'} ${unit}`,
       })),
     ],
     hooks: {
@@ -58,6 +58,10 @@ export function make_chart({ host, names, unit, now, hover, seek }: ChartOptions
   });
   return chart;
 }
+
+/** A break of a line is between two points that may be in one pixel: a pixel to both sides makes it a break that one sees. */
+const visible: uPlot.Series.GapsRefiner = (_, __, ___, ____, found) =>
+  found.map(([from, to]): [number, number] => [from - devicePixelRatio, to + devicePixelRatio]);
 
 export function series_color(i: number, theme: 'dark' | 'light'): string {
   return palettes[theme][i % palettes[theme].length];

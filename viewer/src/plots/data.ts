@@ -2,23 +2,35 @@
 import type { History } from '../state/history';
 import type { Source } from './sources';
 
-export type Columns = [number[], ...number[][]];
+/** Times, and values by series; where there is none, a line is broken. */
+export type Columns = [number[], ...(number | null)[][]];
 
 /** Points of a live plot: no more than its pixels can tell apart. */
 const most_points = 500;
 
-/** The last seconds of a source, thinned so that points stay where they are from one picture to the next. */
+/**
+ * The last seconds of a source, thinned so that points stay where they are from one picture to the next. Where everything
+ * was put elsewhere (`leaps`) the lines are broken: no way led there.
+ */
 export function window_of(history: History, source: Source, until: number, seconds: number): Columns {
-  const columns: Columns = [[], ...source.names.map(() => [] as number[])];
+  const times: number[] = [];
+  const series = source.names.map(() => [] as (number | null)[]);
+  const columns: Columns = [times, ...series];
   if (!history.count) return columns;
   const first = history.index_at(until - seconds);
   const last = history.index_at(until);
   const stride = Math.max(1, Math.ceil((last - first) / most_points));
   for (let i = first; i <= last; ++i) {
     const state = history.at_index(i);
-    if (state.sequence % stride !== 0 && i !== last) continue;
-    columns[0].push(state.time);
-    source.names.forEach((_, j) => columns[j + 1].push(source.value(state, j)));
+    const next = i < last ? history.at_index(i + 1) : state;
+    const leaps = next.leaps !== state.leaps;
+    const has_leapt = i > first && history.at_index(i - 1).leaps !== state.leaps;
+    if (state.sequence % stride !== 0 && i !== last && !leaps && !has_leapt) continue;
+    times.push(state.time);
+    series.forEach((values, j) => values.push(source.value(state, j)));
+    if (!leaps) continue;
+    times.push((state.time + next.time) / 2);
+    series.forEach((values) => values.push(null));
   }
   return columns;
 }

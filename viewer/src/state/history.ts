@@ -3,26 +3,31 @@ import type { State } from '../protocol/state';
 /** The states of the last seconds, so that one can look back while the rig goes on. */
 export class History {
   private states: State[] = [];
+  /** When each state's time was first heard of, ms of this page's clock. */
+  private came: number[] = [];
   private from = 0;
 
   constructor(readonly seconds = 60) {}
 
-  /** Adds the newest; forgets all when time went back (a reset), and what is too old. */
-  add(state: State): void {
+  /** Adds the newest, which came `now`; forgets all when time went back (a reset), and what is too old. */
+  add(state: State, now = performance.now()): void {
     const last = this.newest;
     if (last && state.time < last.time) this.clear();
     if (last && state.time === last.time) this.states.pop();
+    else this.came.push(now);
     this.states.push(state);
     while (this.states[this.from].time < state.time - this.seconds) ++this.from;
     // Dropped in bulk: shifting an array at every state would copy it sixty times a second.
     if (this.from > 1000) {
       this.states.splice(0, this.from);
+      this.came.splice(0, this.from);
       this.from = 0;
     }
   }
 
   clear(): void {
     this.states = [];
+    this.came = [];
     this.from = 0;
   }
 
@@ -52,6 +57,13 @@ export class History {
       else high = middle - 1;
     }
     return Math.max(0, low);
+  }
+
+  /** How long ago, s, the first state came that is after `time`: 0 where none is. A run may be faster than the clock. */
+  outdated_for(time: number, now = performance.now()): number {
+    const place = this.index_at(time);
+    const next = this.count && this.at_index(place).time > time ? place : place + 1;
+    return next < this.count ? (now - this.came[this.from + next]) / 1000 : 0;
   }
 
   at(time: number): State | undefined {

@@ -80,9 +80,19 @@ export class Viewer implements LinkListener {
     return !hello || hello.readonly || hello.mode === 'recording';
   }
 
-  /** Nothing can be moved now: a recording, a run of tasks, a connection that is lost. */
+  /** What is shown may be long past, and nobody sees what a command would do. */
+  get blind(): boolean {
+    return this.freshness.value === 'lost' || this.freshness.value === 'stale';
+  }
+
+  /** Nothing can be moved now: a recording, a run of tasks, a connection that is lost or silent. */
   get still(): boolean {
-    return this.readonly || (this.flags.value & flag_running) !== 0 || this.freshness.value === 'lost';
+    return this.readonly || (this.flags.value & flag_running) !== 0 || this.blind;
+  }
+
+  /** How the rig stands now, also while the view is held at an instant before: what a command starts from. */
+  get newest(): State | null {
+    return this.history.newest ?? this.shown;
   }
 
   text(message: TextMessage): void {

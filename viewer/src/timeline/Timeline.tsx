@@ -45,15 +45,17 @@ function Line() {
   const from = live ? Math.max(history.oldest?.time ?? 0, newest - history.seconds) : 0;
   const to = live ? newest : playback.duration.value;
   const time = live ? (playback.held.value ?? newest) : playback.time.value;
+  // In words the time of the state that is shown, as everywhere on the page: it may lie a little before the one asked for.
+  const said = format_time(viewer.shown?.time ?? time);
   const part = (t: number): string => `${(100 * Math.min(1, Math.max(0, (t - from) / Math.max(1e-9, to - from)))).toFixed(3)}%`;
   const marks = marks_of(viewer.hello.value?.marks ?? [], viewer.events.value, from, to);
   const hover = cursor.value;
   return (
     <>
-      <output class="time" id="time" aria-live="off">{viewer.freshness.value === 'live' ? 'now' : ''} {format_time(time)}</output>
+      <output class="time" id="time" aria-live="off">{viewer.freshness.value === 'live' ? 'now' : ''} {said}</output>
       <div class="line">
         <input type="range" id="scrub" aria-label="Time" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
-          aria-valuetext={format_time(time)}
+          aria-valuetext={said}
           onInput={(event) => {
             if (!live) playback.pause();
             playback.seek(event.currentTarget.valueAsNumber);

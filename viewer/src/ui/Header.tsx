@@ -83,13 +83,14 @@ function Rig() {
         </span>
       )}
       {!running && hello.controls.tasks.length > 0 && (
-        <button type="button" class="button primary" disabled={!connected || viewer.readonly} onClick={ask('run')}
+        <button type="button" class="button primary" disabled={!connected || viewer.readonly || viewer.blind} onClick={ask('run')}
           title={hello.controls.tasks.map(({ name, kind }) => `${name} (${kind})`).join('\n')}>
           <Icon name="run" />Run tasks
         </button>
       )}
       {recorded && !running && <button type="button" class="button" disabled={!connected} onClick={ask('open')}><Icon name="film" />Recording</button>}
       {report}
+      {/* To stop is worth a try also when nothing is heard of the rig. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
         title="Everything stops (H)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}

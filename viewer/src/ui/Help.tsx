@@ -1,16 +1,17 @@
 import { useEffect, useRef } from 'preact/hooks';
+import { help_of } from '../keys/keys';
 import { preferences } from '../state/preferences';
 import { use_app } from './app';
 import { Icon } from './Icon';
 
 const hand = [
-  ['Drag', 'Turn the view'],
-  ['Right drag, Shift drag', 'Move the view'],
-  ['Wheel', 'Nearer or farther'],
-  ['Double click', 'Look at what is there'],
-  ['Click on the arm', 'Pick a point of the backbone'],
-  ['Drag the tip’s handle', 'The arm follows by inverse kinematics'],
-  ['Point at a camera’s picture', 'The pixel’s exact value'],
+  { keys: ['Drag'], what: 'Turn the view' },
+  { keys: ['Right drag, Shift drag'], what: 'Move the view' },
+  { keys: ['Wheel'], what: 'Nearer or farther' },
+  { keys: ['Double click'], what: 'Look at what is there' },
+  { keys: ['Click on the arm'], what: 'Pick a point of the backbone' },
+  { keys: ['Drag the tip’s handle'], what: 'The arm follows by inverse kinematics' },
+  { keys: ['Point at a camera’s picture'], what: 'The pixel’s exact value' },
 ];
 
 export function Help() {
@@ -21,7 +22,6 @@ export function Help() {
     if (open) dialog.current?.showModal();
     else dialog.current?.close();
   }, [open]);
-  const groups = [...new Set(app.keys.bindings.map(({ group }) => group))];
   return (
     <dialog ref={dialog} class="help" aria-labelledby="help-title" onClose={() => (app.dialog.value = null)}>
       <header>
@@ -36,10 +36,7 @@ export function Help() {
         </button>
       </header>
       <div class="help-groups">
-        {groups.map((group) => (
-          <Group key={group} title={group}
-            rows={app.keys.bindings.filter((binding) => binding.group === group).map(({ shown, what }) => [shown, what])} />
-        ))}
+        {help_of(app.keys.bindings).map(({ group, rows }) => <Group key={group} title={group} rows={rows} />)}
         <Group title="Mouse" rows={hand} />
       </div>
       <p class="made-of">
@@ -49,13 +46,13 @@ export function Help() {
   );
 }
 
-function Group({ title, rows }: { title: string; rows: string[][] }) {
+function Group({ title, rows }: { title: string; rows: { keys: string[]; what: string }[] }) {
   return (
     <section>
       <h3>{title}</h3>
       <dl>
-        {rows.map(([key, what]) => (
-          <div key={key}><dt><kbd>{key}</kbd></dt><dd>{what}</dd></div>
+        {rows.map(({ keys, what }) => (
+          <div key={what}><dt>{keys.map((key) => <kbd key={key}>{key}</kbd>)}</dt><dd>{what}</dd></div>
         ))}
       </dl>
     </section>

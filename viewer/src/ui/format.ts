@@ -20,6 +20,12 @@ export function length_places(span: number): number {
   return Math.min(5, Math.max(2, 3 - Math.floor(Math.log10(span))));
 }
 
+/** The number that a person typed, with a point or a comma and either minus; null where it is none: 0x10 is no angle. */
+export function number_of(typed: string): number | null {
+  const text = typed.trim().replace(',', '.').replace('−', '-');
+  return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) && Number.isFinite(Number(text)) ? Number(text) : null;
+}
+
 export const degree = 180 / Math.PI;
 
 export function angle(radians: number, places = 1): string {

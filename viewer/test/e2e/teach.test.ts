@@ -81,6 +81,49 @@ test('no equation and no row is cut off, however large its numbers', async () =>
   await open('The paper’s arm, free');
 });
 
+test('down to a projector’s size, the page enlarged, every slider has a track, and nothing lies upon another', async () => {
+  for (const [width, height] of [[1440, 900], [1280, 720], [1024, 600], [1025, 600], [960, 540], [853, 480]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(200);
+    const size = `${width}x${height}`;
+    const seen = await page.evaluate(() => {
+      const box = (element: Element) => {
+        const { left, top, right, bottom } = element.getBoundingClientRect();
+        return { left, top, right, bottom };
+      };
+      return {
+        tracks: [...document.querySelectorAll('.archings .track')].map(box),
+        numbers: [...document.querySelectorAll('.archings .unit')].map(box),
+        archings: box(document.querySelector('.archings')!),
+        plane: box(document.querySelector('.plane-box')!),
+        sections: [...document.querySelectorAll('.teach > section')].map(box),
+        beyond: document.documentElement.scrollWidth - innerWidth,
+        wide: [...document.querySelectorAll('.teach-text, .exercises')].map((part) => part.scrollWidth - part.clientWidth),
+      };
+    });
+    expect(seen.tracks, size).toHaveLength(8);
+    for (const { left, right, bottom } of seen.tracks) {
+      expect(right - left, size).toBeGreaterThanOrEqual(60);
+      expect(bottom, size).toBeLessThanOrEqual(height);
+    }
+    for (const { right } of seen.numbers) expect(right, size).toBeLessThanOrEqual(seen.archings.right);
+    expect(seen.plane.bottom - seen.plane.top, `${size}: the arm`).toBeGreaterThan(150);
+    expect(seen.plane.right - seen.plane.left, `${size}: the arm`).toBeGreaterThan(300);
+    expect([seen.beyond, ...seen.wide], size).toEqual([0, 0, 0]);
+    seen.sections.forEach((a, i) => seen.sections.slice(i + 1).forEach((b) => {
+      const over = Math.min(Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
+      expect(over, size).toBeLessThanOrEqual(0.5);
+    }));
+  }
+  // The last slider goes where a hand draws it.
+  const track = (await page.locator('#arching-7').boundingBox())!;
+  const before = await effector();
+  await page.mouse.click(track.x + 0.75 * track.width, track.y + track.height / 2);
+  expect(await effector()).not.toBe(before);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await open('The paper’s arm, free');
+});
+
 test('each of the five exercises knows when it is done', async () => {
   await open('A half circle');
   expect(await page.locator('#verdict').textContent()).not.toContain('Done');

@@ -118,3 +118,27 @@ test('in a plane a tendon pulls by what of its place lies there, and one beside 
   expect(next.bends.slice(0, 2)).toEqual([0.1 / (0.3 * Math.cos(0.3)), 0]);
   expect(tendon_reach('planar', controls, pulled, 1)).toEqual([0, 0]);
 });
+
+test('a cord angle’s slider is as wide as the limits of its section and of those before let it lean, and no wider', () => {
+  const { controls } = planar;
+  const degrees = Math.PI / 180;
+  const limited = (...bends: (number | null)[]) => ({
+    ...controls, sections: bends.map((bend) => ({ ...controls.sections[0], bend: bend === null ? null : bend * degrees })),
+  });
+  const narrow = limited(20, 40, 10);
+  const span = (of: typeof controls, i: number, value = Math.PI / 2): number[] =>
+    span_of('cord_angles', 'planar', of, i, value).map((end) => end / degrees - 90);
+  [10, 40, 65].forEach((most, i) => {
+    const [low, high] = span(narrow, i);
+    expect(high).toBeGreaterThan(most);
+    expect(high).toBeLessThan(1.1 * most);
+    expect(low).toBeCloseTo(-high, 9);
+    // All bent as far as can be, to one side: the slider holds that.
+    const archings = narrow.sections.map(({ bend }) => bend! / 2);
+    const cords = values_of('cord_angles', 'planar', state(archings.map((b) => [-2 * b, 0])));
+    expect(cords[i] / degrees - 90).toBeCloseTo(most, 4);
+  });
+  expect(span(limited(null, 20), 1)[1]).toBeCloseTo(225, 9);
+  expect(span(controls, 7)[1]).toBeCloseTo(225, 9);
+  expect(span(narrow, 0, Math.PI)[1]).toBeCloseTo(90, 9);
+});

@@ -97,3 +97,47 @@ test('a legend says what tells the names apart', () => {
   expect(short_names(['bend[1].x', 'bend[2].x'])).toEqual(['1.x', '2.x']);
   expect(short_names(['zoom'])).toEqual(['Zoom']);
 });
+
+test('a picture is as old as the first state that came after its time, whatever pace the run goes at', () => {
+  for (const pace of [0.01, 1, 500]) {
+    const history = new History(1e9);
+    // Sixty states a second come for 4 s; the clock of this page starts at some time.
+    for (let i = 0; i < 240; ++i) history.add(state((pace * i) / 60, i), 5000 + (1000 * i) / 60);
+    const now = 5000 + (1000 * 239) / 60;
+    expect(history.outdated_for((pace * 239) / 60, now)).toBe(0);
+    expect(history.outdated_for((pace * 238.5) / 60, now)).toBe(0);
+    expect(history.outdated_for((pace * 119.5) / 60, now)).toBeCloseTo(119 / 60, 9);
+    expect(history.outdated_for(-1, now)).toBeCloseTo(239 / 60, 9);
+  }
+  expect(new History().outdated_for(0)).toBe(0);
+});
+
+test('a run that hangs at one time makes no picture of that time old', () => {
+  const history = new History();
+  for (let i = 0; i < 600; ++i) history.add(state(3, i), (1000 * i) / 60);
+  expect(history.outdated_for(3, 10_000)).toBe(0);
+  // One of before is: since the first word of it, not since the last.
+  expect(history.outdated_for(2.9, 10_000)).toBe(10);
+});
+
+test('what is remembered of when states came is of the states that are', () => {
+  const history = new History(20);
+  for (let i = 0; i <= 6000; ++i) history.add(state(i / 60, i), (1000 * i) / 60);
+  expect(history.outdated_for(94.999, 100_000)).toBeCloseTo(5, 6);
+});
+
+test.each([1, 7])('a live plot is broken where everything was put elsewhere, also when its points are thinned (by %i)', (much) => {
+  const source = { id: 't', label: '', unit: '', names: ['a', 'b'], value: ({ leaps }: State, j: number) => 10 * leaps + j };
+  const history = new History(1000);
+  for (let i = 0; i <= 400 * much; ++i) history.add({ ...state(i / 60, i), leaps: i < 101 ? 65_535 : i < 250 ? 0 : 1 });
+  const [times, ...series] = window_of(history, source, 1e9, 1e9);
+  expect(times.length).toBeLessThan(600);
+  expect([...times].sort((a, b) => a - b)).toEqual(times);
+  const gaps = times.flatMap((_, i) => (series[0][i] === null ? [i] : []));
+  expect(gaps.map((i) => [times[i - 1], times[i + 1]].map((time) => Math.round(60 * time)))).toEqual([[100, 101], [249, 250]]);
+  for (const values of series) {
+    expect(values.flatMap((value, i) => (value === null ? [i] : []))).toEqual(gaps);
+    // Between two breaks nothing but one value: no line leads from one to another.
+    expect(new Set(values.slice(gaps[0] + 1, gaps[1])).size).toBe(1);
+  }
+});

@@ -1,7 +1,8 @@
 import { signal } from '@preact/signals';
 import { beforeEach, expect, test, vi } from 'vitest';
-import { is_in_sight } from '../../src/keys/bindings';
-import { KeyMap, names_of, type Binding } from '../../src/keys/keys';
+import { bindings_of, is_in_sight } from '../../src/keys/bindings';
+import { help_of, KeyMap, label_of, names_of, type Binding } from '../../src/keys/keys';
+import type { App } from '../../src/ui/app';
 
 class FakeElement {
   isContentEditable = false;
@@ -37,7 +38,7 @@ function press(map: KeyMap, key: string, code: string, target: FakeElement | nul
 }
 
 function binding(keys: string[], run: () => void): Binding {
-  return { keys, shown: keys[0], what: 'it', group: 'Test', run };
+  return { keys, what: 'it', group: 'Test', run };
 }
 
 test('a key runs what it is bound to, by place or by what it writes', () => {
@@ -106,4 +107,20 @@ test('no key is bound twice', () => {
   const map = new KeyMap({ enabled: () => true });
   map.add(binding(['h'], () => {}));
   expect(() => map.add(binding(['h'], () => {}))).toThrow(/twice/);
+});
+
+const all = (): Binding[] => bindings_of({ viewer: { playback: {} } } as unknown as App);
+
+test('every key that is bound is in the help, each under a name of its own', () => {
+  const bindings = all();
+  const listed = help_of(bindings).flatMap(({ rows }) => rows.flatMap(({ keys, what }) => keys.map((key) => `${key}: ${what}`)));
+  const bound = bindings.flatMap(({ keys, what }) => keys.map((key) => `${label_of(key)}: ${what}`));
+  expect(bound.length).toBeGreaterThan(40);
+  expect([...listed].sort()).toEqual([...bound].sort());
+  expect(new Set(bindings.flatMap(({ keys }) => keys.map(label_of))).size).toBe(bound.length);
+});
+
+test('the help writes keys as they are called', () => {
+  expect(['+', '=', '-', 'a', 'Numpad4', 'NumpadAdd', 'Alt+Shift+ArrowLeft', 'PageUp', 'F1', ']', 'BracketRight'].map(label_of)).toEqual(
+    ['+', '=', '−', 'A', 'Numpad 4', 'Numpad +', 'Alt Shift ←', 'Page Up', 'F1', ']', '2nd right of P']);
 });

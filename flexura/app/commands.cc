@@ -96,7 +96,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     }
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
-  for (const std::string& reason : result.reasons) err << "unsafe: " << reason << '\n';
+  for (const std::string& reason : result.reasons) err << name_of(result.outcome) << ": " << reason << '\n';
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
     err << "results: " << folder.string() << '\n';

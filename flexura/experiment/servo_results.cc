@@ -26,8 +26,20 @@ Node error_node(const ServoError& error) {
           {}};
 }
 
+Node bends_node(const ArmState& state) {
+  Node::Array bends;
+  for (const Eigen::Vector2d& bend : state.bends)
+    bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
+  return {std::move(bends), {}};
+}
+
+// With the last that was seen, sent and asked for.
 Node fault_node(const LimiterFault& fault, double start) {
-  return {Node::Table{{"time", {}, number_node(start + fault.time)}, {"reason", {}, {fault.reason, {}}}}, {}};
+  Node::Table members{{"time", {}, number_node(start + fault.time)}, {"reason", {}, {fault.reason, {}}}};
+  if (fault.observed) members.push_back({"observed", {}, bends_node(*fault.observed)});
+  members.push_back({"sent", {}, bends_node(fault.sent)});
+  if (fault.asked) members.push_back({"asked", {}, bends_node(*fault.asked)});
+  return {std::move(members), {}};
 }
 
 NamedDrawing errors_over_time(const ServoRun& run, std::size_t number) {

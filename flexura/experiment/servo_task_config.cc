@@ -245,6 +245,9 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
 void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
                  const std::string& path, Reader& reader) {
   check_two_cameras(task.cameras, cameras, path, reader);
+  if (!(task.lost > task.blind))
+    reader.problem_at(path + ".lost",
+                      fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
   for (std::size_t i = 0; i < task.target.size(); ++i) {
     const std::string place = fmt::format("{}.target[{}]", path, i);
     check_target(task.target[i], arm, place, reader);

@@ -22,6 +22,9 @@ class MotionHistory {
     while (readings_.size() > 2 && readings_[1].first < time - span_) readings_.pop_front();
   }
 
+  /// Since when there are readings, s; there is one.
+  [[nodiscard]] double since() const { return readings_.front().first; }
+
   [[nodiscard]] bool is_empty() const { return readings_.empty(); }
 
   /// In straight lines between two readings; the first one before all of them, the last one after. None where

@@ -46,7 +46,8 @@ ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>&
     : arm_(believed.arm),
       whites_{},
       has_markers_(!markers.empty()),
-      estimator_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
+      estimator_(prior_of(believed.arm, markers)),
+      patient_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
   for (std::size_t i = 0; i < 2; ++i)
     whites_[i] = (1 << believed.cameras.at(cameras[i]).config.sensor.bits) - 1;
 }
@@ -91,6 +92,8 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
   if (!sight.estimate.reason.empty()) return sight;
   if (guess) sight.estimate = estimator_.follow(sight.seen, {arm_, *guess});
   if (!sight.estimate.is_found) sight.estimate = estimator_.estimate(sight.seen);
+  if (!sight.estimate.is_found && guess) sight.estimate = patient_.follow(sight.seen, {arm_, *guess});
+  if (!sight.estimate.is_found) sight.estimate = patient_.estimate(sight.seen);
   return sight;
 }
 

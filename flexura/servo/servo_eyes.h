@@ -33,7 +33,7 @@ class ServoEyes {
   Arm arm_;
   std::array<int, 2> whites_;  // The largest value of each camera's pictures.
   bool has_markers_;
-  ShapeEstimator estimator_;
+  ShapeEstimator estimator_, patient_;  // For cameras that are as believed, and for others.
   struct Finder {
     Eigen::Vector2d base;
     ArmFinder finder;

@@ -34,15 +34,22 @@ void ServoJudge::add(const ServoStep& step) {
   limited_for_ = std::clamp(limited_for_ + (step.limited.empty() ? -1 : 1) * config_.step, 0.0, 1.0);
   if (!step.limited.empty()) limited_by_ = step.limited;
   if (step.is_fresh) is_singular_ = step.is_singular;
-  if (step.is_fresh && step.error) add_error(step);
+  if (step.is_fresh && step.error) {
+    add_error(step);
+    seen_at_ = step.time;
+  } else if (step.time - seen_at_ > config_.patience.blind) {
+    below_since_.reset();  // Nobody knows where it was meanwhile.
+  }
   if (!is_done_ && !hopeless_ && step.time > goal_time_ + config_.patience.timeout) hopeless_ = why_not();
 }
 
 void ServoJudge::add_error(const ServoStep& step) {
   latest_ = step.error->rms;
   const double time = *step.seen_at;
-  if (time < goal_time_) return;
-  if (!(latest_ <= config_.tolerance)) {
+  // What is seen badly is not yet there, and neither is what is still on its way elsewhere.
+  const double doubtful = std::hypot(latest_, step.sigma);
+  const bool stays = !step.ahead || step.ahead->rms <= 2 * config_.tolerance;
+  if (time < goal_time_ || !(doubtful <= config_.tolerance) || !stays) {
     below_since_.reset();
   } else if (!below_since_) {
     below_since_ = time;

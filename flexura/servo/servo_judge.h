@@ -32,6 +32,7 @@ class ServoJudge {
   bool is_done_ = false;
   std::optional<std::string> hopeless_;
   std::optional<double> below_since_, worse_since_;
+  double seen_at_ = -1e300;           // When a new sight was last gone by, s.
   double best_ = 1e300, latest_ = 0;  // Shares of the length.
   double limited_for_ = 0;            // s, of late
   std::string limited_by_;

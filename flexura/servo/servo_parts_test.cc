@@ -107,10 +107,24 @@ TEST(ServoJudge, KnowsTheEnd) {
   ServoConfig config;
   config.tolerance = 0.01, config.settle = 0.5, config.patience.timeout = 3;
   {
+    // What is seen so badly, or is on its way elsewhere, is not there.
+    ServoJudge doubtful(config, 0, 0), leaving(config, 0, 0);
+    for (int k = 0; k < 60; ++k) {
+      ServoStep step = step_at(k / 30.0, 0.001);
+      step.sigma = 0.02;
+      doubtful.add(step);
+      step.sigma = 0, step.ahead = ServoError{0.1, 0.1, 0.1};
+      leaving.add(step);
+    }
+    EXPECT_FALSE(doubtful.is_done());
+    EXPECT_FALSE(leaving.is_done());
+  }
+  {
     ServoJudge judge(config, 10, 1);
-    for (int k = 0; k < 60 && !judge.is_done(); ++k) judge.add(step_at(10 + k / 30.0, 0.001));
+    int k = 0;
+    for (; k < 90 && !judge.is_done(); ++k) judge.add(step_at(10 + k / 30.0, 0.001));
     // Before the goal's time nothing counts.
-    EXPECT_TRUE(judge.is_done());
+    EXPECT_NEAR(k / 30.0, 1.5, 0.07);
   }
   {
     ServoJudge judge(config, 0, 0);

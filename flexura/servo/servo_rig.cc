@@ -65,7 +65,7 @@ ServoRig::Trouble ServoRig::read() {
 }
 
 bool ServoRig::look() {
-  constexpr std::size_t kept = 8;
+  constexpr std::size_t kept = 64;  // Of each camera: one may be seconds later than the other.
   for (std::size_t i = 0; i < 2; ++i) {
     const auto frame = ports_.cameras[cameras_[i]].camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
@@ -73,13 +73,19 @@ bool ServoRig::look() {
     recent_[i].push_back(*frame.value());
     if (recent_[i].size() > kept) recent_[i].pop_front();
   }
+  // The newest of the second camera for which the first one has one of its own, the nearest in time.
   for (auto second = recent_[1].rbegin(); second != recent_[1].rend(); ++second) {
-    if (!(second->time > paired_at_)) return false;
-    for (auto first = recent_[0].rbegin(); first != recent_[0].rend(); ++first) {
-      if (!(std::abs(first->time - second->time) <= together_)) continue;
-      pair_ = {*first, *second}, paired_at_ = second->time;
-      return true;
+    if (!(second->time > paired_at_[1])) return false;
+    const Frame* nearest = nullptr;
+    for (const Frame& first : recent_[0]) {
+      const double apart = std::abs(first.time - second->time);
+      if (first.time > paired_at_[0] && apart <= together_ &&
+          (nearest == nullptr || apart < std::abs(nearest->time - second->time)))
+        nearest = &first;
     }
+    if (nearest == nullptr || nearest->time < arm_.since()) continue;
+    pair_ = {*nearest, *second}, paired_at_ = {nearest->time, second->time};
+    return true;
   }
   return false;
 }

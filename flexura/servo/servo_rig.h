@@ -63,7 +63,7 @@ class ServoRig {
   std::array<MotionHistory<Stand, StandBlend>, 2> stands_;
   std::array<std::deque<Frame>, 2> recent_;
   std::array<Frame, 2> pair_;
-  double paired_at_ = -1;  // s, of the second camera's
+  std::array<double, 2> paired_at_ = {-1, -1};  // s
   std::array<std::string, 2> silence_;
 };
 

@@ -42,6 +42,9 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
           "a servo's points, rate, tolerance and step are above 0");
 }
 
+// Pictures that are later than that are not gone by, s.
+constexpr double longest_delay = 60;
+
 LimiterSettings limiter_settings(const ServoConfig& config) {
   LimiterSettings settings;
   settings.step = config.step, settings.drive = config.drive, settings.obstacles = config.obstacles;
@@ -54,7 +57,7 @@ class Session {
       : model_(believed),
         config_(config),
         watcher_(watcher),
-        rig_(ports, believed, config.cameras, 2.0, 0.6 * config.step),
+        rig_(ports, believed, config.cameras, longest_delay, 0.6 * config.step),
         eyes_(believed, config.cameras, config.markers),
         features_(servo_features(config.law, believed.arm, config.points)),
         law_(believed.arm, config, *features_),
@@ -68,6 +71,7 @@ class Session {
     }
     while (!is_over()) step();
     come_to_rest();
+    if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
     result_.fault = limiter_->fault();
     result_.last = last_;
@@ -96,7 +100,8 @@ class Session {
   }
 
   [[nodiscard]] bool is_over() {
-    if (!result_.reason.empty() || judge_->is_done()) return true;
+    if (!result_.reason.empty()) return true;
+    if (judge_->is_done() && !limiter_->fault()) return true;
     if (watcher_.is_cancelled()) result_.reason = "cancelled";
     if (const auto& why = judge_->hopeless()) result_.reason = *why;
     if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
@@ -129,7 +134,9 @@ class Session {
       command = limiter_->next(wish);
       if (command.reason.empty()) command.reason = at_its_limit(wish);
     }
-    if (now - seen_since_ > config_.patience.lost) result_.reason = "out of view: " + unseen_because_;
+    if (now - seen_since_ > config_.patience.lost) {
+      result_.reason = "out of view: " + (unseen_because_.empty() ? "no pictures come" : unseen_because_);
+    }
     step.limited = command.reason;
     send(now, std::move(command.state), std::move(step));
   }
@@ -143,6 +150,10 @@ class Session {
       ServoSight sight = eyes_.look(frames, views, guess(time));
       watcher_.seen(sight);
       if (!result_.first) result_.first = sight;
+      constexpr double unknown = 0.05;  // Of the length: such a shape is nothing to go by.
+      if (sight.estimate.is_found && sigma_of(sight.estimate) > unknown) {
+        sight.estimate.is_found = false, sight.estimate.reason = "the pictures hardly tell the shape";
+      }
       if (sight.estimate.is_found) {
         if (!unseen_because_.empty() && last_) watcher_.told(now, "the arm is seen again");
         unseen_because_.clear();
@@ -174,13 +185,27 @@ class Session {
     unseen_because_ = why;
   }
 
+  // A shape that was seen when the drives stood for `then`, after they went on to `now`.
+  [[nodiscard]] static ArmState moved(const ArmState& seen, const ArmState& then, ArmState now) {
+    for (std::size_t i = 0; i < now.bends.size(); ++i) {
+      now.bends[i] += seen.bends[i] - then.bends[i];
+      now.stretches[i] += seen.stretches[i] - then.stretches[i];
+    }
+    return now;
+  }
+
   // The shape in which the arm is expected at a time: as it was seen last, moved by what the drives did.
   [[nodiscard]] ArmState guess(double time) const {
-    ArmState state = rig_.believed(time);
-    if (!last_) return state;
-    const ArmState then = rig_.believed(last_->time), &seen = last_->estimate.shape.state;
-    for (std::size_t i = 0; i < state.bends.size(); ++i) state.bends[i] += seen.bends[i] - then.bends[i];
-    return state;
+    const ArmState state = rig_.believed(time);
+    return last_ ? moved(last_->estimate.shape.state, rig_.believed(last_->time), state) : state;
+  }
+
+  // How well a shape is known, root mean square along the arm, share of its length.
+  [[nodiscard]] double sigma_of(const ShapeEstimate& estimate) const {
+    double squares = 0;
+    for (const double sigma : estimate.sigma) squares += sigma * sigma;
+    const auto count = static_cast<double>(std::max<std::size_t>(1, estimate.sigma.size()));
+    return std::sqrt(squares / count) / model_.arm.length();
   }
 
   // What the law asks for, by the last sight.
@@ -189,6 +214,9 @@ class Session {
     step.seen_at = last_->time, step.seen = seen, step.believed = rig_.said(last_->time);
     step.desired = goals_->at(last_->time - result_.start).state;
     step.error = servo_error(model_.arm, seen, step.desired);
+    step.sigma = sigma_of(last_->estimate);
+    step.ahead = servo_error(model_.arm, moved(seen, rig_.believed(last_->time), model_.bent(sent_)),
+                             goals_->at(now - result_.start).state);
     const double since = now - result_.start;
     const ServoLaw::Wish wish = law_.step({.sight = *last_,
                                            .is_fresh = step.is_fresh,
@@ -218,7 +246,7 @@ class Session {
   void follow(double now) {
     for (std::size_t i = 0; i < 2; ++i) {
       const auto head =
-          keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, now), last_->seen[i].view);
+          keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time), last_->seen[i].view);
       if (!head) continue;
       const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
       if (const auto refused = taken.fault())

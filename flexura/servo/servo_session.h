@@ -39,7 +39,10 @@ struct ServoStep {
   ArmState desired;                 ///< At the time of that sight.
   std::optional<ArmState> seen;     ///< By that sight.
   std::optional<ServoError> error;  ///< Of that, from desired.
-  ArmState believed;                ///< What the drives say.
+  double sigma = 0;                 ///< Of that, standard deviation along the arm, share of its length.
+  /// Of the shape that is expected after all that was sent, from what is desired when it is sent.
+  std::optional<ServoError> ahead;
+  ArmState believed;  ///< What the drives say.
   ArmState sent;
   /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
   /// law's own units (rad^2, px^2, share of the length squared).

@@ -152,7 +152,7 @@ TEST_F(LaboratoryArm, ASafeListKeepsToTheLimitsOfItsMotors) {
   constexpr int limits = 8;
   for (int k = 0; k < limits; ++k) {
     // About the fastest row of the list, and by less than one microstep a row from it.
-    const double limit = fastest + (k - limits / 2 + 0.5) * 0.3 / experiment.clock.step;
+    const double limit = fastest + (k - 0.5 * (limits - 1)) * 0.3 / experiment.clock.step;
     experiment.drive->motor.max_step_rate = limit;
     const RunResult result = run(experiment);
     const bool is_within = limit >= fastest;

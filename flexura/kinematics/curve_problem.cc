@@ -142,7 +142,7 @@ void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index
 }
 
 double CurveProblem::largest_distance(const Eigen::VectorXd& x) {
-  constexpr std::size_t finer = 8;
+  constexpr std::size_t finer = 32;
   const std::size_t count = finer * wanted_.size();
   std::vector<double> fractions = parts_;
   for (std::size_t k = 1; k < count; ++k)

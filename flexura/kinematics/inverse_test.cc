@@ -315,6 +315,16 @@ CurveTarget random_polyline(TestRandom& random, const Arm& arm, int pieces) {
   return target;
 }
 
+// Whether a piece took all of a short section's bend, so that what was an arc is a corner that means what it
+// says.
+bool has_corner(const std::vector<Eigen::Vector3d>& points) {
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const Eigen::Vector3d before = (points[i - 1] - points[i - 2]).normalized();
+    if (before.dot((points[i] - points[i - 1]).normalized()) <= 0.5) return true;
+  }
+  return false;
+}
+
 TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
   int fitting = 0;
   int coarse = 0;
@@ -329,11 +339,12 @@ TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
     const double error = result.position_error;
     const double cap = 1e-2 * arm.length();
     EXPECT_NEAR(result.position_tolerance, std::min(open * arm.length(), cap), 1e-12 * arm.length());
-    if (open <= 1e-2) {  // What its points leave open is within what is allowed.
+    // What its points leave open is within what is allowed.
+    if (open <= 1e-2 && !has_corner(target.points)) {
       EXPECT_TRUE(result.converged()) << error / arm.length() << " of " << open;
       ++fitting;
     } else {
-      EXPECT_EQ(result.converged(), error <= cap);
+      EXPECT_EQ(result.converged(), error <= result.position_tolerance);
     }
     const double sampled = distance_from_curve(arm, result.state, target);
     EXPECT_LE(sampled, 1.01 * error + 1e-9);

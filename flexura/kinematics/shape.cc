@@ -42,7 +42,8 @@ ArmState arm_state(const Arm& arm, const ShapeConfig& shape) {
 
 void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& path, Reader& reader) {
   const ArmState state = arm_state(arm, shape);
-  const char* const way = shape.cord_angles ? "cord_angles" : shape.archings ? "archings" : "bends";
+  const char* way = shape.archings ? "archings" : "bends";
+  if (shape.cord_angles) way = "cord_angles";
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const double bend = state.bends[i].norm();
     if (bend <= largest_bend) continue;

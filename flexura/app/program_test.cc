@@ -144,7 +144,7 @@ class Terminal {
   [[nodiscard]] bool is_there() const { return end_ >= 0; }
   [[nodiscard]] const std::string& name() const { return name_; }
   // Until the process has ended.
-  std::string shown_by(pid_t process) {
+  [[nodiscard]] std::string shown_by(pid_t process) const {
     std::string text;
     for (bool has_ended = false;;) {
       std::array<char, 4096> part{};
@@ -163,7 +163,7 @@ class Terminal {
 };
 
 TEST_F(Program, ShowsAPersonAtATerminalHowFarItIsAndNobodyElse) {
-  Terminal terminal;
+  const Terminal terminal;
   ASSERT_TRUE(terminal.is_there());
   const std::string shown = terminal.shown_by(start("run " + paper_file, path("out"), terminal.name()));
   // Each line is put in the place of the one before, and the last is taken away.

@@ -77,7 +77,7 @@ mkdir -p docs/studies
   echo
   for target in "${all[@]}"; do words_of "$target"; done
   echo
-  echo "As many targets ran at a time as there are cores ($(nproc)); the speed is of the sanitized build."
+  echo "The speed is of the sanitized build, with other work on the machine."
   echo "The command runs all targets; with their names behind it only those, and the other rows stay."
 } >"$page.new"
 mv "$page.new" "$page"

@@ -49,6 +49,8 @@ TEST(BadServo, EachIsOneClearLine) {
            {"tolerance = nan\ntarget = [{" + bends + "}]\n", "task[0].tolerance = nan"},
            {"rate = 0\ntarget = [{" + bends + "}]\n", "task[0].rate = 0: expected a number above 0"},
            {"target = [{bends = [[0, 0]]}]\n", "target[0]"},
+           {"law = \"potential\"\ncameras = [\"side\", \"front\"]\ntarget = [{" + bends + "}]\n",
+            "task[0].law: \"potential\" reads camera side as the plane XOY"},
            {"lost = 0.1\ntarget = [{" + bends + "}]\n", "task[0].lost: 0.1 s: expected more than blind"},
            {"targets = 3\ntarget = [{" + bends + "}]\n", "did you mean \"target\""},
        }) {

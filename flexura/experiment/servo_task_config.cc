@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
+#include "flexura/camera/camera.h"
 #include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
@@ -218,6 +220,29 @@ RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<C
 
 namespace {
 
+// The paper's law reads one picture as the plane XOY and the other one as ZOY.
+void check_planes(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
+                  Reader& reader) {
+  if (task.law != ServoLawKind::potential || cameras.size() < 2) return;
+  const auto [front, side] = servo_cameras(task, cameras);
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  constexpr double roughly = 0.7;
+  try {
+    const auto looks_along = [](const CameraConfig& config, Eigen::Index axis) {
+      const Camera camera(config);
+      return std::abs(camera.pose(camera.initial_stage(), camera.initial_head()).rotation(axis, 2)) > roughly;
+    };
+    if (looks_along(cameras[front], 2) && looks_along(cameras[side], 0)) return;
+  } catch (const std::exception&) {
+    return;  // A camera that is none is told where it stands.
+  }
+  reader.problem_at(
+      path + ".law",
+      fmt::format("\"potential\" reads camera {} as the plane XOY and {} as ZOY: expected cameras that "
+                  "look along Z and along X, in this order",
+                  cameras[front].name, cameras[side].name));
+}
+
 void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const std::string& path,
                   Reader& reader) {
   check_shape(target, arm.kind, arm.section.size(), path, reader);
@@ -248,6 +273,7 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
   if (!(task.lost > task.blind))
     reader.problem_at(path + ".lost",
                       fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
+  check_planes(task, cameras, path, reader);
   for (std::size_t i = 0; i < task.target.size(); ++i) {
     const std::string place = fmt::format("{}.target[{}]", path, i);
     check_target(task.target[i], arm, place, reader);

@@ -61,6 +61,41 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
 
 INSTANTIATE_TEST_SUITE_P(All, IdealServo, testing::Values("shape", "points", "chords", "potential"));
 
+// Derivatives that are learned on the way bring the arm there as well.
+TEST(Servo, LearnsOnTheWay) {
+  for (const char* jacobian : {"broyden", "recursive"}) {
+    ServoBench bench(
+        servo_file(fmt::format("law = \"points\"\njacobian = \"{}\"\n", jacobian) + servo_target));
+    const ServoResult result = bench.servo();
+    ASSERT_TRUE(result.is_done) << jacobian << ": " << result.reason;
+    std::printf("%s: settled in %.2f s\n", jacobian, result.settled.value_or(-1));
+    EXPECT_LT(bench.truth(wanted).rms, 0.006);
+  }
+}
+
+// Pictures that are later than the way takes: nothing is done before it is seen to be.
+TEST(Servo, IsPatientWithLatePictures) {
+  ServoSetup setup;
+  setup.sensor = "read_noise = 1, delay = 1, exposure = 0.002";
+  ServoBench bench(servo_file("blind = 3\nlost = 10\n" + servo_target, setup));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(wanted).rms, 0.006);
+  EXPECT_LT(result.overshoot, 0.05);
+}
+
+// Heads that follow stay where the arm is to be seen, whatever the delay, and come to rest.
+TEST(Servo, HeadsFollowTheArm) {
+  ServoSetup setup;
+  setup.rest = "[arm.initial]\nbends = [[0, 0], [0, 0], [0, 0]]\n";
+  ServoBench bench(
+      servo_file("follow = true\n[[task.target]]\nbends = [[1.4, 0], [0.6, 0], [0, 0]]\n", setup));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth({{{1.4, 0}, {0.6, 0}, {0, 0}}, {1, 1, 1}}).rms, 0.006);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_FALSE(bench.ports().cameras[i].head->read().value().moving);
+}
+
 TEST(Servo, GoesAlongATrajectory) {
   ServoBench bench(
       servo_file("tolerance = 0.004\n[[task.target]]\nbends = [[0, 0], [0, 0], [0, 0]]\n"

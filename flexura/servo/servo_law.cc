@@ -24,12 +24,18 @@ ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, const ServoFeature
     : config_(config), features_(features), law_(arm, gains_of(config)) {}
 
 void ServoLaw::learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model) {
+  // Smaller motions show less in the features than the pictures' noise: they are waited for until they add
+  // up.
+  constexpr double least = 0.03;  // rad
+  constexpr double share = 0.5, forgetting = 0.97, doubt = 300;
   const Eigen::VectorXd x = law_.variables().pack(said);
   if (!x_before_) {
-    if (config_.jacobian == ServoJacobian::broyden) learned_ = BroydenEstimate(model);
-    if (config_.jacobian == ServoJacobian::recursive) learned_ = RecursiveEstimate(model);
+    if (config_.jacobian == ServoJacobian::broyden) learned_ = BroydenEstimate(model, share, least);
+    if (config_.jacobian == ServoJacobian::recursive)
+      learned_ = RecursiveEstimate(model, forgetting, doubt, least);
   } else {
     const Eigen::VectorXd dx = x - *x_before_, df = seen - *f_before_;
+    if (dx.norm() < least) return;
     if (auto* broyden = std::get_if<BroydenEstimate>(&learned_)) (void)broyden->learn(dx, df);
     if (auto* recursive = std::get_if<RecursiveEstimate>(&learned_)) (void)recursive->learn(dx, df);
   }

@@ -117,8 +117,8 @@ std::vector<std::string> filmed(const std::filesystem::path& file) {
   const Schedule schedule(experiment);
   Filming filming(experiment);
   std::vector<std::string> images;
-  const auto take = [&](const std::string&, const Frame& frame) {
-    images.push_back(std::visit([](const auto& image) { return png(image); }, *frame.picture));
+  const auto take = [&](const FilmedFrame& filmed) {
+    images.push_back(std::visit([](const auto& image) { return png(image); }, *filmed.frame.picture));
   };
   for (std::size_t step = 0; step <= schedule.steps(); ++step) {
     const double time = schedule.time_of_step(step);

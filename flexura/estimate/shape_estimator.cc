@@ -150,7 +150,7 @@ ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, Sh
 ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) const {
   ShapeEstimate result;
   result.shape = fit.shape, result.covariance = fit.covariance, result.iterations = fit.iterations;
-  result.rms = fit.rms, result.doubted = fit.doubted;
+  result.rms = fit.rms, result.doubted = fit.doubted, result.scale = fit.scale;
   if (!std::isfinite(fit.cost)) {
     result.reason = "no shape of the arm is seen by these cameras";
     return result;

@@ -35,6 +35,7 @@ struct ShapeEstimate {
   std::vector<std::string> notes;  ///< Why it is to be doubted; empty when nothing speaks against it.
   double rms = 0;                  ///< Of the points' distances from the shape's images, px.
   double doubted = 0;              ///< The share of the points that are taken for something else's.
+  double scale = 1;                ///< Of the residuals, in units of their sigmas: at least 1; in `sigma`.
   /// Of the position at the knots `s` (m of arc length), standard deviation, m: the root of the trace.
   std::vector<double> s, sigma;
   Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables).

@@ -46,8 +46,7 @@ ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>&
     : arm_(believed.arm),
       whites_{},
       has_markers_(!markers.empty()),
-      estimator_(prior_of(believed.arm, markers)),
-      patient_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
+      estimator_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
   for (std::size_t i = 0; i < 2; ++i)
     whites_[i] = (1 << believed.cameras.at(cameras[i]).config.sensor.bits) - 1;
 }
@@ -76,6 +75,18 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
   return has_markers_ ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
 }
 
+ShapeEstimate ServoEyes::shape_of(const std::array<Sighting, 2>& seen, const std::optional<ArmState>& guess) {
+  ShapeEstimate best;
+  if (guess) {
+    best = estimator_.follow(seen, {arm_, *guess});
+    // Cameras that are wrong leave residuals, in one picture about as many as in the one before.
+    constexpr double few = 0.5, as_usual = 2;  // px, times
+    if (best.is_found && best.rms <= std::max(few, as_usual * usual_rms_)) return best;
+  }
+  ShapeEstimate anew = estimator_.estimate(seen);
+  return anew.is_found && (!best.is_found || anew.rms < best.rms) ? anew : best;
+}
+
 ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
                            const std::optional<ArmState>& guess) {
   ServoSight sight;
@@ -90,10 +101,8 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
     sight.estimate.reason = "the arm is not seen in every image";
   }
   if (!sight.estimate.reason.empty()) return sight;
-  if (guess) sight.estimate = estimator_.follow(sight.seen, {arm_, *guess});
-  if (!sight.estimate.is_found) sight.estimate = estimator_.estimate(sight.seen);
-  if (!sight.estimate.is_found && guess) sight.estimate = patient_.follow(sight.seen, {arm_, *guess});
-  if (!sight.estimate.is_found) sight.estimate = patient_.estimate(sight.seen);
+  sight.estimate = shape_of(sight.seen, guess);
+  if (sight.estimate.is_found) usual_rms_ = sight.estimate.rms;
   return sight;
 }
 

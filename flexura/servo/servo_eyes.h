@@ -30,10 +30,14 @@ class ServoEyes {
   [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
                                   std::string& reason);
 
+  [[nodiscard]] ShapeEstimate shape_of(const std::array<Sighting, 2>& seen,
+                                       const std::optional<ArmState>& guess);
+
   Arm arm_;
   std::array<int, 2> whites_;  // The largest value of each camera's pictures.
   bool has_markers_;
-  ShapeEstimator estimator_, patient_;  // For cameras that are as believed, and for others.
+  ShapeEstimator estimator_;
+  double usual_rms_ = 0;  // Of the last shape's residuals, px.
   struct Finder {
     Eigen::Vector2d base;
     ArmFinder finder;

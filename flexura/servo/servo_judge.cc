@@ -47,9 +47,9 @@ void ServoJudge::add_error(const ServoStep& step) {
   latest_ = step.error->rms;
   const double time = *step.seen_at;
   // What is seen badly is not yet there, and neither is what is still on its way elsewhere.
-  const double doubtful = std::hypot(latest_, step.sigma);
-  const bool stays = !step.ahead || step.ahead->rms <= 2 * config_.tolerance;
-  if (time < goal_time_ || !(doubtful <= config_.tolerance) || !stays) {
+  const double doubtful = 2 * config_.tolerance;
+  const bool stays = step.sigma <= doubtful && (!step.ahead || step.ahead->rms <= doubtful);
+  if (time < goal_time_ || !(latest_ <= config_.tolerance) || !stays) {
     below_since_.reset();
   } else if (!below_since_) {
     below_since_ = time;

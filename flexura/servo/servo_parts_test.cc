@@ -111,7 +111,7 @@ TEST(ServoJudge, KnowsTheEnd) {
     ServoJudge doubtful(config, 0, 0), leaving(config, 0, 0);
     for (int k = 0; k < 60; ++k) {
       ServoStep step = step_at(k / 30.0, 0.001);
-      step.sigma = 0.02;
+      step.sigma = 0.05;
       doubtful.add(step);
       step.sigma = 0, step.ahead = ServoError{0.1, 0.1, 0.1};
       leaving.add(step);

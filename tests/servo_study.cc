@@ -247,6 +247,7 @@ void study(Cameras cameras, std::size_t targets, std::uint64_t seed, unsigned th
     }
   };
   std::vector<std::thread> pool;
+  pool.reserve(threads);
   for (unsigned i = 0; i < threads; ++i) pool.emplace_back(work);
   for (std::thread& one : pool) one.join();
   fmt::print(

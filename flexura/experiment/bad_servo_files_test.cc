@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -41,7 +42,7 @@ TEST(BadServo, EachIsOneClearLine) {
             "task[0].target[0].pictures: no file \"a.png\""},
            {"target = [{pictures = [\"a.png\"]}]\n", "expected an array of 2"},
            {"target = [{pictures = [\"../a.png\", \"b.png\"]}]\n", "task[0].target[0].pictures: "},
-           {"target = [{time = 1, " + bends + "}, {time = 1, " + bends + "}]\n",
+           {fmt::format("target = [{{time = 1, {}}}, {{time = 1, {}}}]\n", bends, bends),
             "expected more than the target before it"},
            {"law = \"pts\"\ntarget = [{" + bends + "}]\n", "expected one of \"shape\""},
            {"cameras = [\"front\", \"front\"]\ntarget = [{" + bends + "}]\n", "names one camera twice"},

@@ -33,8 +33,9 @@ std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths
       const double share = (k + 0.5) / pieces;
       const double theta = azimuths[i] + share * (azimuths[i + 1] - azimuths[i]),
                    q = elevations[i] + share * (elevations[i + 1] - elevations[i]);
-      points.push_back(points.back() + length * Eigen::Vector3d(std::sin(theta) * std::cos(q),
-                                                                std::cos(theta) * std::cos(q), std::sin(q)));
+      const Eigen::Vector3d e(std::sin(theta) * std::cos(q), std::cos(theta) * std::cos(q), std::sin(q));
+      const Eigen::Vector3d before = points.back();
+      points.emplace_back(before + length * e);
     }
   }
   return points;

@@ -44,7 +44,6 @@ std::optional<double> meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& b
 ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras,
                      std::vector<double> markers)
     : arm_(believed.arm),
-      whites_{},
       has_markers_(!markers.empty()),
       estimator_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
   for (std::size_t i = 0; i < 2; ++i)

@@ -34,7 +34,7 @@ class ServoEyes {
                                        const std::optional<ArmState>& guess);
 
   Arm arm_;
-  std::array<int, 2> whites_;  // The largest value of each camera's pictures.
+  std::array<int, 2> whites_ = {};  // The largest value of each camera's pictures.
   bool has_markers_;
   ShapeEstimator estimator_;
   double usual_rms_ = 0;  // Of the last shape's residuals, px.

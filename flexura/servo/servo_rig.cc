@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,11 +12,8 @@ namespace flexura {
 namespace {
 
 bool is_finite(const ArmState& state) {
-  for (const Eigen::Vector2d& bend : state.bends)
-    if (!bend.allFinite()) return false;
-  for (const double stretch : state.stretches)
-    if (!std::isfinite(stretch)) return false;
-  return true;
+  return std::ranges::all_of(state.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }) &&
+         std::ranges::all_of(state.stretches, [](double stretch) { return std::isfinite(stretch); });
 }
 
 bool is_finite(const HeadState& head) {

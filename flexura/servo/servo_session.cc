@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -69,7 +70,11 @@ class Session {
       result_.reason = std::move(*trouble);
       return std::move(result_);
     }
-    while (!is_over()) step();
+    try {
+      while (!is_over()) step();
+    } catch (const std::exception& error) {
+      fault(error.what());  // Whatever it is, the arm shall not go on.
+    }
     come_to_rest();
     if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
@@ -166,18 +171,19 @@ class Session {
       }
       return;
     }
-    for (std::size_t i = 0; i < 2; ++i)
-      if (!rig_.silence()[i].empty())
-        return tell_unseen(now, fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]));
-    if (now - seen_since_ > config_.patience.blind) tell_unseen(now, "no pictures come");
+    std::string why;
+    for (std::size_t i = 0; i < 2 && why.empty(); ++i)
+      if (!rig_.silence()[i].empty()) why = fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]);
+    if (why.empty() && now - seen_since_ > config_.patience.blind) why = "no pictures come";
+    if (!why.empty()) tell_unseen(now, why);
   }
 
   void cannot_see(double now, const ServoSight& sight) {
-    for (std::size_t i = 0; i < 2; ++i)
+    std::string why = sight.estimate.reason;
+    for (std::size_t i = 2; i-- > 0;)
       if (!sight.reasons[i].empty())
-        return tell_unseen(now,
-                           fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]));
-    tell_unseen(now, sight.estimate.reason);
+        why = fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);
+    tell_unseen(now, why);
   }
 
   void tell_unseen(double now, const std::string& why) {
@@ -250,23 +256,31 @@ class Session {
           keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time), last_->seen[i].view);
       if (!head) continue;
       const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
-      if (const auto refused = taken.fault())
-        return fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
+      if (const auto refused = taken.fault()) {
+        fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
+        return;
+      }
       watcher_.camera_sent(now,
                            {.camera = rig_.camera(i), .head = *head, .stage = rig_.stance(i, now).stage});
     }
   }
 
-  void send(double now, ArmState state, ServoStep step) {
+  void tell_arm(double now, const ArmState& state) {
     const auto taken = rig_.ports().arm->command(state, config_.step);
     if (const auto refused = taken.fault()) {
-      fault("the arm: " + text(*refused));
-      // What does not take commands may still stop.
+      // What does not take commands may still stop; from then on it is somewhere else than the limiter has
+      // it.
+      is_deaf_ = true;
       (void)rig_.ports().arm->halt();
-    } else {
-      watcher_.arm_sent(now, state, config_.step);
-      sent_ = state;
+      fault("the arm: " + text(*refused));
+      return;
     }
+    watcher_.arm_sent(now, state, config_.step);
+    sent_ = state;
+  }
+
+  void send(double now, ArmState state, ServoStep step) {
+    if (!is_deaf_) tell_arm(now, state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
     if (step.believed.bends.empty()) step.believed = rig_.said(now);
     step.sent = std::move(state);
@@ -281,10 +295,13 @@ class Session {
       wake();
       ServoStep step;
       step.time = rig_.now();
+      const double now = step.time;
       LimitedCommand command = limiter_->brake();
       step.limited = command.reason;
-      send(step.time, std::move(command.state), std::move(step));
+      send(now, std::move(command.state), std::move(step));
     }
+    for (std::size_t i = 0; config_.follows && i < 2; ++i)
+      (void)rig_.ports().cameras[rig_.camera(i)].head->halt();
     // The last command lasts until the next one's time.
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
   }
@@ -304,6 +321,7 @@ class Session {
   std::string unseen_because_;
   double seen_since_ = 0;
   long ticks_ = 0;
+  bool is_deaf_ = false;  // The arm has refused a command.
   ArmState sent_;
   ServoResult result_;
 };

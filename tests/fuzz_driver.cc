@@ -344,8 +344,8 @@ Options parse(int count, char** arguments) {
       options.seed = std::stoull(value);
     } else if (name == "--fresh") {
       options.fresh_share = std::stod(value);
-      if (!(options.fresh_share >= 0 && options.fresh_share <= 1))
-        throw std::runtime_error("--fresh " + value + ": expected 0 to 1");
+      const bool is_share = options.fresh_share >= 0 && options.fresh_share <= 1;
+      if (!is_share) throw std::runtime_error("--fresh " + value + ": expected 0 to 1");
     } else {
       throw std::runtime_error("unknown option " + std::string(name));
     }

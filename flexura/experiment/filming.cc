@@ -16,6 +16,7 @@ namespace {
 
 std::vector<std::unique_ptr<Photographer>> photographers(const Experiment& experiment, std::size_t count) {
   std::vector<std::unique_ptr<Photographer>> all;
+  all.reserve(count);
   for (std::size_t i = 0; i < count; ++i) all.push_back(std::make_unique<Photographer>(experiment));
   return all;
 }

@@ -4,7 +4,8 @@
 
 namespace flexura {
 
-Crew::Crew(std::size_t threads) : thrown_(std::max<std::size_t>(threads, 1)) {
+Crew::Crew(std::size_t threads) {
+  thrown_.resize(std::max<std::size_t>(threads, 1));
   helpers_.reserve(thrown_.size() - 1);
   for (std::size_t place = 1; place < thrown_.size(); ++place)
     helpers_.emplace_back([this, place] { help(place); });

@@ -109,7 +109,9 @@ function(flexura_fuzz_target stem folder source)
   else()
     add_executable(${stem} ${source} ${PROJECT_SOURCE_DIR}/tests/fuzz_driver.cc)
     target_link_libraries(${stem} PRIVATE flexura::${folder} flexura_settings)
-    add_test(NAME ${stem} COMMAND ${stem} --corpus ${PROJECT_SOURCE_DIR}/tests/corpus/${stem} --cases 3000 --seed 1)
+    # A scene takes ten times as long under a sanitizer.
+    add_test(NAME ${stem} COMMAND ${stem} --corpus ${PROJECT_SOURCE_DIR}/tests/corpus/${stem}
+      --cases $<IF:$<BOOL:${FLEXURA_SANITIZE}>,1000,3000> --seed 1)
     set_tests_properties(${stem} PROPERTIES LABELS quick TIMEOUT 300)
   endif()
 endfunction()

@@ -16,13 +16,6 @@ namespace {
 
 std::array<double, 3> array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-std::vector<std::array<double, 2>> bends_of(const ArmState& state) {
-  std::vector<std::array<double, 2>> bends;
-  bends.reserve(state.bends.size());
-  for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
-  return bends;
-}
-
 // Tells the log of everything.
 class LoggedSession : public RigSessionWatcher {
  public:

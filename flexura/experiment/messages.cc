@@ -144,6 +144,13 @@ PoseMessage pose_message(const Pose& X_WP) {
   return {{X_WP.position.x(), X_WP.position.y(), X_WP.position.z()}, {q[1], q[2], q[3], q[0]}};
 }
 
+std::vector<std::array<double, 2>> bends_of(const ArmState& state) {
+  std::vector<std::array<double, 2>> bends;
+  bends.reserve(state.bends.size());
+  for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
+  return bends;
+}
+
 Node point_node(const Eigen::Vector3d& p) { return {Node::Array{{p.x(), {}}, {p.y(), {}}, {p.z(), {}}}, {}}; }
 
 Node pose_node(const Pose& X_WP) {

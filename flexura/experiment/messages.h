@@ -9,6 +9,7 @@
 #include "flexura/base/bytes.h"
 #include "flexura/base/table.h"
 #include "flexura/math/pose.h"
+#include "flexura/model/arm.h"
 
 namespace flexura {
 
@@ -231,6 +232,9 @@ const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
 [[nodiscard]] std::uint64_t nanoseconds(double time);
 [[nodiscard]] TimeMessage time_message(std::uint64_t nanoseconds);
 [[nodiscard]] PoseMessage pose_message(const Pose& X_WP);
+
+/// Each section's bend, rad.
+[[nodiscard]] std::vector<std::array<double, 2>> bends_of(const ArmState& state);
 
 /// [x, y, z].
 [[nodiscard]] Node point_node(const Eigen::Vector3d& p);

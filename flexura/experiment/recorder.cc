@@ -61,9 +61,11 @@ Recorder::~Recorder() = default;
 
 void Recorder::state(double time, const ArmState& state, const Backbone& backbone) {
   const std::uint64_t log_time = nanoseconds(time);
-  ArmStateMessage message{
-      .time = time, .bends = {}, .stretches = state.stretches, .archings = {}, .cord_angles = {}};
-  for (const Eigen::Vector2d& bend : state.bends) message.bends.push_back({bend.x(), bend.y()});
+  ArmStateMessage message{.time = time,
+                          .bends = bends_of(state),
+                          .stretches = state.stretches,
+                          .archings = {},
+                          .cord_angles = {}};
   if (arm_.kind == ArmKind::planar) {
     message.archings = archings(state);
     message.cord_angles = cord_angles(arm_, state);
@@ -101,11 +103,10 @@ void Recorder::commands(const DriveCommandsMessage& message) {
 void Recorder::reading(const ArmReading& reading) {
   if (!channels_->arm_reading) channels_->arm_reading = channels_->add<ArmReadingMessage>(arm_reading_topic);
   ArmReadingMessage message{.time = reading.time,
-                            .bends = {},
+                            .bends = bends_of(reading.state),
                             .stretches = reading.state.stretches,
                             .positions = {},
                             .moving = reading.moving};
-  for (const Eigen::Vector2d& bend : reading.state.bends) message.bends.push_back({bend.x(), bend.y()});
   if (!reading.positions.empty()) message.positions = reading.positions;
   channels_->write(*channels_->arm_reading, nanoseconds(reading.time), message);
 }

@@ -11,13 +11,6 @@
 namespace flexura {
 namespace {
 
-std::vector<std::array<double, 2>> bends_in(const ArmState& state) {
-  std::vector<std::array<double, 2>> bends;
-  bends.reserve(state.bends.size());
-  for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
-  return bends;
-}
-
 // Where the bands of an arm are that turns out to be longer or shorter than its file says.
 std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
   const Arm arm = experiment.arm.arm();
@@ -63,9 +56,9 @@ class LoggedServo : public ServoWatcher {
   void stepped(const ServoStep& step) override {
     ServoStepMessage message;
     message.time = step.time, message.seen_at = step.seen_at;
-    message.desired = bends_in(step.desired), message.desired_stretches = step.desired.stretches;
-    if (step.seen) message.seen = bends_in(*step.seen), message.seen_stretches = step.seen->stretches;
-    message.sent = bends_in(step.sent);
+    message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
+    if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
+    message.sent = bends_of(step.sent);
     if (step.error)
       message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
     message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;

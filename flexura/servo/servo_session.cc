@@ -328,16 +328,6 @@ class Session {
 
 }  // namespace
 
-const std::vector<std::string>& names_of(const ServoLawKind*) {
-  static const std::vector<std::string> names = {"shape", "points", "chords", "moments", "potential"};
-  return names;
-}
-
-const std::vector<std::string>& names_of(const ServoJacobian*) {
-  static const std::vector<std::string> names = {"model", "broyden", "recursive"};
-  return names;
-}
-
 ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
                              ServoWatcher& watcher) {
   check(ports, believed, config);

@@ -47,7 +47,8 @@ Node along_node(const Extras& extras) {
 
 }  // namespace
 
-Node line_layer(const std::string& id, const std::string& color, const std::vector<Eigen::Vector2d>& points) {
+Node line_layer(const std::string& id, const std::string& color, const std::vector<Eigen::Vector2d>& points,
+                bool is_dashed) {
   const auto shown = [](double pixels) { return Node{std::round(100 * pixels) / 100, {}}; };
   Node::Array list;
   for (const Eigen::Vector2d& point : points)
@@ -56,7 +57,8 @@ Node line_layer(const std::string& id, const std::string& color, const std::vect
                       {"kind", {}, text_node("polyline")},
                       {"color", {}, text_node(color)},
                       {"points", {}, {std::move(list), {}}},
-                      {"closed", {}, {false, {}}}},
+                      {"closed", {}, {false, {}}},
+                      {"dashed", {}, {is_dashed, {}}}},
           {}};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -50,7 +51,7 @@ struct Extras {
 
 /// A line upon a picture, to a hundredth of a pixel. `id` and `color` as a ghost's of the same thing.
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
-                              const std::vector<Eigen::Vector2d>& points);
+                              const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 
 /// The stream of these messages to a client.
 inline constexpr std::uint32_t extras_stream = 0xffffffff;

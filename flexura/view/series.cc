@@ -106,6 +106,7 @@ std::vector<Quantity> SeriesTable::quantities(const Recording& recording) {
   }
   if (can_stretch(arm)) add_names("stretch", "", sections, list);
   for (const char* axis : {"x", "y", "z"}) list.push_back({std::string("tip_") + axis, "m"});
+  if (recording.has_servo()) std::ranges::copy(servo_quantities(), std::back_inserter(list));
   return list;
 }
 

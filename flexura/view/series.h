@@ -13,8 +13,8 @@ namespace flexura {
 
 /// Which of so many values to draw when there shall be no more than `points`: the first and the last, and in
 /// stretches of equal length between the places where any of the curves is least and greatest. Beside these
-/// the borders of gaps (NaN). Ascending. All of them where they are few; never fewer than the ends. The curves
-/// are of one length.
+/// the borders of gaps (NaN). Ascending. All of them where they are few; never fewer than the ends. The
+/// curves are of one length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 

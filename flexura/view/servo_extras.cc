@@ -84,11 +84,12 @@ PictureLayers layers_of(const ServoPicture& picture) {
   const ServoSightingMessage& sighting = picture.sighting;
   PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
   std::vector<Eigen::Vector2d> line;
-  for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
-  if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line));
-  line.clear();
   for (const AxisPointMessage& point : sighting.points) line.emplace_back(point.u, point.v);
   if (!line.empty()) overlay.layers.push_back(line_layer(seen.id, seen.color, line));
+  line.clear();
+  // Upon that, dashed: both are seen where they are one.
+  for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
+  if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line, true));
   return overlay;
 }
 

@@ -81,7 +81,7 @@ function Rig() {
     <div class="tools">
       {running && (
         <span class="running">
-          <span class="running-text">{progress.what}</span>
+          <span class="running-text" title={progress.what}>{progress.what}</span>
           <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
           <button type="button" class="button" disabled={!connected || viewer.readonly} onClick={ask('cancel')}
             title={viewer.readonly ? 'The run belongs to the terminal that started it' : 'The run ends early (C)'}>

@@ -36,7 +36,8 @@ await slide(steered.page, '#scrub', 0.4);
 await steered.page.getByLabel('Plot 2 shows').selectOption({ label: 'Servo error, %' });
 await steered.page.getByLabel('Plot 1 shows').selectOption({ label: 'Errors along the arm' });
 await steered.page.waitForTimeout(4000);
-await steered.page.screenshot({ path: `${root}docs/images/servo-viewer.png` });
+// Without the sliders of what a recording cannot move.
+await steered.page.screenshot({ path: `${root}docs/images/servo-viewer.png`, clip: { x: 281, y: 45, width: 999, height: 627 } });
 await shown.stop();
 await servo.stop();
 

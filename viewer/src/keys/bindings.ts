@@ -58,7 +58,7 @@ function view(app: App): Binding[] {
     { group, keys: ['Numpad3', '3'], what: 'From the side, as camera 2', run: look(-Math.PI / 2, 0) },
     { group, keys: ['Numpad7', '7'], what: 'From above', run: look(0, Math.PI / 2) },
     { group, keys: ['Numpad0', '0', 'a'], what: 'All of the arm in view', run: () => (app.views.free(), app.view.value?.frame_arm()) },
-    { group, keys: ['Numpad5', '5', 'Shift+Home'], what: 'Everything in view: cameras and screens too', run: () => (app.views.free(), app.view.value?.frame_everything()) },
+    { group, keys: ['Numpad5', '5', 'Shift+Home'], what: 'The arm and all cameras in view', run: () => (app.views.free(), app.view.value?.frame_cameras()) },
     { group, keys: ['NumpadDecimal', '.'], what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
     { group, keys: ['k'], what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
     { group, keys: [']', 'BracketRight'], what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },

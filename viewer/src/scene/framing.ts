@@ -45,20 +45,13 @@ export function frustum_points(scene: Scene, cameras: Float32Array): Vector3[] {
   });
 }
 
-/** The corners of the screens. */
-export function screen_points({ screens }: Scene): Vector3[] {
-  return screens.flatMap(({ pose: [x, y, z, qw, qx, qy, qz], size: [w, h] }) =>
-    [[-w, -h], [w, -h], [w, h], [-w, h]].map(([u, v]) =>
-      new Vector3(u / 2, v / 2, 0).applyQuaternion(new Quaternion(qx, qy, qz, qw)).add(new Vector3(x, y, z))));
-}
-
 /** The arm large, and of the cameras' frusta what is near enough that it stays so. */
 export function first_distance(frusta: Vector3[], look: Look, span: number): number {
   const near = frusta.map((point) => distance_for(point, look)).filter((distance) => distance <= farthest_look * span);
   return Math.max(nearest_look * span, ...near);
 }
 
-/** All of it. */
+/** All of these, and the arm. */
 export function distance_for_all(points: Vector3[], look: Look, span: number): number {
   return Math.max(nearest_look * span, ...points.map((point) => distance_for(point, look)));
 }

@@ -7,7 +7,7 @@ import type { Picture } from '../connection/images';
 import type { State } from '../protocol/state';
 import type { GhostMessage, Scene } from '../protocol/types';
 import { see_through } from './camera_view';
-import { distance_for_all, first_distance, frustum_points, screen_points, type Look } from './framing';
+import { distance_for_all, first_distance, frustum_points, type Look } from './framing';
 import { Orbit } from './orbit';
 import type { Part, Theme } from './part';
 import { make_handles, type Handles } from './parts/handles';
@@ -130,11 +130,11 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Everything in view: the cameras and the screens too. */
-  frame_everything(): void {
+  /** All of the cameras in view too. */
+  frame_cameras(): void {
     if (!this.scene) return;
     const look = this.look_at_reach(this.scene);
-    this.orbit.distance = distance_for_all([...this.frusta(this.scene), ...screen_points(this.scene)], look, this.span);
+    this.orbit.distance = distance_for_all(this.frusta(this.scene), look, this.span);
     this.invalidate();
   }
 

@@ -1,11 +1,13 @@
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { eye_of, extra_ghosts, extra_layers, extra_overlay } from '../../src/overlays/extras';
 import { columns_of } from '../../src/plots/AlongPlot';
 import { can_be_along, groups_of, live_sources, short_names, shown_groups } from '../../src/plots/sources';
 import { decode_extras, kind_extras, kind_of, type State } from '../../src/protocol/state';
 import type { Extras, Hello } from '../../src/protocol/types';
+import { Viewer } from '../../src/state/viewer';
 import { encode_extras } from '../fake/encode';
 import { spatial_rig } from '../fake/rigs';
+import { FakeSession } from '../fake/session';
 
 const extras: Extras = {
   time: 1.5, title: 'Servo', text: '0.50 % of the length off',
@@ -75,4 +77,32 @@ test('a recording’s quantities of one group are one plot', () => {
   const hello = { mode: 'recording', quantities: [...quantities, { name: 'bend_1', unit: 'rad' }] } as Hello;
   expect(shown_groups(hello).map(({ unit, factor }) => [unit, Math.round(factor)])).toEqual([['%', 1], ['°', 57]]);
   expect(can_be_along(hello)).toBe(true);
+});
+
+test('a held view keeps what was drawn then; the newest pictures have the newest', () => {
+  vi.useFakeTimers();
+  const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null });
+  const session = new FakeSession(spatial_rig());
+  const state = (time: number): ArrayBuffer => {
+    session.time = time;
+    return new Uint8Array(session.state()).buffer;
+  };
+  viewer.text(session.hello('1') as unknown as Hello);
+  viewer.bytes(state(1));
+  expect(viewer.ghosts.value).toEqual({});
+  viewer.bytes(bytes(extras));
+  expect(Object.keys(viewer.ghosts.value), 'also where they come late').toEqual(['extra wanted', 'extra seen']);
+  viewer.bytes(state(2));
+  viewer.playback.pause();
+  viewer.bytes(bytes({}));
+  viewer.bytes(state(3));
+  expect(viewer.extras.value).toBe(null);
+  expect(viewer.shown_extras.value).toEqual(extras);
+  viewer.playback.go_live();
+  expect(viewer.ghosts.value).toEqual({});
+  viewer.playback.seek(2);
+  expect(viewer.shown_extras.value).toEqual(extras);
+  viewer.text({ ...(session.hello('2') as unknown as Hello) });
+  expect(viewer.shown_extras.value, 'nothing of another run').toBe(null);
+  vi.useRealTimers();
 });

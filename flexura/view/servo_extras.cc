@@ -84,6 +84,7 @@ PictureLayers layers_of(const ServoPicture& picture) {
   const ServoSightingMessage& sighting = picture.sighting;
   PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
   std::vector<Eigen::Vector2d> line;
+  line.reserve(std::max(sighting.points.size(), sighting.wanted.size()));
   for (const AxisPointMessage& point : sighting.points) line.emplace_back(point.u, point.v);
   if (!line.empty()) overlay.layers.push_back(line_layer(seen.id, seen.color, line));
   line.clear();

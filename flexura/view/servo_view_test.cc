@@ -14,6 +14,7 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/servo/servo_session.h"
 #include "flexura/store/text_file.h"
 #include "flexura/view/live_session.h"
 #include "flexura/view/recording_session.h"
@@ -21,7 +22,7 @@
 #include "tests/support/live_sessions.h"
 #include "tests/support/quiet.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/servo_bench.h"
+#include "tests/support/servo_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
 
@@ -92,21 +93,21 @@ class ServoView : public ::testing::Test {
   };
 
   static void SetUpTestSuite() {
-    seen_ = std::make_unique<Seen>();
+    seen = std::make_unique<Seen>();
     auto run = std::make_shared<SeenRun>();
     FakeBackground background;
-    LiveSession session(seen_->rig, seen_->live, background, {.start = 0, .results = {}, .run = run});
+    LiveSession session(seen->rig, seen->live, background, {.start = 0, .results = {}, .run = run});
     session.opened(me);
     double clock = 0;
     run->look = [&] { session.advance(clock += 0.1); };
-    run_linked(seen_->rig->experiment, seen_->folder.path(), *run);
+    run_linked(seen->rig->experiment, seen->folder.path(), *run);
     run->look();
   }
-  static void TearDownTestSuite() { seen_.reset(); }
+  static void TearDownTestSuite() { seen.reset(); }
 
   static std::vector<Node> live_extras() {
     std::vector<Node> list;
-    for (const auto& message : seen_->live.posts[{me, extras_stream}]) list.push_back(extras_in(*message));
+    for (const auto& message : seen->live.posts[{me, extras_stream}]) list.push_back(extras_in(*message));
     return list;
   }
   // Those of the recording at a time.
@@ -115,7 +116,7 @@ class ServoView : public ::testing::Test {
     return extras_in(*messenger.posts[{me, extras_stream}].back());
   }
 
-  static inline std::unique_ptr<Seen> seen_;
+  static inline std::unique_ptr<Seen> seen;
 };
 
 TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
@@ -124,7 +125,7 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   const Node& extras = all[all.size() / 2];
   const Node::Array& ghosts = list_in(extras, "ghosts");
   ASSERT_THAT(ids_of(ghosts), ElementsAre("wanted", "seen", "truth"));
-  const ViewedRig& rig = *seen_->rig;
+  const ViewedRig& rig = *seen->rig;
   EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model, wanted_shape).position).norm(), 1e-9);
   const double off = (tip_of(ghosts[2]) - tip_of(ghosts[0])).norm();
   EXPECT_NEAR(off, number_in(*extras.find("values"), "servo_true_tip") / 100 * rig.model.length(), 1e-9);
@@ -144,7 +145,7 @@ TEST_F(ServoView, TellsErrorsAlongTheArmAsTheServoKnowsThem) {
   for (const Node& extras : live_extras()) {
     const Node* along = extras.find("along");
     if (along == nullptr) continue;
-    const double millimetres = 10 * seen_->rig->model.length();  // of a percent
+    const double millimetres = 10 * seen->rig->model.length();  // of a percent
     const Node::Array& curves = list_in(*along, "curves");
     ASSERT_THAT(ids_of(curves), ElementsAre("seen", "truth"));
     last = rms_of(curves[0]);
@@ -159,7 +160,7 @@ TEST_F(ServoView, TellsErrorsAlongTheArmAsTheServoKnowsThem) {
 TEST_F(ServoView, TellsHowItGoesAndHowItEnds) {
   std::vector<std::string> events;
   std::set<std::string> progress;
-  for (const std::string& text : seen_->live.texts[me]) {
+  for (const std::string& text : seen->live.texts[me]) {
     const Node node = parse_json(text, "text");
     const std::string& type = *node.find("type")->as<std::string>();
     if (type == "event") events.push_back(*node.find("text")->as<std::string>());
@@ -174,7 +175,7 @@ TEST_F(ServoView, TellsHowItGoesAndHowItEnds) {
 TEST_F(ServoView, IsInTheRecordingUponItsPictures) {
   FakeMessenger messenger;
   FakeBackground background;
-  RecordingSession session(std::make_shared<const Recording>(seen_->folder.path()), messenger, background);
+  RecordingSession session(std::make_shared<const Recording>(seen->folder.path()), messenger, background);
   session.opened(me);
   for (const char* camera : {"front", "side"})
     session.take(me, ImagesRequest{camera, 30, 80}, [](const ViewAnswer&) {});
@@ -196,7 +197,7 @@ TEST_F(ServoView, IsInTheRecordingUponItsPictures) {
 TEST_F(ServoView, IsAQuantityOfTheRecording) {
   FakeMessenger messenger;
   FakeBackground background;
-  RecordingSession session(std::make_shared<const Recording>(seen_->folder.path()), messenger, background);
+  RecordingSession session(std::make_shared<const Recording>(seen->folder.path()), messenger, background);
   const auto quantities = session.hello().quantities;
   ASSERT_EQ(quantities.back().name, "servo_true_tip");
   EXPECT_EQ(quantities.back().group, "servo_error");
@@ -204,7 +205,7 @@ TEST_F(ServoView, IsAQuantityOfTheRecording) {
   session.take(SeriesAsk{{"servo_rms", "tip_x"}, 1000}, [&](const HttpAnswer& answer) { got = answer; });
   ASSERT_EQ(got.status, 200) << got.body;
   const Node series = parse_json(got.body, "series");
-  const Node::Array &times = list_in(series, "time"), &rms = list_in(series, "servo_rms");
+  const auto &times = list_in(series, "time"), &rms = list_in(series, "servo_rms");
   ASSERT_EQ(rms.size(), times.size());
   const double servo_end = *times.back().as<double>() - 1;
   std::vector<double> values;
@@ -226,10 +227,10 @@ TEST_F(ServoView, IsAQuantityOfTheRecording) {
 TEST_F(ServoView, WritesTheSameBytesWhenItIsWatched) {
   const TemporaryFolder unwatched;
   Quiet quiet;
-  (void)run_experiment(seen_->rig->experiment, unwatched.path(), quiet);
+  (void)run_experiment(seen->rig->experiment, unwatched.path(), quiet);
   for (const char* name : {log_file_name, summary_file_name})
     EXPECT_TRUE(read_text_file(unwatched.path() / name, std::size_t{1} << 30) ==
-                read_text_file(seen_->folder.path() / name, std::size_t{1} << 30))
+                read_text_file(seen->folder.path() / name, std::size_t{1} << 30))
         << name;
 }
 

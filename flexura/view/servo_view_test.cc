@@ -211,7 +211,7 @@ TEST_F(ServoView, IsAQuantityOfTheRecording) {
   std::vector<double> values;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const bool is_steered = *times[i].as<double>() <= servo_end;
-    if (const double* value = rms[i].as<double>()) values.push_back(*value);
+    if (!rms[i].empty()) values.push_back(*rms[i].as<double>());
     if (*times[i].as<double>() > servo_end + 0.15) {
       EXPECT_TRUE(rms[i].empty()) << *times[i].as<double>();
     }

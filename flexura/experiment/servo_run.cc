@@ -58,7 +58,13 @@ class LoggedServo : public ServoWatcher {
     message.time = step.time, message.seen_at = step.seen_at;
     message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
     if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
-    message.sent = bends_of(step.sent);
+    message.sent = bends_of(step.sent), message.sent_stretches = step.sent.stretches;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!step.heads[i]) continue;
+      if (!message.heads) message.heads.emplace();
+      message.heads->push_back(
+          {run_.cameras[i], step.heads[i]->pan, step.heads[i]->tilt, step.heads[i]->zoom});
+    }
     if (step.error)
       message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
     message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
@@ -27,6 +29,34 @@ namespace {
 constexpr std::size_t targets_a_rig = 10;
 
 enum class Cameras { calibrated, wrong, recorded };
+
+// A way of steering under study.
+struct Method {
+  std::string name;
+  ServoLawKind law = ServoLawKind::shape;
+  ServoJacobian jacobian = ServoJacobian::model;
+  bool has_bands = false;  // Colour pictures of an arm with bands.
+  bool is_near = false;    // From within 0.15 rad a bend.
+};
+
+const std::vector<Method>& main_methods() {
+  static const std::vector<Method> methods = {{.name = "shape"},
+                                              {.name = "points", .law = ServoLawKind::points},
+                                              {.name = "chords", .law = ServoLawKind::chords},
+                                              {.name = "potential", .law = ServoLawKind::potential}};
+  return methods;
+}
+
+std::vector<Method> all_methods() {
+  std::vector<Method> methods = main_methods();
+  methods.push_back({.name = "moments, from within 0.15 rad", .law = ServoLawKind::moments, .is_near = true});
+  methods.push_back(
+      {.name = "points, broyden", .law = ServoLawKind::points, .jacobian = ServoJacobian::broyden});
+  methods.push_back(
+      {.name = "points, recursive", .law = ServoLawKind::points, .jacobian = ServoJacobian::recursive});
+  methods.push_back({.name = "shape, with bands", .has_bands = true});
+  return methods;
+}
 
 // What one target's run came to; errors are the simulated truth's, shares of the length.
 struct Arrival {
@@ -48,8 +78,16 @@ LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
   return rig;
 }
 
-std::string file_of(const LoopRig& rig) {
+// In colour with bands, which the calibration goes by, or in gray without.
+std::string file_of(const LoopRig& rig, bool is_colored) {
   std::string text = arcs_rig("method = \"bundle\"\n", rig);
+  if (!is_colored) {
+    const std::size_t look = text.find("[arm.look]");
+    text.erase(look, text.find("[[", look + 1) - look);
+    const std::string color = "\"color\"";
+    for (std::size_t at = text.find(color); at != std::string::npos; at = text.find(color))
+      text.replace(at, color.size(), "\"gray\"");
+  }
   const std::string limit = "max_bend_deg = 120\n";
   for (std::size_t at = text.find(limit); at != std::string::npos; at = text.find(limit, at + 1))
     text.insert(at + limit.size(), "max_bend_rate_deg = 90\n");
@@ -103,45 +141,61 @@ double nearest_limit(const Arm& arm, const ServoResult& result) {
   return nearest;
 }
 
-// The rig of one group of targets, calibrated where that is asked for.
+// The rig of one group of targets, calibrated where that is asked for: with its colours, and without them.
 class StudyRig {
  public:
   StudyRig(Cameras cameras, std::uint64_t seed)
-      : random_(seed), cameras_(cameras), bench_(file_of(study_rig(wrong(cameras)))) {
-    believed_ = rig_model(bench_.experiment().arm.arm(), bench_.experiment().cameras());
+      : random_(seed),
+        cameras_(cameras),
+        file_(study_rig(wrong(cameras))),
+        colored_(file_of(file_, true)),
+        gray_(file_of(file_, false)) {
+    believed_ = rig_model(gray_.experiment().arm.arm(), gray_.experiment().cameras());
     if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
       // And 1 % of focal length, believed.
       for (RigCamera& camera : believed_.cameras)
         camera.config.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
       return;
     }
-    const RigSessionResult result = bench_.calibrate_bundle(bench_.ports());
+    const RigSessionResult result = colored_.calibrate_bundle(colored_.ports());
     is_ready_ = result.is_done;
-    if (is_ready_) believed_ = result.found.model;
+    if (!is_ready_) return;
+    believed_ = result.found.model;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const CameraPorts found = colored_.ports().cameras[i], other = gray_.ports().cameras[i];
+      (void)other.head->command(found.head->read().value().state).value();
+      (void)other.stage->command(found.stage->read().value().state).value();
+    }
+    constexpr double patience = 30;  // s, simulated
+    gray_.rig().clock().wait_until(gray_.rig().clock().now() + patience);
   }
 
   [[nodiscard]] bool is_ready() const { return is_ready_; }
 
-  Arrival go(ServoLawKind law, const ArmState& target) {
+  Arrival go(const Method& method, const ArmState& target, TestRandom& random) {
+    RigBench& bench = method.has_bands ? static_cast<RigBench&>(colored_) : gray_;
     ServoConfig config;
-    config.law = law, config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1;
-    config.patience.timeout = 8;
-    const Arm arm = bench_.experiment().arm.arm();
-    for (const Marker& marker : bench_.experiment().arm.look.markers(arm))
-      config.markers.push_back(marker.at);
+    config.law = method.law, config.jacobian = method.jacobian;
+    config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.patience.timeout = 8;
+    const Arm arm = bench.experiment().arm.arm();
+    config.markers = band_places(bench.experiment(), believed_.arm);
     config.goals = {{0, target}};
-    if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(target)}};
-    rest_at_start(arm);
+    if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(bench, target)}};
+    ArmState start = method.is_near ? target : ArmState::straight(arm.sections.size());
+    for (Eigen::Vector2d& bend : start.bends)
+      if (method.is_near) bend += random.vector<2>(-0.15, 0.15);
+    rest_at(bench, start);
     ServoNotes notes;
-    const ServoResult result = servo_in_session(bench_.ports(), believed_, config, notes);
+    const ServoResult result = servo_in_session(bench.ports(), believed_, config, notes);
     Arrival arrival;
     arrival.is_done = result.is_done, arrival.reason = result.reason;
     arrival.settled = result.settled.value_or(0), arrival.overshoot = result.overshoot;
-    const ServoError left = servo_error(bench_.rig().arm().backbone(bench_.rig().clock().now()),
+    const ServoError left = servo_error(bench.rig().arm().backbone(bench.rig().clock().now()),
                                         Backbone(arm, target), arm.length());
     arrival.rms = left.rms, arrival.most = left.most, arrival.tip = left.tip;
     arrival.limit = nearest_limit(arm, result);
-    if (cameras_ == Cameras::wrong) arrival.floor = floor_of(arm, target, true_views(), believed_views());
+    if (cameras_ == Cameras::wrong)
+      arrival.floor = floor_of(arm, target, true_views(bench), believed_views(bench));
     return arrival;
   }
 
@@ -150,28 +204,27 @@ class StudyRig {
     if (cameras == Cameras::calibrated) return {wrong_start(random_), wrong_start(random_)};
     return half_a_degree(random_);
   }
-  void rest_at_start(const Arm& arm) {
-    (void)bench_.ports().arm->command(ArmState::straight(arm.sections.size()), 3).value();
-    bench_.rig().clock().wait_until(bench_.rig().clock().now() + 4);
+  static void rest_at(RigBench& bench, const ArmState& state) {
+    (void)bench.ports().arm->command(state, 3).value();
+    bench.rig().clock().wait_until(bench.rig().clock().now() + 4);
   }
-  RecordedViews pictures_of(const ArmState& target) {
-    (void)bench_.ports().arm->command(target, 3).value();
-    bench_.rig().clock().wait_until(bench_.rig().clock().now() + 4);
+  static RecordedViews pictures_of(RigBench& bench, const ArmState& target) {
+    rest_at(bench, target);
     RecordedViews views;
     for (std::size_t i = 0; i < 2; ++i) {
-      (void)bench_.ports().cameras[i].camera->newest();
-      views[i] = *bench_.ports().cameras[i].camera->wait(1).value()->picture;
+      (void)bench.ports().cameras[i].camera->newest();
+      views[i] = *bench.ports().cameras[i].camera->wait(1).value()->picture;
     }
     return views;
   }
-  std::array<View, 2> true_views() {
-    const double now = bench_.rig().clock().now();
-    return {bench_.rig().camera(0).view(now), bench_.rig().camera(1).view(now)};
+  static std::array<View, 2> true_views(RigBench& bench) {
+    const double now = bench.rig().clock().now();
+    return {bench.rig().camera(0).view(now), bench.rig().camera(1).view(now)};
   }
-  std::array<View, 2> believed_views() {
+  std::array<View, 2> believed_views(RigBench& bench) {
     std::array<View, 2> views;
     for (std::size_t i = 0; i < 2; ++i) {
-      const CameraPorts& camera = bench_.ports().cameras[i];
+      const CameraPorts camera = bench.ports().cameras[i];
       views[i] = view_of(believed_, {.camera = i,
                                      .head = camera.head->read().value().state,
                                      .stage = camera.stage->read().value().state});
@@ -181,7 +234,9 @@ class StudyRig {
 
   TestRandom random_;
   Cameras cameras_;
-  CalibrationBench bench_;
+  LoopRig file_;
+  CalibrationBench colored_;
+  RigBench gray_;
   RigModel believed_;
   bool is_ready_ = true;
 };
@@ -224,15 +279,10 @@ void print_reasons(const std::string& name, const std::vector<Arrival>& arrivals
   for (const auto& [reason, count] : reasons) fmt::print("- {}: {} ended with \"{}\"\n", name, count, reason);
 }
 
-constexpr std::array laws = {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
-                             ServoLawKind::potential};
-
-std::string name_of(ServoLawKind law) { return names_of(&law)[static_cast<std::size_t>(law)]; }
-
-void study(Cameras cameras, std::size_t targets, std::uint64_t seed, unsigned threads) {
+void study(Cameras cameras, const std::vector<Method>& methods, std::size_t targets, std::uint64_t seed,
+           unsigned threads) {
   const std::size_t rigs = (targets + targets_a_rig - 1) / targets_a_rig;
-  std::map<ServoLawKind, std::vector<Arrival>> arrivals;
-  for (const ServoLawKind law : laws) arrivals[law].resize(targets);
+  std::vector<std::vector<Arrival>> arrivals(methods.size(), std::vector<Arrival>(targets));
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < rigs; i = next++) {
@@ -240,8 +290,9 @@ void study(Cameras cameras, std::size_t targets, std::uint64_t seed, unsigned th
       for (std::size_t k = i * targets_a_rig; k < std::min(targets, (i + 1) * targets_a_rig); ++k) {
         TestRandom random(1000 * seed + k);
         const ArmState target = random_target(random);
-        for (const ServoLawKind law : laws)
-          arrivals[law][k] = rig.is_ready() ? rig.go(law, target) : Arrival{.reason = "not calibrated"};
+        for (std::size_t j = 0; j < methods.size(); ++j)
+          arrivals[j][k] =
+              rig.is_ready() ? rig.go(methods[j], target, random) : Arrival{.reason = "not calibrated"};
       }
       std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
     }
@@ -252,12 +303,12 @@ void study(Cameras cameras, std::size_t targets, std::uint64_t seed, unsigned th
   for (std::thread& one : pool) one.join();
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % "
-      "(largest) | tip, % (95 %) | nearest to a limit | floor, rms, % (median / 95 %) |\n"
+      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, rms, % (median / 95 %) |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-  for (const ServoLawKind law : laws) print_row(name_of(law), arrivals[law], cameras == Cameras::wrong);
+  for (std::size_t j = 0; j < methods.size(); ++j)
+    print_row(methods[j].name, arrivals[j], cameras == Cameras::wrong);
   fmt::print("\n");
-  for (const ServoLawKind law : laws) print_reasons(name_of(law), arrivals[law]);
+  for (std::size_t j = 0; j < methods.size(); ++j) print_reasons(methods[j].name, arrivals[j]);
   fmt::print("\n");
 }
 
@@ -270,10 +321,10 @@ int main(int count, char** arguments) {
   const std::uint64_t seed = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
   const auto threads = static_cast<unsigned>(count > 3 ? std::strtoul(arguments[3], nullptr, 10) : 2);
   fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
-  study(Cameras::calibrated, targets, seed, threads);
+  study(Cameras::calibrated, all_methods(), targets, seed, threads);
   fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
-  study(Cameras::wrong, targets, seed, threads);
+  study(Cameras::wrong, main_methods(), targets, seed, threads);
   fmt::print("## The same cameras, targets that they recorded\n\n");
-  study(Cameras::recorded, targets, seed, threads);
+  study(Cameras::recorded, main_methods(), targets, seed, threads);
   return 0;
 }

@@ -70,7 +70,8 @@ TEST(Allocation, HappensInNoStepOfALawOnImages) {
     ArmState state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
     const ArmState target = {{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}};
     const auto control = [&] {
-      const bool is_seen = images.derive(state, views, seen, by_state) && images.values(target, views, desired);
+      const bool is_seen =
+          images.derive(state, views, seen, by_state) && images.values(target, views, desired);
       law.by_variables(by_state, J);
       feature_error(set, seen, desired, error);
       law.step(state, error, J, 1.0 / 30, work, step);

@@ -81,7 +81,8 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
 }
 
 // J with singular values that fall evenly, in powers, to `least`.
-Eigen::MatrixXd with_singular_values(TestRandom& random, Eigen::Index rows, Eigen::Index columns, double least) {
+Eigen::MatrixXd with_singular_values(TestRandom& random, Eigen::Index rows, Eigen::Index columns,
+                                     double least) {
   const auto any = [&random](Eigen::Index m, Eigen::Index n) {
     Eigen::MatrixXd A(m, n);
     for (double& entry : A.reshaped()) entry = random.uniform(-1, 1);
@@ -108,9 +109,13 @@ TEST(ImageLaw, KnowsSingularDirectionsAsTheSingularValuesDo) {
     const ImageStep step = law.step(straight, error, J, dt);
     EXPECT_LE(step.reciprocal_condition, least * (1 + 1e-4) + 1e-13);
     EXPECT_GE(step.reciprocal_condition, least / 6 * (1 - 1e-4) - 1e-13);
-    if (least <= 1e-5) EXPECT_NEAR(step.reciprocal_condition, least, 1e-13 + 1e-6 * least);
+    if (least <= 1e-5) {
+      EXPECT_NEAR(step.reciprocal_condition, least, 1e-13 + 1e-6 * least);
+    }
     const bool is_near = std::abs(least - 1e-6) < 1e-9;
-    if (!is_near) EXPECT_EQ(step.is_singular, least < 1e-6) << least;
+    if (!is_near) {
+      EXPECT_EQ(step.is_singular, least < 1e-6) << least;
+    }
   });
 }
 

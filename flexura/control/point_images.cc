@@ -32,8 +32,8 @@ constexpr Series series_of(int which) {
   }
   return c;
 }
-constexpr Series across_series = series_of(0), along_series = series_of(1), across_slope_series = series_of(2),
-                 along_slope_series = series_of(3);
+constexpr Series across_series = series_of(0), along_series = series_of(1),
+                 across_slope_series = series_of(2), along_slope_series = series_of(3);
 
 double sum_of(const Series& c, double square) {
   double sum = c.back();
@@ -127,8 +127,7 @@ bool PointImages::see(const View& view, Eigen::Matrix2Xd& pixels) const {
   std::size_t section = arm_.sections.size();
   for (Eigen::Index i = 0; i < count(); ++i) {
     const Point& point = points_[static_cast<std::size_t>(i)];
-    if (point.section != section)
-      section = point.section, base = seen_base(view, backbone_.parts()[section]);
+    if (point.section != section) section = point.section, base = seen_base(view, backbone_.parts()[section]);
     const auto pixel = view.lens.project(place_in(base, point));
     if (!pixel) return false;
     pixels.col(i) = *pixel;

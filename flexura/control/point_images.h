@@ -37,7 +37,8 @@ class PointImages {
     std::size_t section;
     double fraction;  // Of the section.
     // Of an arc of unit length bent by (b_x, b_y), t = |b|: the place at the fraction f is across * b aside
-    // and `along` on, with across = (1 - cos ft)/t^2 and along = sin ft/t; and their derivatives by t, over t.
+    // and `along` on, with across = (1 - cos ft)/t^2 and along = sin ft/t; and their derivatives by t, over
+    // t.
     double across = 0, along = 0, across_slope = 0, along_slope = 0;
   };
   // A section as a camera sees it, in C.

@@ -59,7 +59,8 @@ TEST(PointImages, AreThoseOfTheBackbonesJacobian) {
     EXPECT_LE((pixels - alone).cwiseAbs().maxCoeff(), 1e-11);
     const BackboneJacobian backbone(arm, state);
     for (Eigen::Index i = 0; i < images.count(); ++i) {
-      const Pose X_WP = backbone.pose(material_point(arm, shares[static_cast<std::size_t>(i)] * arm.length()));
+      const Pose X_WP =
+          backbone.pose(material_point(arm, shares[static_cast<std::size_t>(i)] * arm.length()));
       EXPECT_LE((images.place(i) - X_WP.position).norm(), 1e-14);
       EXPECT_LE((pixels.col(i) - view.project(X_WP.position).value()).norm(), 1e-11);
     }

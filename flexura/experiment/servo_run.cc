@@ -11,19 +11,6 @@
 namespace flexura {
 namespace {
 
-// Where the bands of an arm are that turns out to be longer or shorter than its file says.
-std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
-  const Arm arm = experiment.arm.arm();
-  std::vector<double> places;
-  for (const Marker& marker : experiment.arm.look.markers(arm)) {
-    const MaterialPoint point = material_point(arm, marker.at);
-    double from = 0;
-    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
-    places.push_back(from + point.fraction * believed.sections[point.section].length);
-  }
-  return places;
-}
-
 // Tells the log of everything, and compares with the truth.
 class LoggedServo : public ServoWatcher {
  public:
@@ -114,6 +101,18 @@ void add_true_remaining(ServoRun& run) {
 }
 
 }  // namespace
+
+std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
+  const Arm arm = experiment.arm.arm();
+  std::vector<double> places;
+  for (const Marker& marker : experiment.arm.look.markers(arm)) {
+    const MaterialPoint point = material_point(arm, marker.at);
+    double from = 0;
+    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
+    places.push_back(from + point.fraction * believed.sections[point.section].length);
+  }
+  return places;
+}
 
 ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, const RigModel& believed,
                          const ArmState& from) {

@@ -31,8 +31,7 @@ class EstimatedShape : public ServoFeatures {
     return all_of(state);
   }
   [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState&,
-                                                  const std::array<View, 2>&) override {
+                                                  const ArmState&, const std::array<View, 2>&) override {
     return FeatureError{seen - desired, Eigen::MatrixXd::Identity(seen.size(), seen.size())};
   }
 };

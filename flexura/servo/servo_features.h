@@ -28,8 +28,8 @@ class ServoFeatures {
   ServoFeatures& operator=(const ServoFeatures&) = delete;
 
   /// As measured in two sightings, of which `estimate` is the shape. None where it cannot be.
-  [[nodiscard]] virtual std::optional<Eigen::VectorXd> measured(
-      const ArmState& estimate, const std::array<Sighting, 2>& seen) = 0;
+  [[nodiscard]] virtual std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
+                                                                const std::array<Sighting, 2>& seen) = 0;
   /// As an arm in this state would show them to cameras that are as believed.
   [[nodiscard]] virtual std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
                                                                 const std::array<View, 2>& views) = 0;

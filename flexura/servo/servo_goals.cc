@@ -46,8 +46,8 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
 }
 
 // Pictures that fit the cameras badly are tried the other way round. The eyes are left as they were.
-std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames, ServoEyes& eyes,
-                                    const std::array<View, 2>& views) const {
+std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
+                                    ServoEyes& eyes, const std::array<View, 2>& views) const {
   constexpr double well = 1, badly = 20, far_better = 0.2;  // px, px, times
   const double rms = sight.estimate.is_found ? sight.estimate.rms : badly;
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
@@ -63,7 +63,8 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   const ShapeEstimate other = eyes.look({frames[1], frames[0]}, views, std::nullopt).estimate;
   if (other.is_found && other.rms < far_better * rms)
     return fmt::format(
-        "the pictures of goal {} are in the wrong order: the other way round they fit the cameras, to {:.2g} px",
+        "the pictures of goal {} are in the wrong order: the other way round they fit the cameras, to {:.2g} "
+        "px",
         times_.size(), other.rms);
   (void)eyes.look(frames, views, std::nullopt);
   return "";

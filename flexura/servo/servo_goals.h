@@ -25,8 +25,8 @@ struct WantedShape {
 class ServoGoals {
  public:
   /// `problem` says why not, "" if nothing is wrong.
-  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes,
-             ServoFeatures& features, const std::array<View, 2>& views);
+  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes, ServoFeatures& features,
+             const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// s from the servo's start, when the last goal is reached by what is wanted.

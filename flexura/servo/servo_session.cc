@@ -82,7 +82,8 @@ class Session {
     result_.fault = limiter_->fault();
     result_.last = last_;
     if (result_.missed_steps > 0)
-      watcher_.told(rig_.now(), fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
+      watcher_.told(rig_.now(),
+                    fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
     add_figures(model_.arm, config_, goals_->last(), result_);
     return std::move(result_);
   }
@@ -123,8 +124,9 @@ class Session {
     const double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
-      watcher_.told(rig_.now(), fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
-                                            config_.step));
+      watcher_.told(rig_.now(),
+                    fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
+                                config_.step));
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));

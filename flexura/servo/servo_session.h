@@ -91,8 +91,9 @@ struct ServoResult {
 /// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest
 /// pictures are measured, the shape of the arm at their time is estimated, the law says where to send it, a
 /// limiter stands between. Everything goes through the ports; what goes wrong ends with the arm at rest and
-/// says why. Steps whose time has passed are left out: the next one is at the next whole step. The same rig, readings and pictures give the same result. std::invalid_argument: no goals, goals
-/// whose times do not rise from 0, numbers out of range, ports for other cameras than the model's.
+/// says why. Steps whose time has passed are left out: the next one is at the next whole step. The same rig,
+/// readings and pictures give the same result. std::invalid_argument: no goals, goals whose times do not rise
+/// from 0, numbers out of range, ports for other cameras than the model's.
 [[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
                                            const ServoConfig& config, ServoWatcher& watcher);
 

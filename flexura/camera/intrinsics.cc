@@ -148,25 +148,23 @@ std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& 
   return result;
 }
 
-std::optional<PointProjection> Lens::project_by_point(const Eigen::Vector3d& p_CP) const {
-  if (!(p_CP.z() > 0)) return std::nullopt;
+bool Lens::project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const {
+  if (!(p_CP.z() > 0)) return false;
   const double nearness = 1 / p_CP.z(), fx = intrinsics_.fx, fy = intrinsics_.fy;
   const Eigen::Vector2d normal = p_CP.head<2>() / p_CP.z();
-  if (!normal.allFinite()) return std::nullopt;
-  PointProjection result;
   if (!intrinsics_.is_distorted()) {
     const double x = fx * nearness, y = fy * nearness;
     result.pixel = {fx * normal.x() + intrinsics_.cx, fy * normal.y() + intrinsics_.cy};
     result.by_point << x, 0, -x * normal.x(), 0, y, -y * normal.y();
   } else {
-    if (normal.norm() > largest_radius_) return std::nullopt;
+    if (!(normal.squaredNorm() <= largest_radius_ * largest_radius_)) return false;
     const Distorted distorted = distort(normal, intrinsics_.distortion);
     result.pixel = {fx * distorted.point.x() + intrinsics_.cx, fy * distorted.point.y() + intrinsics_.cy};
-    const Eigen::Matrix2d across = Eigen::Vector2d(fx * nearness, fy * nearness).asDiagonal() * distorted.by_point;
-    result.by_point << across, -across * normal;
+    result.by_point.leftCols<2>() =
+        Eigen::Vector2d(fx * nearness, fy * nearness).asDiagonal() * distorted.by_point;
+    result.by_point.col(2) = -normal.x() * result.by_point.col(0) - normal.y() * result.by_point.col(1);
   }
-  if (!result.pixel.allFinite()) return std::nullopt;
-  return result;
+  return std::isfinite(result.pixel.x() + result.pixel.y());
 }
 
 std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) const {

@@ -97,8 +97,12 @@ bool FeatureImages::derive(const ArmState& state, std::span<const View> views, E
   by_state.resize(all, points_.columns());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Eigen::Index first = static_cast<Eigen::Index>(i) * rows;
-    if (!points_.see(views[i], pixels_, by_) || !write_values(values.segment(first, rows))) return false;
-    write_rows(by_, by_state.middleRows(first, rows));
+    // Where only points count, each once, their rows are the features' own.
+    const bool is_plain = 2 * points_.count() == rows && ends_.empty() && !set_.has_moments;
+    if (!is_plain) by_.resize(2 * points_.count(), points_.columns());
+    const Rows seen = is_plain ? Rows(by_state.middleRows(first, rows)) : Rows(by_);
+    if (!points_.see(views[i], pixels_, seen) || !write_values(values.segment(first, rows))) return false;
+    if (!is_plain) write_rows(by_, by_state.middleRows(first, rows));
   }
   return true;
 }

@@ -44,7 +44,7 @@ double sum_of(const Series& c, double square) {
 using Columns23 = Eigen::Matrix<double, 2, 3>;
 
 // P with P w = G (w x p).
-Columns23 turned(const Columns23& G, const Eigen::Vector3d& p) {
+[[gnu::always_inline]] inline Columns23 turned(const Columns23& G, const Eigen::Vector3d& p) {
   Columns23 M;
   M.col(0) = p.y() * G.col(2) - p.z() * G.col(1);
   M.col(1) = p.z() * G.col(0) - p.x() * G.col(2);
@@ -53,7 +53,7 @@ Columns23 turned(const Columns23& G, const Eigen::Vector3d& p) {
 }
 
 // Term by term: two rows are one register.
-Eigen::Vector2d times(const Columns23& G, const Eigen::Vector3d& v) {
+[[gnu::always_inline]] inline Eigen::Vector2d times(const Columns23& G, const Eigen::Vector3d& v) {
   return G.col(0) * v.x() + G.col(1) * v.y() + G.col(2) * v.z();
 }
 
@@ -135,7 +135,7 @@ bool PointImages::see(const View& view, Eigen::Matrix2Xd& pixels) const {
   return true;
 }
 
-bool PointImages::see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::MatrixXd& by_state) {
+bool PointImages::see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::Ref<Eigen::MatrixXd> by_state) {
   const auto& parts = backbone_.parts();
   const Eigen::Matrix3d R_CW = view.X_WC.rotation.transpose();
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -148,16 +148,15 @@ bool PointImages::see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::MatrixX
     seen.stretch = R_CW * part.V_end.block<3, 1>(0, 2);
   }
   pixels.resize(2, count());
-  by_state.resize(2 * count(), columns());
+  PointProjection projection;
   for (Eigen::Index i = 0; i < count(); ++i) {
     const Point& point = points_[static_cast<std::size_t>(i)];
     const BackboneJacobian::Part& part = parts[point.section];
     const SeenSection& own = seen_[point.section];
     const Eigen::Vector3d p_CP = place_in(own, point);
-    const auto projection = view.lens.project_by_point(p_CP);
-    if (!projection) return false;
-    pixels.col(i) = projection->pixel;
-    const Columns23 &G = projection->by_point, M = turned(G, p_CP);
+    if (!view.lens.project_by_point(p_CP, projection)) return false;
+    pixels.col(i) = projection.pixel;
+    const Columns23 &G = projection.by_point, M = turned(G, p_CP);
     Eigen::Index column = 0;
     for (std::size_t k = 0; k < point.section; ++k, column += 3) {
       const SeenSection& seen = seen_[k];

@@ -29,8 +29,9 @@ class PointImages {
 
   /// The points' pixels. False where the lens shows one of them nowhere. set() comes before.
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels) const;
-  /// And their derivatives, two rows a point.
-  [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::MatrixXd& by_state);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
+  /// And their derivatives, two rows a point, into 2 count() x columns().
+  [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::Ref<Eigen::MatrixXd> by_state);
 
  private:
   struct Point {

@@ -50,7 +50,7 @@ TEST(PointImages, AreThoseOfTheBackbonesJacobian) {
     PointImages images(arm, shares);
     images.set(state);
     Eigen::Matrix2Xd pixels, alone;
-    Eigen::MatrixXd by_state;
+    Eigen::MatrixXd by_state(2 * images.count(), images.columns());
     ASSERT_TRUE(images.see(view, pixels, by_state));
     ASSERT_TRUE(images.see(view, alone));
     const Eigen::MatrixXd wanted = multiplied_out(arm, state, view, shares);
@@ -75,7 +75,7 @@ TEST(PointImages, AreNoneBehindTheCamera) {
   View view = servo_views()[0];
   view.X_WC.position.z() = -2;
   Eigen::Matrix2Xd pixels;
-  Eigen::MatrixXd by_state;
+  Eigen::MatrixXd by_state(4, 9);
   EXPECT_FALSE(images.see(view, pixels));
   EXPECT_FALSE(images.see(view, pixels, by_state));
   EXPECT_THROW(PointImages(arm, {1.1}), std::invalid_argument);

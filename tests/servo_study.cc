@@ -83,7 +83,9 @@ std::string file_of(const LoopRig& rig, bool is_colored) {
   std::string text = arcs_rig("method = \"bundle\"\n", rig);
   if (!is_colored) {
     const std::size_t look = text.find("[arm.look]");
-    text.erase(look, text.find("[[", look + 1) - look);
+    text.erase(look, text.find("\n[", look) + 1 - look);
+    // Nothing to calibrate by: what the file does instead is not played.
+    text = text.substr(0, text.find("[[task]]")) + "[[task]]\nkind = \"hold\"\nduration = 1\n";
     const std::string color = "\"color\"";
     for (std::size_t at = text.find(color); at != std::string::npos; at = text.find(color))
       text.replace(at, color.size(), "\"gray\"");
@@ -244,7 +246,13 @@ class StudyRig {
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::ranges::sort(values);
-  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
+  const double place = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(place, 1.0)) - 1];
+}
+
+// "-" where there is none.
+std::string number(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
 }
 
 template <class Of>
@@ -264,12 +272,11 @@ void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bo
                             tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
                             limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
                             floor = of_done(arrivals, [](const Arrival& a) { return 100 * a.floor; });
-  fmt::print("| {} | {}/{} | {:.2f} / {:.2f} | {:.1f} | {:.3f} / {:.3f} | {:.3f} | {:.3f} | {:.2f} | {} |\n",
-             name, rms.size(), arrivals.size(), quantile(settled, 0.5), quantile(settled, 0.95),
-             quantile(over, 0.95), quantile(rms, 0.5), quantile(rms, 0.95), quantile(most, 1),
-             quantile(tip, 0.95),
-             quantile(limit, 1.0 / std::max<double>(1, static_cast<double>(limit.size()))),
-             has_floor ? fmt::format("{:.3f} / {:.3f}", quantile(floor, 0.5), quantile(floor, 0.95)) : "-");
+  fmt::print("| {} | {}/{} | {} / {} | {} | {} / {} | {} | {} | {} | {} |\n", name, rms.size(),
+             arrivals.size(), number(quantile(settled, 0.5), 2), number(quantile(settled, 0.95), 2),
+             number(quantile(over, 0.95), 1), number(quantile(rms, 0.5), 3), number(quantile(rms, 0.95), 3),
+             number(quantile(most, 1), 3), number(quantile(tip, 0.95), 3), number(quantile(limit, 0), 2),
+             has_floor ? number(quantile(floor, 0.5), 3) + " / " + number(quantile(floor, 0.95), 3) : "-");
 }
 
 void print_reasons(const std::string& name, const std::vector<Arrival>& arrivals) {

@@ -26,7 +26,7 @@
 namespace flexura {
 namespace {
 
-constexpr std::size_t targets_a_rig = 10;
+constexpr std::size_t targets_a_rig = 4;
 
 enum class Cameras { calibrated, wrong, recorded };
 
@@ -160,8 +160,8 @@ class StudyRig {
       return;
     }
     const RigSessionResult result = colored_.calibrate_bundle(colored_.ports());
-    is_ready_ = result.is_done;
-    if (!is_ready_) return;
+    if (!result.is_done) why_not_ = "not calibrated, " + result.reason;
+    if (!why_not_.empty()) return;
     believed_ = result.found.model;
     for (std::size_t i = 0; i < 2; ++i) {
       const CameraPorts found = colored_.ports().cameras[i], other = gray_.ports().cameras[i];
@@ -172,7 +172,8 @@ class StudyRig {
     gray_.rig().clock().wait_until(gray_.rig().clock().now() + patience);
   }
 
-  [[nodiscard]] bool is_ready() const { return is_ready_; }
+  // Why there is no rig to steer with; "" where there is.
+  [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
   Arrival go(const Method& method, const ArmState& target, TestRandom& random) {
     RigBench& bench = method.has_bands ? static_cast<RigBench&>(colored_) : gray_;
@@ -240,7 +241,7 @@ class StudyRig {
   CalibrationBench colored_;
   RigBench gray_;
   RigModel believed_;
-  bool is_ready_ = true;
+  std::string why_not_;
 };
 
 double quantile(std::vector<double> values, double share) {
@@ -299,7 +300,7 @@ void study(Cameras cameras, const std::vector<Method>& methods, std::size_t targ
         const ArmState target = random_target(random);
         for (std::size_t j = 0; j < methods.size(); ++j)
           arrivals[j][k] =
-              rig.is_ready() ? rig.go(methods[j], target, random) : Arrival{.reason = "not calibrated"};
+              rig.why_not().empty() ? rig.go(methods[j], target, random) : Arrival{.reason = rig.why_not()};
       }
       std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
     }

@@ -35,8 +35,8 @@ class PointImages {
 
  private:
   struct Point {
-    std::size_t section;
-    double fraction;  // Of the section.
+    std::size_t section = 0;
+    double fraction = 0;  // Of the section.
     // Of an arc of unit length bent by (b_x, b_y), t = |b|: the place at the fraction f is across * b aside
     // and `along` on, with across = (1 - cos ft)/t^2 and along = sin ft/t; and their derivatives by t, over
     // t.

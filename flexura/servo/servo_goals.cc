@@ -45,11 +45,12 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
   if (seen && foreseen) wanted.offset = *seen - *foreseen;
 }
 
-// Two mirror images of a shape are told apart by perspective alone, which cameras as believed fit to
-// hundredths of a pixel in the right order. The eyes are left as they were.
+// Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but
+// for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order. The
+// eyes are left as they were.
 std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
                                     ServoEyes& eyes, const std::array<View, 2>& views) const {
-  constexpr double far_better = 1.0 / 3, not_at_all = 20;  // times, px
+  constexpr double noise = 1.5, far_worse = 2;  // In units of what the noise explains; times the other.
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
     return std::visit(
         [&](const auto& image) {
@@ -59,11 +60,11 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   };
   if (frames[0].picture->index() != frames[1].picture->index() || !is_taken_by(0, 1) || !is_taken_by(1, 0))
     return "";
-  const double rms = sight.estimate.is_found ? sight.estimate.rms : not_at_all;
   const ShapeEstimate other = eyes.look({frames[1], frames[0]}, views, std::nullopt).estimate;
   (void)eyes.look(frames, views, std::nullopt);
-  if (!other.is_found || !(other.rms < far_better * rms)) return "";
-  const std::string than = sight.estimate.is_found ? fmt::format(", not {:.2g} px", rms) : "";
+  const bool is_worse = !sight.estimate.is_found || sight.estimate.scale >= far_worse * other.scale;
+  if (!other.is_found || other.scale > noise || !is_worse) return "";
+  const std::string than = sight.estimate.is_found ? fmt::format(", not {:.2g} px", sight.estimate.rms) : "";
   return fmt::format(
       "the pictures of goal {} are in the wrong order: the other way round they fit the cameras to {:.2g} "
       "px{}",

@@ -1,114 +1,29 @@
 // The whole loop of a servo, two noisy pictures of 640 x 480 px a turn: rendered, segmented, the shape
-// estimated, the arm controlled; beside the sum of the best packaged parts for it.
+// estimated, the arm controlled; packaged_loop.cc has the sum of the best packaged parts for it.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <ctime>
 #include <exception>
 #include <functional>
 #include <memory>
-#include <numbers>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <semaphore>
 #include <stdexcept>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "bench/llvmpipe_peer.h"
-#include "bench/mujoco_peer.h"
-#include "bench/render_scene.h"
-#include "flexura/control/feature_images.h"
+#include "bench/loop_eye.h"
 #include "flexura/control/limiter.h"
-#include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/render/renderer.h"
-#include "flexura/render/sensor_image.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_law.h"
-#include "flexura/vision/arm_finder.h"
-#include "tests/support/visp_peer.h"
 
 namespace flexura {
 namespace {
-
-constexpr int width = 640, height = 480;
-
-// The scene of the renderers' comparison, with its rings or without, from two sides, rad.
-struct Sides {
-  bool has_rings = true;
-  double aside = 0.17;
-};
-
-// From farther aside rings are drawn the exact way, which takes twenty times as long and is not the matter
-// here.
-constexpr Sides near_sides = {}, far_sides = {false, 0.52};
-
-Setting setting_from(const Sides& sides, double angle) {
-  Setting result = setting(width, height);
-  if (!sides.has_rings) result.scene.arm.markers.clear();
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  const Eigen::Vector3d middle(0.19, 0.054, 0);
-  result.view.X_WC.position = middle + turn * (result.view.X_WC.position - middle);
-  result.view.X_WC.rotation = (turn * result.view.X_WC.rotation).eval();
-  return result;
-}
-
-std::array<Setting, 2> both_settings(const Sides& sides) {
-  return {setting_from(sides, -sides.aside), setting_from(sides, sides.aside)};
-}
-
-SensorConfig noisy() {
-  return {.width = width, .height = height, .full_well = 10000, .read_noise = 1.5, .psf = 0.7};
-}
-
-// One camera, and what it takes to see the arm with it.
-struct Eye {
-  View view = {};
-  std::uint64_t number = 0;
-  Sensor sensor = Sensor(noisy());
-  Renderer renderer = Renderer();
-  LightImage light = {};
-  SensorRows rows = {};
-  Image<std::uint8_t> picture = Image<std::uint8_t>(width, height);
-  ArmFinder finder = ArmFinder();
-  Sighting seen = {};
-  double drawing = 0, reading = 0, finding = 0;  // s, of all turns
-};
-
-// Of the calling thread's processor time: others on the machine do not count.
-class Stopwatch {
- public:
-  double lap() {
-    const double now = used();
-    return now - std::exchange(last_, now);
-  }
-
- private:
-  static double used() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  }
-  double last_ = used();
-};
-
-void look(Eye& eye, const Scene& scene, std::uint64_t turn) {
-  Stopwatch watch;
-  eye.renderer.render(scene, eye.view, PixelKind::gray, eye.light);
-  eye.drawing += watch.lap();
-  eye.sensor.read(eye.light.light, {1, eye.number, turn}, eye.rows, eye.picture);
-  eye.reading += watch.lap();
-  eye.seen = sighting_of(eye.finder.find(eye.picture), eye.view);
-  eye.finding += watch.lap();
-}
 
 // Does one thing again and again in a thread of its own.
 class Helper {
@@ -244,116 +159,6 @@ BENCHMARK_CAPTURE(whole_loop, rings, near_sides)
 BENCHMARK_CAPTURE(whole_loop, no_rings, far_sides)
     ->Arg(1)
     ->Arg(2)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-
-// Gray of colour, Otsu's threshold, components, contours and the distance transform: whole pixels, and no
-// axis.
-class OpenCvEye {
- public:
-  void look(const Image<std::uint8_t>& picture) {
-    const cv::Mat taken(picture.height(), picture.width(), picture.channels() == 1 ? CV_8UC1 : CV_8UC3,
-                        const_cast<std::uint8_t*>(picture.values().data()));
-    if (picture.channels() == 1)
-      gray_ = taken;
-    else
-      cv::cvtColor(taken, gray_, cv::COLOR_RGB2GRAY);
-    cv::threshold(gray_, mask_, 0, 255, cv::THRESH_BINARY_INV | cv::THRESH_OTSU);
-    cv::connectedComponentsWithStats(mask_, labels_, stats_, centroids_);
-    contours_.clear();
-    cv::findContours(mask_, contours_, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    cv::distanceTransform(mask_, distance_, cv::DIST_L2, 5);
-    benchmark::DoNotOptimize(distance_.data);
-  }
-
- private:
-  cv::Mat gray_, mask_, labels_, stats_, centroids_, distance_;
-  std::vector<std::vector<cv::Point>> contours_;
-};
-
-// 25 places along the arm in both pictures, as one free camera's 50 points.
-std::vector<VispPoint> points_of(const ArmState& state) {
-  constexpr int places = 25;
-  FeatureImages images(setting_arm(), FeatureSet::of_points(places));
-  std::vector<View> views;
-  for (const Setting& setting : both_settings(near_sides)) views.push_back(setting.view);
-  Eigen::VectorXd values;
-  if (!images.values(state, views, values)) throw std::runtime_error("the arm is not seen");
-  std::vector<VispPoint> points;
-  for (const View& view : views) {
-    for (Eigen::Index i = 0; i < places; ++i) {
-      const Eigen::Vector3d p_CP = view.X_WC.inverse() * images.points().place(i);
-      points.push_back({p_CP.x() / p_CP.z(), p_CP.y() / p_CP.z(), p_CP.z()});
-    }
-  }
-  return points;
-}
-
-enum class Painter : std::uint8_t { nobody, llvmpipe_gray, llvmpipe_color, llvmpipe_smooth, mujoco };
-
-std::unique_ptr<Peer> painter(Painter kind, const Setting& setting) {
-  switch (kind) {
-    case Painter::nobody:
-      break;
-    case Painter::llvmpipe_gray:
-      return llvmpipe_peer(setting, {.pixels = PixelKind::gray});
-    case Painter::llvmpipe_color:
-      return llvmpipe_peer(setting, {});
-    case Painter::llvmpipe_smooth:
-      return llvmpipe_peer(setting, {.samples = 4, .pixels = PixelKind::gray});
-    case Painter::mujoco:
-      return mujoco_peer(setting, {.slices = 24, .stacks = 4});
-  }
-  return nullptr;
-}
-
-// The packaged parts for one turn, one after the other in one thread: two pictures, without noise; OpenCV on
-// both; a step of vpServo. Nobody estimates a shape.
-void packaged(benchmark::State& state, Painter kind) {
-  try {
-    cv::setNumThreads(1);
-    const std::array<Setting, 2> settings = both_settings(near_sides);
-    // One context at a time may be current: both pictures are of the first view, which is as much work.
-    const std::unique_ptr<Peer> peer = painter(kind, settings[0]);
-    std::array<Image<std::uint8_t>, 2> pictures;
-    for (std::size_t i = 0; i < 2; ++i) {
-      Eye eye{.view = settings[i].view, .number = i};
-      look(eye, settings[i].scene, 0);
-      pictures[i] = peer ? peer->picture().pixels : eye.picture;
-    }
-    std::array<OpenCvEye, 2> eyes;
-    const std::vector<VispPoint> now = points_of(setting_state());
-    ArmState goal = setting_state();
-    for (Eigen::Vector2d& bend : goal.bends) bend *= 0.93;
-    VispServo servo(points_of(goal), 0.5);
-    for (auto _ : state) {
-      for (int i = 0; peer && i < 2; ++i) peer->draw();
-      for (std::size_t i = 0; i < 2; ++i) eyes[i].look(pictures[i]);
-      benchmark::DoNotOptimize(servo.velocity(now));
-    }
-  } catch (const std::exception& error) {
-    state.SkipWithError(error.what());
-  }
-  state.SetItemsProcessed(state.iterations());
-}
-BENCHMARK_CAPTURE(packaged, opencv_and_visp, Painter::nobody)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packaged, with_llvmpipe_gray, Painter::llvmpipe_gray)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packaged, with_llvmpipe_color, Painter::llvmpipe_color)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packaged, with_llvmpipe_gray_4_samples, Painter::llvmpipe_smooth)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(packaged, with_mujoco, Painter::mujoco)
     ->UseRealTime()
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);

@@ -81,9 +81,10 @@ class QuickPicture {
            std::abs(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy) < most;
   }
   bool plan_pieces(const Stage& stage);
+  void find_meetings(const Stage& stage);
   bool plan_piece(const Stage& stage, const TubePiece& piece);
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;
-  bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
+  [[nodiscard]] bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
   void draw_pieces(SpanRow& row);
   bool leave_face(const FacePart& part);
   void leave_plane(const PlanePart& plane);
@@ -101,6 +102,7 @@ class QuickPicture {
   void draw_screens(SpanRow& row);
   void clear(int begin, int end, SpanRow& row) const;
   void draw_panel(const Panel& panel, bool is_first, SpanRow& row);
+  void draw_edge(const Panel& panel, int u, SpanRow& row);
 
   void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
   void divide(const Skin& skin);
@@ -137,6 +139,7 @@ class QuickPicture {
   std::vector<std::uint8_t> states_, has_exact_;  // Of pixels; of rows.
   std::vector<float> background_;                 // A row of it.
   std::vector<int> borders_;
+  std::vector<int> edge_columns_;  // Of the row: where an edge of a screen has been drawn.
   std::vector<Panel> panels_;
   std::size_t panel_count_ = 0;
   std::vector<Skin> skins_;
@@ -145,6 +148,7 @@ class QuickPicture {
   std::size_t rim_count_ = 0;
   std::vector<std::size_t> by_row_, active_;  // Skins by their first row; those of the current row.
   std::size_t next_ = 0;                      // In by_row_.
+  std::vector<std::uint8_t> meets_;  // Of the stage's pieces: whether another stretch of the arm cuts it.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;
 };

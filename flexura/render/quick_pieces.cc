@@ -30,11 +30,73 @@ void plan_steps(double bend, double start, double pixels, SpanPiece& span) {
   span.settled = number(settled * static_cast<double>(span.radius));
 }
 
+// The least distance between the segments from p to p + u and from q to q + v.
+double distance_between(const Eigen::Vector3d& p, const Eigen::Vector3d& u, const Eigen::Vector3d& q,
+                        const Eigen::Vector3d& v) {
+  const Eigen::Vector3d w = p - q;
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm(), uw = u.dot(w), vw = v.dot(w);
+  const double scale = uu * vv - uv * uv;
+  double a = scale > 1e-12 * uu * vv ? std::clamp((uv * vw - vv * uw) / scale, 0.0, 1.0) : 0.0;
+  const double b = vv > 0 ? std::clamp((uv * a + vw) / vv, 0.0, 1.0) : 0.0;
+  if (uu > 0) a = std::clamp((uv * b - uw) / uu, 0.0, 1.0);
+  return (w + a * u - b * v).norm();
+}
+
+// Whether two pieces of the arm meet that do not follow each other: their skins then end in a line that no
+// contour tells of.
+bool do_meet(const TubePiece& one, const TubePiece& other) {
+  constexpr double apart = 2.5;  // Of the radius: an arc that the quick way takes does not come back so soon.
+  const double gap =
+      std::max(one.s, other.s) - (one.s < other.s ? one.s + one.length : other.s + other.length);
+  const double reach = std::max(one.radius, one.radius + one.widening * one.length) +
+                       std::max(other.radius, other.radius + other.widening * other.length);
+  if (gap < 0.5 * apart * reach) return false;
+  const Eigen::Vector3d u = one.R_CP * (2 * one.bound_center), v = other.R_CP * (2 * other.bound_center);
+  const auto sagitta = [](const TubePiece& piece) {
+    return piece.length * piece.length * piece.curvature / 8;
+  };
+  return distance_between(one.p_CP, u, other.p_CP, v) < reach + sagitta(one) + sagitta(other);
+}
+
+// Whether a screen comes into a ball.
+bool meets_screen(const Stage& stage, const Eigen::Vector3d& center, double radius) {
+  return std::ranges::any_of(stage.faces, [&](const FacePart& part) {
+    if (part.screen < 0) return false;
+    const auto& corners = part.face.corners;
+    const Eigen::Vector3d from = center - 0.5 * (corners[0] + corners[2]);
+    return std::abs(part.face.normal.dot(from)) < radius &&
+           from.norm() < 0.5 * (corners[2] - corners[0]).norm() + radius;
+  });
+}
+
+// Whether the plane of an edge that does not lie on the piece leaves its ends on one side.
+bool is_clear_of(const RingEdge& edge, const TubePiece& piece) {
+  const bool is_before = edge.s<piece.s, is_after = edge.s> piece.s + piece.length;
+  if (!is_before && !is_after) return true;
+  const auto is_clear = [&](const Eigen::Vector3d& p_P, const Eigen::Vector3d& tangent_P) {
+    const Eigen::Vector3d& normal = edge.circle.normal;
+    const double beyond = normal.dot(piece.p_CP + piece.R_CP * p_P - edge.circle.center);
+    const double cosine = normal.dot(piece.R_CP * tangent_P);
+    const double tilt = piece.radius * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return is_before ? beyond > tilt : beyond < -tilt;
+  };
+  return is_clear({0, 0, 0}, {0, 0, 1}) && is_clear(2 * piece.bound_center, piece.end_tangent);
+}
+
+// Sees to it that pixels in which a ring's edge is bent are judged by points: in the mean of a pixel a line
+// stands d px within the contour for that curve but for 1/24 of its second derivative.
+void bend_edges(double slope, double radius, double pixel, SpanPiece& span) {
+  constexpr double most = 0.004;  // px
+  const double far = std::pow(slope * std::sqrt(2 * radius / pixel) / (96 * most), 2.0 / 3) * pixel;
+  span.bent_reach = std::max(span.bent_reach, number(std::min(far, radius)));
+}
+
 }  // namespace
 
 bool QuickPicture::plan_pieces(const Stage& stage) {
   skin_count_ = 0;
   edges_.clear();
+  find_meetings(stage);
   if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
     return false;
   by_row_.clear();
@@ -46,6 +108,17 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   }
   std::ranges::sort(by_row_, {}, [this](std::size_t i) { return std::pair(skins_[i].rows.begin, i); });
   return true;
+}
+
+void QuickPicture::find_meetings(const Stage& stage) {
+  const auto& pieces = stage.pieces;
+  meets_.assign(pieces.size(), 0);
+  const auto is_arm = [&](const TubePiece& piece) {
+    return stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (std::size_t j = i + 2; j < pieces.size() && is_arm(pieces[i]); ++j)
+      if (is_arm(pieces[j]) && do_meet(pieces[i], pieces[j])) meets_[i] = meets_[j] = 1;
 }
 
 bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
@@ -64,16 +137,18 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
                                       piece.is_ball ? 2 * widest : widest * (lean + 0.1));
   if (!region) return false;
-  const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
+  const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm &&
+                       meets_[static_cast<std::size_t>(&piece - stage.pieces.data())] == 0;
   bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
                   piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius &&
-                  is_near_picture(center);
+                  is_near_picture(center) && !meets_screen(stage, center, piece.bound_radius);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];
     fill_span_piece(stage, piece, skin);
-    // Three pixels across the radius, so that no pixel has both contours.
-    is_quick = 3 * skin.piece.reach < skin.piece.radius && add_edges(stage, piece, skin);
+    // Two pixels across the radius, so that a pixel with one contour does not reach over the axis to the
+    // other.
+    is_quick = 2.1F * skin.piece.reach < skin.piece.radius && add_edges(stage, piece, skin);
   }
   if (!is_quick) {
     leave(*region);
@@ -118,7 +193,7 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   span.end_sine = number(piece.end_tangent.x()), span.end_cosine = number(piece.end_tangent.z());
   span.end_offset = number(piece.end_offset);
   const double pixel = (center.z() + piece.bound_radius) * pixel_;
-  span.reach = number(0.9 * pixel);
+  span.reach = span.bent_reach = number(0.9 * pixel);
   // The rays' rise over that plane changes across the image.
   const double bend = piece.curvature * piece.radius, slant = std::abs(d.dot(chord)) / rise;
   const double width = piece.bound_radius * piece.bound_radius / center.z();
@@ -128,8 +203,8 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   span.channels = channels_;
 }
 
-// The planes of marker edges at the piece and what they do to its colour; false when they are seen as curves
-// that no line stands for within a pixel.
+// The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
+// to a ring beyond its ends, where the arm turns sharply.
 bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
   const ArmLook& arm = stage.scene->arm;
   const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
@@ -152,16 +227,19 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   for (auto ring = begin; ring != end; ++ring) {
     const bool is_last_here = ring + 1 == end || (ring + 1)->s > ring->s;
     if (!is_last_here) continue;
+    if (!is_clear_of(*ring, piece)) return false;
     const Color after = albedo_at(ring->s);
     const Eigen::Vector3d normal = piece.R_CP.transpose() * ring->circle.normal;
     SpanEdge edge{};
     for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = static_cast<float>(normal[i]);
     edge.offset = static_cast<float>(ring->circle.normal.dot(ring->circle.center - piece.p_CP));
-    // Towards the contour the edge of a ring that is seen aslant runs along it.
-    const double aslant = std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
-                          2 * piece.radius / ring->circle.center.z();
-    if (aslant * pixel > 0.02 * piece.radius) return false;
-    edge.far = static_cast<float>(pixel * (1 + aslant * std::sqrt(2.8 * piece.radius / pixel)));
+    // Towards the contour the edge of a ring that is seen aslant runs along it: d px within, it is
+    // slope sqrt(2 r d) px along the tube from where it meets the contour.
+    const double cosine = std::min(0.95, std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
+                                             2 * piece.radius / ring->circle.center.z());
+    const double sine = std::sqrt(1 - cosine * cosine), slope = cosine / sine;
+    if (slope * pixel > 0.02 * piece.radius) bend_edges(slope, piece.radius, pixel, skin.piece);
+    edge.far = static_cast<float>(pixel * (1 / sine + slope * std::sqrt(2.8 * piece.radius / pixel)));
     for (std::size_t c = 0; c < channels_; ++c)
       edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));
     edges_.push_back(edge);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "flexura/render/cell.h"
 #include "flexura/render/quick_picture.h"
 
 namespace flexura {
@@ -100,12 +101,15 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
   PixelRange inner = PixelRange::around(inner_from, inner_to, width_);
   inner.begin = std::clamp(inner.begin, outer.begin, outer.end);
   inner.end = std::clamp(inner.end, inner.begin, outer.end);
-  for (int u = outer.begin; u < inner.begin; ++u) leave(u, row.v);
-  for (int u = inner.end; u < outer.end; ++u) leave(u, row.v);
   if (is_first) {
+    edge_columns_.clear();
     clear(0, inner.begin, row);
     clear(inner.end, width_, row);
   }
+  for (const int u : edge_columns_)
+    if (u >= outer.begin && u < outer.end) leave(u, row.v);
+  for (int u = outer.begin; u < inner.begin; ++u) draw_edge(panel, u, row);
+  for (int u = inner.end; u < outer.end; ++u) draw_edge(panel, u, row);
   if (inner.begin == inner.end) return;
   const Linear& nearness = panel.screen.nearness;
   const float here = nearness.value + nearness.by_v * (static_cast<float>(row.v) - panel.screen.v0);
@@ -125,6 +129,53 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
     std::fill_n(row.depth + inner.begin, count, 1 / here);
   else
     kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
+}
+
+// A pixel that one edge divides, before nothing; any other is left.
+void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
+  const Panel::Edge* here = nullptr;
+  double value_here = 0;
+  bool is_one = std::isinf(row.depth[u]);
+  for (const Panel::Edge& edge : panel.edges) {
+    const double value = edge.value + edge.by_v * row.v + edge.by_u * u;
+    if (value >= edge.margin) continue;
+    if (value <= -edge.margin) return;
+    is_one = is_one && here == nullptr;
+    here = &edge, value_here = value;
+  }
+  const SpanScreen& screen = panel.screen;
+  const double x = u - static_cast<double>(screen.u0), y = row.v - static_cast<double>(screen.v0);
+  const auto at = [&](const Linear& f, double right, double down) {
+    return static_cast<double>(f.value) + static_cast<double>(f.by_u) * right +
+           static_cast<double>(f.by_v) * down;
+  };
+  const double nearness = at(screen.nearness, x, y);
+  if (!is_one || here == nullptr || !(nearness > 0)) {
+    leave(u, row.v);
+    return;
+  }
+  const Eigen::Vector2d slope(here->by_u, here->by_v);
+  const SquarePart part = part_beyond(0.5, slope.normalized(), -value_here / slope.norm());
+  std::uint8_t& what = state(u, row.v);
+  what = static_cast<std::uint8_t>(what | state_edge);
+  edge_columns_.push_back(u);
+  row.has_edge = true;
+  if (value_here >= 0) row.depth[u] = static_cast<float>(1 / nearness);
+  if (!(part.area > 0)) return;
+  const double right = x + part.centroid.x(), down = y + part.centroid.y();
+  const double depth = 1 / at(screen.nearness, right, down);
+  double rise = 1, square = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double place =
+        depth * at(screen.place[axis], right, down) - static_cast<double>(screen.middle[axis]);
+    rise += static_cast<double>(screen.gradient[axis]) * place;
+    square += place * place;
+  }
+  const double factor = std::max(0.0, rise * (1 - 0.5 * static_cast<double>(screen.falloff) * square));
+  float* const light = row.light + static_cast<std::size_t>(u) * channels_;
+  for (std::size_t c = 0; c < channels_; ++c)
+    light[c] +=
+        static_cast<float>(part.area) * (screen.brightness[c] * static_cast<float>(factor) - light[c]);
 }
 
 }  // namespace flexura

@@ -46,11 +46,29 @@ template <typename Visit>
     row.borders[row.border_count++] = u + __builtin_ctz(bits);
 }
 
+// What is drawn over a screen's edge may be behind it.
+[[gnu::always_inline]] inline void leave_edges(const WideMask& is_drawn, int u, SpanRow& row) {
+  if (!row.has_edge) return;
+  const WideMask is_edge = is_drawn & has_flag(row.state + u, state_edge);
+  if (!any(is_edge)) return;
+  set_flag(is_edge, state_exact, row.state + u);
+  row.has_exact = true;
+}
+
+// Whether the edge of a ring is so near to p that it may divide the pixel.
+[[gnu::always_inline]] inline WideMask is_at_edge(const SpanPiece& piece, const Vector& p) {
+  WideMask is_at{};
+  for (std::size_t i = 0; i < piece.edge_count; ++i)
+    is_at |= size_of(dot(p, piece.edges[i].normal) - piece.edges[i].offset) < piece.edges[i].far;
+  return is_at;
+}
+
 // `piece` is a copy, which no store can change: what is the same in all the row is worked out once.
 template <std::size_t channels, bool is_straight>
 void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const float radius = piece.radius, reach = piece.reach;
   const float near = reach * (2 * radius + reach), inside = -reach * (2 * radius - reach);
+  const float deep = -piece.bent_reach * (2 * radius - piece.bent_reach);
   float *const depths = row.depth, *const lights = row.light;
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
     const Place place = place_of<is_straight>(row, u, piece.u0, piece.v0);
@@ -67,12 +85,19 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     if (any(is_unsure)) leave_lost(piece, ray, is_unsure & is_asked, u, row);
     const WideMask is_border = is_near & ~is_inside & lowest.is_sure;
     if (any(is_border)) {
+      // Where the bend changes, each of two pieces may see the ray pass beside the other: in that fifth of a
+      // pixel both take it, and what two have taken is left.
       const WideMask is_passing =
-          is_within(piece, along(ray.point, ray.direction, lowest.t), overlap * radius);
+          is_within(piece, along(ray.point, ray.direction, lowest.t), overlap * radius + 0.2f * reach);
       add_borders(is_border & is_asked & (is_passing | (is_here & (lowest.value < 0))), u, row);
     }
     const Wide depth = ray.depth + entry.t, before = wide_load(depths + u);
     WideMask is_drawn = is_inside & is_settled & is_here & is_asked & (depth < before);
+    if (deep < inside && any(is_drawn & (lowest.value > deep))) {
+      const WideMask is_bent = is_drawn & (lowest.value > deep) & is_at_edge(piece, p);
+      if (any(is_bent)) add_borders(is_bent, u, row);
+      is_drawn &= ~is_bent;
+    }
     if (piece.rims != 0) is_drawn &= ~has_flag(row.state + u, piece.rims);
     if (!any(is_drawn)) return;
     Wide light[channels];
@@ -80,6 +105,7 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     store(depths + u, choose(is_drawn, depth, before));
     store_light(light, is_drawn, lights + static_cast<std::size_t>(u) * channels);
     set_flag(is_drawn, state_arm, row.state + u);
+    leave_edges(is_drawn, u, row);
   });
 }
 

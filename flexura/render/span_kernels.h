@@ -21,6 +21,7 @@ enum PixelState : std::uint8_t {
   state_exact = 4,   ///< To be drawn by the exact way.
   state_base = 8,    ///< The rim of the arm's base may be seen in it;
   state_tip = 16,    ///< that of its tip.
+  state_edge = 32,   ///< A screen's edge runs through it, before nothing.
 };
 
 /// A function of the image that is linear: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion
@@ -45,7 +46,8 @@ struct SpanRow {
   LensRow lens;
   int* borders = nullptr;        ///< Columns in which the contour may be, as draw() adds them:
   std::size_t border_count = 0;  ///< so many.
-  bool has_exact = false;        ///< Set when a pixel is left to the exact way.
+  bool has_edge = false;         ///< Whether a pixel has state_edge,
+  bool has_exact = false;        ///< is left to the exact way.
 };
 
 /// A plane across the tube where its colour changes: where p . normal = offset in the piece's frame.
@@ -63,7 +65,8 @@ struct SpanPiece {
   Linear way;  ///< From there about to the plane along the piece's middle that faces the camera, m of depth.
   float curvature, radius;
   float end_sine, end_cosine, end_offset;
-  float reach;         ///< m: contours this near may divide the pixel.
+  float reach;         ///< m: contours this near may divide the pixel,
+  float bent_reach;    ///< and edges of rings that are this near to a contour, within, are bent; no less.
   int centering;       ///< Newton's steps to where the ray is deepest,
   float largest_move;  ///< m: and how small the last one has to be.
   int refining;        ///< Newton's steps to where it enters,

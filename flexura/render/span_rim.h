@@ -91,6 +91,7 @@ void draw_disc(const SpanRim rim, int begin, int end, SpanRow& row) {
     store(row.depth + u, choose(is_drawn, depth, before));
     store_light(light, is_drawn, row.light + static_cast<std::size_t>(u) * channels);
     set_flag(is_drawn, state_arm, row.state + u);
+    leave_edges(is_drawn, u, row);
   });
 }
 

@@ -150,13 +150,13 @@ void whole_loop(benchmark::State& state, const Sides& sides) {
   }
   state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK_CAPTURE(whole_loop, rings, near_sides)
+BENCHMARK_CAPTURE(whole_loop, rings, with_rings)
     ->Arg(1)
     ->Arg(2)
     ->UseRealTime()
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(whole_loop, no_rings, far_sides)
+BENCHMARK_CAPTURE(whole_loop, no_rings, without_rings)
     ->Arg(1)
     ->Arg(2)
     ->UseRealTime()

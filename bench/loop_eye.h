@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <ctime>
+#include <numbers>
 #include <utility>
 
 #include "bench/render_scene.h"
@@ -16,15 +17,13 @@ namespace flexura {
 
 inline constexpr int loop_width = 640, loop_height = 480;
 
-/// The scene of the renderers' comparison, with its rings or without, from two sides, rad.
+/// The scene of the renderers' comparison, with its rings or without, from 30 degrees to both sides.
 struct Sides {
   bool has_rings = true;
-  double aside = 0.17;
+  double aside = std::numbers::pi / 6;
 };
 
-/// From farther aside rings are drawn the exact way, which takes twenty times as long and is not the matter
-/// here.
-inline constexpr Sides near_sides = {}, far_sides = {false, 0.52};
+inline constexpr Sides with_rings = {}, without_rings = {.has_rings = false};
 
 inline Setting setting_from(const Sides& sides, double angle) {
   Setting result = setting(loop_width, loop_height);

@@ -50,7 +50,7 @@ std::vector<VispPoint> points_of(const ArmState& state) {
   constexpr int places = 25;
   FeatureImages images(setting_arm(), FeatureSet::of_points(places));
   std::vector<View> views;
-  for (const Setting& setting : both_settings(near_sides)) views.push_back(setting.view);
+  for (const Setting& setting : both_settings(with_rings)) views.push_back(setting.view);
   Eigen::VectorXd values;
   if (!images.values(state, views, values)) throw std::runtime_error("the arm is not seen");
   std::vector<VispPoint> points;
@@ -86,7 +86,7 @@ std::unique_ptr<Peer> painter(Painter kind, const Setting& setting) {
 void packaged(benchmark::State& state, Painter kind) {
   try {
     cv::setNumThreads(1);
-    const std::array<Setting, 2> settings = both_settings(near_sides);
+    const std::array<Setting, 2> settings = both_settings(with_rings);
     // One context at a time may be current: both pictures are of the first view, which is as much work.
     const std::unique_ptr<Peer> peer = painter(kind, settings[0]);
     std::array<Image<std::uint8_t>, 2> pictures;

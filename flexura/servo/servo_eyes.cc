@@ -84,7 +84,8 @@ ShapeEstimate ServoEyes::shape_of(const std::array<Sighting, 2>& seen, const std
     if (best.is_found && best.rms <= std::max(few, as_usual * usual_rms_)) return best;
   }
   ShapeEstimate anew = estimator_.estimate(seen);
-  return anew.is_found && (!best.is_found || anew.rms < best.rms) ? anew : best;
+  // Where there is none, it is the second that says why.
+  return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
 }
 
 ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,

@@ -187,6 +187,27 @@ TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
 }
 
+// What shows no shape says why.
+TEST(ServoFaults, PicturesOfTwoShapesAreRefusedWithAReason) {
+  ServoBench bench(servo_file(servo_target));
+  RecordedViews views;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string bends = i == 0 ? "[[0, 0], [0, 0], [0, 0]]" : "[[0, 2], [0, 2], [0, 2]]";
+    RigBench other(servo_file(servo_target, {.rest = "[arm.initial]\nbends = " + bends + "\n"}));
+    views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
+  }
+  ServoConfig config = bench.config();
+  config.goals = {{0, views}};
+  const RigModel model = bench.believed();
+  ServoNotes notes;
+  const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
+  EXPECT_FALSE(result.is_done);
+  const std::string begins = "the pictures of goal 1 show no shape: ";
+  EXPECT_TRUE(result.reason.starts_with(begins)) << result.reason;
+  EXPECT_GT(result.reason.size(), begins.size());
+  EXPECT_TRUE(notes.sent.empty());
+}
+
 const std::string colored = "read_noise = 1, delay = 0.06, exposure = 0.002, pixels = \"color\"";
 
 std::string bands(const std::string& table, const std::string& colors) {

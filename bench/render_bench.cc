@@ -9,8 +9,7 @@
 namespace flexura {
 namespace {
 
-void render(benchmark::State& state, int width, int height, PixelKind pixels) {
-  const Setting it = setting(width, height);
+void render(benchmark::State& state, const Setting& it, PixelKind pixels) {
   Renderer renderer;
   LightImage picture;
   for (auto _ : state) {
@@ -39,9 +38,11 @@ void render_and_read(benchmark::State& state, int width, int height) {
   state.SetItemsProcessed(state.iterations());
 }
 
-BENCHMARK_CAPTURE(render, gray_640x480, 640, 480, PixelKind::gray);
-BENCHMARK_CAPTURE(render, color_640x480, 640, 480, PixelKind::color);
-BENCHMARK_CAPTURE(render, gray_1920x1080, 1920, 1080, PixelKind::gray);
+BENCHMARK_CAPTURE(render, gray_640x480, setting(640, 480), PixelKind::gray);
+BENCHMARK_CAPTURE(render, color_640x480, setting(640, 480), PixelKind::color);
+BENCHMARK_CAPTURE(render, gray_1920x1080, setting(1920, 1080), PixelKind::gray);
+BENCHMARK_CAPTURE(render, laboratory_gray_640x480, laboratory_setting(640, 480), PixelKind::gray);
+BENCHMARK_CAPTURE(render, laboratory_color_640x480, laboratory_setting(640, 480), PixelKind::color);
 BENCHMARK_CAPTURE(render_and_read, psf_and_noise_640x480, 640, 480);
 BENCHMARK_CAPTURE(render_and_read, psf_and_noise_1920x1080, 1920, 1080);
 

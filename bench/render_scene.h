@@ -50,6 +50,38 @@ inline Setting setting(int width, int height) {
   return result;
 }
 
+/// A laboratory's: the same arm, less bent and with twelve bands in three colours, seen from 2.5 m by one of
+/// two cameras, with the edges of both their screens.
+inline Setting laboratory_setting(int width, int height) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  ArmState state = ArmState::straight(3);
+  constexpr double bends[3][2] = {{0.6, 0.4}, {-0.8, 0.5}, {0.9, -0.6}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    arm.sections.push_back({.length = 1.0 / 3, .radius = {0.02, 0.02}});
+    state.bends[i] = {bends[i][0], bends[i][1]};
+  }
+  Setting result;
+  result.scene.arm.tube = tube_of(arm, Backbone(arm, state));
+  const Color colors[3] = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
+  for (int i = 0; i < 12; ++i) {
+    const double s = (i + 0.5) / 12;
+    result.scene.arm.markers.push_back({s - 0.007, s + 0.007, colors[i % 3]});
+  }
+  for (const bool is_side : {false, true}) {
+    Screen& screen = result.scene.screens.emplace_back();
+    screen.size = {1.6, 3};
+    if (is_side) screen.X_WS.rotation << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+    screen.X_WS.position = is_side ? Eigen::Vector3d(1, 0.5, 0) : Eigen::Vector3d(0, 0.5, -1);
+  }
+  result.view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  result.view.X_WC.position = {0, 0.5, 2.5};
+  result.view.width = width, result.view.height = height;
+  const double focal = 1.67 * height;
+  result.view.lens = Lens({focal, focal, 0.5 * (width - 1), 0.5 * (height - 1)});
+  return result;
+}
+
 /// Everything nearer than this is the arm, everything beyond the screen, m.
 inline constexpr float screen_begins = 1.9f;
 

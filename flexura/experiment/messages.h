@@ -172,9 +172,13 @@ struct ServoStepMessage {
   std::vector<double> desired_stretches;                   ///< and stretches.
   std::optional<std::vector<std::array<double, 2>>> seen;  ///< By these pictures, rad.
   std::optional<std::vector<double>> seen_stretches;
-  std::vector<std::array<double, 2>> sent;              ///< rad
+  std::vector<std::array<double, 2>> sent;  ///< rad
   std::vector<double> sent_stretches;
   std::optional<std::vector<HeadCommandMessage>> heads;  ///< That were sent on with this command.
+  std::vector<double> lengths;  ///< Of the unstretched sections, as they are believed to be, m.
+  /// Of the simulated truth at the time of the pictures: bends, rad, and lengths with their stretch, m.
+  std::optional<std::vector<std::array<double, 2>>> truth;
+  std::optional<std::vector<double>> true_lengths;
   std::optional<double> rms, most, tip;                 ///< From seen to desired, shares of the length.
   std::optional<double> true_rms, true_most, true_tip;  ///< Likewise, of the simulated truth.
   double potential = 0;                                 ///< Half the square of the law's error.
@@ -189,7 +193,9 @@ struct ServoSightingMessage {
   std::string camera;
   std::int64_t frame = 0;                ///< Its number.
   std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
-  std::optional<std::string> reason;     ///< Why the picture shows no arm.
+  /// Where the wanted shape would be seen, from base to tip, px; by the camera as it is believed to be.
+  std::vector<std::array<double, 2>> wanted;
+  std::optional<std::string> reason;  ///< Why the picture shows no arm.
 };
 
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.

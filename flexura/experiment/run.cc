@@ -125,7 +125,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   const Arm arm = experiment.arm.arm();
   RunResult result;
   result.folder = folder;
-  Witness witness(folder, arm);
+  Witness witness(folder, arm, watcher);
   if (experiment.record.scene) witness.draw_scene(experiment);
   Player player(experiment, witness, progress, watcher);
   result.reasons = violation_lines(player.safety());

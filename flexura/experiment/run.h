@@ -11,6 +11,7 @@
 #include "flexura/camera/head.h"
 #include "flexura/camera/mount.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/messages.h"
 #include "flexura/model/arm.h"
 
 namespace flexura {
@@ -51,6 +52,13 @@ class RunWatcher {
   /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
   /// of none where the run plays no rig, whose cameras stand still.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
+  /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
+  virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
+                        const std::string& /*text*/) {}
+  /// What a servo sends, and what it sees in a picture, as the log has them; and that it has ended.
+  virtual void servo_stepped(const ServoStepMessage& /*step*/) {}
+  virtual void servo_saw(const ServoSightingMessage& /*sighting*/) {}
+  virtual void servo_ended() {}
 };
 
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,

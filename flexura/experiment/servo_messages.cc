@@ -27,6 +27,12 @@ const Table<ServoStepMessage>& fields_of(const ServoStepMessage*) {
           .field("sent_stretches", &M::sent_stretches, {.meaning = "Each section's stretch as commanded."})
           .field("heads", &M::heads,
                  {.meaning = "Where heads that follow the arm were sent to with this command."})
+          .field("lengths", &M::lengths,
+                 {.meaning = "Each section's length without stretch, as it is believed to be, m."})
+          .field("truth", &M::truth,
+                 {.meaning = "Each section's bend in the simulated truth, at the time of the pictures, rad."})
+          .field("true_lengths", &M::true_lengths,
+                 {.meaning = "Each section's length in the simulated truth then, with its stretch, m."})
           .field("rms", &M::rms,
                  {.meaning =
                       "Distance along the arm from seen to desired, root mean square, share of its length."})
@@ -52,6 +58,9 @@ const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
           .field("camera", &M::camera, {.meaning = "The camera's name."})
           .field("frame", &M::frame, {.meaning = "The frame's number."})
           .field("points", &M::points, {.meaning = "Points of the median axis, base to tip."})
+          .field("wanted", &M::wanted,
+                 {.meaning = "Where the camera, as it is believed to be, would see the wanted shape, base to "
+                             "tip, px."})
           .field("reason", &M::reason, {.meaning = "Why the picture shows no arm."});
   return table;
 }

@@ -102,13 +102,9 @@ NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, 
   ImageOutline seen{"seen", "s2", {}}, wanted{"wanted", "s1", {}};
   auto& axis = seen.lines.emplace_back();
   for (const CurvePoint& point : sight.seen[i].points) axis.points.push_back(point.pixel);
-  const Backbone backbone(run.believed.arm, run.result.steps.back().desired);
   constexpr int count = 60;
-  auto& line = wanted.lines.emplace_back();
-  for (int k = 0; k <= count; ++k) {
-    const auto pixel = sight.seen[i].view.project(backbone.pose(backbone.length() * k / count).position);
-    if (pixel) line.points.push_back(*pixel);
-  }
+  wanted.lines.emplace_back().points =
+      backbone_pixels(run.believed.arm, run.result.steps.back().desired, sight.seen[i].view, count);
   plot.outlines = {seen, wanted};
   return {fmt::format("servo-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
 }

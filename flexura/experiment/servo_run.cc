@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "flexura/experiment/commanded_motion.h"
@@ -37,7 +38,10 @@ class LoggedServo : public ServoWatcher {
       const Sighting few = thinned(sight.seen[i], most_points);
       for (const CurvePoint& point : few.points)
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
-      witness_.recorder().servo(message, sight.frames[i].received);
+      for (const Eigen::Vector2d& pixel :
+           backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))
+        message.wanted.push_back({to_hundredths(pixel.x()), to_hundredths(pixel.y())});
+      witness_.servo(message, sight.frames[i].received);
     }
   }
   void stepped(const ServoStep& step) override {
@@ -56,10 +60,9 @@ class LoggedServo : public ServoWatcher {
       message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
     message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
     if (!step.limited.empty()) message.limited = step.limited;
-    const auto truth = truth_of(step);
-    if (truth) message.true_rms = truth->rms, message.true_most = truth->most, message.true_tip = truth->tip;
-    run_.truth.push_back(truth);
-    witness_.recorder().servo(message);
+    for (const Section& section : run_.believed.arm.sections) message.lengths.push_back(section.length);
+    run_.truth.push_back(step.seen_at ? std::optional(add_truth(step, message)) : std::nullopt);
+    witness_.servo(message);
     progress_.update(
         0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
                         : run_.name);
@@ -71,11 +74,21 @@ class LoggedServo : public ServoWatcher {
 
  private:
   static constexpr std::size_t most_points = 60;  // Of an axis in the log.
+  static constexpr int wanted_points = 40;        // Of the wanted shape's image.
 
-  [[nodiscard]] std::optional<ServoError> truth_of(const ServoStep& step) {
-    if (!step.seen_at) return std::nullopt;
+  static double to_hundredths(double pixels) { return std::round(100 * pixels) / 100; }
+
+  // Of the time of the step's pictures.
+  [[nodiscard]] ServoError add_truth(const ServoStep& step, ServoStepMessage& message) {
     const Arm& arm = run_.believed.arm;
-    return servo_error(filming_.true_backbone(*step.seen_at), Backbone(arm, step.desired), arm.length());
+    const Backbone shape = filming_.true_backbone(*step.seen_at);
+    auto& bends = message.truth.emplace();
+    auto& lengths = message.true_lengths.emplace();
+    for (const Arc& arc : shape.arcs())
+      bends.push_back({arc.bend.x(), arc.bend.y()}), lengths.push_back(arc.length);
+    const ServoError error = servo_error(shape, Backbone(arm, step.desired), arm.length());
+    message.true_rms = error.rms, message.true_most = error.most, message.true_tip = error.tip;
+    return error;
   }
 
   bool keeps_images_;
@@ -112,6 +125,17 @@ std::vector<double> band_places(const Experiment& experiment, const Arm& believe
     places.push_back(from + point.fraction * believed.sections[point.section].length);
   }
   return places;
+}
+
+std::vector<Eigen::Vector2d> backbone_pixels(const Arm& arm, const ArmState& state, const View& view,
+                                             int count) {
+  const Backbone backbone(arm, state);
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i <= count; ++i) {
+    const auto pixel = view.project(backbone.pose(backbone.length() * i / count).position);
+    if (pixel) pixels.push_back(*pixel);
+  }
+  return pixels;
 }
 
 ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, const RigModel& believed,
@@ -164,6 +188,7 @@ ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigMode
   add_true_remaining(run);
   witness.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
                 run.result.is_done ? "there" : run.result.reason);
+  witness.servo_ended();
   return run;
 }
 

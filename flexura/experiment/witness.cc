@@ -6,6 +6,7 @@
 
 #include "flexura/experiment/report_safety.h"
 #include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
@@ -21,8 +22,8 @@ const char* name_of(Recorder::Level level) {
 
 }  // namespace
 
-Witness::Witness(const std::filesystem::path& folder, const Arm& arm)
-    : recorder_(folder / log_file_name, arm), arm_(arm) {}
+Witness::Witness(const std::filesystem::path& folder, const Arm& arm, RunWatcher* watcher)
+    : recorder_(folder / log_file_name, arm), watcher_(watcher), arm_(arm) {}
 
 void Witness::expect(std::size_t last_step) {
   last_step_ = last_step, kept_every_ = last_step / max_kept_states + 1;
@@ -31,6 +32,7 @@ void Witness::expect(std::size_t last_step) {
 void Witness::event(double time, Recorder::Level level, const std::string& name, const std::string& text) {
   recorder_.event(time, level, name, text);
   marks_.push_back({time, name_of(level), name + ": " + text});
+  if (watcher_ != nullptr) watcher_->happened(time, name_of(level), name, text);
 }
 
 void Witness::draw_scene(const Experiment& experiment) {
@@ -53,6 +55,20 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
 void Witness::image(const std::string& camera, const Frame& frame, std::string_view message) {
   recorder_.image(camera, frame, message);
   ++frames_[camera];
+}
+
+void Witness::servo(const ServoStepMessage& message) {
+  recorder_.servo(message);
+  if (watcher_ != nullptr) watcher_->servo_stepped(message);
+}
+
+void Witness::servo(const ServoSightingMessage& message, double received) {
+  recorder_.servo(message, received);
+  if (watcher_ != nullptr) watcher_->servo_saw(message);
+}
+
+void Witness::servo_ended() {
+  if (watcher_ != nullptr) watcher_->servo_ended();
 }
 
 void Witness::readings(const RigPorts& rig) {

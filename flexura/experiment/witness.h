@@ -19,10 +19,13 @@
 
 namespace flexura {
 
+class RunWatcher;
+
 /// Everything that a run leaves behind while it plays: the log, and what the report will show.
 class Witness {
  public:
-  Witness(const std::filesystem::path& folder, const Arm& arm);
+  /// `watcher` is told what happens and what servos do; may be null.
+  Witness(const std::filesystem::path& folder, const Arm& arm, RunWatcher* watcher = nullptr);
 
   /// Which step of the clock is the last one, as far as it is known: a task may take its own time.
   void expect(std::size_t last_step);
@@ -33,6 +36,10 @@ class Witness {
   void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// What the devices of the rig say of themselves, once for each time of its clock.
   void readings(const RigPorts& rig);
+  /// What a servo sends, what it sees in a picture that came at `received` s, and that it has ended.
+  void servo(const ServoStepMessage& message);
+  void servo(const ServoSightingMessage& message, double received);
+  void servo_ended();
   /// Of each camera that gave any.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
   void write_commands(const Drive& drive, const std::filesystem::path& file);
@@ -46,6 +53,7 @@ class Witness {
 
  private:
   Recorder recorder_;
+  RunWatcher* watcher_;
   std::optional<DriveCommands> commands_;
   std::optional<ColorConfig> drawn_color_;  // none: the scene is not kept
   SceneTimes scene_times_;

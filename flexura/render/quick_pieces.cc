@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flexura/render/quick_picture.h"
 
@@ -204,7 +205,7 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
 }
 
 // The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
-// to a ring beyond its ends, where the arm turns sharply.
+// to a ring beyond its ends, where the arm turns sharply, and when rings finer than pixels are seen aslant.
 bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
   const ArmLook& arm = stage.scene->arm;
   const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
@@ -224,6 +225,8 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   if (begin != end) before = albedo_at(std::nextafter(begin->s, -1e9));
   for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = static_cast<float>(channel(before, c));
   skin.first_edge = edges_.size();
+  bool is_fine = false;
+  double s_before = -std::numeric_limits<double>::infinity();
   for (auto ring = begin; ring != end; ++ring) {
     const bool is_last_here = ring + 1 == end || (ring + 1)->s > ring->s;
     if (!is_last_here) continue;
@@ -239,6 +242,11 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
                                              2 * piece.radius / ring->circle.center.z());
     const double sine = std::sqrt(1 - cosine * cosine), slope = cosine / sine;
     if (slope * pixel > 0.02 * piece.radius) bend_edges(slope, piece.radius, pixel, skin.piece);
+    // Points within a pixel do not tell rings finer than pixels apart.
+    constexpr double finest = 1.5;  // px
+    is_fine = is_fine || sine * (ring->s - s_before) < finest * pixel;
+    if (is_fine && skin.piece.bent_reach > skin.piece.reach) return false;
+    s_before = ring->s;
     edge.far = static_cast<float>(pixel * (1 / sine + slope * std::sqrt(2.8 * piece.radius / pixel)));
     for (std::size_t c = 0; c < channels_; ++c)
       edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));

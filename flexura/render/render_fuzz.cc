@@ -157,7 +157,7 @@ View view_from(Bytes& bytes, const Scene& scene) {
   // Few pixels, for a million scenes under AddressSanitizer take hours as it is, but mostly as many in a row
   // as the quick way needs.
   view.width = bytes.choice(4) == 0 ? bytes.choice(24) : 32 + bytes.choice(4);
-  view.height = bytes.choice(16) == 0 ? bytes.choice(10) : 1 + bytes.choice(2);
+  view.height = bytes.choice(16) == 0 ? bytes.choice(10) : 1 + bytes.choice(8) / 7;
   return view;
 }
 

@@ -38,8 +38,23 @@ void require_positive(double value, const Place& place) {
   if (!(value > 0) || !std::isfinite(value)) refuse("{}: {} is not a positive number", place.text(), value);
 }
 
+// What files may hold is within these (docs/experiment-file.md), which are what is worked with: beyond them
+// squares and their sums lose what they are about.
+constexpr double smallest = 1e-9, largest = 1e9;  // m
+
+void require_size(double value, const Place& place) {
+  require_positive(value, place);
+  if (value < smallest || value > largest)
+    refuse("{}: {} is not between {} and {} m", place.text(), value, smallest, largest);
+}
+
 void require_finite(double value, const Place& place) {
   if (!std::isfinite(value)) refuse("{}: {} is not a finite number", place.text(), value);
+}
+
+void require_near(const Eigen::Vector3d& p, const Place& place) {
+  if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest)
+    refuse("{}: ({}, {}, {}) is not a place within {} m", place.text(), p.x(), p.y(), p.z(), largest);
 }
 
 void require_color(const Color& color, const Place& place) {
@@ -53,6 +68,7 @@ void require_pose(const Pose& pose, const Place& place) {
       R.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6 && R.determinant() > 0;
   if (!pose.position.allFinite() || !is_rotation)
     refuse("{}: the pose is not a finite position and a rotation", place.text());
+  require_near(pose.position, place);
 }
 
 // Names count up to what a label holds.
@@ -71,8 +87,8 @@ void check_arm(const ArmLook& arm) {
     const TubeArc& at = arm.tube[i];
     const auto place = [i](const char* value = nullptr) { return Place{"the arm's arc", value, i}; };
     require_pose(at.arc.X_WS, place());
-    require_positive(at.arc.length, place("length"));
-    for (const double radius : at.radius) require_positive(radius, place("radius"));
+    require_size(at.arc.length, place("length"));
+    for (const double radius : at.radius) require_size(radius, place("radius"));
     require_finite(at.arc.s, place("s"));
     for (const double bend : at.arc.bend) require_finite(bend, place("bend"));
     if (!(at.arc.bend.norm() <= largest_bend))
@@ -95,23 +111,23 @@ void check_arm(const ArmLook& arm) {
   }
   for (const GuideDisk& disk : arm.disks) {
     require_finite(disk.s, {"disk", "s"});
-    require_positive(disk.radius, {"disk", "radius"});
-    require_positive(disk.thickness, {"disk", "thickness"});
+    require_size(disk.radius, {"disk", "radius"});
+    require_size(disk.thickness, {"disk", "thickness"});
   }
 }
 
 void check_screen(const Screen& screen) {
   require_pose(screen.X_WS, {"screen"});
   require_color(screen.brightness, {"screen"});
-  for (const double size : screen.size) require_positive(size, {"screen", "size"});
+  for (const double size : screen.size) require_size(size, {"screen", "size"});
   for (const double gradient : screen.gradient) require_finite(gradient, {"screen", "gradient"});
   require_finite(screen.falloff, {"screen", "falloff"});
 }
 
 void check_etalon(const Etalon& etalon) {
   require_pose(etalon.X_WE, {"etalon"});
-  require_positive(etalon.radius, {"etalon", "radius"});
-  require_positive(etalon.height, {"etalon", "height"});
+  require_size(etalon.radius, {"etalon", "radius"});
+  require_size(etalon.height, {"etalon", "height"});
   require_color(etalon.albedo, {"etalon"});
   require_color(etalon.line_albedo, {"etalon's lines"});
   const bool has_room_for_lines = etalon.line_width >= 0 && etalon.line_width < 1.5 * etalon.radius;
@@ -123,24 +139,27 @@ struct ObstacleChecker {
   static void require_vector(const std::array<double, 3>& vector, const Place& place) {
     for (const double component : vector) require_finite(component, place);
   }
+  static void require_place(const std::array<double, 3>& place, const Place& what) {
+    require_near({place[0], place[1], place[2]}, what);
+  }
   void operator()(const PlaneConfig& plane) const {
-    require_vector(plane.point, {"plane", "point"});
+    require_place(plane.point, {"plane", "point"});
     require_vector(plane.normal, {"plane", "normal"});
     require_positive(std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]),
                      {"plane", "normal's length"});
   }
   void operator()(const SphereConfig& sphere) const {
-    require_vector(sphere.center, {"sphere", "center"});
-    require_positive(sphere.radius, {"sphere", "radius"});
+    require_place(sphere.center, {"sphere", "center"});
+    require_size(sphere.radius, {"sphere", "radius"});
   }
   void operator()(const CapsuleConfig& capsule) const {
-    require_vector(capsule.from, {"capsule", "from"});
-    require_vector(capsule.to, {"capsule", "to"});
-    require_positive(capsule.radius, {"capsule", "radius"});
+    require_place(capsule.from, {"capsule", "from"});
+    require_place(capsule.to, {"capsule", "to"});
+    require_size(capsule.radius, {"capsule", "radius"});
   }
   void operator()(const BoxConfig& box) const {
-    require_vector(box.center, {"box", "center"});
-    for (const double half_size : box.half_sizes) require_positive(half_size, {"box", "half_sizes"});
+    require_place(box.center, {"box", "center"});
+    for (const double half_size : box.half_sizes) require_size(half_size, {"box", "half_sizes"});
     double square = 0;
     for (const double component : box.rotation) square += component * component;
     require_positive(square, {"box", "rotation"});

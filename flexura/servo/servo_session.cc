@@ -167,6 +167,7 @@ class Session {
       const double time = 0.5 * (frames[0].time + frames[1].time);
       const std::array<View, 2> views = {rig_.view(0, frames[0].time), rig_.view(1, frames[1].time)};
       ServoSight sight = eyes_.look(frames, views, guess(time));
+      sight.desired = goals_->at(time - result_.start).state;
       watcher_.seen(sight);
       if (!result_.first) result_.first = sight;
       constexpr double unknown = 0.05;  // Of the length: such a shape is nothing to go by.

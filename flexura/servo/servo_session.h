@@ -27,6 +27,7 @@ struct ServoError {
 /// What two pictures of one instant told.
 struct ServoSight {
   double time = 0;               ///< Middle of the exposures, s.
+  ArmState desired;              ///< Then.
   std::array<Frame, 2> frames;   ///< Of both cameras.
   std::array<Sighting, 2> seen;  ///< Median axes and bands, in the views as believed.
   ShapeEstimate estimate;

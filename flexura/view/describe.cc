@@ -188,7 +188,8 @@ const Table<Mark>& fields_of(const Mark*) {
 const Table<Quantity>& fields_of(const Quantity*) {
   static const auto table = Table<Quantity>("quantity", "Something that a recording knows over time.")
                                 .field("name", &Quantity::name, {})
-                                .field("unit", &Quantity::unit, {});
+                                .field("unit", &Quantity::unit, {})
+                                .field("group", &Quantity::group, {});
   return table;
 }
 

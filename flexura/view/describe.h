@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Mark {
 struct Quantity {
   std::string name;
   std::string unit;
+  std::optional<std::string> group = {};  ///< What it is shown together with; none: what its name says.
 };
 
 const Table<Mark>& fields_of(const Mark*);

@@ -1,7 +1,8 @@
 #include "flexura/view/live_session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -58,9 +59,9 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.reset();
     done();
   }
-  void operator()(const RunRequest&) const {
+  void operator()(const RunRequest& run) const {
     session.require_free();
-    session.start_run(reply);
+    session.start_run(run, reply);
   }
   void operator()(const CancelRequest&) const {
     if (session.is_watched_run()) throw ViewRefusal("the run belongs to the terminal that started it");
@@ -89,7 +90,8 @@ LiveSession::LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Backgrou
       config_(std::move(config)),
       clock_(config_.start),
       rig_(rig, 0),
-      run_(config_.run) {
+      run_(config_.run),
+      teller_(rig, messenger) {
   reset();
 }
 
@@ -107,7 +109,10 @@ Hello LiveSession::hello() const {
   return hello;
 }
 
-void LiveSession::opened(ClientId client) { clients_.insert(client); }
+void LiveSession::opened(ClientId client) {
+  clients_.insert(client);
+  teller_.repeat();
+}
 
 void LiveSession::closed(ClientId client) {
   clients_.erase(client);
@@ -249,8 +254,15 @@ void LiveSession::keep_clear(double next) {
   event("error", "safety", "stopped before " + text);
 }
 
-void LiveSession::start_run(const Reply& reply) {
-  if (viewed()->experiment.task.empty()) throw ViewRefusal("the experiment has no tasks");
+void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
+  Experiment experiment = viewed()->experiment;
+  if (experiment.task.empty()) throw ViewRefusal("the experiment has no tasks");
+  if (request.task) {
+    const auto place = static_cast<std::size_t>(*request.task);
+    if (place >= experiment.task.size())
+      throw ViewRefusal(fmt::format("task = {}: expected 0 to {}", place, experiment.task.size() - 1));
+    experiment.task = {experiment.task[place]};
+  }
   std::filesystem::path folder;
   try {
     folder = make_new_folder(config_.results);
@@ -259,11 +271,12 @@ void LiveSession::start_run(const Reply& reply) {
   }
   run_ = std::make_shared<RunLink>();
   news_ = {};
-  told_fraction_ = -1;
-  background().run(Lane::tasks, [rig = viewed(), folder, run = run_]() -> Background::After {
-    run_linked(rig->experiment, folder, *run);
-    return {};
-  });
+  teller_.begin();
+  background().run(Lane::tasks,
+                   [experiment = std::move(experiment), folder, run = run_]() -> Background::After {
+                     run_linked(experiment, folder, *run);
+                     return {};
+                   });
   reply({{Node::Table{{"folder", {}, {folder.string(), {}}}}, {}}, ""});
 }
 
@@ -273,22 +286,11 @@ void LiveSession::follow_run() {
   news_ = run_->news();
   // From the rig to the run's start, and from its end to the rig.
   if (news_.time && (!was_shown || news_.end)) ++leaps_;
-  if (!news_.end) {
-    constexpr double to_be_seen = 0.002;
-    if (std::abs(news_.fraction - told_fraction_) < to_be_seen) return;
-    told_fraction_ = news_.fraction;
-    tell_all({Node::Table{{"type", {}, {std::string("progress"), {}}},
-                          {"what", {}, {news_.what, {}}},
-                          {"fraction", {}, {news_.fraction, {}}}},
-              {}});
-    return;
-  }
-  tell_all({Node::Table{{"type", {}, {std::string("progress"), {}}},
-                        {"done", {}, {true, {}}},
-                        {"outcome", {}, {news_.end->outcome, {}}},
-                        {"text", {}, {news_.end->text, {}}}},
-            {}});
-  if (news_.end->outcome != "failed") results_ = news_.end->folder;
+  // A page's time goes on, that of a watched run is its own: as that of states.
+  const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
+  teller_.tell(*run_, news_, clock_, now, clients_);
+  if (!news_.end) return;
+  if (!news_.end->folder.empty()) results_ = news_.end->folder;
   run_.reset();
 }
 

@@ -16,6 +16,7 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/picture_session.h"
 #include "flexura/view/run_link.h"
+#include "flexura/view/run_teller.h"
 #include "flexura/view/session.h"
 
 namespace flexura {
@@ -69,7 +70,7 @@ class LiveSession : public PictureSession {
   void move(Move move);
   void look_at(Move move);
   void finish(const Move& move, const Judged& judged);
-  void start_run(const Reply& reply);
+  void start_run(const RunRequest& request, const Reply& reply);
   void follow_run();
   void halt();
   void reset();
@@ -98,7 +99,7 @@ class LiveSession : public PictureSession {
   double warned_ = -1;  // s
   std::shared_ptr<RunLink> run_;
   RunLink::News news_;  // of the run
-  double told_fraction_ = -1;
+  RunTeller teller_;
   std::optional<std::filesystem::path> results_;
 };
 

@@ -53,10 +53,13 @@ void Recording::index() {
   images_.resize(rig_->cameras.size());
   heads_.resize(rig_->cameras.size());
   stages_.resize(rig_->cameras.size());
+  servo_sightings_.resize(rig_->cameras.size());
   for (const McapMessage& message : log_.messages()) {
     const std::string& topic = message.channel->topic;
     const Entry entry{message.log_time, &message};
     if (topic == arm_state_topic) states_.push_back(entry);
+    if (topic == servo_steps_topic) servo_steps_.push_back(entry);
+    if (topic == servo_sightings_topic) index_sighting(entry);
     for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
       const std::string& name = rig_->cameras[i].config().name;
       if (topic == image_topic(name)) images_[i].push_back(entry);
@@ -69,6 +72,18 @@ void Recording::index() {
   std::ranges::for_each(images_, sort);
   std::ranges::for_each(heads_, sort);
   std::ranges::for_each(stages_, sort);
+  sort(servo_steps_);
+  std::ranges::for_each(servo_sightings_, sort);
+  servo_interval_ = interval_of(servo_steps_);
+}
+
+void Recording::index_sighting(const Entry& entry) {
+  try {
+    const auto camera = rig_->camera(message_of<ServoSightingMessage>(*entry.message).camera);
+    if (camera) servo_sightings_[*camera].push_back(entry);
+  } catch (const InputError&) {
+    return;  // A damaged one is of no picture.
+  }
 }
 
 void Recording::read_marks() {
@@ -111,9 +126,9 @@ std::size_t Recording::place_at(const Entries& entries, double time) {
   return after == entries.begin() ? 0 : static_cast<std::size_t>(after - entries.begin()) - 1;
 }
 
-double Recording::interval() const {
+double Recording::interval_of(const Entries& entries) {
   std::vector<std::uint64_t> intervals;
-  for (std::size_t i = 1; i < states_.size(); ++i) intervals.push_back(states_[i].time - states_[i - 1].time);
+  for (std::size_t i = 1; i < entries.size(); ++i) intervals.push_back(entries[i].time - entries[i - 1].time);
   if (intervals.empty()) return 0;
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::ranges::nth_element(intervals, middle);
@@ -154,6 +169,41 @@ Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) c
   if (message.format != "png") throw input_error(folder_.string(), "an image of the log is no PNG");
   return {static_cast<double>(message.timestamp.sec) + 1e-9 * static_cast<double>(message.timestamp.nsec),
           std::move(message.data.data)};
+}
+
+std::optional<ServoStepMessage> Recording::servo_step(double time) const {
+  if (servo_steps_.empty()) return std::nullopt;
+  const Entry& entry = servo_steps_[place_at(servo_steps_, time)];
+  // A servo sends at equal intervals: after a few of them without a command it is over.
+  constexpr double few = 3, least = 0.1;  // s
+  const double sent = seconds(entry.time);
+  if (time < sent || time > sent + std::max(least, few * servo_interval_)) return std::nullopt;
+  return message_of<ServoStepMessage>(*entry.message);
+}
+
+std::optional<ServoPicture> Recording::servo_picture(std::size_t camera, double time) const {
+  const Entries& sightings = servo_sightings_[camera];
+  if (sightings.empty()) return std::nullopt;
+  const Entry* entry = &sightings[place_at(sightings, time)];
+  if (images_[camera].empty()) {
+    if (seconds(entry->time) > time) return std::nullopt;
+    return ServoPicture{message_of<ServoSightingMessage>(*entry->message), {}};
+  }
+  // Both stand in the log at the time when the picture came.
+  const std::size_t place = image_at(camera, time);
+  const auto [first, last] =
+      std::ranges::equal_range(sightings, images_[camera][place].time, {}, &Entry::time);
+  if (first == last) return std::nullopt;
+  return ServoPicture{message_of<ServoSightingMessage>(*first->message), static_cast<std::int64_t>(place)};
+}
+
+std::optional<ShownServo> Recording::servo(double time) const {
+  auto step = servo_step(time);
+  if (!step) return std::nullopt;
+  ShownServo shown{std::move(*step), {}};
+  for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera)
+    if (auto picture = servo_picture(camera, time)) shown.pictures.push_back(std::move(*picture));
+  return shown;
 }
 
 CameraStance Recording::stance(std::size_t camera, double time) const {

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/store/mcap_reader.h"
 #include "flexura/view/describe.h"
+#include "flexura/view/servo_extras.h"
 #include "flexura/view/viewed_rig.h"
 
 namespace flexura {
@@ -26,7 +28,7 @@ class Recording {
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const { return seconds(states_.back().time); }  ///< s
   /// The median time from one state to the next, s; 0 where there is one alone.
-  [[nodiscard]] double interval() const;
+  [[nodiscard]] double interval() const { return interval_of(states_); }
 
   /// How many states there are, never 0; the place of the one at or just before `time` s, or the first.
   [[nodiscard]] std::size_t states() const { return states_.size(); }
@@ -46,6 +48,12 @@ class Recording {
   };
   /// InputError where the log holds none.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
+  /// Whether the log has a servo; and its last command at a time, s, while one steers the arm. InputError
+  /// where the log holds none that can be read.
+  [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
+  [[nodiscard]] std::optional<ServoStepMessage> servo_step(double time) const;
+  /// With what it sees in the pictures that are shown then.
+  [[nodiscard]] std::optional<ShownServo> servo(double time) const;
   /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
   /// starts.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
@@ -59,6 +67,9 @@ class Recording {
   [[nodiscard]] static double seconds(std::uint64_t nanoseconds);
   [[nodiscard]] static std::size_t place_at(const Entries& entries, double time);
   void index();
+  void index_sighting(const Entry& entry);
+  [[nodiscard]] static double interval_of(const Entries& entries);
+  [[nodiscard]] std::optional<ServoPicture> servo_picture(std::size_t camera, double time) const;
   void read_marks();
   void mark_violations();
 
@@ -67,6 +78,9 @@ class Recording {
   McapReader log_;
   Entries states_;
   std::vector<Entries> images_, heads_, stages_;  // by camera
+  Entries servo_steps_;
+  std::vector<Entries> servo_sightings_;  // by camera
+  double servo_interval_ = 0;             // from one command of a servo to the next, s
   std::vector<Mark> marks_;
 };
 

@@ -85,7 +85,7 @@ Hello RecordingSession::hello() const {
   hello.duration = recording_->duration();
   hello.interval = recording_->interval();
   hello.marks = recording_->marks();
-  hello.quantities = SeriesTable::quantities(viewed()->model);
+  hello.quantities = SeriesTable::quantities(*recording_);
   hello.report = std::filesystem::exists(recording_->folder() / report_file_name);
   hello.readonly = true;
   return hello;
@@ -115,7 +115,22 @@ void RecordingSession::take(const Document& document, std::function<void(HttpAns
   }
 }
 
+// Before the state, so that it has come when that is drawn.
+void RecordingSession::send_extras(ClientId client) {
+  if (!recording_->has_servo()) return;
+  const double time = times_.at(client);
+  Extras extras;
+  extras.time = time;
+  try {
+    if (const auto servo = recording_->servo(time)) extras = servo_extras(*viewed(), *servo);
+  } catch (const InputError&) {
+    extras = {};  // What is damaged is not drawn.
+  }
+  messenger().post(client, extras_stream, std::make_shared<const std::string>(extras_message(extras)));
+}
+
 void RecordingSession::send_state(ClientId client) {
+  send_extras(client);
   const std::size_t place = recording_->state_at(times_.at(client));
   const double time = recording_->time_of_state(place);
   std::vector<CameraStance> stances;

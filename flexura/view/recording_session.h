@@ -31,6 +31,7 @@ class RecordingSession : public PictureSession {
   struct Table;  // of series; used on the lane of checks alone
 
   [[nodiscard]] Look look(const ImageStreams::Key& key) override;
+  void send_extras(ClientId client);
   void send_state(ClientId client);
   void show_state(const ImageStreams::Key& key, std::int64_t place);
   void send_image(const ImageStreams::Key& key, std::int64_t place);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 
 #include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"
@@ -230,6 +231,16 @@ TEST(Series, AreThinnedToTheirEndsAndExtremes) {
   EXPECT_EQ(thinned(curves, 2), (std::vector<std::size_t>{0, 999}));
   EXPECT_EQ(thinned(curves, 1000).size(), 1000);
   EXPECT_TRUE(thinned(std::vector<std::vector<double>>{}, 10).empty());
+}
+
+TEST(Series, KeepWhereACurveBeginsAndEnds) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> curve(1000, nothing);
+  for (std::size_t i = 301; i < 500; ++i) curve[i] = -static_cast<double>(i % 50);
+  const auto kept = thinned(std::vector<std::vector<double>>{curve}, 20);
+  for (const int place : {0, 300, 301, 499, 500, 999})
+    EXPECT_THAT(kept, ::testing::Contains(static_cast<std::size_t>(place)));
+  EXPECT_EQ(thinned(std::vector<std::vector<double>>{std::vector<double>(1000, nothing)}, 20).size(), 2);
 }
 
 TEST_F(RecordingSessionTest, MarksWhatHappenedAndHowLong) {

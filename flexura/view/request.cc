@@ -149,7 +149,13 @@ const Table<StageRequest>& fields_of(const StageRequest*) {
 
 const Table<HaltRequest>& fields_of(const HaltRequest*) { return bare<HaltRequest>("halt"); }
 const Table<ResetRequest>& fields_of(const ResetRequest*) { return bare<ResetRequest>("reset"); }
-const Table<RunRequest>& fields_of(const RunRequest*) { return bare<RunRequest>("run"); }
+const Table<RunRequest>& fields_of(const RunRequest*) {
+  static const auto table =
+      Table<RunRequest>("run", "The experiment's tasks run.")
+          .field("task", &RunRequest::task,
+                 {.meaning = "the place of one, from 0", .range = between(0, farthest)});
+  return table;
+}
 const Table<CancelRequest>& fields_of(const CancelRequest*) { return bare<CancelRequest>("cancel"); }
 const Table<OpenRequest>& fields_of(const OpenRequest*) { return bare<OpenRequest>("open"); }
 const Table<LiveRequest>& fields_of(const LiveRequest*) { return bare<LiveRequest>("live"); }

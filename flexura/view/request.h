@@ -33,7 +33,9 @@ struct StageRequest {
 };
 struct HaltRequest {};
 struct ResetRequest {};
-struct RunRequest {};
+struct RunRequest {
+  std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
+};
 struct CancelRequest {};
 struct OpenRequest {};
 struct LiveRequest {};

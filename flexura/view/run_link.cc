@@ -1,5 +1,6 @@
 #include "flexura/view/run_link.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -19,6 +20,46 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
   news_.cameras.assign(cameras.begin(), cameras.end());
 }
 
+void RunLink::happened(double time, const std::string& level, const std::string& name,
+                       const std::string& text) {
+  constexpr std::size_t most = 50;
+  const std::lock_guard lock(mutex_);
+  if (events_.size() == most) events_.pop_front();
+  events_.push_back({time, level, name, text});
+}
+
+std::vector<RunLink::Event> RunLink::take_events(std::size_t most) {
+  const std::lock_guard lock(mutex_);
+  const auto end = events_.begin() + static_cast<std::ptrdiff_t>(std::min(most, events_.size()));
+  std::vector<Event> taken(events_.begin(), end);
+  events_.erase(events_.begin(), end);
+  return taken;
+}
+
+void RunLink::servo_saw(const ServoSightingMessage& sighting) {
+  const std::lock_guard lock(mutex_);
+  const auto same = std::ranges::find_if(
+      pictures_, [&](const ServoPicture& picture) { return picture.sighting.camera == sighting.camera; });
+  if (same == pictures_.end()) {
+    pictures_.push_back({sighting, {}});
+  } else {
+    same->sighting = sighting;
+  }
+}
+
+void RunLink::servo_stepped(const ServoStepMessage& step) {
+  const std::lock_guard lock(mutex_);
+  news_.servo = ShownServo{step, pictures_};
+  ++news_.servo_changes;
+}
+
+void RunLink::servo_ended() {
+  const std::lock_guard lock(mutex_);
+  pictures_.clear();
+  news_.servo.reset();
+  ++news_.servo_changes;
+}
+
 void RunLink::finish(End end) {
   const std::lock_guard lock(mutex_);
   news_.end = std::move(end);
@@ -30,10 +71,11 @@ RunLink::News RunLink::news() const {
 }
 
 void run_linked(const Experiment& experiment, const std::filesystem::path& folder, RunLink& link) {
-  RunLink::End end{"failed", "", folder};
+  RunLink::End end{"failed", "", {}};
   try {
     const RunResult result = run_experiment(experiment, folder, link, &link);
     end.outcome = name_of(result.outcome);
+    end.folder = folder;
     if (!result.reasons.empty()) end.text = result.reasons.front();
   } catch (const std::exception& error) {
     end.text = error.what();

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -11,6 +14,7 @@
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run.h"
+#include "flexura/view/servo_extras.h"
 
 namespace flexura {
 
@@ -20,9 +24,14 @@ class RunLink : public Progress, public RunWatcher {
  public:
   /// How a run ended.
   struct End {
-    std::string outcome;  ///< "done", "unsafe", "cancelled", "failed"
-    std::string text;     ///< Why, one line; may be "".
-    std::filesystem::path folder;
+    std::string outcome;           ///< "done", "unsafe", "cancelled", "failed"
+    std::string text;              ///< Why, one line; may be "".
+    std::filesystem::path folder;  ///< With its results; "" where it left none.
+  };
+  /// What happened, as the log has it.
+  struct Event {
+    double time = 0;  ///< s
+    std::string level, name, text;
   };
   /// The newest of everything.
   struct News {
@@ -31,6 +40,8 @@ class RunLink : public Progress, public RunWatcher {
     std::optional<double> time;  ///< Of `state`, s; none before the first one.
     ArmState state;
     std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
+    std::optional<ShownServo> servo;     ///< While one steers the arm.
+    std::uint64_t servo_changes = 0;     ///< Counts what came of servos.
     std::optional<End> end;
   };
 
@@ -41,15 +52,25 @@ class RunLink : public Progress, public RunWatcher {
   [[nodiscard]] bool cancelled() const override { return cancelled_; }
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
+  void happened(double time, const std::string& level, const std::string& name,
+                const std::string& text) override;
+  void servo_stepped(const ServoStepMessage& step) override;
+  void servo_saw(const ServoSightingMessage& sighting) override;
+  void servo_ended() override;
+
   void cancel() { cancelled_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
+  /// The oldest events that nobody took yet, so many at most. Of a great many the last are kept.
+  [[nodiscard]] std::vector<Event> take_events(std::size_t most);
 
  private:
   Progress* also_;
   std::atomic<bool> cancelled_ = false;
   mutable std::mutex mutex_;
   News news_;
+  std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera
+  std::deque<Event> events_;
 };
 
 /// Runs an experiment into a folder that exists and is empty, and tells `link` how it ends. Never throws.

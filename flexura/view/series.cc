@@ -3,10 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
 #include <utility>
 
+#include "flexura/base/source.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/view/servo_extras.h"
 #include "flexura/view/session.h"
 
 namespace flexura {
@@ -41,6 +47,31 @@ std::vector<double> values_of(const Arm& arm, const ArmState& state) {
   return values;
 }
 
+// A servo's errors at a time; none is as good as one that cannot be read.
+void append_servo(const Recording& recording, double time, std::vector<double>& values) {
+  std::vector<std::optional<double>> errors(servo_quantities().size());
+  try {
+    if (const auto step = recording.servo_step(time)) errors = servo_values(*step);
+  } catch (const InputError&) {
+    errors.assign(errors.size(), std::nullopt);
+  }
+  for (const auto& error : errors) values.push_back(error.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+// The places in [first, last) where a curve is least and greatest, and where it begins and ends.
+void add_extremes(const std::vector<double>& curve, std::size_t first, std::size_t last,
+                  std::vector<std::size_t>& kept) {
+  std::optional<std::size_t> least, greatest;
+  for (std::size_t i = first; i < last; ++i) {
+    const bool is_gap = std::isnan(curve[i]);
+    if (i > 0 && is_gap != std::isnan(curve[i - 1])) kept.insert(kept.end(), {i - 1, i});
+    if (is_gap) continue;
+    if (!least || curve[i] < curve[*least]) least = i;
+    if (!greatest || curve[i] >= curve[*greatest]) greatest = i;
+  }
+  if (least) kept.insert(kept.end(), {*least, *greatest});
+}
+
 }  // namespace
 
 std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves, std::size_t points) {
@@ -55,20 +86,15 @@ std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves, st
   const std::size_t stretches = points > 2 ? (points - 2) / (2 * curves.size()) : 0;
   for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
     const std::size_t first = count * stretch / stretches, last = count * (stretch + 1) / stretches;
-    for (const std::vector<double>& curve : curves) {
-      const auto [least, greatest] =
-          std::ranges::minmax_element(curve.begin() + static_cast<std::ptrdiff_t>(first),
-                                      curve.begin() + static_cast<std::ptrdiff_t>(last));
-      kept.push_back(static_cast<std::size_t>(least - curve.begin()));
-      kept.push_back(static_cast<std::size_t>(greatest - curve.begin()));
-    }
+    for (const std::vector<double>& curve : curves) add_extremes(curve, first, last, kept);
   }
   std::ranges::sort(kept);
   kept.erase(std::ranges::unique(kept).begin(), kept.end());
   return kept;
 }
 
-std::vector<Quantity> SeriesTable::quantities(const Arm& arm) {
+std::vector<Quantity> SeriesTable::quantities(const Recording& recording) {
+  const Arm& arm = recording.rig()->model;
   std::vector<Quantity> list;
   const std::size_t sections = arm.sections.size();
   if (arm.kind == ArmKind::planar) {
@@ -80,18 +106,20 @@ std::vector<Quantity> SeriesTable::quantities(const Arm& arm) {
   }
   if (can_stretch(arm)) add_names("stretch", "", sections, list);
   for (const char* axis : {"x", "y", "z"}) list.push_back({std::string("tip_") + axis, "m"});
+  if (recording.has_servo()) std::ranges::copy(servo_quantities(), std::back_inserter(list));
   return list;
 }
 
 SeriesTable::SeriesTable(const Recording& recording) {
   const Arm& arm = recording.rig()->model;
-  const std::vector<Quantity> names = quantities(arm);
+  const std::vector<Quantity> names = quantities(recording);
   std::vector<std::vector<double>*> curves;
   curves.reserve(names.size());
   for (const Quantity& quantity : names) curves.push_back(&curves_[quantity.name]);
   for (std::size_t place = 0; place < recording.states(); ++place) {
     times_.push_back(recording.time_of_state(place));
-    const std::vector<double> values = values_of(arm, recording.state(place));
+    std::vector<double> values = values_of(arm, recording.state(place));
+    if (recording.has_servo()) append_servo(recording, times_.back(), values);
     for (std::size_t i = 0; i < values.size(); ++i) curves[i]->push_back(values[i]);
   }
 }
@@ -106,7 +134,7 @@ Node SeriesTable::answer(const std::vector<std::string>& names, std::size_t poin
   const std::vector<std::size_t> kept = thinned(curves, points);
   const auto list = [&](const std::vector<double>& values) {
     Node::Array nodes;
-    for (const std::size_t place : kept) nodes.push_back({values[place], {}});
+    for (const std::size_t place : kept) nodes.push_back(number_node(values[place]));
     return Node{std::move(nodes), {}};
   };
   Node::Table table{{"time", {}, list(times_)}};

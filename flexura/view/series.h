@@ -12,18 +12,20 @@
 namespace flexura {
 
 /// Which of so many values to draw when there shall be no more than `points`: the first and the last, and in
-/// stretches of equal length between the places where any of the curves is least and greatest. Ascending. All
-/// of them where they are few; never fewer than the ends. The curves are of one length.
+/// stretches of equal length between the places where any of the curves is least and greatest. Beside these
+/// the borders of gaps (NaN). Ascending. All of them where they are few; never fewer than the ends. The
+/// curves are of one length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 
-/// What a recording's arm does over time: bends, cord angles and archings, stretches, the tip.
+/// What a recording's arm does over time: bends, cord angles and archings, stretches, the tip; and a servo's
+/// errors, which are null where none steers the arm.
 class SeriesTable {
  public:
   explicit SeriesTable(const Recording& recording);
 
-  /// The quantities of an arm, in the order shown.
-  [[nodiscard]] static std::vector<Quantity> quantities(const Arm& arm);
+  /// The quantities of a recording, in the order shown.
+  [[nodiscard]] static std::vector<Quantity> quantities(const Recording& recording);
   /// The answer to /series; a ViewRefusal for a name that there is not.
   [[nodiscard]] Node answer(const std::vector<std::string>& names, std::size_t points) const;
 

@@ -1,4 +1,4 @@
-// `FLEXURA_PROGRAM=.../bin/flexura npm run pictures`: the README's pictures of the viewer, of the program with its page.
+// `FLEXURA_PROGRAM=.../bin/flexura npm run pictures`: the documents' pictures of the viewer, of the program with its page.
 import { fileURLToPath } from 'node:url';
 import { launch, open_page, slide, until } from '../test/e2e/browser';
 import { Program, program } from '../test/e2e/program';
@@ -25,6 +25,21 @@ await teach.page.waitForSelector('.plane');
 await teach.page.locator('.recurrence tbody tr').nth(2).click();
 await teach.page.waitForTimeout(500);
 await teach.page.screenshot({ path: `${root}docs/images/teaching.png` });
+
+// A servo as its recording has it, in the middle of its way.
+const servo = new Program();
+const shown = new Program(['view', servo.record(`${root}viewer/tools/servo_picture.toml`)]);
+await shown.start();
+const steered = await open_page(browser, shown.url, { width: 1280, height: 720, dark: false });
+await until(async () => (await steered.page.locator('.picture .none').count()) === 0, 30000);
+await slide(steered.page, '#scrub', 0.4);
+await steered.page.getByLabel('Plot 2 shows').selectOption({ label: 'Servo error, %' });
+await steered.page.getByLabel('Plot 1 shows').selectOption({ label: 'Errors along the arm' });
+await steered.page.waitForTimeout(4000);
+// Without the sliders of what a recording cannot move.
+await steered.page.screenshot({ path: `${root}docs/images/servo-viewer.png`, clip: { x: 281, y: 45, width: 999, height: 627 } });
+await shown.stop();
+await servo.stop();
 
 await browser.close();
 await served.stop();

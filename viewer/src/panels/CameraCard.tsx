@@ -1,9 +1,11 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { effect, type Signal } from '@preact/signals';
+import { extra_layers, extra_overlay } from '../overlays/extras';
 import { color_of } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
-import type { Layer, SceneCamera } from '../protocol/types';
+import type { ExtraOverlay, Layer, SceneCamera } from '../protocol/types';
 import type { History } from '../state/history';
+import { preferences } from '../state/preferences';
 import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
 import { format_time } from '../ui/format';
@@ -23,7 +25,10 @@ export function CameraCard({ camera, pixel }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => effect(() => {
     viewer.picture_tick.value;
-    const layers = [...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name)];
+    const layers = [
+      ...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name),
+      ...extra_layers(overlay_of(viewer, camera.name), preferences.hidden.value),
+    ];
     const here = pixel.value?.camera === camera.name ? pixel.value : null;
     paint(canvas.current!, camera, viewer.picture_of.get(camera.name)?.bitmap ?? null, layers, here);
   }), [camera]);
@@ -31,6 +36,7 @@ export function CameraCard({ camera, pixel }: Props) {
   viewer.tick.value;
   const picture = viewer.picture_of.get(camera.name);
   const measured = viewer.measured.pictures.value[camera.name]?.value;
+  const unfound = (measured?.found === false && measured.reason) || overlay_of(viewer, camera.name)?.reason;
   const old = age(viewer.freshness.value, picture?.time, viewer.history);
   const point = (event: PointerEvent): void => {
     const { clientWidth, clientHeight } = canvas.current!;
@@ -54,7 +60,7 @@ export function CameraCard({ camera, pixel }: Props) {
           onPointerMove={point} onPointerDown={point} onKeyDown={step} />
         {!picture && <span class="none">No picture</span>}
         {picture && old && <span class="old">{old}</span>}
-        {picture && !old && measured && !measured.found && <span class="unfound">{measured.reason}</span>}
+        {picture && !old && unfound && <span class="unfound">{unfound}</span>}
         {picture && !old && viewer.freshness.value === 'held' && <span class="now">Now: only the view is held</span>}
       </div>
       <figcaption>
@@ -67,6 +73,11 @@ export function CameraCard({ camera, pixel }: Props) {
       </figcaption>
     </figure>
   );
+}
+
+/** What the program draws of its own upon the picture that is shown. */
+function overlay_of(viewer: Viewer, camera: string): ExtraOverlay | undefined {
+  return extra_overlay(viewer.extras.value, camera, viewer.picture_of.get(camera)?.number);
 }
 
 /** In the colours that stand beside their names. */

@@ -17,11 +17,12 @@ interface Props {
   scene: Scene;
   place: number;
   chosen: string;
+  options: { id: string; label: string; unit: string }[];
   choose(id: string): void;
 }
 
 /** The last seconds of the rig, as a window that slides. */
-export function LivePlot({ hello, scene, place, chosen, choose }: Props) {
+export function LivePlot({ hello, scene, place, chosen, options, choose }: Props) {
   const { viewer, cursor } = use_app();
   const sources = live_sources(hello, scene);
   const source = sources.find(({ id }) => id === chosen) ?? sources[Math.min(place, sources.length - 1)];
@@ -43,7 +44,7 @@ export function LivePlot({ hello, scene, place, chosen, choose }: Props) {
   const at = cursor.value ?? viewer.playback.held.value;
   const state = at === null ? viewer.history.newest : viewer.history.at(at);
   return (
-    <PlotFrame place={place} options={sources} chosen={source.id} names={short_names(source.names)} part={source.part} host={host} choose={choose}
+    <PlotFrame place={place} options={options} chosen={source.id} names={short_names(source.names)} part={source.part} host={host} choose={choose}
       values={source.names.map((_, i) => (state ? source.value(state, i) : null))} />
   );
 }

@@ -7,6 +7,8 @@ interface Props {
   options: { id: string; label: string; unit: string }[];
   chosen: string;
   names: string[];
+  /** Of the series, where they have colours of their own. */
+  colors?: string[];
   /** Says that it is not all. */
   part: string | undefined;
   /** At the cursor, or where playback stands. */
@@ -16,7 +18,7 @@ interface Props {
 }
 
 /** A plot's head: what is drawn, and its values at the cursor. */
-export function PlotFrame({ place, options, chosen, names, part, values, host, choose }: Props) {
+export function PlotFrame({ place, options, chosen, names, part, values, host, choose, colors }: Props) {
   const theme = theme_now();
   const size = Math.max(...values.map((value) => Math.abs(value ?? 0)));
   return (
@@ -28,7 +30,7 @@ export function PlotFrame({ place, options, chosen, names, part, values, host, c
         <ul class="legend">
           {names.map((name, i) => (
             <li key={name}>
-              <span class="swatch" style={{ background: series_color(i, theme) }} />
+              <span class="swatch" style={{ background: colors?.[i] ?? series_color(i, theme) }} />
               {name} <output aria-live="off">{format(values[i], size)}</output>
             </li>
           ))}

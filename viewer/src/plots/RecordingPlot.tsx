@@ -5,7 +5,7 @@ import { use_app } from '../ui/app';
 import { fill } from './chart';
 import { fetch_series, type Columns } from './data';
 import { PlotFrame } from './PlotFrame';
-import { groups_of, short_names } from './sources';
+import { short_names, shown_groups } from './sources';
 import { use_chart } from './use_chart';
 
 const points = 2000;
@@ -14,16 +14,15 @@ interface Props {
   hello: Hello;
   place: number;
   chosen: string;
+  options: { id: string; label: string; unit: string }[];
   choose(id: string): void;
 }
 
 /** A recording's quantities over all of its time. Angles are shown in degrees. */
-export function RecordingPlot({ hello, place, chosen, choose }: Props) {
+export function RecordingPlot({ hello, place, chosen, options, choose }: Props) {
   const { viewer, cursor } = use_app();
   const columns = useSignal<Columns | null>(null);
-  const groups = groups_of(hello.quantities).map((group) =>
-    group.unit === 'rad' ? { ...group, unit: '°', factor: 180 / Math.PI } : { ...group, factor: 1 },
-  );
+  const groups = shown_groups(hello);
   const group = groups.find(({ id }) => id === chosen) ?? standard(groups, place);
   const duration = Math.max(hello.duration, 1e-9);
   const draw = (chart: Parameters<typeof fill>[0] | null): void => {
@@ -52,15 +51,15 @@ export function RecordingPlot({ hello, place, chosen, choose }: Props) {
   const at = cursor.value ?? viewer.playback.time.value;
   const row = columns.value ? nearest(columns.value[0], at) : -1;
   return (
-    <PlotFrame place={place} options={groups} chosen={group?.id ?? ''} names={short_names(names)} part={group?.part} host={host} choose={choose}
+    <PlotFrame place={place} options={options} chosen={group?.id ?? ''} names={short_names(names)} part={group?.part} host={host} choose={choose}
       values={names.map((_, i) => (row >= 0 ? columns.value![i + 1][row] : null))} />
   );
 }
 
-/** The tip first, then what comes first besides. */
+/** The tip first, then a servo's errors, then what comes first besides. */
 function standard<G extends { id: string }>(groups: G[], place: number): G | undefined {
-  const tip = groups.findIndex(({ id }) => id.startsWith('tip'));
-  const order = tip > 0 ? [groups[tip], ...groups.filter((_, i) => i !== tip)] : groups;
+  const rank = ({ id }: G): number => (id.startsWith('tip') ? 0 : id.startsWith('servo') ? 1 : 2);
+  const order = [...groups].sort((a, b) => rank(a) - rank(b));
   return order[Math.min(place, order.length - 1)];
 }
 

@@ -10,6 +10,9 @@ export interface ChartOptions {
   now(): number | null;
   hover(time: number | null): void;
   seek(time: number): void;
+  /** Over something else than the time that all others share. */
+  is_alone?: boolean;
+  colors?: string[];
 }
 
 /** Told apart on both grounds, also with a colour-blind eye as far as nine can be. */
@@ -18,10 +21,10 @@ const palettes = {
   light: ['#1971c2', '#d9480f', '#2b8a3e', '#a61e4d', '#a86a00', '#0b7285', '#6741d9', '#c92a2a', '#5c940d'],
 };
 
-export function make_chart({ host, names, unit, now, hover, seek }: ChartOptions): uPlot {
+export function make_chart({ host, names, unit, now, hover, seek, is_alone, colors }: ChartOptions): uPlot {
   const style = getComputedStyle(document.documentElement);
   const color = (name: string): string => style.getPropertyValue(name).trim();
-  const palette = palettes[document.documentElement.dataset.theme === 'light' ? 'light' : 'dark'];
+  const palette = colors ?? palettes[document.documentElement.dataset.theme === 'light' ? 'light' : 'dark'];
   const font = '11px system-ui, sans-serif';
   const axis: uPlot.Axis = {
     stroke: color('--text-quiet'),
@@ -35,7 +38,7 @@ export function make_chart({ host, names, unit, now, hover, seek }: ChartOptions
     legend: { show: false },
     padding: [8, 10, 0, 0],
     scales: { x: { time: false }, y: { range: (_, low, high) => roomy(low, high) } },
-    cursor: { sync: { key: 'flexura' }, points: { size: 6 }, drag: { x: false, y: false }, y: false },
+    cursor: { ...(is_alone ? {} : { sync: { key: 'flexura' } }), points: { size: 6 }, drag: { x: false, y: false }, y: false },
     axes: [
       { ...axis, size: 24, values: (_, all) => all.map((t) => `${+t.toFixed(3)}`) },
       { ...axis, size: 52, values: (_, all) => all.map((value) => `${+value.toPrecision(6)}`.replace('-', '−')) },

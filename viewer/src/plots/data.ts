@@ -42,8 +42,10 @@ export async function fetch_series(base: string, names: string[], points: number
   address.searchParams.set('points', String(points));
   const answer = await fetch(address, { credentials: 'same-origin' });
   if (!answer.ok) throw new Error(`The plot’s data did not come (${answer.status}).`);
-  const series = (await answer.json()) as Record<string, number[]>;
-  const scaled = (values: number[] = []): number[] => (factor === 1 ? values : values.map((value) => value * factor));
-  return [series.time, ...names.map((name) => scaled(series[name]))];
+  const series = (await answer.json()) as Record<string, (number | null)[]>;
+  // Where a quantity has no value, its line is broken.
+  const scaled = (values: (number | null)[] = []): (number | null)[] =>
+    (factor === 1 ? values : values.map((value) => (value === null ? null : value * factor)));
+  return [series.time as number[], ...names.map((name) => scaled(series[name]))];
 }
 

@@ -9,8 +9,8 @@ export interface Source {
   names: string[];
   /** Of one that shows a part of what belongs together: that it does. */
   part?: string;
-  /** The value of the series i in a state. */
-  value(state: State, i: number): number;
+  /** The value of the series i in a state, where it has one. */
+  value(state: State, i: number): number | null;
 }
 
 const degree = 180 / Math.PI;
@@ -53,7 +53,25 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
       value: ({ cameras }, i) => cameras[(i >> 1) * camera_stride + (i & 1 ? camera_tilt : camera_pan)] * degree,
     });
   }
+  if (hello.controls.tasks.some(({ kind }) => kind === 'servo')) {
+    sources.push({
+      id: servo_group, label: readable(servo_group), unit: '%', names: short_names(servo_names),
+      value: ({ extras }, i) => extras?.values[servo_names[i]] ?? null,
+    });
+  }
   return sources.flatMap(in_parts);
+}
+
+/** A servo's errors, of the arm's length: as recordings call them. */
+const servo_group = 'servo_error';
+const servo_names = ['servo_rms', 'servo_tip', 'servo_true_rms', 'servo_true_tip'];
+
+/** A plot that is over the arm's length and not over time. */
+export const along_option = { id: 'along', label: 'Errors along the arm', unit: '' };
+
+/** Whether there can be such a plot. */
+export function can_be_along({ mode, controls, quantities }: Hello): boolean {
+  return mode === 'live' ? controls.tasks.some(({ kind }) => kind === 'servo') : quantities.some(({ group }) => group === servo_group);
 }
 
 /** As many of a source's series at a time as can be told apart. */
@@ -96,14 +114,21 @@ export interface Group {
   part?: string;
 }
 
+/** Those of a recording, angles in degrees: with what its numbers are to be multiplied. */
+export function shown_groups({ quantities }: Hello): (Group & { factor: number })[] {
+  return groups_of(quantities).map((group) =>
+    group.unit === 'rad' ? { ...group, unit: '°', factor: 180 / Math.PI } : { ...group, factor: 1 },
+  );
+}
+
 /** More are not told apart, by their colours or in the legend. */
 export const most_in_group = 9;
 
 /** A recording's quantities, put together by what their names have in common. */
 export function groups_of(quantities: Hello['quantities']): Group[] {
   const groups = new Map<string, Group>();
-  for (const { name, unit } of quantities) {
-    const stem = name.replace(/[\s._/-]?[\[(]?\d+[\])]?/g, '').replace(/[._/ -](x|y|z)$/, '') || name;
+  for (const { name, unit, group: told } of quantities) {
+    const stem = told ?? (name.replace(/[\s._/-]?[\[(]?\d+[\])]?/g, '').replace(/[._/ -](x|y|z)$/, '') || name);
     const id = `${stem} ${unit}`;
     const group = groups.get(id) ?? { id, label: readable(stem), unit, names: [] };
     groups.set(id, group);

@@ -4,8 +4,14 @@ import { theme_now } from '../state/preferences';
 import { use_app } from '../ui/app';
 import { make_chart } from './chart';
 
+/** Of a chart that is over something else than time. */
+export interface Alone {
+  colors: string[];
+  hover(place: number | null): void;
+}
+
 /** A chart in a host of its own, made anew with other series or another theme, as large as its host. */
-export function use_chart(names: string[], unit: string, ready: (chart: uPlot) => void) {
+export function use_chart(names: string[], unit: string, ready: (chart: uPlot) => void, alone?: Alone) {
   const app = use_app();
   const host = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
@@ -17,9 +23,13 @@ export function use_chart(names: string[], unit: string, ready: (chart: uPlot) =
       host: host.current!,
       names,
       unit,
-      now: () => (playback.mode.value === 'live' ? playback.held.value : playback.time.value),
-      hover: (time) => (app.cursor.value = time),
-      seek: (time) => playback.seek(time),
+      is_alone: alone !== undefined,
+      colors: alone?.colors,
+      now: () => (alone ? null : playback.mode.value === 'live' ? playback.held.value : playback.time.value),
+      hover: (time) => (alone ? alone.hover(time) : (app.cursor.value = time)),
+      seek: (time) => {
+        if (!alone) playback.seek(time);
+      },
     });
     chart.current = made;
     ready(made);

@@ -1,7 +1,9 @@
 // The binary messages. Arrays are views into the message itself: nothing is copied on the way to the screen.
+import type { Extras } from './types';
 
 export const kind_state = 1;
 export const kind_image = 2;
+export const kind_extras = 3;
 
 export const flag_moving = 1;
 export const flag_running = 2;
@@ -35,6 +37,8 @@ export interface State {
   samples: Float32Array;
   cameras: Float32Array;
   displacements: Float32Array;
+  /** What was drawn beside it when it came. */
+  extras?: Extras | null;
 }
 
 export interface ImageMessage {
@@ -97,4 +101,12 @@ export function decode_image(buffer: ArrayBuffer): ImageMessage {
     time: view.getFloat64(8, true),
     file: new Uint8Array(buffer, image_header),
   };
+}
+
+/** The extras in a message; null where they hold nothing. */
+export function decode_extras(buffer: ArrayBuffer): Extras | null {
+  const extras = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 1))) as Partial<Extras>;
+  const { time = 0, title = '', text = '', ghosts = [], overlays = [], along, values = {} } = extras;
+  if (!ghosts.length && !overlays.length && !along) return null;
+  return { time, title, text, ghosts, overlays, along, values };
 }

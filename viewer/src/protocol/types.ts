@@ -125,6 +125,8 @@ export interface Mark {
 export interface Quantity {
   name: string;
   unit: string;
+  /** What it is shown together with. */
+  group?: string;
 }
 
 export interface Hello {
@@ -164,6 +166,8 @@ export interface ProgressMessage {
   fraction?: number;
   done?: boolean;
   outcome?: Outcome;
+  /** At its end: there is a recording of it. */
+  recording?: boolean;
   text?: string;
 }
 
@@ -186,6 +190,41 @@ export interface GhostMessage {
   id: string;
   color?: string;
   poses?: Pose[];
+}
+
+/** What is drawn beside the arm and upon its pictures, of one instant: kind 3 of the binary messages. */
+export interface Extras {
+  time: number;
+  title: string;
+  text: string;
+  ghosts: ExtraGhost[];
+  overlays: ExtraOverlay[];
+  along?: Along;
+  /** By the names that a recording's quantities have. */
+  values: Record<string, number | null>;
+}
+
+export interface ExtraGhost {
+  id: string;
+  label: string;
+  color: string;
+  poses: Pose[];
+}
+
+/** Upon the picture of this number; without one, upon any of the camera's. */
+export interface ExtraOverlay {
+  camera: string;
+  number?: number;
+  reason?: string;
+  layers: Layer[];
+}
+
+/** Curves of values at equal shares of the arm's length. */
+export interface Along {
+  label: string;
+  unit: string;
+  length: number;
+  curves: { id: string; label: string; color: string; values: (number | null)[] }[];
 }
 
 export type Reply = { type: 'reply'; id: number; result?: unknown; error?: string };

@@ -1,6 +1,8 @@
 // What lies upon the 3D view: whose eyes, how old, and what is true of the picked point.
 import { angle, fixed, format_time, length_places, vector } from '../ui/format';
 import { obstruction } from '../state/commander';
+import { preferences, toggle_hidden } from '../state/preferences';
+import { eye_of } from '../overlays/extras';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
 import { point_at } from '../math/arc';
@@ -19,6 +21,7 @@ export function StageNotes() {
       </div>
       <OldLabel />
       <Clock />
+      <ExtrasLegend />
       <PickedPoint />
       <TipNote />
     </>
@@ -42,6 +45,29 @@ function Clock() {
   viewer.tick.value;
   if (!viewer.shown) return null;
   return <div class="stage-clock" id="clock">{format_time(viewer.shown.time)}</div>;
+}
+
+/** What the program draws beside the arm and upon the pictures, each with an eye. */
+function ExtrasLegend() {
+  const { viewer } = use_app();
+  const extras = viewer.shown_extras.value;
+  if (!extras) return null;
+  const hidden = preferences.hidden.value;
+  return (
+    <aside class="extras" aria-label={`${extras.title}: what is drawn`}>
+      <header><b>{extras.title}</b> <span>{extras.text}</span></header>
+      <div class="chips" role="group" aria-label="Drawn beside the arm and upon the pictures">
+        {extras.ghosts.map(({ id, label, color }) => {
+          const shown = !hidden.includes(eye_of(id));
+          return (
+            <button key={id} type="button" class="chip" aria-pressed={shown} aria-label={`Show: ${label}`} onClick={() => toggle_hidden(eye_of(id))}>
+              <span class="swatch" style={{ background: color }} />{label}<Icon name={shown ? 'eye' : 'hidden'} />
+            </button>
+          );
+        })}
+      </div>
+    </aside>
+  );
 }
 
 function PickedPoint() {

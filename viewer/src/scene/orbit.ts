@@ -11,7 +11,7 @@ export class Orbit {
   /** The arm's length: what distances are held against. */
   span = 1;
   /** Around +Y from +Z towards +X. */
-  azimuth = 0.85;
+  azimuth = 0.6;
   elevation = 0.34;
   private readonly side = new Vector3();
   private readonly up = new Vector3();

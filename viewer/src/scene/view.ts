@@ -7,6 +7,7 @@ import type { Picture } from '../connection/images';
 import type { State } from '../protocol/state';
 import type { GhostMessage, Scene } from '../protocol/types';
 import { see_through } from './camera_view';
+import { distance_for_all, first_distance, frustum_points, type Look } from './framing';
 import { Orbit } from './orbit';
 import type { Part, Theme } from './part';
 import { make_handles, type Handles } from './parts/handles';
@@ -41,6 +42,7 @@ export class SceneView {
   private picture_timer: ReturnType<typeof setTimeout> | undefined;
   private frame = 0;
   private dirty = false;
+  private is_to_frame = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const software = draws_in_software();
@@ -65,7 +67,8 @@ export class SceneView {
     this.ambient.intensity = Math.PI * Math.max(0.25, scene.light.ambient * 0.8);
     this.sun.intensity = Math.PI * scene.light.directional;
     this.sun.position.set(...scene.light.towards);
-    if (frame_all) this.frame_all();
+    if (frame_all) this.frame_arm();
+    this.is_to_frame = frame_all && !this.state;
     if (this.state) this.draw_state(this.state);
     this.invalidate();
   }
@@ -74,6 +77,9 @@ export class SceneView {
   draw_state(state: State, anyway = true): void {
     const before = this.state;
     this.state = state;
+    // Only with a state one knows where the cameras are.
+    if (this.is_to_frame) this.frame_arm();
+    this.is_to_frame = false;
     if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)) return;
     for (const part of this.parts) part.draw?.(state);
     this.invalidate();
@@ -116,13 +122,19 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** All of the arm's reach in view. */
-  frame_all(): void {
+  /** All of the arm's reach in view, and of the cameras what is near. */
+  frame_arm(): void {
     if (!this.scene) return;
-    const { base } = this.scene.arm;
-    const up = this.scene.arm.kind === 'planar' ? 0.45 : 0.42;
-    this.orbit.target.set(base[0], base[1] + this.up_of_base(this.scene) * up * this.span, base[2]);
-    this.orbit.distance = 2.9 * this.span;
+    const look = this.look_at_reach(this.scene);
+    this.orbit.distance = first_distance(this.frusta(this.scene), look, this.span);
+    this.invalidate();
+  }
+
+  /** All of the cameras in view too. */
+  frame_cameras(): void {
+    if (!this.scene) return;
+    const look = this.look_at_reach(this.scene);
+    this.orbit.distance = distance_for_all(this.frusta(this.scene), look, this.span);
     this.invalidate();
   }
 
@@ -178,6 +190,19 @@ export class SceneView {
 
   get height(): number {
     return this.size.y;
+  }
+
+  /** Turns to the middle of the arm's reach. */
+  private look_at_reach(scene: Scene): Look {
+    const { base, kind } = scene.arm;
+    const up = kind === 'planar' ? 0.45 : 0.42;
+    this.orbit.target.set(base[0], base[1] + this.up_of_base(scene) * up * this.span, base[2]);
+    const { target, azimuth, elevation } = this.orbit;
+    return { target, azimuth, elevation, fov: this.camera.fov, aspect: this.size.x / this.size.y };
+  }
+
+  private frusta(scene: Scene): Vector3[] {
+    return this.state ? frustum_points(scene, this.state.cameras) : [];
   }
 
   private up_of_base({ arm: { base } }: Scene): number {

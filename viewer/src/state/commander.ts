@@ -72,10 +72,20 @@ export class Commander {
   }
 
   /** A request without values: halt, reset, run, cancel, open, live. True when it was taken. */
-  async plain(what: string): Promise<boolean> {
-    if (what === 'reset' || what === 'run') this.forget_tip();
+  plain(what: string): Promise<boolean> {
+    if (what === 'reset') this.forget_tip();
+    return what === 'run' ? this.run() : this.ask(what);
+  }
+
+  /** All tasks, or the one at that place from the experiment's start. */
+  run(task?: number): Promise<boolean> {
+    this.forget_tip();
+    return this.ask('run', task === undefined ? {} : { task });
+  }
+
+  private async ask(what: string, values: Record<string, unknown> = {}): Promise<boolean> {
     try {
-      await this.viewer.link.request(what);
+      await this.viewer.link.request(what, values);
       return true;
     } catch (error) {
       this.viewer.notices.error(error);

@@ -3,14 +3,17 @@ import { computed, signal } from '@preact/signals';
 import { Link, type LinkListener } from '../connection/link';
 import { Pictures, type Picture } from '../connection/images';
 import type { Entry } from '../connection/entry';
-import { decode_image, decode_state, flag_running, kind_image, kind_of, kind_state, type State } from '../protocol/state';
-import type { EventMessage, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
+import {
+  decode_extras, decode_image, decode_state, flag_running, kind_extras, kind_image, kind_of, kind_state, type State,
+} from '../protocol/state';
+import type { EventMessage, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
 import { Commander } from './commander';
 import { History } from './history';
 import { Measured } from './measured';
 import { Notices } from './notices';
 import { Playback } from './playback';
 import { preferences } from './preferences';
+import { extra_ghosts } from '../overlays/extras';
 import { shape } from '../overlays/measures';
 
 /** What one can believe of what is on the screen. */
@@ -37,6 +40,10 @@ export class Viewer implements LinkListener {
   readonly events = signal<EventMessage[]>([]);
   readonly progress = signal<ProgressMessage | null>(null);
   readonly layers = signal<Record<string, Layer[]>>({});
+  /** The newest: what lies upon the newest pictures. */
+  readonly extras = signal<Extras | null>(null);
+  /** Those that came with the state that is shown, which may be held. */
+  readonly shown_extras = signal<Extras | null>(null);
   /** As the program sends them. */
   private readonly sent_ghosts = signal<Record<string, GhostMessage>>({});
   /** Those, and the shape that the pictures tell. */
@@ -120,6 +127,7 @@ export class Viewer implements LinkListener {
       const kind = kind_of(message);
       if (kind === kind_state) this.take_state(decode_state(message));
       else if (kind === kind_image) void this.take_image(message);
+      else if (kind === kind_extras) this.take_extras(decode_extras(message));
       // Other kinds are later versions'; this page knows nothing to draw for them.
     } catch (error) {
       this.notices.error(error);
@@ -158,6 +166,8 @@ export class Viewer implements LinkListener {
     this.progress.value = null;
     this.layers.value = {};
     this.sent_ghosts.value = {};
+    this.extras.value = null;
+    this.shown_extras.value = null;
     this.picked.value = null;
     this.commander.forget_tip();
     this.pictures.reset();
@@ -181,12 +191,22 @@ export class Viewer implements LinkListener {
   }
 
   private all_ghosts(): Record<string, GhostMessage> {
+    const all = { ...this.sent_ghosts.value, ...extra_ghosts(this.shown_extras.value, preferences.hidden.value) };
     const poses = this.measured.shape.value?.poses;
-    if (!poses) return this.sent_ghosts.value;
-    return { ...this.sent_ghosts.value, [shape.id]: { type: 'ghost', id: shape.id, color: shape.color, poses } };
+    if (poses) all[shape.id] = { type: 'ghost', id: shape.id, color: shape.color, poses };
+    return all;
+  }
+
+  /** They belong to the state that comes next; where that is shown already, to it. */
+  private take_extras(extras: Extras | null): void {
+    this.extras.value = extras;
+    if (this.playback.held.peek() !== null || !this.shown) return;
+    this.shown.extras = extras;
+    this.shown_extras.value = extras;
   }
 
   private take_state(state: State): void {
+    state.extras = this.extras.peek();
     this.last_state = performance.now();
     this.stateless.value = false;
     this.flags.value = state.flags;
@@ -200,6 +220,7 @@ export class Viewer implements LinkListener {
 
   private show(state: State): void {
     this.shown = state;
+    this.shown_extras.value = state.extras ?? null;
     for (const listener of this.state_listeners) listener(state);
     this.tick_timer ??= setTimeout(() => {
       this.tick_timer = undefined;

@@ -1,3 +1,4 @@
+import { useSignal } from '@preact/signals';
 import { flag_unsafe } from '../protocol/state';
 import { theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
@@ -50,7 +51,9 @@ export function Header() {
 /** Tasks and what belongs to them. */
 function Rig() {
   const { viewer } = use_app();
+  const only = useSignal<number | null>(null);
   const hello = viewer.hello.value!;
+  const { tasks } = hello.controls;
   const progress = viewer.progress.value;
   const running = progress !== null && !progress.done;
   const ask = (what: string) => () => void viewer.commander.plain(what);
@@ -69,12 +72,16 @@ function Rig() {
     );
   }
   // The program says of runs before; of one that has ended since, its own last word does.
-  const recorded = hello.recording || (progress?.done === true && progress.outcome !== 'failed');
+  const recorded = hello.recording || (progress?.done === true && (progress.recording ?? progress.outcome !== 'failed'));
+  const run = (): void => {
+    const task = only.value !== null && only.value < tasks.length ? only.value : undefined;
+    void viewer.commander.run(task);
+  };
   return (
     <div class="tools">
       {running && (
         <span class="running">
-          <span class="running-text">{progress.what}</span>
+          <span class="running-text" title={progress.what}>{progress.what}</span>
           <progress max={1} value={progress.fraction ?? 0} aria-label="Progress of the tasks" />
           <button type="button" class="button" disabled={!connected || viewer.readonly} onClick={ask('cancel')}
             title={viewer.readonly ? 'The run belongs to the terminal that started it' : 'The run ends early (C)'}>
@@ -82,9 +89,16 @@ function Rig() {
           </button>
         </span>
       )}
-      {!running && hello.controls.tasks.length > 0 && (
-        <button type="button" class="button primary" disabled={!connected || viewer.readonly || viewer.blind} onClick={ask('run')}
-          title={hello.controls.tasks.map(({ name, kind }) => `${name} (${kind})`).join('\n')}>
+      {!running && tasks.length > 1 && (
+        <select aria-label="Which tasks run" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
+          onChange={({ currentTarget: { value } }) => (only.value = value === '' ? null : Number(value))}>
+          <option value="">All tasks</option>
+          {tasks.map(({ name, kind }, i) => <option key={i} value={i}>{`${i + 1}: ${name === kind ? name : `${name} (${kind})`}`}</option>)}
+        </select>
+      )}
+      {!running && tasks.length > 0 && (
+        <button type="button" class="button primary" disabled={!connected || viewer.readonly || viewer.blind} onClick={run}
+          title={tasks.map(({ name, kind }) => `${name} (${kind})`).join('\n')}>
           <Icon name="run" />Run tasks
         </button>
       )}

@@ -102,6 +102,22 @@ export async function colors_in(page: Page, png: Buffer): Promise<number> {
   }, png.toString('base64'));
 }
 
+/** How many of the first picture's pixels have this colour, or near, and where they are in the mean. */
+export async function colored(page: Page, color: string): Promise<{ count: number; u: number; v: number }> {
+  return page.locator('.picture canvas').first().evaluate((canvas: HTMLCanvasElement, hex) => {
+    const wanted = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+    const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+    let [count, u, v] = [0, 0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      if (Math.max(...wanted.map((value, k) => Math.abs(value - data[i + k]))) > 25) continue;
+      ++count;
+      u += (i / 4) % canvas.width;
+      v += Math.floor(i / 4 / canvas.width);
+    }
+    return { count, u: u / count, v: v / count };
+  }, color);
+}
+
 export interface ServerState {
   time: number;
   bends: number[];

@@ -1,36 +1,14 @@
 // A view that is held at an instant before, and one of which nothing is heard: what a hand does then.
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, beforeEach, expect, test } from 'vitest';
-import { spatial_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist, launch, open_page, slide, until } from './browser';
+import type { Page } from 'playwright-core';
+import { expect, test } from 'vitest';
+import type { FakeServer } from '../fake/server';
+import { slide, until } from './browser';
+import { fresh_before_each } from './opened';
 
-let browser: Browser;
 let server: FakeServer;
 let page: Page;
-let complaints: string[];
 
-beforeAll(async () => {
-  browser = await launch();
-});
-
-afterAll(async () => {
-  await browser?.close();
-});
-
-beforeEach(async () => {
-  server = new FakeServer(dist, spatial_rig());
-  await server.start();
-  ({ page, complaints } = await open_page(browser, server.url, { width: 1280, height: 720 }));
-  await page.waitForSelector('.badge[data-kind="live"]');
-  await page.waitForSelector('.section .slider');
-});
-
-afterEach(async () => {
-  expect(complaints).toEqual([]);
-  await page.context().close();
-  await server.stop();
-});
+fresh_before_each((fresh) => ({ server, page } = fresh));
 
 const badge = () => page.locator('.badge').first().getAttribute('data-kind');
 const last = (what: string) => server.log.filter((request) => request.do === what).at(-1);

@@ -2,25 +2,11 @@
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { slide, stage_at_rest, until } from './browser';
+import { colored, slide, stage_at_rest, until } from './browser';
 import { faked, opened_before, recorded, started, type Served } from './opened';
 import { program } from './program';
 
 const measured = fileURLToPath(new URL('measured.toml', import.meta.url));
-
-/** How many of the first picture's pixels have this colour, or near, and where they are in the mean. */
-const colored = (page: Page, color: string) => page.locator('.picture canvas').first().evaluate((canvas: HTMLCanvasElement, hex) => {
-  const wanted = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
-  const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
-  let [count, u, v] = [0, 0, 0];
-  for (let i = 0; i < data.length; i += 4) {
-    if (Math.max(...wanted.map((value, k) => Math.abs(value - data[i + k]))) > 25) continue;
-    ++count;
-    u += (i / 4) % canvas.width;
-    v += Math.floor(i / 4 / canvas.width);
-  }
-  return { count, u: u / count, v: v / count };
-}, color);
 
 const chip = (page: Page, label: string) => page.getByRole('button', { name: new RegExp(`^${label}: `) });
 

@@ -1,6 +1,6 @@
 // A page that the tests of a group share, and who serves it.
-import type { Browser } from 'playwright-core';
-import { afterAll, beforeAll } from 'vitest';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, beforeEach, expect } from 'vitest';
 import { spatial_rig } from '../fake/rigs';
 import { FakeServer } from '../fake/server';
 import { dist, launch, open_page, type Opened } from './browser';
@@ -33,6 +33,40 @@ export function opened_before(
   });
 
   return opened;
+}
+
+export interface Fresh {
+  server: FakeServer;
+  page: Page;
+}
+
+/** Of the tests of a file: each gets a page of its own, of a fake rig of its own; the browser complains of none. */
+export function fresh_before_each(use: (fresh: Fresh) => void): void {
+  let browser: Browser;
+  let server: FakeServer;
+  let opened: Opened;
+
+  beforeAll(async () => {
+    browser = await launch();
+  });
+
+  afterAll(async () => {
+    await browser?.close();
+  });
+
+  beforeEach(async () => {
+    server = await faked();
+    opened = await open_page(browser, server.url, { width: 1280, height: 720 });
+    await opened.page.waitForSelector('.badge[data-kind="live"]');
+    await opened.page.waitForSelector('.section .slider');
+    use({ server, page: opened.page });
+  });
+
+  afterEach(async () => {
+    expect(opened.complaints).toEqual([]);
+    await opened.page.context().close();
+    await server.stop();
+  });
 }
 
 /** The fake server of a rig, or of a recording of it. */

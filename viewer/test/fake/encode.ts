@@ -37,3 +37,7 @@ export function encode_image(camera: number, number: number, time: number, png: 
   head.writeDoubleLE(time, 8);
   return Buffer.concat([head, png]);
 }
+
+export function encode_extras(extras: object): Buffer {
+  return Buffer.concat([Buffer.from([3]), Buffer.from(JSON.stringify(extras))]);
+}

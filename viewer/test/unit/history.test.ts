@@ -87,7 +87,7 @@ test('a live arm of many sections is plotted in parts, nine curves at most', () 
   expect(bends.map(({ names }) => names.length)).toEqual([9, 7]);
   expect(bends[0].part).toBe('9 of 16; others: “Bends (more)”');
   const shown = { bends: Float32Array.from({ length: 16 }, (_, i) => i * (Math.PI / 180)) } as State;
-  expect(Math.round(bends[1].value(shown, 0))).toBe(9);
+  expect(Math.round(bends[1].value(shown, 0)!)).toBe(9);
   expect(bends[1].names[0]).toBe('5y');
 });
 

@@ -13,7 +13,7 @@ function recorder(): { context: CanvasRenderingContext2D; calls: string[] } {
 }
 
 const layers: Layer[] = [
-  { id: 'axis', kind: 'polyline', points: [[1, 2], [3, 4]], closed: true, color: '#112233' },
+  { id: 'axis', kind: 'polyline', points: [[1, 2], [3, 4]], closed: true, dashed: true, color: '#112233' },
   { id: 'markers', kind: 'points', points: [[10, 20]] },
   { id: 'circle', kind: 'ellipse', center: [5, 6], axes: [7, 8], angle: 0.5 },
   { id: 'mask', kind: 'runs', rows: [[3, 10, 14]] },
@@ -24,6 +24,7 @@ test('the kinds of the protocol are drawn', () => {
   draw_layers(context, layers, 2);
   expect(calls).toContain('lineTo(3,4)');
   expect(calls).toContain('closePath()');
+  expect(calls).toContain('setLineDash(12,10)');
   expect(calls.some((call) => call.startsWith('ellipse(5,6,7,8,0.5,'))).toBe(true);
   expect(calls).toContain('fillRect(9.5,2.5,5,1)');
   expect(calls).toContain('strokeStyle=#112233');

@@ -20,6 +20,7 @@ const texture_width = 320;
 export function make_cameras({ scene, span, theme }: PartContext): Part[] {
   const { base } = scene.arm;
   return scene.cameras.map(({ name, width, height }, index) => {
+    const size = { width, height };
     const group = new Group();
     group.matrixAutoUpdate = false;
     const corners = new Float32Array(24 * 3);
@@ -58,20 +59,10 @@ export function make_cameras({ scene, span, theme }: PartContext): Part[] {
         const row = state.cameras;
         if (row.length < at + camera_stride) return;
         set_matrix(group, row, at);
-        const left = (-0.5 - row[at + camera_cx]) / row[at + camera_fx];
-        const right = (width - 0.5 - row[at + camera_cx]) / row[at + camera_fx];
-        const top = (-0.5 - row[at + camera_cy]) / row[at + camera_fy];
-        const bottom = (height - 0.5 - row[at + camera_cy]) / row[at + camera_fy];
-        const far = Math.hypot(row[at] - base[0], row[at + 1] - base[1], row[at + 2] - base[2]);
-        const depth = Math.min(0.7 * far, Math.max(depth_share * far, (least_width * span) / (right - left)));
-        fill_frustum(corners, plane, left * depth, right * depth, top * depth, bottom * depth, depth);
+        hang(row, at, size, base, span, seen);
+        fill_frustum(corners, plane, seen.left, seen.right, seen.top, seen.bottom, seen.depth);
         edge_geometry.attributes.position.needsUpdate = true;
         plane_geometry.attributes.position.needsUpdate = true;
-        seen.left = left * depth;
-        seen.right = right * depth;
-        seen.top = top * depth;
-        seen.bottom = bottom * depth;
-        seen.depth = depth;
         into_camera.copy(group.matrix).invert();
         samples = state.samples;
       },
@@ -113,6 +104,21 @@ export interface Hanging {
   top: number;
   bottom: number;
   depth: number;
+}
+
+/** Where the picture of the camera in a state's row hangs, of so many pixels; fills and gives `out`. */
+export function hang(
+  row: Float32Array, at: number, { width, height }: { width: number; height: number }, base: ArrayLike<number>, span: number, out: Hanging,
+): Hanging {
+  const left = (-0.5 - row[at + camera_cx]) / row[at + camera_fx];
+  const right = (width - 0.5 - row[at + camera_cx]) / row[at + camera_fx];
+  const far = Math.hypot(row[at] - base[0], row[at + 1] - base[1], row[at + 2] - base[2]);
+  out.depth = Math.min(0.7 * far, Math.max(depth_share * far, (least_width * span) / (right - left)));
+  out.left = left * out.depth;
+  out.right = right * out.depth;
+  out.top = ((-0.5 - row[at + camera_cy]) / row[at + camera_fy]) * out.depth;
+  out.bottom = ((height - 0.5 - row[at + camera_cy]) / row[at + camera_fy]) * out.depth;
+  return out;
 }
 
 /**

@@ -1,0 +1,144 @@
+#include "flexura/view/servo_extras.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "flexura/base/source.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+using Bends = std::vector<std::array<double, 2>>;
+
+// A thing that is shown in more than one place has one name and one colour there.
+struct Named {
+  const char *id, *label, *color;
+};
+constexpr Named wanted{"wanted", "Wanted", "#ff922b"};
+constexpr Named seen{"seen", "Seen", "#22b8cf"};
+constexpr Named truth{"truth", "True", "#51cf66"};
+
+struct Shape {
+  Arm arm;
+  ArmState state;
+};
+
+// A shape of the log's; `lengths` are those of the sections without stretch. A log may say anything.
+Shape shape_of(const Arm& base, const std::vector<double>& lengths, const Bends& bends,
+               const std::vector<double>& stretches) {
+  Shape shape{base, {}};
+  const std::size_t count = base.sections.size();
+  constexpr double largest = 1e6;
+  const auto is_size = [](double size) { return size > 1 / largest && size < largest; };
+  const auto is_bend = [](const auto& bend) { return std::hypot(bend[0], bend[1]) < largest; };
+  // Logs that do not say how long the arm is mean the file's.
+  const bool fits = (lengths.empty() || lengths.size() == count) && bends.size() == count &&
+                    stretches.size() == count && std::ranges::all_of(lengths, is_size) &&
+                    std::ranges::all_of(stretches, is_size) && std::ranges::all_of(bends, is_bend);
+  if (!fits) throw input_error("the log", "a servo's shape does not fit the arm");
+  for (std::size_t i = 0; i < lengths.size(); ++i) shape.arm.sections[i].length = lengths[i];
+  for (const auto& bend : bends) shape.state.bends.emplace_back(bend[0], bend[1]);
+  shape.state.stretches = stretches;
+  return shape;
+}
+
+struct Shapes {
+  Shape wanted;
+  std::optional<Shape> seen, truth;
+};
+
+Shapes shapes_of(const ViewedRig& rig, const ServoStepMessage& step) {
+  Shapes shapes{shape_of(rig.model, step.lengths, step.desired, step.desired_stretches), {}, {}};
+  if (step.seen && step.seen_stretches)
+    shapes.seen = shape_of(rig.model, step.lengths, *step.seen, *step.seen_stretches);
+  if (step.truth && step.true_lengths)
+    shapes.truth = shape_of(rig.truth, *step.true_lengths, *step.truth,
+                            std::vector<double>(rig.truth.sections.size(), 1));
+  return shapes;
+}
+
+GhostArm ghost_of(const Named& mark, const Shape& shape) {
+  return {mark.id, mark.label, mark.color, arm_samples(shape.arm, shape.state)};
+}
+
+// Between points of equal shares of both lengths, mm.
+AlongCurve distances(const Named& mark, const Shape& shape, const Shape& desired) {
+  constexpr int count = 50;
+  const Backbone is(shape.arm, shape.state), shall(desired.arm, desired.state);
+  AlongCurve curve{mark.id, mark.label, mark.color, {}};
+  for (int i = 0; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    curve.values.push_back(
+        1000 * (is.pose(share * is.length()).position - shall.pose(share * shall.length()).position).norm());
+  }
+  return curve;
+}
+
+PictureLayers layers_of(const ServoPicture& picture) {
+  const ServoSightingMessage& sighting = picture.sighting;
+  PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
+  std::vector<Eigen::Vector2d> line;
+  line.reserve(std::max(sighting.points.size(), sighting.wanted.size()));
+  for (const AxisPointMessage& point : sighting.points) line.emplace_back(point.u, point.v);
+  if (!line.empty()) overlay.layers.push_back(line_layer(seen.id, seen.color, line));
+  line.clear();
+  // Upon that, dashed: both are seen where they are one.
+  for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
+  if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line, true));
+  return overlay;
+}
+
+std::string said(const ServoStepMessage& step) {
+  std::string line = step.rms ? fmt::format("{:.2f} % of the length off, the tip {:.2f} %", 100 * *step.rms,
+                                            100 * step.tip.value_or(0))
+                              : "the arm is not seen yet";
+  if (step.limited) line += "; held back: " + *step.limited;
+  return line;
+}
+
+}  // namespace
+
+Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
+  const ServoStepMessage& step = servo.step;
+  const Shapes shapes = shapes_of(rig, step);
+  Extras extras;
+  extras.time = step.time, extras.title = "Servo", extras.text = said(step);
+  extras.ghosts.push_back(ghost_of(wanted, shapes.wanted));
+  extras.along_label = "Distance from wanted", extras.along_unit = "mm", extras.length = rig.model.length();
+  if (shapes.seen) {
+    extras.ghosts.push_back(ghost_of(seen, *shapes.seen));
+    extras.along.push_back(distances(seen, *shapes.seen, shapes.wanted));
+  }
+  if (shapes.truth) {
+    extras.ghosts.push_back(ghost_of(truth, *shapes.truth));
+    extras.along.push_back(distances(truth, *shapes.truth, shapes.wanted));
+  }
+  for (const ServoPicture& picture : servo.pictures) extras.overlays.push_back(layers_of(picture));
+  const auto names = servo_quantities();
+  const auto values = servo_values(step);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (values[i]) extras.values.emplace_back(names[i].name, *values[i]);
+  return extras;
+}
+
+std::vector<Quantity> servo_quantities() {
+  std::vector<Quantity> list;
+  for (const char* name : {"servo_rms", "servo_tip", "servo_true_rms", "servo_true_tip"})
+    list.push_back({name, "%", "servo_error"});
+  return list;
+}
+
+std::vector<std::optional<double>> servo_values(const ServoStepMessage& step) {
+  const auto percent = [](const std::optional<double>& share) {
+    return share ? std::optional(100 * *share) : std::nullopt;
+  };
+  return {percent(step.rms), percent(step.tip), percent(step.true_rms), percent(step.true_tip)};
+}
+
+}  // namespace flexura

@@ -1,0 +1,22 @@
+// What the program draws of its own: wanted and seen shapes, in the 3D view and upon the pictures. One eye for both.
+import type { ExtraOverlay, Extras, GhostMessage, Layer } from '../protocol/types';
+
+/** What the list of hidden things calls one. */
+export function eye_of(id: string): string {
+  return `extra ${id}`;
+}
+
+/** By a name of their own, so that none takes the place of a ghost that somebody else sent. */
+export function extra_ghosts(extras: Extras | null, hidden: string[]): Record<string, GhostMessage> {
+  const shown = (extras?.ghosts ?? []).filter(({ id }) => !hidden.includes(eye_of(id)));
+  return Object.fromEntries(shown.map(({ id, color, poses }) => [eye_of(id), { type: 'ghost', id: eye_of(id), color, poses }]));
+}
+
+/** What lies upon the camera's picture of this number. */
+export function extra_overlay(extras: Extras | null, camera: string, number: number | undefined): ExtraOverlay | undefined {
+  return extras?.overlays.find((overlay) => overlay.camera === camera && (overlay.number === undefined || overlay.number === number));
+}
+
+export function extra_layers(overlay: ExtraOverlay | undefined, hidden: string[]): Layer[] {
+  return (overlay?.layers ?? []).filter(({ id }) => !hidden.includes(eye_of(id)));
+}

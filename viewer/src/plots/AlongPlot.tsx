@@ -1,0 +1,53 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { effect, useSignal } from '@preact/signals';
+import type { Along } from '../protocol/types';
+import { use_app } from '../ui/app';
+import { fill } from './chart';
+import type { Columns } from './data';
+import { PlotFrame } from './PlotFrame';
+import { along_option } from './sources';
+import { use_chart } from './use_chart';
+
+interface Props {
+  place: number;
+  options: { id: string; label: string; unit: string }[];
+  choose(id: string): void;
+}
+
+/** What is known along the arm at the instant that is shown: over arc length, in m. */
+export function AlongPlot({ place, options, choose }: Props) {
+  const { viewer } = use_app();
+  const at = useSignal<number | null>(null);
+  const along = viewer.shown_extras.value?.along;
+  const curves = along?.curves ?? [];
+  const names = curves.map(({ label }) => label);
+  const colors = curves.map(({ color }) => color);
+  const draw = (made: Parameters<typeof fill>[0] | null): void => {
+    const now = viewer.shown_extras.peek()?.along;
+    // With other curves comes another chart.
+    if (made && now && made.series.length === now.curves.length + 1) fill(made, columns_of(now), [0, now.length]);
+  };
+  const latest = useRef(draw);
+  latest.current = draw;
+  const { host, chart } = use_chart(names, along?.unit ?? '', draw, { colors, hover: (place) => (at.value = place) });
+  useEffect(() => effect(() => {
+    viewer.shown_extras.value;
+    latest.current(chart.current);
+  }), []);
+  const i = along && at.value !== null ? Math.round((at.value / along.length) * ((curves[0]?.values.length ?? 1) - 1)) : -1;
+  return (
+    <PlotFrame place={place} options={options} chosen={along_option.id} names={names} colors={colors}
+      part={along ? `${along.unit} over m` : 'Nothing now: while a servo steers the arm'} host={host} choose={choose}
+      values={curves.map(({ values }) => (i < 0 ? largest(values) : values[i]))} />
+  );
+}
+
+export function columns_of({ length, curves }: Along): Columns {
+  const count = curves[0]?.values.length ?? 0;
+  return [Array.from({ length: count }, (_, i) => (length * i) / Math.max(1, count - 1)), ...curves.map(({ values }) => values)];
+}
+
+/** Where nobody points at a place, the largest counts. */
+function largest(values: (number | null)[]): number {
+  return Math.max(...values.map((value) => value ?? 0));
+}

@@ -1,0 +1,57 @@
+// From how far away the free view shows what.
+import { Quaternion, Vector3 } from 'three';
+import { camera_stride } from '../protocol/state';
+import type { Scene } from '../protocol/types';
+import { hang, type Hanging } from './parts/cameras';
+import { total_length } from './rings';
+
+/** Of the distance, in lengths of the arm: so large the arm is in the picture at first, and so small at least. */
+export const [nearest_look, farthest_look] = [2.9, 3.8];
+/** So much of the picture's half is left free at its borders. */
+const margin = 0.05;
+
+export interface Look {
+  target: Vector3;
+  azimuth: number;
+  elevation: number;
+  /** Of the picture's height, degrees. */
+  fov: number;
+  aspect: number;
+}
+
+/** The least distance from the target at which a point is in the picture. */
+export function distance_for(point: Vector3, { target, azimuth, elevation, fov, aspect }: Look): number {
+  const [sa, ca, se, ce] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(elevation), Math.cos(elevation)];
+  const [x, y, z] = [point.x - target.x, point.y - target.y, point.z - target.z];
+  const right = ca * x - sa * z;
+  const up = -se * sa * x + ce * y - se * ca * z;
+  const near = ce * sa * x + se * y + ce * ca * z;
+  const high = Math.tan((fov * Math.PI) / 360) * (1 - margin);
+  return near + Math.max(Math.abs(right) / (high * aspect), Math.abs(up) / high);
+}
+
+/** Where cameras are and their pictures hang: each one's pupil and four corners. */
+export function frustum_points(scene: Scene, cameras: Float32Array): Vector3[] {
+  const hanging: Hanging = { left: 0, right: 0, top: 0, bottom: 0, depth: 1 };
+  const turn = new Quaternion();
+  return scene.cameras.flatMap((camera, i) => {
+    const at = i * camera_stride;
+    if (cameras.length < at + camera_stride) return [];
+    const { left, right, top, bottom, depth } = hang(cameras, at, camera, scene.arm.base, total_length(scene.arm), hanging);
+    turn.set(cameras[at + 4], cameras[at + 5], cameras[at + 6], cameras[at + 3]);
+    const pupil = new Vector3(cameras[at], cameras[at + 1], cameras[at + 2]);
+    const corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    return [pupil, ...corners.map(([u, v]) => new Vector3(u, v, depth).applyQuaternion(turn).add(pupil))];
+  });
+}
+
+/** The arm large, and of the cameras' frusta what is near enough that it stays so. */
+export function first_distance(frusta: Vector3[], look: Look, span: number): number {
+  const near = frusta.map((point) => distance_for(point, look)).filter((distance) => distance <= farthest_look * span);
+  return Math.max(nearest_look * span, ...near);
+}
+
+/** All of these, and the arm. */
+export function distance_for_all(points: Vector3[], look: Look, span: number): number {
+  return Math.max(nearest_look * span, ...points.map((point) => distance_for(point, look)));
+}

@@ -1,0 +1,75 @@
+// A servo as one watches it, stops it, and goes through it again.
+import { fileURLToPath } from 'node:url';
+import type { Page } from 'playwright-core';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { colored, slide, stage_at_rest, until } from './browser';
+import { opened_before, started } from './opened';
+import { program } from './program';
+
+const file = fileURLToPath(new URL('servo.toml', import.meta.url));
+const [wanted, seen] = ['#ff922b', '#22b8cf'];
+
+describe.skipIf(!program)('a servo', () => {
+  const opened = opened_before(() => started(file), 'live');
+  let page: Page;
+
+  beforeAll(() => {
+    ({ page } = opened);
+  });
+
+  const legend = () => page.locator('.extras');
+  const eye = (label: string) => legend().getByRole('button', { name: `Show: ${label}` });
+  const drawn = async (color: string) => (await colored(page, color)).count > 20;
+
+  test('one task is chosen and started; wanted, seen and true shapes have a legend', async () => {
+    expect(await legend().count()).toBe(0);
+    await page.getByLabel('Which tasks run').selectOption({ label: '2: sway (servo)' });
+    await page.getByRole('button', { name: 'Run tasks' }).click();
+    await legend().waitFor();
+    await until(async () => (await legend().getByRole('button').count()) === 3, 15000, 'not all shapes came');
+    for (const label of ['Wanted', 'Seen', 'True']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
+    await until(async () => /sway: [\d.]+ % of the length off/.test((await page.locator('.running-text').textContent()) ?? ''), 15000, 'no word');
+  });
+
+  test('the axis as measured and the wanted shape lie upon both pictures, each with its eye', async () => {
+    await until(() => drawn(wanted), 15000, 'the wanted shape is not drawn');
+    await until(() => drawn(seen), 15000, 'the axis is not drawn');
+    await eye('Wanted').click();
+    await until(async () => !(await drawn(wanted)), 8000, 'it is not hidden');
+    expect(await drawn(seen)).toBe(true);
+    await eye('Wanted').click();
+    await until(() => drawn(wanted));
+  });
+
+  test('errors along the arm, and over time, are plots', async () => {
+    await page.getByLabel('Plot 2 shows').selectOption({ label: 'Errors along the arm' });
+    const second = page.locator('.plot').nth(1);
+    await until(async () => /Seen.*True/.test((await second.locator('.legend').textContent()) ?? ''));
+    await page.getByLabel('Plot 1 shows').selectOption({ label: 'Servo error, %' });
+    await until(async () => /rms\s*[\d.]+/.test((await page.locator('.plot').first().locator('.legend').textContent()) ?? ''));
+  });
+
+  test('it is stopped, says so, and what it drew is gone', async () => {
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    await until(async () => /cancelled/.test((await page.locator('[role="alert"]').textContent()) ?? ''), 15000, 'it does not end');
+    await until(async () => (await legend().count()) === 0);
+    await page.getByRole('tab', { name: 'Events' }).click();
+    expect(await page.locator('.events').textContent()).toMatch(/sway.*cancelled/);
+  });
+
+  test('its recording shows the same, at every time', async () => {
+    await page.getByRole('button', { name: 'Recording' }).click();
+    await page.waitForSelector('.badge[data-kind="recording"]');
+    await slide(page, '#scrub', 1);
+    await legend().waitFor();
+    await until(() => drawn(wanted), 15000, 'the wanted shape is not drawn');
+    await until(() => drawn(seen), 15000, 'the axis is not drawn');
+    const plot = page.locator('.plot').nth(1);
+    await until(async () => /rms.*tip.*true rms/.test((await plot.locator('.legend').textContent()) ?? ''), 8000, 'no errors over time');
+    const all = await stage_at_rest(page);
+    for (const label of ['Wanted', 'Seen', 'True']) await eye(label).click();
+    expect((await stage_at_rest(page)).equals(all)).toBe(false);
+    await until(async () => !(await drawn(wanted)) && !(await drawn(seen)));
+    expect(opened.complaints).toEqual([]);
+  });
+});

@@ -17,19 +17,23 @@ struct Setting {
   View view;
 };
 
-inline Setting setting(int width, int height) {
+inline Arm setting_arm() {
   Arm arm;
   arm.kind = ArmKind::spatial;
-  ArmState state = ArmState::straight(3);
-  constexpr double bends[3][2] = {{1.5, 0.1}, {2.0, -0.2}, {2.0, 0.2}};
   for (std::size_t i = 0; i < 3; ++i) {
     Section& section = arm.sections.emplace_back();
     section.length = 1.0 / 3;
     section.radius = {0.02, 0.02};
-    state.bends[i] = {bends[i][0], bends[i][1]};
   }
+  return arm;
+}
+
+inline ArmState setting_state() { return {{{1.5, 0.1}, {2.0, -0.2}, {2.0, 0.2}}, {1, 1, 1}}; }
+
+inline Setting setting(int width, int height) {
+  const Arm arm = setting_arm();
   Setting result;
-  result.scene.arm.tube = tube_of(arm, Backbone(arm, state));
+  result.scene.arm.tube = tube_of(arm, Backbone(arm, setting_state()));
   for (int i = 0; i < 12; ++i) {
     const double s = (i + 0.5) / 12;
     result.scene.arm.markers.push_back({s - 0.008, s + 0.008});

@@ -148,6 +148,31 @@ std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& 
   return result;
 }
 
+// Number by number: matrices that are written in parts and read as a whole keep the processor waiting.
+bool Lens::project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const {
+  const double z = p_CP.z();
+  if (!(z > 0)) return false;
+  const double fx = intrinsics_.fx, fy = intrinsics_.fy, over = 1 / z, a = p_CP.x() / z, b = p_CP.y() / z;
+  double u = a, v = b, u_a = 1, mixed = 0, v_b = 1;
+  if (intrinsics_.is_distorted()) {
+    const auto [k1, k2, p1, p2, k3] = intrinsics_.distortion;
+    const double q = a * a + b * b;
+    if (!(q <= largest_radius_ * largest_radius_)) return false;
+    const double radial = 1 + q * (k1 + q * (k2 + q * k3)), slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));
+    u = a * radial + 2 * p1 * a * b + p2 * (q + 2 * a * a);
+    v = b * radial + p1 * (q + 2 * b * b) + 2 * p2 * a * b;
+    mixed = a * b * slope + 2 * p1 * a + 2 * p2 * b;
+    u_a = radial + a * a * slope + 2 * p1 * b + 6 * p2 * a;
+    v_b = radial + b * b * slope + 6 * p1 * b + 2 * p2 * a;
+  }
+  const double x = fx * over, y = fy * over;
+  result.pixel = {fx * u + intrinsics_.cx, fy * v + intrinsics_.cy};
+  result.by_point.col(0) = Eigen::Vector2d(x * u_a, y * mixed);
+  result.by_point.col(1) = Eigen::Vector2d(x * mixed, y * v_b);
+  result.by_point.col(2) = Eigen::Vector2d(-x * (u_a * a + mixed * b), -y * (mixed * a + v_b * b));
+  return std::isfinite(result.pixel.x() + result.pixel.y());
+}
+
 std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) const {
   Eigen::Vector2d wanted((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
                          (pixel.y() - intrinsics_.cy) / intrinsics_.fy);

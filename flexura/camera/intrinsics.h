@@ -32,6 +32,12 @@ struct Projection {
   Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< In the order above.
 };
 
+/// The same without what cameras are calibrated by.
+struct PointProjection {
+  Eigen::Vector2d pixel = {0, 0};
+  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< px/m
+};
+
 /// A lens as it stands, ready to project: intrinsics, and the field within which they are one to one.
 class Lens {
  public:
@@ -49,6 +55,9 @@ class Lens {
 
   /// The same with derivatives.
   [[nodiscard]] std::optional<Projection> project_with_derivatives(const Eigen::Vector3d& p_CP) const;
+
+  /// Likewise, by the point alone: in a third of the time. False where there is none.
+  [[nodiscard]] bool project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const;
 
   /// The normalized coordinates (a, b) whose pixel this is, so that (a, b, 1) is the direction in C of the
   /// pixel's ray; to 1e-13 or so. None where the lens shows no direction.

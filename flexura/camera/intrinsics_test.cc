@@ -78,6 +78,9 @@ TEST(Lens, ShowsNothingBeyondItsRim) {
   EXPECT_TRUE(lens.project(at(0.999 * rim, 1)));
   EXPECT_FALSE(lens.project(at(1.001 * rim, 1)));
   EXPECT_FALSE(lens.project_with_derivatives(at(1.001 * rim, 1)));
+  PointProjection alone;
+  EXPECT_TRUE(lens.project_by_point(at(0.999 * rim, 1), alone));
+  EXPECT_FALSE(lens.project_by_point(at(1.001 * rim, 1), alone));
   const double largest = rim * (1 - 0.3 * rim * rim) * intrinsics.fx;
   EXPECT_TRUE(lens.unproject({intrinsics.cx + 0.999 * largest, intrinsics.cy}));
   EXPECT_FALSE(lens.unproject({intrinsics.cx + 1.001 * largest, intrinsics.cy}));
@@ -106,6 +109,13 @@ TEST(Lens, ProjectsOnlyWhatIsInFront) {
   EXPECT_EQ(*lens.project({1, -0.5, 2}), Eigen::Vector2d(719.5, 39.5));
   for (const double z : {0.0, -1.0, -infinity, std::nan("")}) EXPECT_FALSE(lens.project({0.1, 0.1, z}));
   EXPECT_FALSE(lens.project({1, 1, 1e-320}));
+  PointProjection alone;
+  for (const Eigen::Vector3d& none : {Eigen::Vector3d(0.1, 0.1, 0),
+                                      {0.1, 0.1, -1},
+                                      {1, 1, 1e-320},
+                                      {std::nan(""), 1, 1},
+                                      {1, 1, std::nan("")}})
+    EXPECT_FALSE(lens.project_by_point(none, alone));
   EXPECT_FALSE(lens.project({std::nan(""), 1, 1}));
   EXPECT_FALSE(lens.unproject({infinity, 0}));
 }
@@ -141,6 +151,11 @@ TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
     const NumericalJacobian numeric = numerical_jacobian(pixel, x, 0.01);
     EXPECT_EQ(projection.pixel, pixel(x));
     EXPECT_LE((analytic - numeric.value).cwiseAbs().maxCoeff(), 1e-7 * (1 + intrinsics.fx));
+    // By the point alone it is the same but for rounding.
+    PointProjection alone;
+    ASSERT_TRUE(Lens(intrinsics).project_by_point(p_CP, alone));
+    EXPECT_LE((alone.pixel - projection.pixel).norm(), 1e-12 * intrinsics.fx);
+    EXPECT_LE((alone.by_point - projection.by_point).norm(), 1e-13 * projection.by_point.norm());
   });
 }
 

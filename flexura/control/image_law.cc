@@ -8,6 +8,89 @@
 #include <stdexcept>
 
 namespace flexura {
+namespace {
+
+// Least over greatest singular value; below it some motion shows in nothing.
+constexpr double singular_condition = 1e-6;
+
+// J^T J, its lower triangle.
+void normal_matrix(const Eigen::MatrixXd& J, Eigen::MatrixXd& H) {
+  H.resize(J.cols(), J.cols());
+  for (Eigen::Index j = 0; j < J.cols(); ++j)
+    for (Eigen::Index i = j; i < J.cols(); ++i) H(i, j) = J.col(i).dot(J.col(j));
+}
+
+// The lower factor of a symmetric matrix, in its lower triangle; false where that is not definite.
+bool cholesky(Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.cols();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double pivot = A(j, j);
+    for (Eigen::Index k = 0; k < j; ++k) pivot -= A(j, k) * A(j, k);
+    if (!(pivot > 0)) return false;
+    pivot = std::sqrt(pivot);
+    A(j, j) = pivot;
+    for (Eigen::Index i = j + 1; i < n; ++i) {
+      double sum = A(i, j);
+      for (Eigen::Index k = 0; k < j; ++k) sum -= A(i, k) * A(j, k);
+      A(i, j) = sum / pivot;
+    }
+  }
+  return true;
+}
+
+// b becomes L^-1 b, of which the first `first` are 0.
+void solve_lower(const Eigen::MatrixXd& L, Eigen::VectorXd& b, Eigen::Index first) {
+  for (Eigen::Index i = first; i < L.cols(); ++i) {
+    double sum = b[i];
+    for (Eigen::Index k = first; k < i; ++k) sum -= L(i, k) * b[k];
+    b[i] = sum / L(i, i);
+  }
+}
+
+// Of J^T J = L L^T: the sum of its inverse's eigenvalues, which is that of the squares in L^-1.
+double inverse_trace(ImageLaw::Work& work) {
+  const Eigen::Index n = work.factor.cols();
+  double sum = 0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    work.column.setZero(n);
+    work.column[j] = 1;
+    solve_lower(work.factor, work.column, j);
+    sum += work.column.squaredNorm();
+  }
+  return sum;
+}
+
+// The normal matrix has the singular values' squares, of which it keeps those above 1e-16 of the greatest:
+// what its traces say to be far from singular is so for certain, and all else is asked of J itself.
+double reciprocal_condition(const Eigen::MatrixXd& J, double trace, ImageLaw::Work& work) {
+  if (J.rows() < J.cols() || !(trace > 0)) return 0;
+  constexpr double surely = 10 * singular_condition;
+  work.factor = work.normal;
+  if (cholesky(work.factor)) {
+    const double bound = 1 / std::sqrt(trace * inverse_trace(work));
+    if (bound >= surely) return bound;
+  }
+  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+  return singular.minCoeff() / singular.maxCoeff();
+}
+
+// dx becomes the solution for the right side dx.
+void solve_normal(ImageLaw::Work& work) {
+  work.factor = work.normal;
+  if (!cholesky(work.factor)) {
+    // Singular but for rounding, and not damped: some answer, as long as it is one.
+    work.dx = Eigen::LDLT<Eigen::MatrixXd>(work.normal).solve(work.dx).eval();
+    return;
+  }
+  solve_lower(work.factor, work.dx, 0);
+  for (Eigen::Index i = work.factor.cols(); i-- > 0;) {
+    double sum = work.dx[i];
+    for (Eigen::Index k = i + 1; k < work.factor.cols(); ++k) sum -= work.factor(k, i) * work.dx[k];
+    work.dx[i] = sum / work.factor(i, i);
+  }
+}
+
+}  // namespace
 
 ImageLaw::ImageLaw(const Arm& arm, const ImageLawGains& gains) : variables_(arm), gains_(gains) {
   const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
@@ -18,9 +101,15 @@ ImageLaw::ImageLaw(const Arm& arm, const ImageLawGains& gains) : variables_(arm)
 }
 
 Eigen::MatrixXd ImageLaw::by_variables(const Eigen::MatrixXd& by_state) const {
+  Eigen::MatrixXd J;
+  by_variables(by_state, J);
+  return J;
+}
+
+void ImageLaw::by_variables(const Eigen::MatrixXd& by_state, Eigen::MatrixXd& J) const {
   if (by_state.cols() != 3 * static_cast<Eigen::Index>(variables_.parts().size()))
     throw std::invalid_argument("a derivative by an arm's state has three columns a section");
-  Eigen::MatrixXd J(by_state.rows(), variables_.size());
+  J.resize(by_state.rows(), variables_.size());
   Eigen::Index column = 0;
   for (const ArmVariables::Part& part : variables_.parts()) {
     J.col(part.at) = by_state.col(column);
@@ -28,34 +117,44 @@ Eigen::MatrixXd ImageLaw::by_variables(const Eigen::MatrixXd& by_state) const {
     if (part.is_stretchable) J.col(part.stretch_at()) = by_state.col(column + 2);
     column += 3;
   }
-  return J;
 }
 
 ImageStep ImageLaw::step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
                          double dt) const {
-  if (J.cols() != variables_.size() || J.rows() != error.size() || error.size() == 0 || !(dt > 0))
+  Work work;
+  ImageStep result;
+  step(sent, error, J, dt, work, result);
+  return result;
+}
+
+void ImageLaw::step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J, double dt,
+                    Work& work, ImageStep& step) const {
+  const Eigen::Index size = variables_.size();
+  if (J.cols() != size || J.rows() != error.size() || error.size() == 0 || !(dt > 0))
     throw std::invalid_argument(
         "a law of images needs errors, their Jacobian by the arm's variables, and a time");
-  ImageStep step;
-  Eigen::VectorXd x = variables_.pack(sent), dx = Eigen::VectorXd::Constant(x.size(), std::nan(""));
-  if (J.allFinite() && error.allFinite()) {
-    Eigen::MatrixXd H = J.transpose() * J;
-    const double scale = H.trace() / static_cast<double>(H.rows());
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
-    const double greatest = singular.maxCoeff();
-    const bool is_wide = J.rows() < J.cols();
-    step.reciprocal_condition = greatest > 0 && !is_wide ? singular.minCoeff() / greatest : 0;
-    H.diagonal().array() += gains_.damping * gains_.damping * scale + 1e-30;
-    dx = (std::exp(-gains_.rate * dt) - 1) * H.ldlt().solve(J.transpose() * error);
-    const double length = dx.norm();
-    if (length > gains_.most_step) dx *= gains_.most_step / length;
+  variables_.pack(sent, work.x);
+  step.reciprocal_condition = 0;
+  normal_matrix(J, work.normal);
+  work.dx.resize(size);
+  for (Eigen::Index i = 0; i < size; ++i) work.dx[i] = J.col(i).dot(error);
+  const double trace = work.normal.trace();
+  // What is no number in J or in the error is none in these.
+  if (std::isfinite(trace) && work.dx.allFinite()) {
+    step.reciprocal_condition = reciprocal_condition(J, trace, work);
+    const double scale = trace / static_cast<double>(size);
+    work.normal.diagonal().array() += gains_.damping * gains_.damping * scale + 1e-30;
+    solve_normal(work);
+    work.dx *= std::exp(-gains_.rate * dt) - 1;
+    const double length = work.dx.norm();
+    if (length > gains_.most_step) work.dx *= gains_.most_step / length;
+  } else {
+    work.dx.setConstant(std::nan(""));
   }
-  constexpr double singular_condition = 1e-6;
   step.is_singular = !(step.reciprocal_condition >= singular_condition);
-  x += dx;
-  if (x.allFinite()) project(variables_.bounds(), x);
-  step.asked = variables_.state(x);
-  return step;
+  work.x += work.dx;
+  if (work.x.allFinite()) project(variables_.bounds(), work.x);
+  variables_.state(work.x, step.asked);
 }
 
 ArmState shape_step(const ArmState& sent, const ArmState& seen, const ArmState& desired, double rate,

@@ -17,8 +17,10 @@ struct ImageLawGains {
 /// What a law asks for, and how sure its Jacobian is of it.
 struct ImageStep {
   ArmState asked;
-  double reciprocal_condition = 0;  ///< Least over greatest singular value of the Jacobian.
-  bool is_singular = false;         ///< Some motion of the arm shows in no feature: below 1e-6.
+  /// Least over greatest singular value of the Jacobian: of n variables never more than that and at least an
+  /// n-th of it, and just that where it is 1e-5 or less.
+  double reciprocal_condition = 0;
+  bool is_singular = false;  ///< Some motion of the arm shows in no feature: the ratio is below 1e-6.
 };
 
 /// Steers features to their desired values by damped least squares (docs/control.md, eq. 20; C. W. Wampler,
@@ -33,6 +35,8 @@ class ImageLaw {
   [[nodiscard]] const ArmVariables& variables() const { return variables_; }
   /// The columns of a derivative by (bend_x, bend_y, stretch) of every section that belong to these.
   [[nodiscard]] Eigen::MatrixXd by_variables(const Eigen::MatrixXd& by_state) const;
+  /// The same, into what is made to fit.
+  void by_variables(const Eigen::MatrixXd& by_state, Eigen::MatrixXd& J) const;
 
   /// Where to send an arm that was last sent to `sent`, dt s later. `error`: features seen less desired; J:
   /// their derivatives by the variables (by_variables, or an estimate's). Within the sections' limits.
@@ -40,6 +44,15 @@ class ImageLaw {
   /// such, for the limiter to stop at.
   [[nodiscard]] ImageStep step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
                                double dt) const;
+
+  /// What a step works on: one for each thread.
+  struct Work {
+    Eigen::MatrixXd normal, factor;  // J^T J, its lower triangle; Cholesky's of that.
+    Eigen::VectorXd x, dx, column;
+  };
+  /// The same, without allocation once `work` and `step` have served, unless J is nearly singular.
+  void step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J, double dt,
+            Work& work, ImageStep& step) const;
 
  private:
   ArmVariables variables_;

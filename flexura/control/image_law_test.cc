@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -77,6 +78,68 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
   EXPECT_THROW((void)law.step(straight, Eigen::VectorXd::Ones(11), law.by_variables(seen.by_state), dt),
                std::invalid_argument);
   EXPECT_THROW(ImageLaw(arm, {.rate = 0}), std::invalid_argument);
+}
+
+// J with singular values that fall evenly, in powers, to `least`.
+Eigen::MatrixXd with_singular_values(TestRandom& random, Eigen::Index rows, Eigen::Index columns,
+                                     double least) {
+  const auto any = [&random](Eigen::Index m, Eigen::Index n) {
+    Eigen::MatrixXd A(m, n);
+    for (double& entry : A.reshaped()) entry = random.uniform(-1, 1);
+    return A;
+  };
+  const Eigen::MatrixXd U = Eigen::HouseholderQR<Eigen::MatrixXd>(any(rows, columns)).householderQ() *
+                            Eigen::MatrixXd::Identity(rows, columns),
+                        V = Eigen::HouseholderQR<Eigen::MatrixXd>(any(columns, columns)).householderQ();
+  Eigen::VectorXd values(columns);
+  for (Eigen::Index i = 0; i < columns; ++i)
+    values[i] = 300 * std::pow(least, static_cast<double>(i) / static_cast<double>(columns - 1));
+  return U * values.asDiagonal() * V.transpose();
+}
+
+TEST(ImageLaw, KnowsSingularDirectionsAsTheSingularValuesDo) {
+  const Arm arm = servo_arm();
+  const ImageLaw law(arm, {.damping = 0, .most_step = 1e6});
+  const ArmState straight = ArmState::straight(3);
+  for_random_cases(200, [&](TestRandom& random) {
+    const Eigen::Index rows = random.integer(6, 60);
+    const double least = std::pow(10, random.uniform(-16, 0));
+    const Eigen::MatrixXd J = with_singular_values(random, rows, 6, least);
+    const Eigen::VectorXd error = Eigen::VectorXd::Ones(rows);
+    const ImageStep step = law.step(straight, error, J, dt);
+    EXPECT_LE(step.reciprocal_condition, least * (1 + 1e-4) + 1e-13);
+    EXPECT_GE(step.reciprocal_condition, least / 6 * (1 - 1e-4) - 1e-13);
+    if (least <= 1e-5) {
+      EXPECT_NEAR(step.reciprocal_condition, least, 1e-13 + 1e-6 * least);
+    }
+    const bool is_near = std::abs(least - 1e-6) < 1e-9;
+    if (!is_near) {
+      EXPECT_EQ(step.is_singular, least < 1e-6) << least;
+    }
+  });
+}
+
+TEST(ImageLaw, StepsAsTheLeastSquaresOfTheTallMatrixDo) {
+  const Arm arm = servo_arm();
+  const ArmState straight = ArmState::straight(3);
+  for_random_cases(100, [&](TestRandom& random) {
+    const double damping = random.integer(0, 1) == 0 ? 0 : 0.01, least = std::pow(10, random.uniform(-3, 0));
+    const ImageLaw law(arm, {.rate = 3, .damping = damping, .most_step = 1e6});
+    const Eigen::Index rows = random.integer(6, 200);
+    const Eigen::MatrixXd J = with_singular_values(random, rows, 6, least);
+    Eigen::VectorXd error(rows);
+    for (double& one : error) one = random.uniform(-1e-3, 1e-3);
+    // Damping as rows below J: an orthogonal decomposition squares nothing.
+    Eigen::MatrixXd tall(rows + 6, 6);
+    tall << J, Eigen::MatrixXd::Identity(6, 6) * damping * std::sqrt(J.squaredNorm() / 6);
+    Eigen::VectorXd right(rows + 6);
+    right << error, Eigen::VectorXd::Zero(6);
+    const Eigen::VectorXd wanted = (std::exp(-3 * dt) - 1) * tall.colPivHouseholderQr().solve(right);
+    const ImageStep step = law.step(straight, error, J, dt);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_LE((step.asked.bends[i] - wanted.segment<2>(2 * static_cast<Eigen::Index>(i))).norm(),
+                1e-13 * wanted.norm() / (least * least));
+  });
 }
 
 TEST(ShapeLaw, MakesUpForWhatTheArmDoesWrong) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "flexura/math/so3.h"
 
@@ -24,19 +23,24 @@ PixelFeature chord_angle(const Eigen::Vector2d& from, const Eigen::Vector2d& to)
   PixelFeature angle;
   angle.value = std::atan2(way.y(), way.x());
   const Eigen::RowVector2d across = Eigen::RowVector2d(-way.y(), way.x()) / square;
-  angle.by_pixels.resize(4);
   angle.by_pixels << -across, across;
   return angle;
 }
 
+CurveMoments curve_moments(const Eigen::Matrix2Xd& polygon) {
+  CurveMoments moments;
+  curve_moments(polygon, moments);
+  return moments;
+}
+
 // Of a straight piece from a to b, with m = (a + b)/2, d = b - a and length l: integrals l m and
 // l (m m^T + d d^T/12).
-CurveMoments curve_moments(const Eigen::Matrix2Xd& polygon) {
+void curve_moments(const Eigen::Ref<const Eigen::Matrix2Xd>& polygon, CurveMoments& moments) {
   const Eigen::Index count = polygon.cols();
   // Sums over the pieces: of l, l m_u, l m_v, and the three second moments about the origin.
   Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
-  Eigen::Matrix<double, 6, Eigen::Dynamic> by_pixels =
-      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, 2 * count);
+  auto& by_pixels = moments.by_pixels;
+  by_pixels.setZero(6, 2 * count);
   // About the first pixel: what is far from the image's corner loses no digits.
   const Eigen::Vector2d origin = count > 0 ? Eigen::Vector2d(polygon.col(0)) : Eigen::Vector2d::Zero();
   for (Eigen::Index i = 0; i + 1 < count; ++i) {
@@ -63,20 +67,16 @@ CurveMoments curve_moments(const Eigen::Matrix2Xd& polygon) {
   }
   const double length = sums[0];
   if (!(length > 0)) throw std::domain_error("a curve's image has no length: no moments");
-  CurveMoments moments;
   const double u = sums[1] / length, v = sums[2] / length;
   moments.values << length, u, v, sums[3] / length - u * u, sums[4] / length - u * v,
       sums[5] / length - v * v;
-  const Eigen::RowVectorXd by_length = by_pixels.row(0);
   for (Eigen::Index row = 1; row < 6; ++row)
-    by_pixels.row(row) = (by_pixels.row(row) - sums[row] / length * by_length).eval() / length;
+    by_pixels.row(row) = (by_pixels.row(row) - sums[row] / length * by_pixels.row(0)) / length;
   by_pixels.row(3) -= 2 * u * by_pixels.row(1);
   by_pixels.row(4) -= u * by_pixels.row(2) + v * by_pixels.row(1);
   by_pixels.row(5) -= 2 * v * by_pixels.row(2);
   // The values are the image's own again; the derivatives held the origin still.
   moments.values[1] += origin.x(), moments.values[2] += origin.y();
-  moments.by_pixels = std::move(by_pixels);
-  return moments;
 }
 
 }  // namespace flexura

@@ -16,10 +16,10 @@ namespace flexura {
 [[nodiscard]] std::optional<Eigen::Matrix<double, 2, 6>> point_interaction(const Lens& lens,
                                                                            const Eigen::Vector3d& p_CP);
 
-/// A feature and its derivatives by the pixels' coordinates it is made of.
+/// A feature and its derivatives by the coordinates of the two pixels it is made of.
 struct PixelFeature {
   double value = 0;
-  Eigen::RowVectorXd by_pixels;  ///< u_1, v_1, u_2, v_2, ...
+  Eigen::RowVector4d by_pixels;  ///< u_1, v_1, u_2, v_2
 };
 
 /// The angle from the image's +u to the way from pixel `from` to pixel `to`, rad in (-pi, pi], growing
@@ -35,5 +35,7 @@ struct CurveMoments {
 };
 /// std::domain_error: fewer than two pixels, or no length.
 [[nodiscard]] CurveMoments curve_moments(const Eigen::Matrix2Xd& polygon);
+/// The same, into what is made to fit.
+void curve_moments(const Eigen::Ref<const Eigen::Matrix2Xd>& polygon, CurveMoments& moments);
 
 }  // namespace flexura

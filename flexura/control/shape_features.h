@@ -41,8 +41,9 @@ struct ShapeFeatures {
 };
 
 /// The features of an arm in a state with their derivatives, through the cameras' own models and the
-/// backbone's Jacobian. None where a camera's lens shows a needed point nowhere, or an image has no direction
-/// or length. std::invalid_argument: a share outside [0, 1], no features, a state that does not fit.
+/// backbone's Jacobian; of many states feature_images.h has them faster. None where a camera's lens shows a
+/// needed point nowhere, or an image has no direction or length. std::invalid_argument: a share outside [0,
+/// 1], no features, a state that does not fit.
 [[nodiscard]] std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,
                                                           std::span<const View> views, const FeatureSet& set);
 
@@ -60,5 +61,8 @@ struct ShapeFeatures {
 /// are not of this set.
 [[nodiscard]] Eigen::VectorXd feature_error(const FeatureSet& set, const Eigen::VectorXd& seen,
                                             const Eigen::VectorXd& desired);
+/// The same, into what is made to fit.
+void feature_error(const FeatureSet& set, const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                   Eigen::VectorXd& error);
 
 }  // namespace flexura

@@ -157,6 +157,13 @@ struct CalibrationDecisionMessage {
   std::optional<std::string> unit;             ///< Of both.
 };
 
+/// Where a camera's head was sent to.
+struct HeadCommandMessage {
+  std::string camera;
+  double pan = 0, tilt = 0;  ///< rad
+  double zoom = 0;
+};
+
 /// flexura.ServoStep, on /servo/steps: one command of a servo, and what it was made of.
 struct ServoStepMessage {
   double time = 0;                                         ///< When it was sent, s.
@@ -166,7 +173,9 @@ struct ServoStepMessage {
   std::optional<std::vector<std::array<double, 2>>> seen;  ///< By these pictures, rad.
   std::optional<std::vector<double>> seen_stretches;
   std::vector<std::array<double, 2>> sent;  ///< rad
-  std::vector<double> lengths;              ///< Of the unstretched sections, as they are believed to be, m.
+  std::vector<double> sent_stretches;
+  std::optional<std::vector<HeadCommandMessage>> heads;  ///< That were sent on with this command.
+  std::vector<double> lengths;  ///< Of the unstretched sections, as they are believed to be, m.
   /// Of the simulated truth at the time of the pictures: bends, rad, and lengths with their stretch, m.
   std::optional<std::vector<std::array<double, 2>>> truth;
   std::optional<std::vector<double>> true_lengths;
@@ -226,6 +235,7 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
+const Table<HeadCommandMessage>& fields_of(const HeadCommandMessage*);
 const Table<ServoStepMessage>& fields_of(const ServoStepMessage*);
 const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
 

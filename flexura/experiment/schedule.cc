@@ -26,8 +26,12 @@ Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, Mot
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     const auto known = performed.find(i);
     const ArmState from = legs_.empty() ? initial_ : legs_.back().motion->at(legs_.back().motion->duration());
-    add(experiment.task[i],
-        known != performed.end() ? known->second : task_motion(experiment.task[i], arm_, from));
+    const MotionPtr motion = known != performed.end() ? known->second : nullptr;
+    if (const auto* servo = std::get_if<ServoTask>(&experiment.task[i])) {
+      add_servo(*servo, from, motion);
+    } else {
+      add(experiment.task[i], motion ? motion : task_motion(experiment.task[i], arm_, from));
+    }
   }
   if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
   // A duration of a whole number of steps, but for rounding, takes just that many.
@@ -38,7 +42,6 @@ Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, Mot
 void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
   legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
   duration_ += motion->duration();
-  if (const auto* servo = std::get_if<ServoTask>(&task)) add_missed(*servo);
   const auto target = tip_target(task);
   if (!target) return;
   const double missed = (Backbone(arm_, motion->at(motion->duration())).tip().position - *target).norm();
@@ -56,16 +59,14 @@ void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& t
                              .target = target});
 }
 
-// A servo's targets of which the nearest shape of the arm stays farther away than it may.
-void Schedule::add_missed(const ServoTask& servo) {
-  ArmState from = legs_.back().motion->at(0);
-  for (const ServoTargetConfig& target : servo.target) {
-    if (!target.pictures.empty()) continue;
-    const ServoTargetShape shape = servo_target_shape(target, arm_, from);
-    from = shape.state;
-    if (shape.missed <= servo.tolerance) continue;
-    const auto place = target.position ? std::optional(vector(*target.position)) : std::nullopt;
-    add_missed(shape.missed * arm_.length(), place);
+// With those of its targets of which the nearest shape of the arm stays farther away than it may.
+void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
+  const auto shapes = servo_target_shapes(servo, arm_, from);
+  add(servo, known ? known : servo_motion(shapes, from));
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
+    const auto& position = servo.target[i].position;
+    add_missed(shapes[i]->missed * arm_.length(), position ? std::optional(vector(*position)) : std::nullopt);
   }
 }
 

@@ -52,8 +52,8 @@ class Schedule {
 
  private:
   void add(const TaskConfig& task, const MotionPtr& motion);
+  void add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known);
   void add_missed(double missed, const std::optional<Eigen::Vector3d>& target);
-  void add_missed(const ServoTask& servo);
 
   Arm arm_;
   std::optional<Drive> drive_;

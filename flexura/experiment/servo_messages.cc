@@ -2,6 +2,16 @@
 
 namespace flexura {
 
+const Table<HeadCommandMessage>& fields_of(const HeadCommandMessage*) {
+  using M = HeadCommandMessage;
+  static const auto table = Table<M>("flexura.HeadCommand", "Where a camera's head was sent to.")
+                                .field("camera", &M::camera, {.meaning = "The camera's name."})
+                                .field("pan", &M::pan, {.meaning = "rad, to the camera's left."})
+                                .field("tilt", &M::tilt, {.meaning = "rad, upwards."})
+                                .field("zoom", &M::zoom, {.meaning = "A ratio or a motor count."});
+  return table;
+}
+
 const Table<ServoStepMessage>& fields_of(const ServoStepMessage*) {
   using M = ServoStepMessage;
   static const auto table =
@@ -14,6 +24,9 @@ const Table<ServoStepMessage>& fields_of(const ServoStepMessage*) {
           .field("seen", &M::seen, {.meaning = "Each section's bend as seen in them, rad."})
           .field("seen_stretches", &M::seen_stretches, {.meaning = "Each section's stretch as seen."})
           .field("sent", &M::sent, {.meaning = "Each section's bend as commanded, rad."})
+          .field("sent_stretches", &M::sent_stretches, {.meaning = "Each section's stretch as commanded."})
+          .field("heads", &M::heads,
+                 {.meaning = "Where heads that follow the arm were sent to with this command."})
           .field("lengths", &M::lengths,
                  {.meaning = "Each section's length without stretch, as it is believed to be, m."})
           .field("truth", &M::truth,

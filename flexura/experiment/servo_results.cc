@@ -124,6 +124,8 @@ Node servo_nodes(const std::vector<ServoRun>& runs) {
                         {"done", {}, {result.is_done, {}}},
                         {"start", {}, number_node(result.start)},
                         {"steps", {}, {static_cast<std::int64_t>(result.steps.size()), {}}}};
+    if (result.missed_steps > 0)
+      members.push_back({"missed_steps", {}, {static_cast<std::int64_t>(result.missed_steps), {}}});
     if (!result.is_done) members.push_back({"reason", {}, {result.reason, {}}});
     if (result.settled) members.push_back({"settled", {}, number_node(*result.settled)});
     members.push_back({"overshoot", {}, number_node(result.overshoot)});
@@ -155,6 +157,9 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
     chapter.points.push_back("In the end, as seen: " + error_text(*result.remaining) + ".");
   if (run.true_remaining)
     chapter.points.push_back("In the end, in the simulated truth: " + error_text(*run.true_remaining) + ".");
+  if (result.missed_steps > 0)
+    chapter.points.push_back(fmt::format(
+        "{} steps were missed: what was to be done in one took longer than a step.", result.missed_steps));
   for (std::size_t i = 0; i < 2; ++i) {
     if (result.first) chapter.drawings.push_back(servo_photograph(run, i, false, number));
     if (result.last) chapter.drawings.push_back(servo_photograph(run, i, true, number));

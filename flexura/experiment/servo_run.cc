@@ -12,19 +12,6 @@
 namespace flexura {
 namespace {
 
-// Where the bands of an arm are that turns out to be longer or shorter than its file says.
-std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
-  const Arm arm = experiment.arm.arm();
-  std::vector<double> places;
-  for (const Marker& marker : experiment.arm.look.markers(arm)) {
-    const MaterialPoint point = material_point(arm, marker.at);
-    double from = 0;
-    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
-    places.push_back(from + point.fraction * believed.sections[point.section].length);
-  }
-  return places;
-}
-
 // Tells the log of everything, and compares with the truth.
 class LoggedServo : public ServoWatcher {
  public:
@@ -62,7 +49,13 @@ class LoggedServo : public ServoWatcher {
     message.time = step.time, message.seen_at = step.seen_at;
     message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
     if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
-    message.sent = bends_of(step.sent);
+    message.sent = bends_of(step.sent), message.sent_stretches = step.sent.stretches;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!step.heads[i]) continue;
+      if (!message.heads) message.heads.emplace();
+      message.heads->push_back(
+          {run_.cameras[i], step.heads[i]->pan, step.heads[i]->tilt, step.heads[i]->zoom});
+    }
     if (step.error)
       message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
     message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
@@ -121,6 +114,18 @@ void add_true_remaining(ServoRun& run) {
 }
 
 }  // namespace
+
+std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
+  const Arm arm = experiment.arm.arm();
+  std::vector<double> places;
+  for (const Marker& marker : experiment.arm.look.markers(arm)) {
+    const MaterialPoint point = material_point(arm, marker.at);
+    double from = 0;
+    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
+    places.push_back(from + point.fraction * believed.sections[point.section].length);
+  }
+  return places;
+}
 
 std::vector<Eigen::Vector2d> backbone_pixels(const Arm& arm, const ArmState& state, const View& view,
                                              int count) {

@@ -34,6 +34,10 @@ struct ServoRun {
   MotionPtr motion;                          ///< Of the arm, as commanded, from the task's start.
 };
 
+/// Middles of the bands of an arm that turned out to be longer or shorter than its file says, m along it as
+/// it is believed to be, rising: a band stays at its share of its section.
+[[nodiscard]] std::vector<double> band_places(const Experiment& experiment, const Arm& believed);
+
 /// What the task asks of a session, for an arm that is in the state `from`.
 [[nodiscard]] ServoConfig servo_config(const Experiment& experiment, const ServoTask& task,
                                        const RigModel& believed, const ArmState& from);

@@ -193,6 +193,18 @@ ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& 
   return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
 }
 
+std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task, const Arm& arm,
+                                                                 ArmState from) {
+  std::vector<std::optional<ServoTargetShape>> shapes;
+  for (const ServoTargetConfig& target : task.target) {
+    auto& shape = shapes.emplace_back();
+    if (!target.pictures.empty()) continue;
+    shape = servo_target_shape(target, arm, from);
+    from = shape->state;
+  }
+  return shapes;
+}
+
 RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<CameraConfig, 2>& cameras,
                              const std::filesystem::path& folder) {
   RecordedViews views;

@@ -62,6 +62,10 @@ struct ServoTargetShape {
 [[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
                                                   const ArmState& from);
 
+/// Of all targets in their order, each searched for from the one before; none of those by pictures.
+[[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
+                                                                               const Arm& arm, ArmState from);
+
 /// The pictures of a target that has some, from files in `folder` or below. InputError: what is no picture,
 /// or of another size than its camera takes.
 [[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,

@@ -98,5 +98,8 @@ void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, cons
 
 /// The motion that a task (checked by check_task) is, for an arm that stands in `from`.
 [[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from);
+/// Of a servo with targets of these shapes: what is to be expected of it before it is done.
+[[nodiscard]] MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes,
+                                     const ArmState& from);
 
 }  // namespace flexura

@@ -67,18 +67,8 @@ MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& f
   return keyframe_motion(std::move(times), states, Interpolation::linear);
 }
 
-// The straight way to each target, slowly: what is to be expected of a servo before it is done.
 MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from) {
-  constexpr double slow = 10;  // s a target
-  std::vector<double> times = {0};
-  std::vector<ArmState> states = {from};
-  for (const ServoTargetConfig& target : task.target) {
-    if (!target.pictures.empty()) continue;  // Nobody knows yet.
-    times.push_back(times.back() + slow);
-    states.push_back(servo_target_shape(target, arm, states.back()).state);
-  }
-  if (times.size() < 2) return hold_motion(from, 0);
-  return keyframe_motion(std::move(times), states, Interpolation::smooth);
+  return servo_motion(servo_target_shapes(task, arm, from), from);
 }
 
 // The shape that a move goes to. The search for one starts from where the arm is.
@@ -182,6 +172,20 @@ MotionPtr motion_of(const ExpressionTask& task, const Arm& arm, const ArmState& 
 }
 
 }  // namespace
+
+// The straight way to each target, slowly.
+MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes, const ArmState& from) {
+  constexpr double slow = 10;  // s a target
+  std::vector<double> times = {0};
+  std::vector<ArmState> states = {from};
+  for (const auto& shape : shapes) {
+    if (!shape) continue;  // Nobody knows yet.
+    times.push_back(times.back() + slow);
+    states.push_back(shape->state);
+  }
+  if (times.size() < 2) return hold_motion(from, 0);
+  return keyframe_motion(std::move(times), states, Interpolation::smooth);
+}
 
 MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from) {
   return std::visit([&](const auto& one) { return motion_of(one, arm, from); }, task);

@@ -31,10 +31,16 @@ double ArmVariables::max_length() const {
 }
 
 Eigen::VectorXd ArmVariables::pack(const ArmState& state) const {
+  Eigen::VectorXd x;
+  pack(state, x);
+  return x;
+}
+
+void ArmVariables::pack(const ArmState& state, Eigen::VectorXd& x) const {
   if (state.bends.size() != parts_.size() || state.stretches.size() != parts_.size()) {
     throw std::invalid_argument("a state for inverse kinematics needs one bend and one stretch a section");
   }
-  Eigen::VectorXd x(size_);
+  x.resize(size_);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     x[parts_[i].at] = state.bends[i].x();
     if (parts_[i].is_spatial) x[parts_[i].at + 1] = state.bends[i].y();
@@ -42,16 +48,21 @@ Eigen::VectorXd ArmVariables::pack(const ArmState& state) const {
   }
   if (!x.allFinite()) throw std::invalid_argument("a state for inverse kinematics must be finite");
   project(bounds_, x);
-  return x;
 }
 
 ArmState ArmVariables::state(const Eigen::VectorXd& x) const {
-  ArmState state = ArmState::straight(parts_.size());
+  ArmState result;
+  state(x, result);
+  return result;
+}
+
+void ArmVariables::state(const Eigen::VectorXd& x, ArmState& state) const {
+  state.bends.resize(parts_.size());
+  state.stretches.resize(parts_.size());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     state.bends[i] = parts_[i].bend(x);
     state.stretches[i] = parts_[i].stretch(x);
   }
-  return state;
 }
 
 }  // namespace flexura

@@ -44,6 +44,9 @@ class ArmVariables {
   /// finite.
   [[nodiscard]] Eigen::VectorXd pack(const ArmState& state) const;
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x) const;
+  /// The same, into what is made to fit: without allocation where it fits already.
+  void pack(const ArmState& state, Eigen::VectorXd& x) const;
+  void state(const Eigen::VectorXd& x, ArmState& state) const;
 
  private:
   std::vector<Part> parts_;

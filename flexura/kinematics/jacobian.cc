@@ -31,12 +31,13 @@ Eigen::Matrix<double, 6, 3> arc_derivatives(const Eigen::Vector2d& bend, double 
 
 }  // namespace
 
-BackboneJacobian::BackboneJacobian(const Arm& arm, const ArmState& state) {
-  const std::vector<Pose> frames = section_frames(arm, state);
-  parts_.reserve(arm.sections.size());
+void BackboneJacobian::set(const Arm& arm, const ArmState& state) {
+  frames_.resize(arm.sections.size() + 1);
+  section_frames(arm, state, frames_);
+  parts_.clear();
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    Part& part = parts_.emplace_back(Part{frames[i], state.bends[i], arm.sections[i].length,
-                                          state.stretches[i], Columns::Zero(), frames[i + 1].position});
+    Part& part = parts_.emplace_back(Part{frames_[i], state.bends[i], arm.sections[i].length,
+                                          state.stretches[i], Columns::Zero(), frames_[i + 1].position});
     part.V_end = own_columns(part, 1.0);
   }
 }

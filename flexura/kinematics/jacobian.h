@@ -20,8 +20,24 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// after P's are zero. Smooth through every straight section.
 class BackboneJacobian {
  public:
+  using Columns = Eigen::Matrix<double, 6, 3>;
+  /// A section as it stands.
+  struct Part {
+    Pose X_WS;             ///< Its base.
+    Eigen::Vector2d bend;  ///< rad.
+    double rest_length;    ///< Not stretched, m.
+    double stretch;
+    Columns V_end;          ///< Twist of its end at its own rates, in W.
+    Eigen::Vector3d p_end;  ///< Its end, in W.
+  };
+
+  BackboneJacobian() = default;
   /// `state` must fit the arm, else std::invalid_argument.
-  BackboneJacobian(const Arm& arm, const ArmState& state);
+  BackboneJacobian(const Arm& arm, const ArmState& state) { set(arm, state); }
+
+  /// Another state; without allocation for as many sections as before. std::invalid_argument likewise.
+  void set(const Arm& arm, const ArmState& state);
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
   /// X_WS at `point`.
   [[nodiscard]] Pose pose(const MaterialPoint& point) const;
@@ -33,17 +49,9 @@ class BackboneJacobian {
   // NOLINTEND(performance-unnecessary-value-param)
 
  private:
-  using Columns = Eigen::Matrix<double, 6, 3>;
-  struct Part {
-    Pose X_WS;             // The section's base.
-    Eigen::Vector2d bend;  // rad.
-    double rest_length;    // Not stretched, m.
-    double stretch;
-    Columns V_end;          // Twist of the section's end at the section's own rates, in W.
-    Eigen::Vector3d p_end;  // The section's end, in W.
-  };
   static Columns own_columns(const Part& part, double fraction);
 
+  std::vector<Pose> frames_;  // The sections' bases and the tip.
   std::vector<Part> parts_;
 };
 

@@ -41,7 +41,7 @@ class PlaneFeatures : public ServoFeatures {
   }
 
   [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>& seen) const override {
+                                                        const std::array<Sighting, 2>& seen) override {
     std::array<Eigen::Matrix2Xd, 2> pixels;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto measured = measured_pixels(arm_, estimate, seen[i], shares_);
@@ -51,7 +51,7 @@ class PlaneFeatures : public ServoFeatures {
     return plane_angles_of({seen[0].view, seen[1].view}, pixels);
   }
   [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>& views) const override {
+                                                        const std::array<View, 2>& views) override {
     std::array<Eigen::Matrix2Xd, 2> pixels;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto projected = measured_pixels(arm_, state, {views[i], {}, {}, {}}, shares_);
@@ -62,7 +62,7 @@ class PlaneFeatures : public ServoFeatures {
   }
   [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                                   const ArmState& estimate,
-                                                  const std::array<View, 2>&) const override {
+                                                  const std::array<View, 2>&) override {
     const Eigen::Index chords = seen.size() / 2;
     const double share = 1 / std::sqrt(static_cast<double>(chords));
     FeatureError result{Eigen::VectorXd::Zero(2 * chords), chord_derivatives(estimate)};

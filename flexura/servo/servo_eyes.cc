@@ -1,5 +1,6 @@
 #include "flexura/servo/servo_eyes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -83,7 +84,8 @@ ShapeEstimate ServoEyes::shape_of(const std::array<Sighting, 2>& seen, const std
     if (best.is_found && best.rms <= std::max(few, as_usual * usual_rms_)) return best;
   }
   ShapeEstimate anew = estimator_.estimate(seen);
-  return anew.is_found && (!best.is_found || anew.rms < best.rms) ? anew : best;
+  // Where there is none, it is the second that says why.
+  return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
 }
 
 ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
@@ -116,18 +118,39 @@ struct Place {
 // Of what is farther from the shape's image than that, px, nothing is the arm there.
 constexpr double farthest = 20;
 
-std::optional<double> offset_at(const Place& place, const std::vector<CurvePoint>& points) {
-  const Eigen::Vector2d heading(place.across.y(), -place.across.x());
-  std::optional<double> nearest;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Eigen::Vector2d &a = points[i - 1].pixel, &b = points[i].pixel;
-    const auto share = meeting(a, b, place.pixel, heading);
-    if (!share || (b - a).norm() > farthest) continue;
-    const double offset = place.across.dot(a + *share * (b - a) - place.pixel);
-    if (std::abs(offset) < std::abs(nearest.value_or(farthest))) nearest = offset;
+// A median axis in short stretches, so that a place looks at those near it only.
+class AxisStretches {
+ public:
+  explicit AxisStretches(const std::vector<CurvePoint>& points) : points_(points) {
+    for (std::size_t first = 0; first + 1 < points.size(); first += length) {
+      Eigen::AlignedBox2d& box = boxes_.emplace_back();
+      for (std::size_t i = first; i <= std::min(first + length, points.size() - 1); ++i)
+        box.extend(points[i].pixel);
+    }
   }
-  return nearest;
-}
+
+  // How far across the place the axis passes it; none where it does not.
+  [[nodiscard]] std::optional<double> offset(const Place& place) const {
+    const Eigen::Vector2d heading(place.across.y(), -place.across.x());
+    std::optional<double> nearest;
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+      if (boxes_[k].squaredExteriorDistance(place.pixel) > farthest * farthest) continue;
+      for (std::size_t i = k * length + 1; i <= std::min((k + 1) * length, points_.size() - 1); ++i) {
+        const Eigen::Vector2d &a = points_[i - 1].pixel, &b = points_[i].pixel;
+        const auto share = meeting(a, b, place.pixel, heading);
+        if (!share || (b - a).norm() > farthest) continue;
+        const double offset = place.across.dot(a + *share * (b - a) - place.pixel);
+        if (std::abs(offset) < std::abs(nearest.value_or(farthest))) nearest = offset;
+      }
+    }
+    return nearest;
+  }
+
+ private:
+  static constexpr std::size_t length = 16;
+  const std::vector<CurvePoint>& points_;
+  std::vector<Eigen::AlignedBox2d> boxes_;  // Of each stretch's points and the next one's first.
+};
 
 // What is not measured, at the ends and behind something, is off by as much as the nearest that is.
 double offset_near(const std::vector<Place>& places, const std::vector<double>& shares, std::size_t k) {
@@ -145,6 +168,7 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
                                                 const Sighting& seen, const std::vector<double>& shares) {
   const Backbone backbone(arm, estimate);
   std::vector<Place> places(shares.size());
+  const AxisStretches axis(seen.points);
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const double s = std::min(arc_length_of(arm, estimate, material_point(arm, shares[k] * arm.length())),
                               backbone.length());
@@ -157,7 +181,7 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
     const Eigen::Vector2d way = *next - *at;
     if (!(way.norm() > 0)) continue;
     places[k].across = Eigen::Vector2d(-way.y(), way.x()) / way.norm();
-    places[k].offset = offset_at(places[k], seen.points);
+    places[k].offset = axis.offset(places[k]);
   }
   Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
   for (std::size_t k = 0; k < shares.size(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "flexura/control/feature_images.h"
 #include "flexura/control/shape_features.h"
 #include "flexura/servo/servo_eyes.h"
 
@@ -22,16 +23,15 @@ Eigen::VectorXd all_of(const ArmState& state) {
 class EstimatedShape : public ServoFeatures {
  public:
   [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>&) const override {
+                                                        const std::array<Sighting, 2>&) override {
     return all_of(estimate);
   }
   [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>&) const override {
+                                                        const std::array<View, 2>&) override {
     return all_of(state);
   }
   [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState&,
-                                                  const std::array<View, 2>&) const override {
+                                                  const ArmState&, const std::array<View, 2>&) override {
     return FeatureError{seen - desired, Eigen::MatrixXd::Identity(seen.size(), seen.size())};
   }
 };
@@ -40,10 +40,10 @@ class EstimatedShape : public ServoFeatures {
 class ImageFeatures : public ServoFeatures {
  public:
   ImageFeatures(Arm arm, FeatureSet set)
-      : arm_(std::move(arm)), set_(std::move(set)), shares_(needed_shares(set_)) {}
+      : arm_(std::move(arm)), set_(std::move(set)), shares_(needed_shares(set_)), images_(arm_, set_) {}
 
   [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>& seen) const override {
+                                                        const std::array<Sighting, 2>& seen) override {
     Eigen::VectorXd values(2 * set_.rows());
     for (std::size_t i = 0; i < 2; ++i) {
       const auto pixels = measured_pixels(arm_, estimate, seen[i], shares_);
@@ -54,23 +54,25 @@ class ImageFeatures : public ServoFeatures {
     return values;
   }
   [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>& views) const override {
-    const auto features = shape_features(arm_, state, views, set_);
-    if (!features) return std::nullopt;
-    return features->values;
+                                                        const std::array<View, 2>& views) override {
+    Eigen::VectorXd values;
+    if (!images_.values(state, views, values)) return std::nullopt;
+    return values;
   }
   [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                                   const ArmState& estimate,
-                                                  const std::array<View, 2>& views) const override {
-    const auto features = shape_features(arm_, estimate, views, set_);
-    if (!features) return std::nullopt;
-    return FeatureError{feature_error(set_, seen, desired), features->by_state};
+                                                  const std::array<View, 2>& views) override {
+    Eigen::VectorXd values;
+    FeatureError result{feature_error(set_, seen, desired), {}};
+    if (!images_.derive(estimate, views, values, result.by_state)) return std::nullopt;
+    return result;
   }
 
  private:
   Arm arm_;
   FeatureSet set_;
   std::vector<double> shares_;
+  FeatureImages images_;
 };
 
 }  // namespace

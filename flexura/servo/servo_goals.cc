@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {
 
 ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes,
-                       const ServoFeatures& features, const std::array<View, 2>& views) {
+                       ServoFeatures& features, const std::array<View, 2>& views) {
   for (const ServoGoal& goal : goals) {
     times_.push_back(goal.time);
     if (const auto* state = std::get_if<ArmState>(&goal.shape)) {
@@ -23,13 +24,14 @@ ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, Serv
 }
 
 void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes,
-                         const ServoFeatures& features, const std::array<View, 2>& views) {
+                         ServoFeatures& features, const std::array<View, 2>& views) {
   std::array<Frame, 2> frames;
   for (std::size_t i = 0; i < 2; ++i) frames[i].picture = std::make_shared<const Picture>(recorded[i]);
   const ServoSight sight = eyes.look(frames, views, std::nullopt);
+  if (problem_.empty()) problem_ = wrong_order(sight, frames, eyes, views);
   WantedShape& wanted = shapes_.emplace_back(WantedShape{ArmState::straight(arm.sections.size()), {}});
   for (std::size_t i = 0; i < 2; ++i)
-    if (!sight.reasons[i].empty())
+    if (problem_.empty() && !sight.reasons[i].empty())
       problem_ =
           fmt::format("picture {} of goal {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
   if (!problem_.empty()) return;
@@ -41,6 +43,32 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
   const auto seen = features.measured(wanted.state, sight.seen),
              foreseen = features.foreseen(wanted.state, views);
   if (seen && foreseen) wanted.offset = *seen - *foreseen;
+}
+
+// Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but
+// for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order. The
+// eyes are left as they were.
+std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
+                                    ServoEyes& eyes, const std::array<View, 2>& views) const {
+  constexpr double noise = 1.5, far_worse = 2;  // In units of what the noise explains; times the other.
+  const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
+    return std::visit(
+        [&](const auto& image) {
+          return image.width() == views[camera].width && image.height() == views[camera].height;
+        },
+        *frames[i].picture);
+  };
+  if (frames[0].picture->index() != frames[1].picture->index() || !is_taken_by(0, 1) || !is_taken_by(1, 0))
+    return "";
+  const ShapeEstimate other = eyes.look({frames[1], frames[0]}, views, std::nullopt).estimate;
+  (void)eyes.look(frames, views, std::nullopt);
+  const bool is_worse = !sight.estimate.is_found || sight.estimate.scale >= far_worse * other.scale;
+  if (!other.is_found || other.scale > noise || !is_worse) return "";
+  const std::string than = sight.estimate.is_found ? fmt::format(", not {:.2g} px", sight.estimate.rms) : "";
+  return fmt::format(
+      "the pictures of goal {} are in the wrong order: the other way round they fit the cameras to {:.2g} "
+      "px{}",
+      times_.size(), other.rms, than);
 }
 
 WantedShape ServoGoals::at(double time) const {

@@ -25,8 +25,8 @@ struct WantedShape {
 class ServoGoals {
  public:
   /// `problem` says why not, "" if nothing is wrong.
-  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes,
-             const ServoFeatures& features, const std::array<View, 2>& views);
+  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes, ServoFeatures& features,
+             const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// s from the servo's start, when the last goal is reached by what is wanted.
@@ -35,8 +35,11 @@ class ServoGoals {
   [[nodiscard]] WantedShape at(double time) const;
 
  private:
-  void measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes, const ServoFeatures& features,
+  void measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes, ServoFeatures& features,
                const std::array<View, 2>& views);
+  // Why pictures that were seen so are to be given in the other order; "" where they are not.
+  [[nodiscard]] std::string wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
+                                        ServoEyes& eyes, const std::array<View, 2>& views) const;
 
   std::vector<double> times_;
   std::vector<WantedShape> shapes_;

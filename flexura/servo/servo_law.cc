@@ -18,9 +18,14 @@ Eigen::VectorXd with_offset(Eigen::VectorXd values, const Eigen::VectorXd& offse
   return values;
 }
 
+bool is_same(const WantedShape& a, const WantedShape& b) {
+  return a.state.bends == b.state.bends && a.state.stretches == b.state.stretches &&
+         a.offset.size() == b.offset.size() && a.offset == b.offset;
+}
+
 }  // namespace
 
-ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, const ServoFeatures& features)
+ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& features)
     : config_(config), features_(features), law_(arm, gains_of(config)) {}
 
 void ServoLaw::learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model) {
@@ -46,13 +51,21 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
   const ArmState& estimate = input.sight.estimate.shape.state;
   const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
   const auto seen = features_.measured(estimate, input.sight.seen);
-  const auto then = features_.foreseen(input.then.state, views),
-             now = features_.foreseen(input.wanted.state, views);
-  if (!seen || !then || !now) return {input.sent, 0, true};
-  const auto was = features_.error(*seen, with_offset(*then, input.then.offset), estimate, views);
-  const auto is = features_.error(*seen, with_offset(*now, input.wanted.offset), estimate, views);
-  if (!was || !is) return {input.sent, 0, true};
-  Eigen::MatrixXd J = law_.by_variables(is->by_state);
+  const auto error_from = [&](const WantedShape& wanted) -> std::optional<FeatureError> {
+    const auto desired = seen ? features_.foreseen(wanted.state, views) : std::nullopt;
+    if (!desired) return std::nullopt;
+    return features_.error(*seen, with_offset(*desired, wanted.offset), estimate, views);
+  };
+  const auto is = error_from(input.wanted);
+  if (!is) return {input.sent, 0, true};
+  double potential = 0.5 * is->error.squaredNorm();
+  if (!is_same(input.then, input.wanted)) {
+    const auto was = error_from(input.then);
+    if (!was) return {input.sent, 0, true};
+    potential = 0.5 * was->error.squaredNorm();
+  }
+  Eigen::MatrixXd& J = J_;
+  law_.by_variables(is->by_state, J);
   if (config_.jacobian != ServoJacobian::model) {
     if (input.is_fresh) learn(*seen, input.said, J);
     if (const auto* broyden = std::get_if<BroydenEstimate>(&learned_)) J = broyden->jacobian();
@@ -61,12 +74,13 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
   Eigen::VectorXd error = is->error;
   // What was sent since the pictures were taken is on its way.
   if (config_.predicts) error += J * (law_.variables().pack(input.sent) - law_.variables().pack(input.said));
-  ImageStep step = law_.step(input.sent, error, J, config_.step);
+  ImageStep step;
+  law_.step(input.sent, error, J, config_.step, work_, step);
   for (std::size_t i = 0; i < step.asked.bends.size(); ++i) {
     step.asked.bends[i] += input.next.bends[i] - input.wanted.state.bends[i];
     step.asked.stretches[i] += input.next.stretches[i] - input.wanted.state.stretches[i];
   }
-  return {std::move(step.asked), 0.5 * was->error.squaredNorm(), step.is_singular};
+  return {std::move(step.asked), potential, step.is_singular};
 }
 
 }  // namespace flexura

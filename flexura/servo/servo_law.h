@@ -19,7 +19,7 @@ namespace flexura {
 class ServoLaw {
  public:
   /// `features` and `config` outlive it.
-  ServoLaw(const Arm& arm, const ServoConfig& config, const ServoFeatures& features);
+  ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& features);
 
   /// What it goes by.
   struct Input {
@@ -43,10 +43,12 @@ class ServoLaw {
   void learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model);
 
   const ServoConfig& config_;
-  const ServoFeatures& features_;
+  ServoFeatures& features_;
   ImageLaw law_;
   std::variant<std::monostate, BroydenEstimate, RecursiveEstimate> learned_;
   std::optional<Eigen::VectorXd> x_before_, f_before_;
+  Eigen::MatrixXd J_;
+  ImageLaw::Work work_;
 };
 
 }  // namespace flexura

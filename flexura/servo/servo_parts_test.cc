@@ -96,6 +96,46 @@ TEST(MeasuredPixels, LieOnTheAxisThatIsSeen) {
   });
 }
 
+// Every place lies where the line across the arm meets the axis nearest to it, of all its pieces.
+TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
+  int met = 0;
+  for_random_cases(100, [&](TestRandom& random) {
+    const Arm arm = servo_arm();
+    const View view = servo_views()[1];
+    const ArmState state = random_servo_state(random, arm, 1.5);
+    const Backbone backbone(arm, state);
+    Sighting seen{view, {}, {}, {}};
+    const int count = random.integer(2, 300);
+    const Eigen::Vector2d aside = random.vector<2>(-12, 12);
+    for (int k = 0; k <= count; ++k)
+      seen.points.push_back(
+          {*view.project(backbone.pose(backbone.length() * k / count).position) + aside, 0.1});
+    const std::vector<double> shares = {0.3, 0.5, 0.77};
+    const Eigen::Matrix2Xd moved = measured_pixels(arm, state, seen, shares).value(),
+                           own = measured_pixels(arm, state, {view, {}, {}, {}}, shares).value();
+    for (Eigen::Index i = 0; i < moved.cols(); ++i) {
+      const double s = shares[static_cast<std::size_t>(i)] * backbone.length();
+      const Pose X_WS = backbone.pose(s);
+      const Eigen::Vector2d ahead =
+          *view.project(X_WS.position + 1e-4 * backbone.length() * X_WS.rotation.col(2)) - own.col(i);
+      const Eigen::Vector2d across = Eigen::Vector2d(-ahead.y(), ahead.x()).normalized();
+      double nearest = 20;
+      for (std::size_t k = 1; k < seen.points.size(); ++k) {
+        const Eigen::Vector2d a = seen.points[k - 1].pixel - own.col(i),
+                              b = seen.points[k].pixel - own.col(i);
+        const double from = a.dot(ahead), to = b.dot(ahead);
+        if ((from < 0) == (to < 0) || (b - a).norm() > 20) continue;
+        const double offset = across.dot(a + from / (from - to) * (b - a));
+        if (std::abs(offset) < std::abs(nearest)) nearest = offset;
+      }
+      if (nearest == 20) continue;
+      ++met;
+      EXPECT_LE((moved.col(i) - own.col(i) - nearest * across).norm(), 1e-6);
+    }
+  });
+  EXPECT_GT(met, 100 / one_case_of);
+}
+
 ServoStep step_at(double time, double rms) {
   ServoStep step;
   step.time = time, step.seen_at = time, step.is_fresh = true;

@@ -68,6 +68,10 @@ bool ServoRig::look() {
     const auto frame = ports_.cameras[cameras_[i]].camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
     if (frame.fault() || !frame.value()) continue;
+    if (!std::isfinite(frame.value()->time) || !std::isfinite(frame.value()->received)) {
+      silence_[i] = "its picture tells of no time: a number is none";
+      continue;
+    }
     recent_[i].push_back(*frame.value());
     if (recent_[i].size() > kept) recent_[i].pop_front();
   }

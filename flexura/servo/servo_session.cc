@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -80,6 +81,9 @@ class Session {
     result_.is_done = result_.reason.empty();
     result_.fault = limiter_->fault();
     result_.last = last_;
+    if (result_.missed_steps > 0)
+      watcher_.told(rig_.now(),
+                    fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
     add_figures(model_.arm, config_, goals_->last(), result_);
     return std::move(result_);
   }
@@ -113,9 +117,19 @@ class Session {
     return !result_.reason.empty();
   }
 
-  // Waits for the next command's time; reads everything.
+  // Waits for the next command's time; reads everything. Times that have passed are left out: commands follow
+  // each other in whole steps, for it is that fast that the limiter lets the arm go.
   void wake() {
-    rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
+    constexpr double rounding = 1e-6;
+    const double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
+    const long next = std::max(ticks_ + 1, static_cast<long>(passed));
+    if (next > ticks_ + 1 && result_.missed_steps == 0)
+      watcher_.told(rig_.now(),
+                    fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
+                                config_.step));
+    result_.missed_steps += next - ticks_ - 1;
+    ticks_ = next;
+    rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));
     if (auto trouble = rig_.read()) fault(*trouble);
   }
 
@@ -166,7 +180,7 @@ class Session {
         step.is_fresh = true, seen_since_ = now;
         limiter_->observe(sight.estimate.shape.state);
         last_ = std::move(sight);
-        if (config_.follows) follow(now);
+        if (config_.follows) follow(now, step);
       } else {
         cannot_see(now, sight);
       }
@@ -251,7 +265,7 @@ class Session {
     return "";
   }
 
-  void follow(double now) {
+  void follow(double now, ServoStep& step) {
     for (std::size_t i = 0; i < 2; ++i) {
       const auto head =
           keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time), last_->seen[i].view);
@@ -261,6 +275,7 @@ class Session {
         fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
         return;
       }
+      step.heads[i] = *head;
       watcher_.camera_sent(now,
                            {.camera = rig_.camera(i), .head = *head, .stage = rig_.stance(i, now).stage});
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/calibrate/rig_model.h"
+#include "flexura/camera/head.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/model/backbone.h"
@@ -51,6 +52,8 @@ struct ServoStep {
   bool is_fresh = false;     ///< The sight is new.
   bool is_singular = false;  ///< Of the law: some motion shows in nothing that is seen.
   std::string limited;       ///< What held the law back; "": nothing.
+  /// Where the heads were sent to meanwhile; none of heads that were not.
+  std::array<std::optional<HeadState>, 2> heads;
 };
 
 /// Sees a servo as it goes. What it does with that changes nothing of it.
@@ -76,6 +79,8 @@ struct ServoResult {
   bool is_done = false;
   std::string reason;  ///< Why it is not; the arm rests.
   std::vector<ServoStep> steps;
+  /// Steps whose time had passed before the one before them was done: nothing was sent at these.
+  long missed_steps = 0;
   double start = 0;                     ///< s
   std::optional<double> settled;        ///< Time from the start to 2 % for good, s.
   double overshoot = 0;                 ///< By how much the tip went past its goal, share of its way.
@@ -87,8 +92,9 @@ struct ServoResult {
 /// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest
 /// pictures are measured, the shape of the arm at their time is estimated, the law says where to send it, a
 /// limiter stands between. Everything goes through the ports; what goes wrong ends with the arm at rest and
-/// says why. The same rig, readings and pictures give the same result. std::invalid_argument: no goals, goals
-/// whose times do not rise from 0, numbers out of range, ports for other cameras than the model's.
+/// says why. Steps whose time has passed are left out: the next one is at the next whole step. The same rig,
+/// readings and pictures give the same result. std::invalid_argument: no goals, goals whose times do not rise
+/// from 0, numbers out of range, ports for other cameras than the model's.
 [[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
                                            const ServoConfig& config, ServoWatcher& watcher);
 

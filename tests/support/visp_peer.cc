@@ -23,20 +23,35 @@ std::array<double, 12> visp_interaction(const VispPoint& point) {
   return numbers;
 }
 
-std::array<double, 6> visp_velocity(const std::vector<VispPoint>& now, const std::vector<VispPoint>& wanted,
-                                    double gain) {
+struct VispServo::Kept {
   std::vector<vpFeaturePoint> features, goals;
-  for (const VispPoint& point : now) features.push_back(feature_of(point));
-  for (const VispPoint& point : wanted) goals.push_back(feature_of(point));
   vpServo task;
-  task.setServo(vpServo::EYEINHAND_CAMERA);
-  task.setInteractionMatrixType(vpServo::CURRENT);
-  task.setLambda(gain);
-  for (std::size_t i = 0; i < features.size(); ++i) task.addFeature(features[i], goals[i]);
-  const vpColVector velocity = task.computeControlLaw();
+};
+
+VispServo::VispServo(const std::vector<VispPoint>& wanted, double gain) : kept_(std::make_unique<Kept>()) {
+  for (const VispPoint& point : wanted) {
+    kept_->features.push_back(feature_of(point));
+    kept_->goals.push_back(feature_of(point));
+  }
+  kept_->task.setServo(vpServo::EYEINHAND_CAMERA);
+  kept_->task.setInteractionMatrixType(vpServo::CURRENT);
+  kept_->task.setLambda(gain);
+  for (std::size_t i = 0; i < wanted.size(); ++i) kept_->task.addFeature(kept_->features[i], kept_->goals[i]);
+}
+
+VispServo::~VispServo() = default;
+
+std::array<double, 6> VispServo::velocity(const std::vector<VispPoint>& now) {
+  for (std::size_t i = 0; i < now.size(); ++i) kept_->features[i].buildFrom(now[i].x, now[i].y, now[i].Z);
+  const vpColVector velocity = kept_->task.computeControlLaw();
   std::array<double, 6> numbers{};
   for (unsigned int i = 0; i < 6; ++i) numbers[i] = velocity[i];
   return numbers;
+}
+
+std::array<double, 6> visp_velocity(const std::vector<VispPoint>& now, const std::vector<VispPoint>& wanted,
+                                    double gain) {
+  return VispServo(wanted, gain).velocity(now);
 }
 
 }  // namespace flexura

@@ -1,0 +1,167 @@
+// The whole loop of a servo, two noisy pictures of 640 x 480 px a turn: rendered, segmented, the shape
+// estimated, the arm controlled; packaged_loop.cc has the sum of the best packaged parts for it.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <semaphore>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "bench/loop_eye.h"
+#include "flexura/control/limiter.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/servo/servo_features.h"
+#include "flexura/servo/servo_law.h"
+
+namespace flexura {
+namespace {
+
+// Does one thing again and again in a thread of its own.
+class Helper {
+ public:
+  ~Helper() {
+    is_over_ = true;
+    go_.release();
+    thread_.join();
+  }
+  Helper() : thread_([this] { work(); }) {}
+  Helper(const Helper&) = delete;
+  Helper& operator=(const Helper&) = delete;
+  template <class Job>
+  void start(Job job) {
+    job_ = std::move(job);
+    go_.release();
+  }
+  void wait() { done_.acquire(); }
+
+ private:
+  void work() {
+    for (go_.acquire(); !is_over_; go_.acquire()) job_(), done_.release();
+  }
+  std::function<void()> job_;
+  bool is_over_ = false;
+  std::binary_semaphore go_{0}, done_{0};
+  std::thread thread_;
+};
+
+// An arm that goes to and fro between two shapes as its pictures tell.
+class Loop {
+ public:
+  Loop(int threads, const Sides& sides) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Setting setting = both_settings(sides)[i];
+      scene_ = setting.scene;
+      eyes_[i].view = setting.view, eyes_[i].number = i;
+      eyes_[i].finder =
+          ArmFinder({.threshold = {}, .base = setting.view.project(arm_.X_WB.position), .least_sigma = 0});
+    }
+    if (threads > 1) helper_ = std::make_unique<Helper>();
+    for (std::size_t goal = 0; goal < 2; ++goal) {
+      goals_[goal].state = setting_state();
+      for (Eigen::Vector2d& bend : goals_[goal].state.bends) bend *= goal == 0 ? 0.93 : 1.0;
+    }
+    config_.law = ServoLawKind::points;
+    config_.goals = {{0, goals_[0].state}};
+    features_ = servo_features(config_.law, arm_, config_.points);
+    law_.emplace(arm_, config_, *features_);
+  }
+
+  void turn() {
+    Stopwatch own;
+    constexpr int turns_a_goal = 20;
+    const WantedShape& wanted = goals_[static_cast<std::size_t>(turns_ / turns_a_goal % 2)];
+    scene_.arm.tube = tube_of(arm_, Backbone(arm_, state_));
+    const auto number = static_cast<std::uint64_t>(turns_++);
+    if (helper_) helper_->start([this, number] { look(eyes_[1], scene_, number); });
+    look(eyes_[0], scene_, number);
+    helper_ ? helper_->wait() : look(eyes_[1], scene_, number);
+    Stopwatch watch;
+    sight_.seen = {eyes_[0].seen, eyes_[1].seen};
+    sight_.estimate = sight_.estimate.is_found ? estimator_.follow(sight_.seen, {arm_, expected_})
+                                               : estimator_.estimate(sight_.seen);
+    if (!sight_.estimate.is_found) throw std::runtime_error(sight_.estimate.reason);
+    fitting_ += watch.lap();
+    const ServoLaw::Wish wish = law_->step({.sight = sight_,
+                                            .is_fresh = true,
+                                            .said = state_,
+                                            .sent = state_,
+                                            .then = wanted,
+                                            .wanted = wanted,
+                                            .next = wanted.state});
+    control_ += watch.lap();
+    const ArmState before = std::exchange(state_, limiter_.next(wish.asked).state);
+    limiting_ += watch.lap();
+    expected_ = sight_.estimate.shape.state;
+    off_ = std::max(off_, servo_error(arm_, expected_, before).rms);
+    // Where it was seen, moved by what was sent since.
+    for (std::size_t i = 0; i < expected_.bends.size(); ++i)
+      expected_.bends[i] += state_.bends[i] - before.bends[i];
+    own_ += own.lap();
+  }
+
+  // Processor times in us a turn, of both cameras together; `own_us`: all that the calling thread does.
+  void tell(benchmark::State& state) const {
+    const double us = 1e6 / static_cast<double>(turns_);
+    state.counters["draw_us"] = us * (eyes_[0].drawing + eyes_[1].drawing);
+    state.counters["sensor_us"] = us * (eyes_[0].reading + eyes_[1].reading);
+    state.counters["find_us"] = us * (eyes_[0].finding + eyes_[1].finding);
+    state.counters["fit_us"] = us * fitting_;
+    state.counters["law_us"] = us * control_;
+    state.counters["limiter_us"] = us * limiting_;
+    state.counters["own_us"] = us * own_;
+    state.counters["off"] = off_;
+  }
+
+ private:
+  Arm arm_ = setting_arm();
+  ArmState state_ = setting_state(), expected_;
+  Scene scene_;
+  std::array<Eye, 2> eyes_;
+  ShapeEstimator estimator_{ShapePrior{.arm = arm_}};
+  std::array<WantedShape, 2> goals_;
+  ServoConfig config_;
+  std::unique_ptr<ServoFeatures> features_;
+  std::optional<ServoLaw> law_;
+  CommandLimiter limiter_{arm_, {.looks_ahead = false}, state_};
+  ServoSight sight_;
+  std::unique_ptr<Helper> helper_;
+  int turns_ = 0;
+  double fitting_ = 0, control_ = 0, limiting_ = 0, own_ = 0;  // s
+  double off_ = 0;  // Of the worst estimate, from the truth, root mean square, share of the length.
+};
+
+void whole_loop(benchmark::State& state, const Sides& sides) {
+  try {
+    Loop loop(static_cast<int>(state.range(0)), sides);
+    loop.turn();
+    for (auto _ : state) loop.turn();
+    loop.tell(state);
+  } catch (const std::exception& error) {
+    state.SkipWithError(error.what());
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK_CAPTURE(whole_loop, rings, with_rings)
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_loop, no_rings, without_rings)
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace flexura

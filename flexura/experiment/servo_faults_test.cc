@@ -1,0 +1,286 @@
+// Servos whose devices answer with what is no number, late or in the wrong order, and what their log keeps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "tests/support/quiet.h"
+#include "tests/support/servo_bench.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+const ArmState servo_wish = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+
+// A head that says from a time on that its tilt is no number.
+class LostHead : public HeadPort {
+ public:
+  LostHead(HeadPort& head, ClockPort& clock, double from) : head_(head), clock_(clock), from_(from) {}
+  CommandOutcome command(const HeadState& state) override { return head_.command(state); }
+  CommandOutcome halt() override { return head_.halt(); }
+  Outcome<HeadReading> read() override {
+    HeadReading reading = head_.read().value();
+    if (clock_.now() >= from_) reading.state.tilt = none;
+    return reading;
+  }
+
+ private:
+  HeadPort& head_;
+  ClockPort& clock_;
+  double from_;
+};
+
+// A camera whose pictures tell from one time to another that they were taken at none.
+class TimelessCamera : public CameraPort {
+ public:
+  TimelessCamera(CameraPort& camera, ClockPort& clock, double from, double to)
+      : camera_(camera), clock_(clock), from_(from), to_(to) {}
+  Outcome<std::optional<Frame>> newest() override { return without_time(camera_.newest()); }
+  Outcome<std::optional<Frame>> wait(double timeout) override { return without_time(camera_.wait(timeout)); }
+
+ private:
+  Outcome<std::optional<Frame>> without_time(Outcome<std::optional<Frame>> outcome) {
+    if (clock_.now() < from_ || clock_.now() >= to_ || outcome.fault() || !outcome.value()) return outcome;
+    Frame frame = *outcome.value();
+    frame.time = none;
+    return std::optional(frame);
+  }
+
+  CameraPort& camera_;
+  ClockPort& clock_;
+  double from_, to_;
+};
+
+// A camera that takes its time to answer, now and then.
+class SlowCamera : public CameraPort {
+ public:
+  SlowCamera(CameraPort& camera, ClockPort& clock, double takes, int every)
+      : camera_(camera), clock_(clock), takes_(takes), every_(every) {}
+  Outcome<std::optional<Frame>> newest() override {
+    if (++asked_ % every_ == 0) clock_.wait_until(clock_.now() + takes_);
+    return camera_.newest();
+  }
+  Outcome<std::optional<Frame>> wait(double timeout) override { return camera_.wait(timeout); }
+
+ private:
+  CameraPort& camera_;
+  ClockPort& clock_;
+  double takes_;
+  int every_, asked_ = 0;
+};
+
+TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  LostHead lost(*ports.cameras[1].head, *ports.clock, 0.4);
+  ports.cameras[1].head = &lost;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("camera side does not tell how it stands"), std::string::npos)
+      << result.reason;
+  ASSERT_TRUE(result.fault);
+  EXPECT_LT(result.steps.back().time, 1.5);
+  bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
+  EXPECT_FALSE(bench.ports().arm->read().value().moving);
+  for (const auto& [time, state] : notes.sent)
+    for (const Eigen::Vector2d& bend : state.bends) EXPECT_TRUE(bend.allFinite()) << "at " << time;
+  // From the start nothing is sent at all.
+  LostHead never(*bench.ports().cameras[0].head, *bench.ports().clock, 0);
+  ports = bench.ports();
+  ports.cameras[0].head = &never;
+  ServoNotes silent;
+  EXPECT_NE(bench.servo(ports, silent).reason.find("camera front does not tell"), std::string::npos);
+  EXPECT_TRUE(silent.sent.empty());
+}
+
+TEST(ServoFaults, PicturesOfNoTimeAreNoPictures) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  TimelessCamera timeless(*ports.cameras[1].camera, *ports.clock, 0.3, 1.3);
+  ports.cameras[1].camera = &timeless;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_TRUE(notes.has("camera side: its picture tells of no time"));
+  EXPECT_TRUE(notes.has("the arm is seen again"));
+  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  for (const ServoStep& step : result.steps) {
+    if (!step.seen_at) continue;
+    EXPECT_TRUE(std::isfinite(*step.seen_at));
+    EXPECT_TRUE(std::isfinite(step.error->rms));
+  }
+}
+
+// A step that takes longer than it may: what it missed is not made up for.
+TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  constexpr double takes = 0.11;
+  SlowCamera slow(*ports.cameras[0].camera, *ports.clock, takes, 7);
+  ports.cameras[0].camera = &slow;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  const double step = 1.0 / 30;
+  long missed = 0;
+  for (std::size_t i = 1; i < result.steps.size(); ++i) {
+    const double ticks = (result.steps[i].time - result.start) / step,
+                 gone = (result.steps[i].time - result.steps[i - 1].time) / step;
+    EXPECT_NEAR(ticks, std::round(ticks), 1e-6);
+    // None sooner than a step after the one before: the limiter counts on it.
+    EXPECT_GT(gone, 1 - 1e-6);
+    missed += std::lround(gone) - 1;
+  }
+  // Three whole steps each time: 0.11 s are 3.3.
+  EXPECT_EQ(result.missed_steps, missed);
+  EXPECT_GE(missed, 3 * static_cast<long>(result.steps.size() / 7 - 1));
+  EXPECT_LE(missed, 3 * static_cast<long>(result.steps.size() / 7 + 1));
+  EXPECT_TRUE(notes.has("a step took longer than its 0.03333 s"));
+  EXPECT_TRUE(notes.has(fmt::format("{} steps of 0.03333 s were missed", missed)));
+}
+
+TEST(ServoFaults, NothingIsMissedWhereNothingTakesTime) {
+  ServoBench bench(servo_file(servo_target));
+  ServoNotes notes;
+  const ServoResult result = bench.servo(bench.ports(), notes);
+  EXPECT_EQ(result.missed_steps, 0);
+  EXPECT_FALSE(notes.has("missed"));
+}
+
+// Two pictures of the wanted shape, in their order and in the other one.
+TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
+  ServoBench bench(servo_file(servo_target));
+  RigBench other(
+      servo_file(servo_target, {.rest = "[arm.initial]\nbends = [[0.8, 0.3], [-0.7, 0.9], [1.0, -0.6]]\n"}));
+  RecordedViews views;
+  for (std::size_t i = 0; i < 2; ++i) views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
+  ServoConfig config = bench.config();
+  const RigModel model = bench.believed();
+  config.goals = {{0, RecordedViews{views[1], views[0]}}};
+  ServoNotes notes;
+  const ServoResult refused = servo_in_session(bench.ports(), model, config, notes);
+  EXPECT_FALSE(refused.is_done);
+  EXPECT_NE(refused.reason.find("the pictures of goal 1 are in the wrong order"), std::string::npos)
+      << refused.reason;
+  EXPECT_TRUE(notes.sent.empty());
+  config.goals = {{0, views}};
+  const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+}
+
+// What shows no shape says why.
+TEST(ServoFaults, PicturesOfTwoShapesAreRefusedWithAReason) {
+  ServoBench bench(servo_file(servo_target));
+  RecordedViews views;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string bends = i == 0 ? "[[0, 0], [0, 0], [0, 0]]" : "[[0, 2], [0, 2], [0, 2]]";
+    RigBench other(servo_file(servo_target, {.rest = "[arm.initial]\nbends = " + bends + "\n"}));
+    views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
+  }
+  ServoConfig config = bench.config();
+  config.goals = {{0, views}};
+  const RigModel model = bench.believed();
+  ServoNotes notes;
+  const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
+  EXPECT_FALSE(result.is_done);
+  const std::string begins = "the pictures of goal 1 show no shape: ";
+  EXPECT_TRUE(result.reason.starts_with(begins)) << result.reason;
+  EXPECT_GT(result.reason.size(), begins.size());
+  EXPECT_TRUE(notes.sent.empty());
+}
+
+const std::string colored = "read_noise = 1, delay = 0.06, exposure = 0.002, pixels = \"color\"";
+
+std::string bands(const std::string& table, const std::string& colors) {
+  return "[" + table + "]\nbands = { per_section = 3, width = 0.03, colors = [" + colors + "] }\n";
+}
+
+TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
+  const std::string red = "[0.85, 0.1, 0.1]", green = "[0.1, 0.6, 0.15]", blue = "[0.1, 0.2, 0.85]",
+                    dark = "[0.08, 0.08, 0.09]";
+  std::string all, but_one;
+  for (int i = 0; i < 9; ++i) {
+    const std::string& color = i % 3 == 0 ? red : i % 3 == 1 ? green : blue;
+    all += (i > 0 ? ", " : "") + color;
+    but_one += (i > 0 ? ", " : "") + (i == 4 ? dark : color);  // Of the arm's own colour.
+  }
+  for (const bool is_one_lost : {false, true}) {
+    const std::string rest = bands("arm.look", all) + (is_one_lost ? bands("truth.arm.look", but_one) : "");
+    ServoBench bench(servo_file("law = \"points\"\n" + servo_target, {.sensor = colored, .rest = rest}));
+    EXPECT_EQ(bench.config().markers.size(), 9u);
+    class BandNotes : public ServoNotes {
+     public:
+      std::vector<double> middles;
+      std::set<std::size_t> gone_by;  // Numbers of the bands that shapes were fitted to.
+      void seen(const ServoSight& sight) override {
+        const auto distance = [](double s) { return [s](double middle) { return std::abs(middle - s); }; };
+        for (const PlacedMarker& marker : sight.estimate.markers)
+          gone_by.insert(static_cast<std::size_t>(std::ranges::min_element(middles, {}, distance(marker.s)) -
+                                                  middles.begin()));
+      }
+    } notes;
+    notes.middles = bench.config().markers;
+    const ServoResult result = bench.servo(bench.ports(), notes);
+    ASSERT_TRUE(result.is_done) << result.reason;
+    std::printf("%zu bands were gone by, %.4f %% of the length left\n", notes.gone_by.size(),
+                100 * bench.truth(servo_wish).rms);
+    EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+    EXPECT_LT(*result.settled, 2);
+    // The one that is lost is not taken for another one.
+    EXPECT_EQ(notes.gone_by.contains(4), !is_one_lost);
+    EXPECT_GE(notes.gone_by.size(), 6u);
+  }
+}
+
+// Every command to a head that follows stands in the log, as every stretch does.
+TEST(ServoFaults, TheLogHasWhatHeadsAndStretchesWereSentTo) {
+  const TemporaryFolder temporary;
+  const auto folder = temporary.path() / "results";
+  std::filesystem::create_directory(folder);
+  Quiet quiet;
+  const std::string task =
+      "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n";
+  const RunResult result = run_experiment(
+      parse_experiment(servo_file(task, {.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002"}),
+                       "x.toml"),
+      folder, quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
+  std::size_t steps = 0, heads = 0;
+  const McapReader log(folder / log_file_name);
+  for (const McapMessage& message : log.messages()) {
+    if (message.channel->topic != servo_steps_topic) continue;
+    const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
+    ++steps;
+    EXPECT_EQ(step.sent_stretches, (std::vector<double>{1, 1, 1}));
+    if (!step.heads) continue;
+    heads += step.heads->size();
+    for (const HeadCommandMessage& head : *step.heads) {
+      EXPECT_TRUE(head.camera == "front" || head.camera == "side") << head.camera;
+      EXPECT_TRUE(head.pan != 0 || head.tilt != 0);
+    }
+  }
+  EXPECT_GT(steps, 20u);
+  EXPECT_GT(heads, 0u);
+}
+
+}  // namespace
+}  // namespace flexura

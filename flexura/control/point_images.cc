@@ -13,7 +13,7 @@ namespace {
 // Power series take over below this bend of a section, rad: beyond it the closed forms lose no digit that
 // counts, for what cancels in them is multiplied by the bend.
 constexpr double series_bend = 0.3;
-constexpr std::size_t series_terms = 6;  // The next one is below 1e-17 of the first.
+constexpr std::size_t series_terms = 6;  // The next one is below 1e-16 of the first.
 using Series = std::array<double, series_terms>;
 
 constexpr double factorial_of(std::size_t n) {

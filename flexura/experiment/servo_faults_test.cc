@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -46,6 +47,26 @@ class LostHead : public HeadPort {
   double from_;
 };
 
+// An arm that says from a time on that it is where it is at no time.
+class TimelessArm : public ArmPort {
+ public:
+  TimelessArm(ArmPort& arm, ClockPort& clock, double from) : arm_(arm), clock_(clock), from_(from) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    return arm_.command(state, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    ArmReading reading = arm_.read().value();
+    if (clock_.now() >= from_) reading.time = none;
+    return reading;
+  }
+
+ private:
+  ArmPort& arm_;
+  ClockPort& clock_;
+  double from_;
+};
+
 // A camera whose pictures tell from one time to another that they were taken at none.
 class TimelessCamera : public CameraPort {
  public:
@@ -84,6 +105,20 @@ class SlowCamera : public CameraPort {
   double takes_;
   int every_, asked_ = 0;
 };
+
+TEST(ServoFaults, AnArmThatTellsNoTimeIsStopped) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  TimelessArm timeless(*ports.arm, *ports.clock, 0.4);
+  ports.arm = &timeless;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("the arm tells of no time"), std::string::npos) << result.reason;
+  ASSERT_TRUE(result.fault);
+  bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
+  EXPECT_FALSE(bench.ports().arm->read().value().moving);
+}
 
 TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   ServoBench bench(servo_file(servo_target));
@@ -215,11 +250,11 @@ std::string bands(const std::string& table, const std::string& colors) {
 }
 
 TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
-  const std::string red = "[0.85, 0.1, 0.1]", green = "[0.1, 0.6, 0.15]", blue = "[0.1, 0.2, 0.85]",
-                    dark = "[0.08, 0.08, 0.09]";
+  const std::array<std::string, 3> colors = {"[0.85, 0.1, 0.1]", "[0.1, 0.6, 0.15]", "[0.1, 0.2, 0.85]"};
+  const std::string dark = "[0.08, 0.08, 0.09]";
   std::string all, but_one;
-  for (int i = 0; i < 9; ++i) {
-    const std::string& color = i % 3 == 0 ? red : i % 3 == 1 ? green : blue;
+  for (std::size_t i = 0; i < 9; ++i) {
+    const std::string& color = colors[i % 3];
     all += (i > 0 ? ", " : "") + color;
     but_one += (i > 0 ? ", " : "") + (i == 4 ? dark : color);  // Of the arm's own colour.
   }

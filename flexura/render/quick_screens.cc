@@ -85,7 +85,6 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
     kernels_->screen(panel.screen, 0, width_, is_first, row);
     return;
   }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   double inner_from = -infinity, inner_to = infinity, outer_from = -infinity, outer_to = infinity;
   for (const Panel::Edge& edge : panel.edges) {
     const double value = edge.value + edge.by_v * row.v;

@@ -44,6 +44,7 @@ ServoRig::Stand ServoRig::between(const Stand& a, const Stand& b, double share) 
 ServoRig::Trouble ServoRig::read() {
   const auto arm = ports_.arm->read();
   if (const auto fault = arm.fault()) return "the arm: " + text(*fault);
+  if (!std::isfinite(arm.value().time)) return "the arm tells of no time: a number is none";
   if (!is_finite(arm.value().state) || arm.value().state.bends.size() != model_.arm.sections.size())
     return "the arm's drives tell of no shape: some of their numbers are none";
   arm_.add(arm.value().time, arm.value().state);
@@ -55,7 +56,8 @@ ServoRig::Trouble ServoRig::read() {
     const auto stage = camera.stage->read();
     if (const auto fault = stage.fault())
       return fmt::format("the stage of camera {}: {}", name(i), text(*fault));
-    if (!is_finite(head.value().state) || !stage.value().state.offset.allFinite())
+    if (!std::isfinite(head.value().time) || !is_finite(head.value().state) ||
+        !stage.value().state.offset.allFinite())
       return fmt::format("camera {} does not tell how it stands: some of its numbers are none", name(i));
     stands_[i].add(head.value().time, {head.value().state, stage.value().state});
   }

@@ -97,6 +97,11 @@ class Session {
                            100 * goal.missed);
     goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
+    // Pictures as goals take a while to be measured, which is not the loop's.
+    if (rig_.now() > result_.start) {
+      result_.start = rig_.now();
+      if (auto trouble = rig_.read()) return trouble;
+    }
     sent_ = rig_.said(result_.start);
     try {
       limiter_.emplace(model_.arm, limiter_settings(config_), sent_);
@@ -121,7 +126,8 @@ class Session {
   // each other in whole steps, for it is that fast that the limiter lets the arm go.
   void wake() {
     constexpr double rounding = 1e-6;
-    const double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
+    double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
+    if (!std::isfinite(passed)) passed = 0, fault("the clock tells of no time: a number is none");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
       watcher_.told(rig_.now(),

@@ -97,7 +97,7 @@ PictureLayers layers_of(const ServoPicture& picture) {
 std::string said(const ServoStepMessage& step) {
   std::string line = step.rms ? fmt::format("{:.2f} % of the length off, the tip {:.2f} %", 100 * *step.rms,
                                             100 * step.tip.value_or(0))
-                              : "the arm is not seen yet";
+                              : "the arm is not seen";
   if (step.limited) line += "; held back: " + *step.limited;
   return line;
 }
@@ -110,7 +110,8 @@ Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
   Extras extras;
   extras.time = step.time, extras.title = "Servo", extras.text = said(step);
   extras.ghosts.push_back(ghost_of(wanted, shapes.wanted));
-  extras.along_label = "Distance from wanted", extras.along_unit = "mm", extras.length = rig.model.length();
+  extras.along_label = "Distance from wanted", extras.along_unit = "mm",
+  extras.length = shapes.wanted.arm.length();
   if (shapes.seen) {
     extras.ghosts.push_back(ghost_of(seen, *shapes.seen));
     extras.along.push_back(distances(seen, *shapes.seen, shapes.wanted));

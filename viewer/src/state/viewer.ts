@@ -136,6 +136,8 @@ export class Viewer implements LinkListener {
 
   closed(): void {
     this.progress.value = null;
+    // Whether they still hold nobody knows; who does says so again.
+    this.extras.value = null;
   }
 
   private greet(hello: Hello): void {
@@ -201,6 +203,7 @@ export class Viewer implements LinkListener {
   private take_extras(extras: Extras | null): void {
     this.extras.value = extras;
     if (this.playback.held.peek() !== null || !this.shown) return;
+    if (extras && extras.time > this.shown.time && this.playback.mode.peek() === 'live') return;
     this.shown.extras = extras;
     this.shown_extras.value = extras;
   }

@@ -91,8 +91,12 @@ test('a held view keeps what was drawn then; the newest pictures have the newest
   viewer.bytes(state(1));
   expect(viewer.ghosts.value).toEqual({});
   viewer.bytes(bytes(extras));
-  expect(Object.keys(viewer.ghosts.value), 'also where they come late').toEqual(['extra wanted', 'extra seen']);
+  expect(viewer.ghosts.value, 'the state that they belong to is yet to come').toEqual({});
   viewer.bytes(state(2));
+  expect(Object.keys(viewer.ghosts.value)).toEqual(['extra wanted', 'extra seen']);
+  viewer.bytes(bytes({ ...extras, ghosts: extras.ghosts.slice(1) }));
+  expect(Object.keys(viewer.ghosts.value), 'also where they come late').toEqual(['extra seen']);
+  viewer.bytes(bytes(extras));
   viewer.playback.pause();
   viewer.bytes(bytes({}));
   viewer.bytes(state(3));
@@ -104,5 +108,24 @@ test('a held view keeps what was drawn then; the newest pictures have the newest
   expect(viewer.shown_extras.value).toEqual(extras);
   viewer.text({ ...(session.hello('2') as unknown as Hello) });
   expect(viewer.shown_extras.value, 'nothing of another run').toBe(null);
+  vi.useRealTimers();
+});
+
+test('what was drawn before the link broke is not drawn with what is new after it', () => {
+  vi.useFakeTimers();
+  const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null });
+  const session = new FakeSession(spatial_rig());
+  const state = (time: number): ArrayBuffer => {
+    session.time = time;
+    return new Uint8Array(session.state()).buffer;
+  };
+  viewer.text(session.hello('1') as unknown as Hello);
+  viewer.bytes(bytes(extras));
+  viewer.bytes(state(2));
+  expect(Object.keys(viewer.ghosts.value)).toEqual(['extra wanted', 'extra seen']);
+  viewer.closed();
+  viewer.text(session.hello('1') as unknown as Hello);
+  viewer.bytes(state(9));
+  expect(viewer.ghosts.value).toEqual({});
   vi.useRealTimers();
 });

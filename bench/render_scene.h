@@ -53,14 +53,8 @@ inline Setting setting(int width, int height) {
 /// A laboratory's: the same arm, less bent and with twelve bands in three colours, seen from 2.5 m by one of
 /// two cameras, with the edges of both their screens.
 inline Setting laboratory_setting(int width, int height) {
-  Arm arm;
-  arm.kind = ArmKind::spatial;
-  ArmState state = ArmState::straight(3);
-  constexpr double bends[3][2] = {{0.6, 0.4}, {-0.8, 0.5}, {0.9, -0.6}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    arm.sections.push_back({.length = 1.0 / 3, .radius = {0.02, 0.02}});
-    state.bends[i] = {bends[i][0], bends[i][1]};
-  }
+  const Arm arm = setting_arm();
+  const ArmState state{{{0.6, 0.4}, {-0.8, 0.5}, {0.9, -0.6}}, {1, 1, 1}};
   Setting result;
   result.scene.arm.tube = tube_of(arm, Backbone(arm, state));
   const Color colors[3] = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};

@@ -135,6 +135,66 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
   EXPECT_EQ(bad_depths, 0);
 }
 
+// Two small screens before, behind and through a ringed arm, their edges in its skin, its contours and its
+// ends.
+TEST(QuickPicture, AgreesWithTheExactWayWhereEdgesOfScreensAreSeen) {
+  int bad_depths = 0;
+  double worst = 0;
+  for_random_cases(300, [&](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0);
+    const Backbone backbone = bent.backbone();
+    const View view = pinhole_view(random_view_of(random, backbone).X_WC, 48, 36, 60 * random.uniform(1, 6));
+    Scene scene;
+    scene.arm.tube = tube_of(bent.arm, backbone);
+    for (int i = random.integer(0, 6); i > 0; --i) {
+      const double s = random.uniform(0, 1);
+      scene.arm.markers.push_back({s, s + random.uniform(0.01, 0.1), {0.9, 0.9, 0.9}});
+    }
+    const Eigen::Vector3d ahead = view.X_WC.rotation.col(2);
+    for (int i = 0; i < 2; ++i) {
+      Screen& screen = scene.screens.emplace_back();
+      const Eigen::Vector3d out = (-ahead + 0.6 * random.vector<3>(-1, 1)).normalized();
+      screen.X_WS.rotation = rotation_from_z(out);
+      const Eigen::Vector3d place = backbone.pose(random.uniform(0, 1) * backbone.length()).position;
+      screen.X_WS.position = place + random.uniform(-0.4, 0.4) * ahead + random.vector<3>(-0.1, 0.1);
+      screen.size = {random.uniform(0.1, 0.6), random.uniform(0.1, 0.6)};
+    }
+    Renderer renderer;
+    LightImage exact, quick;
+    renderer.render(scene, view, PixelKind::gray, exact, true);
+    renderer.render(scene, view, PixelKind::gray, quick);
+    const Difference off = compare(exact, quick);
+    EXPECT_LT(off.worst, 0.04);
+    worst = std::max(worst, off.worst), bad_depths += off.bad_depths;
+  });
+  EXPECT_EQ(bad_depths, 0);
+  std::printf("edges of screens: light differs by %.5f at worst\n", worst);
+}
+
+// A disk on the joint of two sections leaves these to the quick way.
+TEST(QuickPicture, DrawsSectionsBesideDisks) {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  for (int i = 0; i < 2; ++i) arm.sections.push_back({.length = 0.5, .radius = {0.03, 0.03}});
+  const Backbone backbone(arm, {{{0.2, 0}, {-0.3, 0.1}}, {1, 1}});
+  const View view = pinhole_view(look_at({0, 0.5, 2}, {0, 0.5, 0}), 160, 120, 200);
+  Scene scene = plain_scene();
+  scene.arm.tube = tube_of(arm, backbone);
+  const auto left = [&] {
+    Renderer renderer;
+    renderer.prepare(scene, view);
+    LightImage picture{Image<float>(160, 120), Image<float>(160, 120)};
+    QuickPicture quick;
+    EXPECT_TRUE(
+        quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    return quick.left_out().size();
+  };
+  const std::size_t without = left();
+  scene.arm.disks.push_back({.s = 0.5, .radius = 0.05, .thickness = 0.01});
+  const std::size_t with = left();
+  EXPECT_LT(with - without, 250);  // 6 px by 10 and around.
+}
+
 // A screen seen all but from its edge ends within a pixel of where its plane does.
 TEST(QuickPicture, AgreesWithTheExactWayOnScreensSeenAslantThroughWideLenses) {
   double worst = 0;

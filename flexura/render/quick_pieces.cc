@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "flexura/render/quick_picture.h"
 
@@ -43,21 +42,24 @@ double distance_between(const Eigen::Vector3d& p, const Eigen::Vector3d& u, cons
   return (w + a * u - b * v).norm();
 }
 
-// Whether two pieces of the arm meet that do not follow each other: their skins then end in a line that no
-// contour tells of.
+double widest_of(const TubePiece& piece) {
+  return std::max(piece.radius, piece.radius + piece.widening * piece.length);
+}
+
 bool do_meet(const TubePiece& one, const TubePiece& other) {
-  constexpr double apart = 2.5;  // Of the radius: an arc that the quick way takes does not come back so soon.
-  const double gap =
-      std::max(one.s, other.s) - (one.s < other.s ? one.s + one.length : other.s + other.length);
-  const double reach = std::max(one.radius, one.radius + one.widening * one.length) +
-                       std::max(other.radius, other.radius + other.widening * other.length);
-  if (gap < 0.5 * apart * reach) return false;
-  const Eigen::Vector3d u = one.R_CP * (2 * one.bound_center), v = other.R_CP * (2 * other.bound_center);
+  const double reach = widest_of(one) + widest_of(other);
+  const Eigen::Vector3d middle = one.R_CP * one.bound_center, other_middle = other.R_CP * other.bound_center;
+  const double apart = (one.p_CP + middle - other.p_CP - other_middle).norm();
+  if (apart > one.bound_radius + other.bound_radius) return false;
   const auto sagitta = [](const TubePiece& piece) {
     return piece.length * piece.length * piece.curvature / 8;
   };
-  return distance_between(one.p_CP, u, other.p_CP, v) < reach + sagitta(one) + sagitta(other);
+  return distance_between(one.p_CP, 2 * middle, other.p_CP, 2 * other_middle) <
+         reach + sagitta(one) + sagitta(other);
 }
+
+// Whether the quick way may take a piece so bent.
+bool is_gentle(const TubePiece& piece) { return piece.curvature * piece.radius < 0.5; }
 
 // Whether a screen comes into a ball.
 bool meets_screen(const Stage& stage, const Eigen::Vector3d& center, double radius) {
@@ -68,28 +70,6 @@ bool meets_screen(const Stage& stage, const Eigen::Vector3d& center, double radi
     return std::abs(part.face.normal.dot(from)) < radius &&
            from.norm() < 0.5 * (corners[2] - corners[0]).norm() + radius;
   });
-}
-
-// Whether the plane of an edge that does not lie on the piece leaves its ends on one side.
-bool is_clear_of(const RingEdge& edge, const TubePiece& piece) {
-  const bool is_before = edge.s<piece.s, is_after = edge.s> piece.s + piece.length;
-  if (!is_before && !is_after) return true;
-  const auto is_clear = [&](const Eigen::Vector3d& p_P, const Eigen::Vector3d& tangent_P) {
-    const Eigen::Vector3d& normal = edge.circle.normal;
-    const double beyond = normal.dot(piece.p_CP + piece.R_CP * p_P - edge.circle.center);
-    const double cosine = normal.dot(piece.R_CP * tangent_P);
-    const double tilt = piece.radius * std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    return is_before ? beyond > tilt : beyond < -tilt;
-  };
-  return is_clear({0, 0, 0}, {0, 0, 1}) && is_clear(2 * piece.bound_center, piece.end_tangent);
-}
-
-// Sees to it that pixels in which a ring's edge is bent are judged by points: in the mean of a pixel a line
-// stands d px within the contour for that curve but for 1/24 of its second derivative.
-void bend_edges(double slope, double radius, double pixel, SpanPiece& span) {
-  constexpr double most = 0.004;  // px
-  const double far = std::pow(slope * std::sqrt(2 * radius / pixel) / (96 * most), 2.0 / 3) * pixel;
-  span.bent_reach = std::max(span.bent_reach, number(std::min(far, radius)));
 }
 
 }  // namespace
@@ -111,20 +91,30 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   return true;
 }
 
+// Pieces of the arm that meet without following each other: their skins then end in a line that no contour
+// tells of. Gentle arcs do not come back within 2.5 radii of arc.
 void QuickPicture::find_meetings(const Stage& stage) {
   const auto& pieces = stage.pieces;
   meets_.assign(pieces.size(), 0);
   const auto is_arm = [&](const TubePiece& piece) {
     return stage.bodies[static_cast<std::size_t>(piece.body)].is_arm;
   };
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-    for (std::size_t j = i + 2; j < pieces.size() && is_arm(pieces[i]); ++j)
-      if (is_arm(pieces[j]) && do_meet(pieces[i], pieces[j])) meets_[i] = meets_[j] = 1;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!is_arm(pieces[i])) continue;
+    bool is_gentle_between = true;
+    for (std::size_t j = i + 1; j < pieces.size() && is_arm(pieces[j]); ++j) {
+      const double gap = pieces[j].s - (pieces[i].s + pieces[i].length);
+      const bool is_near = gap < 1.25 * (widest_of(pieces[i]) + widest_of(pieces[j]));
+      const bool is_next = j == i + 1 || (is_near && is_gentle_between);
+      if (!is_next && do_meet(pieces[i], pieces[j])) meets_[i] = meets_[j] = 1;
+      is_gentle_between = is_gentle_between && is_gentle(pieces[j]);
+    }
+  }
 }
 
 bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
-  const double widest = std::max(piece.radius, piece.radius + piece.widening * piece.length);
+  const double widest = widest_of(piece);
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
@@ -141,8 +131,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm &&
                        meets_[static_cast<std::size_t>(&piece - stage.pieces.data())] == 0;
   bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
-                  piece.curvature * piece.radius < 0.5 && center.z() > 4 * piece.bound_radius &&
-                  is_near_picture(center) && !meets_screen(stage, center, piece.bound_radius);
+                  is_gentle(piece) && center.z() > 4 * piece.bound_radius && is_near_picture(center) &&
+                  !meets_screen(stage, center, piece.bound_radius);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];
@@ -202,59 +192,6 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   plan_steps(bend, 0.05 + bend + start_error / piece.radius, piece.radius / pixel, span);
   span.ambient = number(light.ambient);
   span.channels = channels_;
-}
-
-// The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
-// to a ring beyond its ends, where the arm turns sharply, and when rings finer than pixels are seen aslant.
-bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
-  const ArmLook& arm = stage.scene->arm;
-  const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
-  const double margin = 8 * pixel;
-  const auto albedo_at = [&](double s) {
-    for (std::size_t i = arm.markers.size(); i-- > 0;)
-      if (s >= arm.markers[i].s_from && s < arm.markers[i].s_to) return arm.markers[i].albedo;
-    return arm.albedo;
-  };
-  const auto channel = [&](const Color& color, std::size_t c) {
-    return channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)];
-  };
-  const auto& rings = stage.ring_edges;
-  const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
-  const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
-  Color before = begin == end ? albedo_at(piece.s + 0.5 * piece.length) : Color();
-  if (begin != end) before = albedo_at(std::nextafter(begin->s, -1e9));
-  for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = static_cast<float>(channel(before, c));
-  skin.first_edge = edges_.size();
-  bool is_fine = false;
-  double s_before = -std::numeric_limits<double>::infinity();
-  for (auto ring = begin; ring != end; ++ring) {
-    const bool is_last_here = ring + 1 == end || (ring + 1)->s > ring->s;
-    if (!is_last_here) continue;
-    if (!is_clear_of(*ring, piece)) return false;
-    const Color after = albedo_at(ring->s);
-    const Eigen::Vector3d normal = piece.R_CP.transpose() * ring->circle.normal;
-    SpanEdge edge{};
-    for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = static_cast<float>(normal[i]);
-    edge.offset = static_cast<float>(ring->circle.normal.dot(ring->circle.center - piece.p_CP));
-    // Towards the contour the edge of a ring that is seen aslant runs along it: d px within, it is
-    // slope sqrt(2 r d) px along the tube from where it meets the contour.
-    const double cosine = std::min(0.95, std::abs(ring->circle.normal.dot(ring->circle.center.normalized())) +
-                                             2 * piece.radius / ring->circle.center.z());
-    const double sine = std::sqrt(1 - cosine * cosine), slope = cosine / sine;
-    if (slope * pixel > 0.02 * piece.radius) bend_edges(slope, piece.radius, pixel, skin.piece);
-    // Points within a pixel do not tell rings finer than pixels apart.
-    constexpr double finest = 1.5;  // px
-    is_fine = is_fine || sine * (ring->s - s_before) < finest * pixel;
-    if (is_fine && skin.piece.bent_reach > skin.piece.reach) return false;
-    s_before = ring->s;
-    edge.far = static_cast<float>(pixel * (1 / sine + slope * std::sqrt(2.8 * piece.radius / pixel)));
-    for (std::size_t c = 0; c < channels_; ++c)
-      edge.change[c] = static_cast<float>(channel(after, c) - channel(before, c));
-    edges_.push_back(edge);
-    before = after;
-  }
-  skin.piece.edge_count = edges_.size() - skin.first_edge;
-  return true;
 }
 
 // Skins that have begun by this row and not yet ended.

@@ -79,7 +79,8 @@ void QuickPicture::clear(int begin, int end, SpanRow& row) const {
   std::copy_n(background_.data(), count * channels_, row.light + static_cast<std::size_t>(begin) * channels_);
 }
 
-// Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are left out.
+// Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are divided or
+// left.
 void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
   if (row.lens.u != nullptr) {
     kernels_->screen(panel.screen, 0, width_, is_first, row);
@@ -155,14 +156,18 @@ void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   }
   const Eigen::Vector2d slope(here->by_u, here->by_v);
   const SquarePart part = part_beyond(0.5, slope.normalized(), -value_here / slope.norm());
+  const double right = x + part.centroid.x(), down = y + part.centroid.y();
+  const double depth = 1 / at(screen.nearness, right, down);
+  if (!(depth > 0) || !std::isfinite(depth)) {
+    leave(u, row.v);
+    return;
+  }
   std::uint8_t& what = state(u, row.v);
   what = static_cast<std::uint8_t>(what | state_edge);
   edge_columns_.push_back(u);
   row.has_edge = true;
-  if (value_here >= 0) row.depth[u] = static_cast<float>(1 / nearness);
+  if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
   if (!(part.area > 0)) return;
-  const double right = x + part.centroid.x(), down = y + part.centroid.y();
-  const double depth = 1 / at(screen.nearness, right, down);
   double rise = 1, square = 0;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double place =

@@ -38,14 +38,12 @@ void require_positive(double value, const Place& place) {
   if (!(value > 0) || !std::isfinite(value)) refuse("{}: {} is not a positive number", place.text(), value);
 }
 
-// What files may hold is within these (docs/experiment-file.md), which are what is worked with: beyond them
-// squares and their sums lose what they are about.
-constexpr double smallest = 1e-9, largest = 1e9;  // m
+// Files hold no more than 1e6 m. Far beyond, squares and their sums lose what they are about.
+constexpr double largest = 1e9;  // m
 
 void require_size(double value, const Place& place) {
   require_positive(value, place);
-  if (value < smallest || value > largest)
-    refuse("{}: {} is not between {} and {} m", place.text(), value, smallest, largest);
+  if (value > largest) refuse("{}: {} is more than {} m", place.text(), value, largest);
 }
 
 void require_finite(double value, const Place& place) {

@@ -92,7 +92,8 @@ struct Scene {
 };
 
 /// std::invalid_argument, naming the part and the value: a number that is not finite, a size that is not
-/// positive, a direction of length zero, a rotation that is none, tube arcs that do not continue each other.
+/// positive, sizes and places beyond 1e9 m, a direction of length zero, a rotation that is none, tube arcs
+/// that do not continue each other.
 void check(const Scene& scene);
 
 }  // namespace flexura

@@ -46,10 +46,10 @@ template <typename Visit>
     row.borders[row.border_count++] = u + __builtin_ctz(bits);
 }
 
-// What is drawn over a screen's edge may be behind it.
-[[gnu::always_inline]] inline void leave_edges(const WideMask& is_drawn, int u, SpanRow& row) {
+// What is in a pixel with a screen's edge may lie before the screen or behind it.
+[[gnu::always_inline]] inline void leave_edges(const WideMask& is_there, int u, SpanRow& row) {
   if (!row.has_edge) return;
-  const WideMask is_edge = is_drawn & has_flag(row.state + u, state_edge);
+  const WideMask is_edge = is_there & has_flag(row.state + u, state_edge);
   if (!any(is_edge)) return;
   set_flag(is_edge, state_exact, row.state + u);
   row.has_exact = true;
@@ -92,7 +92,9 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
       add_borders(is_border & is_asked & (is_passing | (is_here & (lowest.value < 0))), u, row);
     }
     const Wide depth = ray.depth + entry.t, before = wide_load(depths + u);
-    WideMask is_drawn = is_inside & is_settled & is_here & is_asked & (depth < before);
+    const WideMask is_there = is_inside & is_settled & is_here & is_asked;
+    leave_edges(is_there, u, row);
+    WideMask is_drawn = is_there & (depth < before);
     if (deep < inside && any(is_drawn & (lowest.value > deep))) {
       const WideMask is_bent = is_drawn & (lowest.value > deep) & is_at_edge(piece, p);
       if (any(is_bent)) add_borders(is_bent, u, row);
@@ -105,7 +107,6 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     store(depths + u, choose(is_drawn, depth, before));
     store_light(light, is_drawn, lights + static_cast<std::size_t>(u) * channels);
     set_flag(is_drawn, state_arm, row.state + u);
-    leave_edges(is_drawn, u, row);
   });
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t span_step = 32;
 enum PixelState : std::uint8_t {
   state_behind = 0,  ///< Background or screen.
   state_arm = 1,     ///< Skin of the arm or an end of it.
-  state_border = 2,  ///< The arm's contour runs through it.
+  state_border = 2,  ///< The arm's contour runs through it, or close by the bent edge of a ring.
   state_exact = 4,   ///< To be drawn by the exact way.
   state_base = 8,    ///< The rim of the arm's base may be seen in it;
   state_tip = 16,    ///< that of its tip.
@@ -44,7 +44,7 @@ struct SpanRow {
   float* light = nullptr;
   std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders = nullptr;        ///< Columns in which the contour may be, as draw() adds them:
+  int* borders = nullptr;  ///< Columns that a contour or a ring's bent edge may divide, as draw() adds them:
   std::size_t border_count = 0;  ///< so many.
   bool has_edge = false;         ///< Whether a pixel has state_edge,
   bool has_exact = false;        ///< is left to the exact way.

@@ -83,15 +83,16 @@ void draw_disc(const SpanRim rim, int begin, int end, SpanRow& row) {
     const Place place = place_of<is_straight>(row, u, rim.u0, rim.v0);
     const RimPoint at_rim = rim_point(rim, place);
     const Wide depth = 1 / at(rim.nearness, place), before = wide_load(row.depth + u);
-    const WideMask is_drawn = (at_rim.value < 0) & (at_rim.z > 0) & (depth < before) & is_asked &
-                              ~has_flag(row.state + u, rim.state);
+    const WideMask is_there =
+        (at_rim.value < 0) & (at_rim.z > 0) & is_asked & ~has_flag(row.state + u, rim.state);
+    leave_edges(is_there, u, row);
+    const WideMask is_drawn = is_there & (depth < before);
     if (!any(is_drawn)) return;
     Wide light[channels];
     for (std::size_t c = 0; c < channels; ++c) light[c] = rim.light[c];
     store(row.depth + u, choose(is_drawn, depth, before));
     store_light(light, is_drawn, row.light + static_cast<std::size_t>(u) * channels);
     set_flag(is_drawn, state_arm, row.state + u);
-    leave_edges(is_drawn, u, row);
   });
 }
 

@@ -11,9 +11,9 @@ namespace {
 // The edge of a ring whose axis is seen at an angle. Towards the contour it runs along that: d px within, it
 // is slope sqrt(2 r d) px along the tube from where it meets the contour (docs/renderer.md).
 struct RingAspect {
-  double sine, slope;
+  double sine = 0, slope = 0;
 
-  explicit RingAspect(double cosine) : sine(0), slope(0) {
+  explicit RingAspect(double cosine) {
     const double bounded = std::min(cosine, 0.95);
     sine = std::sqrt(1 - bounded * bounded), slope = bounded / sine;
   }

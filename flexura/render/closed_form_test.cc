@@ -121,8 +121,9 @@ TEST(LightImage, OfASymmetricSceneIsSymmetric) {
     return largest;
   };
   EXPECT_LT(asymmetry(true), 1e-4);
-  // The quick way judges rims from points that do not lie evenly to both sides.
-  EXPECT_LT(asymmetry(false), 2e-3);
+  // The quick way judges rims, and rings' edges near contours, from 256 points that do not lie evenly to both
+  // sides: to a hundredth of a pixel.
+  EXPECT_LT(asymmetry(false), 1e-2);
 }
 
 TEST(LightImage, IsTheSameWhateverWasDrawnBefore) {

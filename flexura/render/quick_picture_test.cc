@@ -93,7 +93,8 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
     EXPECT_LT(off.worst, 0.015);
     count += off.count, many += off.many, bad_depths += off.bad_depths;
   });
-  EXPECT_LT(count, 2e-4 * many);
+  // A sanitized build draws a few of the cases, one of which has more rings than most.
+  EXPECT_LT(count, (one_case_of == 1 ? 1e-4 : 2e-4) * many);
   std::printf("light differs by more than 0.002 in %.2g of the values\n", static_cast<double>(count) / many);
   EXPECT_EQ(bad_depths, 0);
 }

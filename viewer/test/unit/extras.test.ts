@@ -79,7 +79,7 @@ test('a recording’s quantities of one group are one plot', () => {
   expect(can_be_along(hello)).toBe(true);
 });
 
-test('a held view keeps what was drawn then; the newest pictures have the newest', () => {
+function watched() {
   vi.useFakeTimers();
   const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null });
   const session = new FakeSession(spatial_rig());
@@ -87,6 +87,11 @@ test('a held view keeps what was drawn then; the newest pictures have the newest
     session.time = time;
     return new Uint8Array(session.state()).buffer;
   };
+  return { viewer, session, state };
+}
+
+test('a held view keeps what was drawn then; the newest pictures have the newest', () => {
+  const { viewer, session, state } = watched();
   viewer.text(session.hello('1') as unknown as Hello);
   viewer.bytes(state(1));
   expect(viewer.ghosts.value).toEqual({});
@@ -112,13 +117,7 @@ test('a held view keeps what was drawn then; the newest pictures have the newest
 });
 
 test('what was drawn before the link broke is not drawn with what is new after it', () => {
-  vi.useFakeTimers();
-  const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null });
-  const session = new FakeSession(spatial_rig());
-  const state = (time: number): ArrayBuffer => {
-    session.time = time;
-    return new Uint8Array(session.state()).buffer;
-  };
+  const { viewer, session, state } = watched();
   viewer.text(session.hello('1') as unknown as Hello);
   viewer.bytes(bytes(extras));
   viewer.bytes(state(2));

@@ -30,7 +30,8 @@ mkdir -p docs/studies
   echo "the worst value of every span against the samples within and against the state at its time (in pairs of"
   echo "sections only to 1 % of the arm's length, where neighbours begin)."
   echo "Reported times count with the resolution that the check"
-  echo "promises, 1e-4 s for contacts. A contact counts from 2e-6 m of depth."
+  echo "promises, 1e-4 s for contacts. A contact counts from 2e-6 m of depth. Worst values count as promised, too: short"
+  echo "by no more than 1e-4 (of the value; of a depth, m) where the check does not say by how much they may be."
   echo
   echo '```console'
   echo "\$ ./dev study safety $motions $samples $seed"

@@ -23,14 +23,15 @@ using Places = std::vector<Place>;
 
 void sort(Places& places) { std::ranges::stable_sort(places, {}, &Place::s); }
 
-Places places_of(const Sighting& seen, const SpaceCurve& curve, const Arm& arm) {
+Places places_of(const Sighting& seen, const SpaceCurve& curve, const Shape& shape, std::size_t number) {
   CurveImage image;
   Places places;
-  if (!image.set(seen.view, curve)) return places;
+  const ViewError error = number < shape.views.size() ? shape.views[number] : ViewError{};
+  if (!image.set(corrected(seen.view, error), curve)) return places;
   for (std::size_t i = 0; i < seen.bands.size(); ++i) {
     const SeenBand& band = seen.bands[i];
     const CurveImage::Point near = image.nearest(band.pixel, band.heading, image.everywhere());
-    places.push_back({curve.s_of(arm, near.place), band.color, i});
+    places.push_back({curve.s_of(shape.arm, near.place), band.color, i});
   }
   sort(places);
   return places;
@@ -156,7 +157,7 @@ std::vector<BandLook> match_bands(const ShapePrior& prior, const Shape& shape, d
   curve.set(shape);
   Matching matching(prior, sigma / stretch_of(shape));
   for (std::size_t i = 0; i < sightings.size(); ++i)
-    matching.add(i, places_of(sightings[i], curve, shape.arm));
+    matching.add(i, places_of(sightings[i], curve, shape, i));
   return matching.take();
 }
 
@@ -167,7 +168,7 @@ std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& s
   curve.set(shape);
   std::map<std::size_t, PlacedMarker> markers;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    for (const Place& place : places_of(sightings[i], curve, shape.arm)) {
+    for (const Place& place : places_of(sightings[i], curve, shape, i)) {
       const auto look = std::ranges::find_if(
           looks, [&](const BandLook& one) { return one.sighting == i && one.band == place.index; });
       if (look == looks.end()) continue;

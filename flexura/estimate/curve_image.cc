@@ -4,10 +4,17 @@
 #include <cmath>
 #include <limits>
 
+#include "flexura/math/so3.h"
+
 namespace flexura {
 
-bool CurveImage::set(const View& view, const SpaceCurve& curve) {
-  const Pose X_CW = view.X_WC.inverse();
+bool CurveImage::set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
+                     Eigen::Index count_of_unknowns) {
+  const Pose X_WC = {view.X_WC.rotation * so3_exp(error.turn), view.X_WC.position}, X_CW = X_WC.inverse();
+  const double zoom = std::exp(error.focal);
+  const Eigen::Vector2d center(view.lens.intrinsics().cx, view.lens.intrinsics().cy);
+  // exp(turn + d) = exp(turn) exp(J(-turn) d) to first order, J the left Jacobian.
+  const Eigen::Matrix3d by_turn = so3_left_jacobian(-error.turn);
   const std::size_t count = curve.knots().size();
   pieces_.resize(count - 1);
   unknowns_.resize(count);
@@ -15,16 +22,26 @@ bool CurveImage::set(const View& view, const SpaceCurve& curve) {
   Eigen::Vector2d before, slope_before;
   for (std::size_t i = 0; i < count; ++i) {
     const SpaceCurve::Knot& point = curve.knots()[i];
-    const auto projection = view.lens.project_with_derivatives(X_CW * point.position);
+    const Eigen::Vector3d p_CP = X_CW * point.position;
+    const auto projection = view.lens.project_with_derivatives(p_CP);
     if (!projection) return false;
-    const Eigen::Matrix<double, 2, 3> by_point = projection->by_point * X_CW.rotation;
+    const Eigen::Vector2d pixel = center + zoom * (projection->pixel - center);
+    const Eigen::Matrix<double, 2, 3> by_place = zoom * projection->by_point,
+                                      by_point = by_place * X_CW.rotation;
     const Eigen::Vector2d slope = by_point * point.tangent;
-    unknowns_[i].noalias() = by_point * point.unknowns;
+    const Eigen::Index of_shape = point.unknowns.cols();
+    unknowns_[i].resize(2, std::max(count_of_unknowns, of_shape));
+    unknowns_[i].leftCols(of_shape).noalias() = by_point * point.unknowns;
+    unknowns_[i].rightCols(unknowns_[i].cols() - of_shape).setZero();
+    if (own >= 0) {
+      unknowns_[i].middleCols<3>(own) = by_place * skew(p_CP) * by_turn;
+      unknowns_[i].col(own + 3) = pixel - center;
+    }
     if (i > 0) {
       const double length = curve.interval(i - 1);
-      pieces_[i - 1] = piece(before, length * slope_before, projection->pixel, length * slope);
+      pieces_[i - 1] = piece(before, length * slope_before, pixel, length * slope);
     }
-    before = projection->pixel, slope_before = slope;
+    before = pixel, slope_before = slope;
   }
   return true;
 }

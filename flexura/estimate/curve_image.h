@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flexura/camera/view.h"
+#include "flexura/estimate/sighting.h"
 #include "flexura/estimate/space_curve.h"
 
 namespace flexura {
@@ -14,7 +15,11 @@ namespace flexura {
 class CurveImage {
  public:
   /// False when a knot is not seen by the lens.
-  bool set(const View& view, const SpaceCurve& curve);
+  bool set(const View& view, const SpaceCurve& curve) { return set(view, {}, curve, -1, -1); }
+  /// The same with a view that is wrong by `error`, whose derivatives stand from column `own` on of `count`; -1:
+  /// nowhere.
+  bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
+           Eigen::Index count);
 
   [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
 

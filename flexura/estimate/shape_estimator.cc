@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -26,12 +28,25 @@ Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   return is_reversed ? reversed(seen) : seen;
 }
 
+// The turn of a view that is in doubt after which the base is seen where the arm begins.
+ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
+  ViewError error;
+  if (!(seen.doubt.turn > 0) || !seen.ends[0]) return error;
+  const auto ray = seen.view.lens.unproject(seen.ends[0]->pixel);
+  if (!ray) return error;
+  const Eigen::Vector3d looked = ray->homogeneous().normalized(),
+                        there = (seen.view.X_WC.inverse() * p_WB).normalized();
+  error.turn = looked.cross(there);
+  return error;
+}
+
 // Fills the places of the knots and their standard deviations; returns the arm's length.
 double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance, ShapeEstimate& result) {
   double s = 0;
   const auto& knots = problem.curve().knots();
   for (std::size_t i = 0; i < knots.size(); ++i) {
-    const double variance = (knots[i].unknowns * covariance * knots[i].unknowns.transpose()).trace();
+    const auto& by = knots[i].unknowns;
+    const double variance = (by * covariance.topLeftCorner(by.cols(), by.cols()) * by.transpose()).trace();
     result.s.push_back(s);
     result.sigma.push_back(variance >= 0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity());
     if (i + 1 < knots.size()) s += problem.curve().interval(i);
@@ -70,8 +85,14 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
 
 std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) const {
   std::vector<Shape> shapes;
+  std::vector<ViewError> views;
+  for (const Sighting& seen : sightings)
+    views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
+                                                  : ViewError{});
   if (sightings.size() >= 2) {
-    const Correspondence pairs = correspondence(sightings[0], sightings[1]);
+    std::array<Sighting, 2> aimed = {sightings[0], sightings[1]};
+    for (std::size_t i = 0; i < 2; ++i) aimed[i].view = corrected(aimed[i].view, views[i]);
+    const Correspondence pairs = correspondence(aimed[0], aimed[1]);
     std::vector<Eigen::Vector3d> points;
     points.reserve(pairs.points.size());
     for (const SpacePoint& point : pairs.points) points.push_back(point.position);
@@ -83,6 +104,7 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
     }
   }
   shapes.push_back(straight_shape(prior_));
+  for (Shape& shape : shapes) shape.views = views;
   return shapes;
 }
 
@@ -110,7 +132,7 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   ShapeProblem problem(prior_, best_seen);
   if (!problem.linearise(best->shape)) best->cost = std::numeric_limits<double>::infinity();
   const double cost = best->cost;
-  return with_bands(best_seen, answer(problem, std::move(*best)), cost);
+  return with_bands(best_seen, answer(problem, std::move(*best)), cost, nullptr);
 }
 
 ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const Shape& before) {
@@ -123,17 +145,25 @@ ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const 
     if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
   }
   const double cost = fit.cost;
-  return with_bands(seen, answer(problem, std::move(fit)), cost);
+  return with_bands(seen, answer(problem, std::move(fit)), cost, nullptr);
+}
+
+ShapeEstimate ShapeEstimator::update(std::span<const Sighting> sightings, const ShapeBelief& before) {
+  const std::vector<Sighting> seen = prepared(sightings);
+  ShapeProblem problem(prior_, seen, {}, &before);
+  ShapeFit fit = descent_.descend(problem, before.mean, config_.most_iterations, StartKind::near);
+  const double cost = fit.cost;
+  return with_bands(seen, answer(problem, std::move(fit)), cost, &before);
 }
 
 ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
-                                         double cost) {
+                                         double cost, const ShapeBelief* belief) {
   const auto is_plain = [](const Sighting& seen) { return seen.bands.empty(); };
   if (!std::isfinite(cost) || first.sigma.empty() || std::ranges::all_of(sightings, is_plain)) return first;
   const std::vector<BandLook> looks =
       match_bands(prior_, first.shape, root_mean_square(first.sigma), sightings);
   if (looks.empty()) return first;
-  ShapeProblem problem(prior_, sightings, looks);
+  ShapeProblem problem(prior_, sightings, looks, belief);
   ShapeFit fit = descent_.descend(problem, first.shape, config_.most_iterations, StartKind::near);
   // Of the axes: markers move the shape along where they lie on them, not away.
   constexpr double worse = 1.5, little = 1e-4;
@@ -151,6 +181,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   ShapeEstimate result;
   result.shape = fit.shape, result.covariance = fit.covariance, result.iterations = fit.iterations;
   result.rms = fit.rms, result.doubted = fit.doubted, result.scale = fit.scale;
+  result.surprise = fit.surprise;
   if (!std::isfinite(fit.cost)) {
     result.reason = "no shape of the arm is seen by these cameras";
     return result;

@@ -39,6 +39,7 @@ struct ShapeEstimate {
   /// Of the position at the knots `s` (m of arc length), standard deviation, m: the root of the trace.
   std::vector<double> s, sigma;
   Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables).
+  double surprise = 0;         ///< ShapeFit::surprise
   int iterations = 0;
   std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
 };
@@ -59,6 +60,10 @@ class ShapeEstimator {
   /// From the shape a moment ago.
   [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
 
+  /// From what is known of it, which counts as much as what is seen. It knows the views' errors as well: the
+  /// sightings' own doubts tell only which there are.
+  [[nodiscard]] ShapeEstimate update(std::span<const Sighting> sightings, const ShapeBelief& before);
+
  private:
   [[nodiscard]] bool is_good(const ShapeFit& fit) const;
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
@@ -67,7 +72,7 @@ class ShapeEstimator {
   // `first` without the bands, again with those that it can tell apart; their words on it where they cannot
   // be.
   [[nodiscard]] ShapeEstimate with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
-                                         double cost);
+                                         double cost, const ShapeBelief* belief);
   [[nodiscard]] std::vector<Sighting> prepared(std::span<const Sighting> sightings) const;
 
   ShapePrior prior_;

@@ -57,7 +57,7 @@ double ShapeDescent::cost(const ShapeProblem& problem, double cutoff) {
   double sum = 0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double r = problem.residuals()[i];
-    sum += problem.kind(i) == RowKind::prior ? r * r : bounded_square(r, cutoff);
+    sum += problem.is_seen(i) ? bounded_square(r, cutoff) : r * r;
   }
   return sum;
 }
@@ -66,7 +66,7 @@ void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
   weights_.resize(problem.rows());
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double ratio = problem.residuals()[i] / cutoff, one = 1 / (1 + ratio * ratio);
-    weights_[i] = problem.kind(i) == RowKind::prior ? 1.0 : one * one;
+    weights_[i] = problem.is_seen(i) ? one * one : 1.0;
   }
   weighted_.noalias() = problem.derivatives().transpose() * weights_.cwiseSqrt().asDiagonal();
   normal_.setZero(weighted_.rows(), weighted_.rows());
@@ -128,11 +128,16 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
 }
 
 void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit) {
-  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0;
+  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0, against = 0, beliefs = 0;
   sizes_.clear();
+  Eigen::VectorXd told = Eigen::VectorXd::Zero(problem.rows());  // 1: known before.
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double r = problem.residuals()[i], px = r * problem.sigma(i);
-    if (problem.kind(i) == RowKind::prior) continue;
+    if (problem.kind(i) == RowKind::belief) against += r * r, ++beliefs;
+    if (!problem.is_seen(i)) {
+      told[i] = 1;
+      continue;
+    }
     square += weights_[i] * r * r, weight += weights_[i];
     if (problem.kind(i) != RowKind::point) {
       if (std::abs(r) > cutoff) ++fit.contradicted;
@@ -145,13 +150,19 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
   fit.cost = far / std::max(points, 1.0);
   fit.rms = believed > 0 ? std::sqrt(square_px / believed) : 0.0;
   fit.doubted = points > 0 ? 1 - believed / points : 0.0;
+  fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
   const double correlated = correlation_factor(sizes_);
   const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));
   const double variance = std::max(1.0, square / freedom) * correlated;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(normal_);
+  // What is seen is as good as its residuals say; what was known before stays as it was.
+  weighted_.noalias() = problem.derivatives().transpose() * told.asDiagonal();
+  damped_.setZero(normal_.rows(), normal_.cols());
+  damped_.selfadjointView<Eigen::Lower>().rankUpdate(weighted_);
+  damped_ += (normal_ - damped_) / variance;
+  solver_.compute(damped_);
   const auto identity = Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols());
-  const bool is_regular = factor.info() == Eigen::Success && factor.rcond() > 1e-15;
-  if (is_regular) fit.covariance = variance * factor.solve(identity);
+  const bool is_regular = solver_.info() == Eigen::Success && solver_.rcond() > 1e-15;
+  if (is_regular) fit.covariance = solver_.solve(identity);
   if (!is_regular)
     fit.covariance =
         Eigen::MatrixXd::Constant(normal_.rows(), normal_.cols(), std::numeric_limits<double>::infinity());

@@ -17,6 +17,7 @@ struct ShapeFit {
   double cost = 0;             ///< Mean over the points of their distances squared, bounded for each, px^2.
   double rms = 0;              ///< Of the believed points' distances, px.
   double doubted = 0;          ///< The share of the points that are taken for something else's.
+  double surprise = 0;         ///< Of a belief: root mean square of what speaks against it, in its sigmas.
   int contradicted = 0;        ///< Ends and markers that are seen elsewhere than the shape has them.
   Eigen::MatrixXd covariance;  ///< Of the unknowns; of infinite entries where the sightings tell nothing.
 };

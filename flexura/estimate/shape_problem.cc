@@ -1,5 +1,6 @@
 #include "flexura/estimate/shape_problem.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,16 +17,26 @@ Eigen::Vector2d heading(const Sighting& seen, std::size_t i) {
 }  // namespace
 
 ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
-                           std::vector<BandLook> looks)
+                           std::vector<BandLook> looks, const ShapeBelief* belief)
     : prior_(prior),
-      variables_(prior),
+      variables_(prior, sightings),
       sightings_(sightings),
       looks_(std::move(looks)),
       curve_(variables_, intervals_a_section(prior)) {
   std::size_t rows = 2 * prior.arm.sections.size() + looks_.size();
   for (const BandLook& look : looks_)
     if (look.marker >= first_looks_.size()) first_looks_.resize(look.marker + 1);
-  for (const Sighting& seen : sightings) rows += seen.points.size() + 2 + 2 * seen.markers.size();
+  for (const Sighting& seen : sightings) rows += seen.points.size() + 2 + 2 * seen.markers.size() + 4;
+  if (belief != nullptr && belief->covariance.cols() == variables_.count()) {
+    const Eigen::LLT<Eigen::MatrixXd> known(belief->covariance);
+    const Eigen::Index count = variables_.count();
+    if (known.info() == Eigen::Success) {
+      believed_ = belief->mean;
+      // Any root of the inverse serves: here that of L L^T.
+      belief_ = known.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
+      rows += static_cast<std::size_t>(count);
+    }
+  }
   residuals_.resize(static_cast<Eigen::Index>(rows));
   derivatives_.resize(static_cast<Eigen::Index>(rows), variables_.count());
   kinds_.resize(rows);
@@ -39,13 +50,16 @@ bool ShapeProblem::linearise(const Shape& shape) {
   for (FirstLook& look : first_looks_) look.is_there = false;
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     const Sighting& seen = sightings_[i];
-    if (!image_.set(seen.view, curve_)) return false;
+    const ViewError error = i < shape.views.size() ? shape.views[i] : ViewError{};
+    if (!image_.set(seen.view, error, curve_, variables_.of_view(i), variables_.count())) return false;
     add_points(seen);
     add_ends(seen);
     add_markers(seen, shape.arm);
     add_bands(i, shape.arm);
+    if (seen.doubt.is_any() && !believed_) add_doubt(i, error);
   }
   if (std::isfinite(prior_.curvature_step)) add_prior(shape);
+  if (believed_) add_belief(shape);
   return residuals_.head(count_).allFinite() && derivatives_.topRows(count_).allFinite();
 }
 
@@ -120,6 +134,32 @@ void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
     kinds_[static_cast<std::size_t>(count_)] = RowKind::marker;
     sigmas_[static_cast<std::size_t>(count_)] = both;
     ++count_;
+  }
+}
+
+// What is wrong with a view is about as much as it was doubted.
+void ShapeProblem::add_doubt(std::size_t sighting, const ViewError& error) {
+  // Instead of 0: a thousandth of a pixel at the border of a picture of a thousand.
+  constexpr double least = 1e-6;
+  const ViewDoubt& doubt = sightings_[sighting].doubt;
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const double sigma = std::max(k < 3 ? doubt.turn : doubt.focal, least);
+    residuals_[count_] = (k < 3 ? error.turn[k] : error.focal) / sigma;
+    derivatives_.row(count_).setZero();
+    derivatives_(count_, variables_.of_view(sighting) + k) = 1 / sigma;
+    kinds_[static_cast<std::size_t>(count_)] = RowKind::prior;
+    sigmas_[static_cast<std::size_t>(count_)] = 1;
+    ++count_;
+  }
+}
+
+void ShapeProblem::add_belief(const Shape& shape) {
+  const Eigen::Index count = variables_.count();
+  residuals_.segment(count_, count) = belief_ * variables_.between(*believed_, shape);
+  derivatives_.middleRows(count_, count) = belief_;
+  for (Eigen::Index k = 0; k < count; ++k, ++count_) {
+    kinds_[static_cast<std::size_t>(count_)] = RowKind::belief;
+    sigmas_[static_cast<std::size_t>(count_)] = 1;
   }
 }
 

@@ -26,12 +26,13 @@ struct BandLook {
 class ShapeProblem {
  public:
   /// `sightings` outlive the problem. Of the bands those of `looks` count: where a marker is known they are
-  /// compared with that place along the curve, otherwise with each other's.
+  /// compared with that place along the curve, otherwise with each other's. A belief stands for the doubts in
+  /// the sightings' views, too; of a covariance that is none nothing counts.
   ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
-               std::vector<BandLook> looks = {});
+               std::vector<BandLook> looks = {}, const ShapeBelief* belief = nullptr);
 
-  /// What a row compares.
-  enum class RowKind { point, end, marker, prior };
+  /// What a row compares; the last two are not seen.
+  enum class RowKind { point, end, marker, prior, belief };
 
   /// False when part of the shape is out of a lens's sight.
   bool linearise(const Shape& shape);
@@ -40,6 +41,7 @@ class ShapeProblem {
   [[nodiscard]] Eigen::Index rows() const { return count_; }
   [[nodiscard]] auto residuals() const { return residuals_.head(count_); }
   [[nodiscard]] auto derivatives() const { return derivatives_.topRows(count_); }
+  [[nodiscard]] bool is_seen(Eigen::Index row) const { return kind(row) < RowKind::prior; }
   [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
   /// Standard deviation that a row was divided by: px, but for the prior's.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
@@ -51,6 +53,8 @@ class ShapeProblem {
   void add_markers(const Sighting& seen, const Arm& arm);
   void add_bands(std::size_t sighting, const Arm& arm);
   void add_prior(const Shape& shape);
+  void add_belief(const Shape& shape);
+  void add_doubt(std::size_t sighting, const ViewError& error);
   // residual = direction . (pixel - curve).
   void add_row(RowKind kind, const Eigen::Vector2d& direction, const Eigen::Vector2d& off, double place,
                double sigma);
@@ -59,6 +63,8 @@ class ShapeProblem {
   ShapeVariables variables_;
   std::span<const Sighting> sightings_;
   std::vector<BandLook> looks_;
+  std::optional<Shape> believed_;
+  Eigen::MatrixXd belief_;  // R, with R^T R the inverse of its covariance.
   SpaceCurve curve_;
   CurveImage image_;
   Eigen::Index count_ = 0;

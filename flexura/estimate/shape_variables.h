@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "flexura/estimate/sighting.h"
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
 
@@ -26,20 +29,36 @@ struct ShapePrior {
 struct Shape {
   Arm arm;
   ArmState state;
+  std::vector<ViewError> views = {};  ///< Of the cameras that see it; of those that are not here, none.
+};
+
+/// What is known of a shape from before it is looked at.
+struct ShapeBelief {
+  Shape mean;
+  Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables), views in doubt among them.
 };
 
 /// The unknowns of a prior, in this order: the bends (x and y of each section; of planar arms x alone), the
-/// base's position (m, W), its turn about its own x and y (rad), the logarithm of the stretch.
+/// base's position (m, W), its turn about its own x and y (rad), the logarithm of the stretch; then of every view
+/// that is in doubt its error (turn in rad, focal).
 class ShapeVariables {
  public:
-  explicit ShapeVariables(const ShapePrior& prior);
+  explicit ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings = {});
 
   [[nodiscard]] Eigen::Index count() const { return count_; }
+  /// Of these the ones that the arm's shape depends on come first.
+  [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
+  /// Where the error of a sighting's view begins; -1: it has none.
+  [[nodiscard]] Eigen::Index of_view(std::size_t sighting) const {
+    return sighting < views_.size() ? views_[sighting] : -1;
+  }
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }
+  /// The step from one shape to another: the inverse of moved(), to first order in turns of the base.
+  [[nodiscard]] Eigen::VectorXd between(const Shape& from, const Shape& to) const;
   /// `shape` moved by `step`.
   [[nodiscard]] Shape moved(const Shape& shape, const Eigen::VectorXd& step) const;
   /// From the derivatives by all bends and stretches (3 a section, as jacobian.h has them) of a point p_WP to
-  /// those by the unknowns: 3 x count().
+  /// those by the unknowns: 3 x of_shape().
   void by_unknowns(const Shape& shape, const Eigen::Vector3d& p_WP,
                    const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_state,
                    Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> by_unknowns) const;
@@ -47,7 +66,8 @@ class ShapeVariables {
  private:
   Eigen::Index sections_, bends_;
   Eigen::Index position_ = -1, direction_ = -1, stretch_ = -1;  // Where they begin; -1: known.
-  Eigen::Index count_;
+  std::vector<Eigen::Index> views_;                             // Likewise, of each sighting.
+  Eigen::Index of_shape_, count_;
 };
 
 }  // namespace flexura

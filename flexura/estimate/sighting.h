@@ -37,6 +37,24 @@ struct SeenEnd {
   double sigma = 0.3;  ///< Standard deviation along the curve, px; > 0.
 };
 
+/// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is: its
+/// frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
+struct ViewError {
+  Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the optical frame as it is believed to be, rad.
+  double focal = 0;
+};
+
+/// The view without its error.
+[[nodiscard]] View corrected(View view, const ViewError& error);
+
+/// Standard deviations of a view's error; of 0: there is none.
+struct ViewDoubt {
+  double turn = 0;   ///< About each axis, rad.
+  double focal = 0;  ///< Share of the focal lengths.
+
+  [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }
+};
+
 /// What one camera sees of an arm's backbone.
 struct Sighting {
   View view;                       ///< As the camera is believed to stand.
@@ -45,6 +63,7 @@ struct Sighting {
   std::array<std::optional<SeenEnd>, 2> ends;
   std::vector<SeenMarker> markers;
   std::vector<SeenBand> bands = {};  ///< In any order; which is which the estimator finds out.
+  ViewDoubt doubt = {};              ///< In the view.
 };
 
 /// The same, followed from the other end.

@@ -29,7 +29,7 @@ void SpaceCurve::set(const Shape& shape) {
     Knot& knot = knots_[k];
     knot.position = X_WS.position;
     knot.tangent = X_WS.rotation.col(2);
-    knot.unknowns.resize(3, variables_.count());
+    knot.unknowns.resize(3, variables_.of_shape());
     variables_.by_unknowns(shape, knot.position, by_state_, knot.unknowns);
   }
 }

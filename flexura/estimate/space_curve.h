@@ -18,7 +18,7 @@ class SpaceCurve {
   struct Knot {
     Eigen::Vector3d position;                           ///< p_WP, m.
     Eigen::Vector3d tangent;                            ///< Unit, W.
-    Eigen::Matrix<double, 3, Eigen::Dynamic> unknowns;  ///< Of the position, by the unknowns.
+    Eigen::Matrix<double, 3, Eigen::Dynamic> unknowns;  ///< Of the position, by those that it depends on.
   };
 
   /// `intervals` in each section, at least 2.

@@ -23,11 +23,11 @@ ShapePrior prior_of(const Arm& arm, std::vector<double> markers) {
   return prior;
 }
 
-// Cameras that are a degree wrong show the arm by many pixels elsewhere than it would be seen: the nearest
-// shape is still the one to go by.
-EstimatorConfig patient_estimator() {
+// Cameras that are a degree wrong show the arm by many pixels elsewhere than it would be seen: where nothing
+// of it is put down to them the nearest shape is still the one to go by.
+EstimatorConfig patient_estimator(const ViewDoubt& doubt) {
   EstimatorConfig config;
-  config.most_rms = 20;
+  config.most_rms = doubt.is_any() ? 5 : 20;
   return config;
 }
 
@@ -43,10 +43,11 @@ std::optional<double> meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& b
 }  // namespace
 
 ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras,
-                     std::vector<double> markers)
+                     std::vector<double> markers, const ViewDoubt& doubt)
     : arm_(believed.arm),
       has_markers_(!markers.empty()),
-      estimator_(prior_of(believed.arm, std::move(markers)), patient_estimator()) {
+      doubt_(doubt),
+      tracker_(prior_of(believed.arm, std::move(markers)), patient_estimator(doubt)) {
   for (std::size_t i = 0; i < 2; ++i)
     whites_[i] = (1 << believed.cameras.at(cameras[i]).config.sensor.bits) - 1;
 }
@@ -72,20 +73,10 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
   const ArmSighting& found = std::visit(find, picture);
   reason = found.reason;
   if (!found.is_found()) return Sighting{view, {}, {}, {}};
-  return has_markers_ ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
-}
-
-ShapeEstimate ServoEyes::shape_of(const std::array<Sighting, 2>& seen, const std::optional<ArmState>& guess) {
-  ShapeEstimate best;
-  if (guess) {
-    best = estimator_.follow(seen, {arm_, *guess});
-    // Cameras that are wrong leave residuals, in one picture about as many as in the one before.
-    constexpr double few = 0.5, as_usual = 2;  // px, times
-    if (best.is_found && best.rms <= std::max(few, as_usual * usual_rms_)) return best;
-  }
-  ShapeEstimate anew = estimator_.estimate(seen);
-  // Where there is none, it is the second that says why.
-  return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
+  Sighting seen =
+      has_markers_ ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
+  seen.doubt = doubt_;
+  return seen;
 }
 
 ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
@@ -102,8 +93,11 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
     sight.estimate.reason = "the arm is not seen in every image";
   }
   if (!sight.estimate.reason.empty()) return sight;
-  sight.estimate = shape_of(sight.seen, guess);
-  if (sight.estimate.is_found) usual_rms_ = sight.estimate.rms;
+  sight.estimate = tracker_.look(sight.seen, sight.time, guess);
+  if (!sight.estimate.is_found) return sight;
+  const std::vector<ViewError>& errors = sight.estimate.shape.views;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    sight.seen[i].view = corrected(sight.seen[i].view, errors[i]);
   return sight;
 }
 

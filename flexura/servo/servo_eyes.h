@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flexura/calibrate/rig_model.h"
-#include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_tracker.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/servo/servo_session.h"
 #include "flexura/vision/arm_finder.h"
@@ -19,25 +19,28 @@ namespace flexura {
 class ServoEyes {
  public:
   /// `cameras`: places among the model's; `markers`: middles of the arm's bands, m, rising.
-  ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras, std::vector<double> markers);
+  /// `doubt`: in the views of both.
+  ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras, std::vector<double> markers,
+            const ViewDoubt& doubt);
 
-  /// What the pictures show of the arm, seen by these views; near `guess`, if there is one. Where a picture
-  /// shows no arm, its reason is set and the estimate is not found.
+  /// What the pictures show of the arm, seen by these views, of which `guess` is expected (ShapeTracker::look).
+  /// Where a picture shows no arm, its reason is set and the estimate is not found. Where it is found, the sightings' views
+  /// are without the errors that were found with it.
   [[nodiscard]] ServoSight look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
                                 const std::optional<ArmState>& guess);
+
+  /// The next pictures are of an arm that may stand anyhow.
+  void forget() { tracker_.forget(); }
 
  private:
   [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
                                   std::string& reason);
 
-  [[nodiscard]] ShapeEstimate shape_of(const std::array<Sighting, 2>& seen,
-                                       const std::optional<ArmState>& guess);
-
   Arm arm_;
   std::array<int, 2> whites_ = {};  // The largest value of each camera's pictures.
   bool has_markers_;
-  ShapeEstimator estimator_;
-  double usual_rms_ = 0;  // Of the last shape's residuals, px.
+  ViewDoubt doubt_;
+  ShapeTracker tracker_;
   struct Finder {
     Eigen::Vector2d base;
     ArmFinder finder;

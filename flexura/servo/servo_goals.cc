@@ -19,6 +19,7 @@ ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, Serv
       shapes_.push_back({*state, {}});
     } else {
       measure(std::get<RecordedViews>(goal.shape), arm, eyes, features, views);
+      eyes.forget();
     }
   }
 }
@@ -41,7 +42,7 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
   }
   wanted.state = sight.estimate.shape.state;
   const auto seen = features.measured(wanted.state, sight.seen),
-             foreseen = features.foreseen(wanted.state, views);
+             foreseen = features.foreseen(wanted.state, {sight.seen[0].view, sight.seen[1].view});
   if (seen && foreseen) wanted.offset = *seen - *foreseen;
 }
 

@@ -76,7 +76,7 @@ TEST(MeasuredPixels, LieOnTheAxisThatIsSeen) {
     // The axis of the same shape, seen a little aside.
     const Eigen::Vector2d aside = random.vector<2>(-2, 2);
     const Backbone backbone(arm, state);
-    Sighting seen{view, {}, {}, {}};
+    Sighting seen{.view = view, .points = {}, .ends = {}, .markers = {}};
     constexpr int count = 400;
     for (int k = 4; k <= count - 4; ++k)
       seen.points.push_back(
@@ -104,7 +104,7 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
     const View view = servo_views()[1];
     const ArmState state = random_servo_state(random, arm, 1.5);
     const Backbone backbone(arm, state);
-    Sighting seen{view, {}, {}, {}};
+    Sighting seen{.view = view, .points = {}, .ends = {}, .markers = {}};
     const int count = random.integer(2, 300);
     const Eigen::Vector2d aside = random.vector<2>(-12, 12);
     for (int k = 0; k <= count; ++k)

@@ -60,7 +60,7 @@ class Session {
         config_(config),
         watcher_(watcher),
         rig_(ports, believed, config.cameras, longest_delay, 0.6 * config.step),
-        eyes_(believed, config.cameras, config.markers),
+        eyes_(believed, config.cameras, config.markers, config.camera_doubt),
         features_(servo_features(config.law, believed.arm, config.points)),
         law_(believed.arm, config, *features_),
         keeper_(believed, config.cameras) {}

@@ -1,0 +1,64 @@
+#include "flexura/estimate/shape_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flexura {
+
+ShapeTracker::ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config)
+    : arm_(prior.arm), config_(config), variables_(prior), estimator_(std::move(prior), estimator) {}
+
+ShapeBelief ShapeTracker::gone_on(double time, const ArmState& expected) const {
+  ShapeBelief belief = *belief_;
+  const double since = std::isfinite(time - time_) ? std::max(0.0, time - time_) : 0.0;
+  auto variances = belief.covariance.diagonal();
+  const Eigen::Index bends = variables_.bends_a_section();
+  for (std::size_t i = 0; i < expected.bends.size(); ++i) {
+    const double went = (expected.bends[i] - belief.mean.state.bends[i]).norm();
+    const double astray = config_.astray * went;
+    variances.segment(static_cast<Eigen::Index>(i) * bends, bends).array() +=
+        config_.drift * config_.drift * since + astray * astray;
+  }
+  constexpr Eigen::Index of_view = 4;
+  for (Eigen::Index at = variables_.of_shape(); at < variances.size(); at += of_view) {
+    variances.segment<3>(at).array() += config_.turn_drift * config_.turn_drift * since;
+    variances[at + 3] += config_.focal_drift * config_.focal_drift * since;
+  }
+  belief.mean.state = expected;
+  return belief;
+}
+
+// Views that are wrong leave residuals, in one picture about as many as in the one before.
+bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
+  constexpr double few = 0.5, as_usual = 2;  // px, times
+  return estimate.is_found && estimate.rms <= std::max(few, as_usual * usual_rms_);
+}
+
+ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double time,
+                                  const std::optional<ArmState>& expected) {
+  ShapeEstimate best;
+  if (expected && belief_) {
+    best = estimator_.update(sightings, gone_on(time, *expected));
+    if (is_as_usual(best) && best.surprise <= config_.most_surprise) return best;
+  }
+  if (expected) {
+    best = estimator_.follow(
+        sightings, Shape{arm_, *expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
+    if (is_as_usual(best)) return best;
+  }
+  ShapeEstimate anew = estimator_.estimate(sightings);
+  // Where there is none, it is the second that says why.
+  return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
+}
+
+ShapeEstimate ShapeTracker::look(std::span<const Sighting> sightings, double time,
+                                 const std::optional<ArmState>& expected) {
+  ShapeEstimate estimate = found(sightings, time, expected);
+  if (!estimate.is_found) return estimate;
+  belief_ = ShapeBelief{estimate.shape, estimate.covariance};
+  time_ = time, usual_rms_ = estimate.rms;
+  return estimate;
+}
+
+}  // namespace flexura

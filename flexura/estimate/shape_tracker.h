@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/sighting.h"
+
+namespace flexura {
+
+/// How much an arm and the cameras' views change beside what is expected: standard deviations.
+struct TrackerConfig {
+  double drift = 0.005;       ///< Of each bend, rad in a second, growing with the root of time.
+  double astray = 0.1;        ///< Of each bend, share of how far its section was expected to bend meanwhile.
+  double turn_drift = 1e-4;   ///< Of a view's error, rad in a second, growing likewise.
+  double focal_drift = 1e-4;  ///< Likewise.
+  /// Expectations that what is seen speaks more against are given up; ShapeEstimate::surprise.
+  double most_surprise = 2.5;
+};
+
+/// An arm whose shape is seen again and again: what earlier sightings told of it, and of what is wrong with the
+/// cameras' views, counts in the next estimate (a Kalman filter whose update is the estimator's fit). What one
+/// pair of pictures hardly tells comes out of many. One thread at a time uses it.
+class ShapeTracker {
+ public:
+  ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config = {});
+
+  /// The shape at `time` (s), expected to be `expected`, if anything is: that of the estimate before, moved on
+  /// by what is known of the arm's motion since. Without that nothing earlier counts. Estimates that are found
+  /// have the views' errors in `shape.views`.
+  [[nodiscard]] ShapeEstimate look(std::span<const Sighting> sightings, double time,
+                                   const std::optional<ArmState>& expected);
+
+  /// The next sightings are of an arm that nothing is known of.
+  void forget() { belief_.reset(), usual_rms_ = 0; }
+
+ private:
+  // What is believed of an arm that is expected to have gone on so.
+  [[nodiscard]] ShapeBelief gone_on(double time, const ArmState& expected) const;
+  [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
+  [[nodiscard]] ShapeEstimate found(std::span<const Sighting> sightings, double time,
+                                    const std::optional<ArmState>& expected);
+
+  Arm arm_;
+  TrackerConfig config_;
+  ShapeVariables variables_;
+  ShapeEstimator estimator_;
+  std::optional<ShapeBelief> belief_;
+  double time_ = 0;       // Of that, s.
+  double usual_rms_ = 0;  // Of the last estimate's residuals, px.
+};
+
+}  // namespace flexura

@@ -9,41 +9,58 @@ mapfile -t all < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sor
 targets=("${@:3}")
 [ "${#targets[@]}" -gt 0 ] || targets=("${all[@]}")
 
-./dev build asan
+# Pictures take 6 ms a scene: in ten parts, as many at a time as there are cores, by a build that is optimised (ASan
+# alone).
+is_of_scenes() { [ "$1" = render_fuzz ]; }
+parts_of() { if is_of_scenes "$1"; then echo 10; else echo 1; fi; }
+builds=()
+for target in "${targets[@]}"; do
+  if is_of_scenes "$target"; then builds+=(scenes); else builds+=(asan); fi
+done
+if [[ " ${builds[*]} " == *" asan "* ]]; then ./dev build asan; fi
+if [[ " ${builds[*]} " == *" scenes "* ]]; then
+  cmake --preset scenes
+  cmake --build build/scenes --target render_fuzz
+fi
 export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
 
 # As many at a time as there are cores; each in a folder of its own, for the input that it leaves when it fails.
-run_target() {
-  local target=$1 folder=$PWD/build/studies/fuzz/$1 root=$PWD
+run_part() {
+  local target=$1 part=$2 folder=$PWD/build/studies/fuzz/$1/$2 root=$PWD
+  local build=asan parts
+  parts=$(parts_of "$target")
+  if is_of_scenes "$target"; then build=scenes; fi
   # Any bytes are a scene: most of them are drawn at random rather than changed from the corpus. A text of random bytes
   # is refused at its first.
   local fresh=0
   [ "$target" != render_fuzz ] || fresh=0.9
   mkdir -p "$folder"
   cd "$folder"
-  "$root/build/asan/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$cases" --seed "$seed" --fresh "$fresh" \
-    >log 2>&1 || {
+  "$root/build/$build/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$((cases / parts))" \
+    --seed "$((seed + part))" --fresh "$fresh" >log 2>&1 || {
     echo "FAILED: $folder/log" >&2
     return 1
   }
 }
-export -f run_target
+export -f run_part parts_of is_of_scenes
 export cases seed
-printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -euo pipefail -c 'run_target {}'
+for target in "${targets[@]}"; do
+  for ((part = 0; part < $(parts_of "$target"); ++part)); do echo "$target $part"; done
+done | xargs -P "$(nproc)" -L1 bash -euo pipefail -c 'run_part "$0" "$1"'
 
 # The row of a target: from the log of this run, or the one that the page has.
 row_of() {
   if [[ " ${targets[*]} " == *" $1 "* ]]; then
     awk -v target="$1" -v seed="$seed" -v commit="$(git rev-parse --short HEAD)" '
       / files, seed / { files = $1 }
-      / cases\/s$/ { speed = $1 }
-      / random throughout$/ { fresh = $1 }
-      / cases, no failure$/ { cases = $1 }
+      / cases\/s$/ { speed += $1; ++parts }
+      / random throughout$/ { fresh += $1 }
+      / cases, no failure$/ { cases += $1 }
       END {
         if (cases == "") exit 1
-        printf "| `%s` | %d | %d | %d | %d | 0 | %d | %s |\n", target, files, cases, fresh, seed, speed, commit
+        printf "| `%s` | %d | %d | %d | %d | 0 | %d | %s |\n", target, files, cases, fresh, seed, speed / parts, commit
       }
-    ' "build/studies/fuzz/$1/log"
+    ' "build/studies/fuzz/$1"/*/log
   else
     grep -F "| \`$1\` |" "$page" 2>/dev/null || true
   fi
@@ -52,7 +69,14 @@ row_of() {
 # What a target says of its cases itself.
 words_of() {
   if [[ " ${targets[*]} " == *" $1 "* ]]; then
-    sed -n "s/^\([0-9]* scenes drawn.*\)/\`$1\`: \1./p" "build/studies/fuzz/$1/log"
+    awk -v target="$1" '
+      / scenes drawn, in / { drawn += $1; arm += $5; more += $12; refused += $(NF - 1) }
+      END {
+        if (drawn > 0)
+          printf "`%s`: %d scenes drawn, in %d the arm is seen and in %d something else; %d refused.\n",
+            target, drawn, arm, more, refused
+      }
+    ' "build/studies/fuzz/$1"/*/log
   else
     grep "^\`$1\`: " "$page" 2>/dev/null || true
   fi

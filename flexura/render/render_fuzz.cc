@@ -1,6 +1,7 @@
 // Any bytes as a scene and a view: a picture whose every pixel is a number no brighter than anything in the
 // scene, the quick way and the exact one alike, and its truth, or an std::invalid_argument. How many of each
-// there were is printed at the end.
+// there were is printed at the end. What takes most of the time of the truth is asked of the first hundred
+// scenes and of every fourth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -234,7 +235,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     truth_maps(renderer, maps);
     for (std::size_t i = 0; i < maps.depth.values().size(); ++i)
       if (maps.depth.values()[i] != picture.depth.values()[i]) std::abort();
+    const bool is_asked_all = tally.drawn < 100 || tally.drawn % 4 == 0;
     count(maps);
+    if (!is_asked_all) return 0;
     (void)marker_views(renderer);
     (void)optical_flow(renderer, scene, view);
     for (const Outline& outline : outlines(renderer, 5))

@@ -38,14 +38,16 @@ bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
 ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double time,
                                   const std::optional<ArmState>& expected) {
   ShapeEstimate best;
+  bool is_surprising = false;
   if (expected && belief_) {
     best = estimator_.update(sightings, gone_on(time, *expected));
-    if (is_as_usual(best) && best.surprise <= config_.most_surprise) return best;
+    is_surprising = best.is_found && !(best.surprise <= config_.most_surprise);
+    if (is_as_usual(best) && !is_surprising) return best;
   }
   if (expected) {
     best = estimator_.follow(
         sightings, Shape{arm_, *expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
-    if (is_as_usual(best)) return best;
+    if (is_as_usual(best) && !is_surprising) return best;
   }
   ShapeEstimate anew = estimator_.estimate(sightings);
   // Where there is none, it is the second that says why.

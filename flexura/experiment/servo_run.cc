@@ -158,6 +158,7 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
   config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
   config.follows = task.follow;
+  config.camera_doubt = {.turn = task.doubt.turn, .focal = task.doubt.focal};
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
   if (is_colored) config.markers = band_places(experiment, believed.arm);
   config.step = task.step.value_or(1 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));

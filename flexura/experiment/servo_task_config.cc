@@ -108,6 +108,21 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   return table;
 }
 
+const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*) {
+  static const auto table =
+      Table<ServoDoubtConfig>(
+          "doubt",
+          "How wrong the cameras may be, as they are believed to stand: standard deviations. What is wrong is "
+          "estimated with the arm's shape; 0: nothing is.")
+          .field("turn", &ServoDoubtConfig::turn,
+                 {.meaning = "Of how a camera is turned, about each axis of its view.",
+                  .unit = Unit::radian,
+                  .range = between(0, 1)})
+          .field("focal", &ServoDoubtConfig::focal,
+                 {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
+  return table;
+}
+
 const Table<ServoTask>& fields_of(const ServoTask*) {
   using T = ServoTask;
   static const auto table =
@@ -167,6 +182,7 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field(
               "follow", &T::follow,
               {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})
+          .field("doubt", &T::doubt, {.meaning = "How wrong the cameras may be."})
           .field("step", &T::step,
                  {.meaning = "Time from one command to the next.",
                   .unit = Unit::second,

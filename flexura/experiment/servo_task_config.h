@@ -26,6 +26,13 @@ struct ServoTargetConfig : ShapeConfig {
   std::vector<std::string> pictures;  ///< Two files, of the task's cameras in this order.
 };
 
+/// How wrong the cameras may be, as the task believes them: standard deviations of a view's turn about each axis,
+/// rad, and of its focal length, a share (ViewDoubt).
+struct ServoDoubtConfig {
+  double turn = 0.02;
+  double focal = 0.02;
+};
+
 /// `kind = "servo"`: the arm is steered by two cameras until its shape is the wanted one.
 struct ServoTask {
   std::string name;
@@ -43,10 +50,12 @@ struct ServoTask {
   double blind = 0.3;        ///< s
   double lost = 3;           ///< s
   bool follow = false;
+  ServoDoubtConfig doubt;
   std::optional<double> step;  ///< s; a frame of the slower camera.
 };
 
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*);
+const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*);
 const Table<ServoTask>& fields_of(const ServoTask*);
 
 /// The two cameras of a task that was checked: places among `cameras`.

@@ -47,7 +47,8 @@ ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>&
     : arm_(believed.arm),
       has_markers_(!markers.empty()),
       doubt_(doubt),
-      tracker_(prior_of(believed.arm, std::move(markers)), patient_estimator(doubt)) {
+      prior_(prior_of(believed.arm, std::move(markers))),
+      tracker_(prior_, patient_estimator(doubt)) {
   for (std::size_t i = 0; i < 2; ++i)
     whites_[i] = (1 << believed.cameras.at(cameras[i]).config.sensor.bits) - 1;
 }
@@ -99,6 +100,12 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
   for (std::size_t i = 0; i < errors.size(); ++i)
     sight.seen[i].view = corrected(sight.seen[i].view, errors[i]);
   return sight;
+}
+
+ShapeEstimate ServoEyes::as_believed(const ServoSight& sight, const std::array<View, 2>& views) const {
+  std::array<Sighting, 2> seen = sight.seen;
+  for (std::size_t i = 0; i < 2; ++i) seen[i].view = views[i], seen[i].doubt = {};
+  return ShapeEstimator(prior_, patient_estimator({})).estimate(seen);
 }
 
 namespace {

@@ -29,6 +29,9 @@ class ServoEyes {
   [[nodiscard]] ServoSight look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
                                 const std::optional<ArmState>& guess);
 
+  /// The shape of what was seen, if nothing were wrong with these views.
+  [[nodiscard]] ShapeEstimate as_believed(const ServoSight& sight, const std::array<View, 2>& views) const;
+
   /// The next pictures are of an arm that may stand anyhow.
   void forget() { tracker_.forget(); }
 
@@ -40,6 +43,7 @@ class ServoEyes {
   std::array<int, 2> whites_ = {};  // The largest value of each camera's pictures.
   bool has_markers_;
   ViewDoubt doubt_;
+  ShapePrior prior_;
   ShapeTracker tracker_;
   struct Finder {
     Eigen::Vector2d base;

@@ -47,8 +47,7 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
 }
 
 // Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but
-// for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order. The
-// eyes are left as they were.
+// for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order.
 std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
                                     ServoEyes& eyes, const std::array<View, 2>& views) const {
   constexpr double noise = 1.5, far_worse = 2;  // In units of what the noise explains; times the other.
@@ -61,11 +60,12 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   };
   if (frames[0].picture->index() != frames[1].picture->index() || !is_taken_by(0, 1) || !is_taken_by(1, 0))
     return "";
-  const ShapeEstimate other = eyes.look({frames[1], frames[0]}, views, std::nullopt).estimate;
-  (void)eyes.look(frames, views, std::nullopt);
-  const bool is_worse = !sight.estimate.is_found || sight.estimate.scale >= far_worse * other.scale;
+  const ShapeEstimate given = eyes.as_believed(sight, views),
+                      other =
+                          eyes.as_believed(eyes.look({frames[1], frames[0]}, views, std::nullopt), views);
+  const bool is_worse = !given.is_found || given.scale >= far_worse * other.scale;
   if (!other.is_found || other.scale > noise || !is_worse) return "";
-  const std::string than = sight.estimate.is_found ? fmt::format(", not {:.2g} px", sight.estimate.rms) : "";
+  const std::string than = given.is_found ? fmt::format(", not {:.2g} px", given.rms) : "";
   return fmt::format(
       "the pictures of goal {} are in the wrong order: the other way round they fit the cameras to {:.2g} "
       "px{}",

@@ -116,13 +116,15 @@ struct Place {
   std::optional<double> offset;  // px; none where no axis was measured.
 };
 
-// Of what is farther from the shape's image than that, px, nothing is the arm there.
-constexpr double farthest = 20;
+// Of what is farther from the shape's image than that, px, nothing is the arm there: where a view is without
+// its errors that is less.
+double farthest_in(const Sighting& seen) { return seen.doubt.is_any() ? 3 : 20; }
 
 // A median axis in short stretches, so that a place looks at those near it only.
 class AxisStretches {
  public:
-  explicit AxisStretches(const std::vector<CurvePoint>& points) : points_(points) {
+  AxisStretches(const std::vector<CurvePoint>& points, double farthest)
+      : points_(points), farthest_(farthest) {
     for (std::size_t first = 0; first + 1 < points.size(); first += length) {
       Eigen::AlignedBox2d& box = boxes_.emplace_back();
       for (std::size_t i = first; i <= std::min(first + length, points.size() - 1); ++i)
@@ -135,13 +137,13 @@ class AxisStretches {
     const Eigen::Vector2d heading(place.across.y(), -place.across.x());
     std::optional<double> nearest;
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
-      if (boxes_[k].squaredExteriorDistance(place.pixel) > farthest * farthest) continue;
+      if (boxes_[k].squaredExteriorDistance(place.pixel) > farthest_ * farthest_) continue;
       for (std::size_t i = k * length + 1; i <= std::min((k + 1) * length, points_.size() - 1); ++i) {
         const Eigen::Vector2d &a = points_[i - 1].pixel, &b = points_[i].pixel;
         const auto share = meeting(a, b, place.pixel, heading);
-        if (!share || (b - a).norm() > farthest) continue;
+        if (!share || (b - a).norm() > longest) continue;
         const double offset = place.across.dot(a + *share * (b - a) - place.pixel);
-        if (std::abs(offset) < std::abs(nearest.value_or(farthest))) nearest = offset;
+        if (std::abs(offset) < std::abs(nearest.value_or(farthest_))) nearest = offset;
       }
     }
     return nearest;
@@ -149,11 +151,14 @@ class AxisStretches {
 
  private:
   static constexpr std::size_t length = 16;
+  static constexpr double longest = 20;  // px; what is farther apart is no piece of an axis.
   const std::vector<CurvePoint>& points_;
+  double farthest_;
   std::vector<Eigen::AlignedBox2d> boxes_;  // Of each stretch's points and the next one's first.
 };
 
-// What is not measured, at the ends and behind something, is off by as much as the nearest that is.
+// What is not measured, at the ends and behind something, is off by as much as the nearest that is, if cameras
+// are wrong.
 double offset_near(const std::vector<Place>& places, const std::vector<double>& shares, std::size_t k) {
   double offset = 0, nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -169,7 +174,7 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
                                                 const Sighting& seen, const std::vector<double>& shares) {
   const Backbone backbone(arm, estimate);
   std::vector<Place> places(shares.size());
-  const AxisStretches axis(seen.points);
+  const AxisStretches axis(seen.points, farthest_in(seen));
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const double s = std::min(arc_length_of(arm, estimate, material_point(arm, shares[k] * arm.length())),
                               backbone.length());
@@ -186,7 +191,8 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
   }
   Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
   for (std::size_t k = 0; k < shares.size(); ++k) {
-    const double offset = places[k].offset ? *places[k].offset : offset_near(places, shares, k);
+    const double unseen = seen.doubt.is_any() ? 0 : offset_near(places, shares, k);
+    const double offset = places[k].offset.value_or(unseen);
     pixels.col(static_cast<Eigen::Index>(k)) = places[k].pixel + offset * places[k].across;
   }
   return pixels;

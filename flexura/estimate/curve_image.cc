@@ -12,12 +12,14 @@ bool CurveImage::set(const View& view, const ViewError& error, const SpaceCurve&
                      Eigen::Index count_of_unknowns) {
   const Pose X_WC = {view.X_WC.rotation * so3_exp(error.turn), view.X_WC.position}, X_CW = X_WC.inverse();
   const double zoom = std::exp(error.focal);
+  const double focal = zoom * std::sqrt(view.lens.intrinsics().fx * view.lens.intrinsics().fy);
   const Eigen::Vector2d center(view.lens.intrinsics().cx, view.lens.intrinsics().cy);
   // exp(turn + d) = exp(turn) exp(J(-turn) d) to first order, J the left Jacobian.
   const Eigen::Matrix3d by_turn = so3_left_jacobian(-error.turn);
   const std::size_t count = curve.knots().size();
   pieces_.resize(count - 1);
   unknowns_.resize(count);
+  scales_.resize(count);
   in_section_ = curve.intervals_a_section();
   Eigen::Vector2d before, slope_before;
   for (std::size_t i = 0; i < count; ++i) {
@@ -25,6 +27,7 @@ bool CurveImage::set(const View& view, const ViewError& error, const SpaceCurve&
     const Eigen::Vector3d p_CP = X_CW * point.position;
     const auto projection = view.lens.project_with_derivatives(p_CP);
     if (!projection) return false;
+    scales_[i] = focal / p_CP.norm();
     const Eigen::Vector2d pixel = center + zoom * (projection->pixel - center);
     const Eigen::Matrix<double, 2, 3> by_place = zoom * projection->by_point,
                                       by_point = by_place * X_CW.rotation;
@@ -81,7 +84,8 @@ CurveImage::Point CurveImage::at(double place) const {
   const double f = place - static_cast<double>(i);
   const Eigen::Vector2d slope = pieces_[i].slope(f);
   const double speed = slope.norm();
-  return {place, pieces_[i].at(f), slope / speed, speed};
+  const double scale = scales_[i] + f * (scales_[i + 1] - scales_[i]);
+  return {place, pieces_[i].at(f), slope / speed, speed, scale};
 }
 
 CurveImage::Point CurveImage::nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,

@@ -28,6 +28,7 @@ class CurveImage {
     Eigen::Vector2d pixel;    ///< Of the curve there.
     Eigen::Vector2d tangent;  ///< Unit.
     double speed = 0;         ///< px a knot.
+    double scale = 0;         ///< px a metre across the line of sight, there.
   };
   [[nodiscard]] Point at(double place) const;
   /// Where to look: from one knot to another, and first in the interval after a third.
@@ -58,6 +59,7 @@ class CurveImage {
   using Unknowns = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<Piece> pieces_;
   std::vector<Unknowns> unknowns_;  // Of the knots' pixels.
+  std::vector<double> scales_;      // At the knots, px a metre.
   std::size_t in_section_ = 2;      // Pieces in each section.
 };
 

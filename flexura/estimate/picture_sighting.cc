@@ -16,6 +16,8 @@ namespace {
 constexpr double least_sigma = 0.01;
 // Of the silhouette: what explains less may end at a fold.
 constexpr double whole = 0.95;
+// Of a silhouette, px: a tube's is nearly as far from the backbone's image as its radius is large there.
+constexpr double border_sigma = 0.5;
 // Of a band's middle, px: what skin and shading do to it.
 constexpr double band_sigma = 0.2;
 
@@ -31,6 +33,7 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
 Sighting sighting_of(const ArmSighting& arm, const View& view) {
   Sighting seen;
   seen.view = view;
+  for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   std::vector<AxisSample> axis = arm.axis;
   to_backbone_image(view.lens, axis);
   for (const AxisSample& sample : axis)

@@ -40,6 +40,48 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   return error;
 }
 
+// How much of a shape's images lies where nothing is seen, in pictures that show more than an axis: mean square of
+// the distances, bounded for each, px^2.
+double astray(std::span<const Sighting> sightings, const Shape& shape) {
+  constexpr double far = 3;  // px
+  // What is seen is thinned out to points so far from each other, px.
+  constexpr double apart = 4;
+  constexpr int count = 40;
+  double radius = 0;
+  for (const Section& section : shape.arm.sections) radius = std::max({radius, section.radius[0], section.radius[1]});
+  const Backbone backbone(shape.arm, shape.state);
+  double sum = 0;
+  int places = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const Sighting& seen = sightings[i];
+    if (seen.borders.empty()) continue;
+    const View view = i < shape.views.size() ? corrected(seen.view, shape.views[i]) : seen.view;
+    for (int k = 0; k <= count; ++k, ++places) {
+      const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position;
+      const auto pixel = view.project(place);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const CurvePoint& point : seen.points)
+        nearest = std::min(nearest, pixel ? (point.pixel - *pixel).norm() : nearest);
+      for (const SeenBorder& border : seen.borders)
+        nearest = std::min(nearest, pixel ? (border.pixel - *pixel).norm() : nearest);
+      const double half_width = radius * view.lens.intrinsics().fx / (place - view.X_WC.position).norm();
+      const double off = std::max(0.0, nearest - half_width - apart);
+      sum += std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
+    }
+  }
+  return places > 0 ? sum / places : 0.0;
+}
+
+// The points of an axis as far from the camera as the base is.
+std::vector<Eigen::Vector3d> lifted(const Sighting& seen, const Eigen::Vector3d& p_WB) {
+  std::vector<Eigen::Vector3d> points = {p_WB};
+  const double depth = (seen.view.X_WC.inverse() * p_WB).z();
+  for (const CurvePoint& point : seen.points)
+    if (const auto ray = seen.view.lens.unproject(point.pixel))
+      points.push_back(seen.view.X_WC * (depth * ray->homogeneous()));
+  return points;
+}
+
 // Fills the places of the knots and their standard deviations; returns the arm's length.
 double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance, ShapeEstimate& result) {
   double s = 0;
@@ -89,7 +131,13 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
   for (const Sighting& seen : sightings)
     views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
                                                   : ViewError{});
-  if (sightings.size() >= 2) {
+  const auto has_axis = [](const Sighting& seen) { return !seen.points.empty(); };
+  if (prior_.is_base_position_known && !std::ranges::all_of(sightings, has_axis)) {
+    for (const Sighting& seen : sightings) {
+      const std::vector<Eigen::Vector3d> points = lifted(seen, prior_.arm.X_WB.position);
+      if (points.size() >= 2) shapes.push_back(shape_along(prior_, points));
+    }
+  } else if (sightings.size() >= 2) {
     std::array<Sighting, 2> aimed = {sightings[0], sightings[1]};
     for (std::size_t i = 0; i < 2; ++i) aimed[i].view = corrected(aimed[i].view, views[i]);
     const Correspondence pairs = correspondence(aimed[0], aimed[1]);
@@ -108,9 +156,18 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
   return shapes;
 }
 
+std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightings, const Shape& shape) const {
+  std::vector<Shape> shapes;
+  const std::size_t sections = prior_.arm.sections.size();
+  constexpr std::size_t most = 4;  // Of many short sections every so many.
+  for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
+    for (const Sighting& seen : sightings) shapes.push_back(mirrored(prior_, shape, i, seen.view));
+  return shapes;
+}
+
 ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   std::vector<Sighting> seen = prepared(sightings);
-  if (seen.empty() || std::ranges::any_of(seen, [](const Sighting& one) { return one.points.size() < 4; })) {
+  if (!are_enough(seen)) {
     ShapeEstimate none;
     none.shape = straight_shape(prior_);
     none.reason = "the arm is not seen in every image";
@@ -124,9 +181,23 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen)) {
       ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
+      fit.cost += astray(seen, fit.shape);
       const bool is_last = is_good(fit);
       if (!best || fit.cost < best->cost) best = std::move(fit), best_seen = seen;
       if (is_last) break;
+    }
+  }
+  // What one picture shows in part may be one of several shapes: where all is not explained the others are tried.
+  constexpr int rounds = 2;
+  constexpr double explained = 0.25;  // px^2
+  bool is_better = true;
+  for (int round = 0; round < rounds && is_better && !(is_good(*best) && best->cost < explained); ++round) {
+    is_better = false;
+    ShapeProblem problem(prior_, best_seen);
+    for (const Shape& start : look_alikes(best_seen, Shape(best->shape))) {
+      ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
+      fit.cost += astray(best_seen, fit.shape);
+      if (fit.cost < best->cost) best = std::move(fit), is_better = true;
     }
   }
   ShapeProblem problem(prior_, best_seen);
@@ -221,7 +292,8 @@ ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double
   prior.is_length_known = length.has_value();
   if (base) prior.arm.X_WB.position = *base;
   const double whole = length.value_or(1.0);
-  prior.arm.sections.resize(sections, {.length = whole / static_cast<double>(sections)});
+  // No radius: borders tell nothing of it.
+  prior.arm.sections.resize(sections, {.length = whole / static_cast<double>(sections), .radius = {0, 0}});
   // Of a turn a length, from one section to the next.
   prior.curvature_step = 1.0 / whole;
   return prior;

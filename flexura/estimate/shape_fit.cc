@@ -128,7 +128,8 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
 }
 
 void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit) {
-  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0, against = 0, beliefs = 0;
+  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0, against = 0, beliefs = 0,
+         on_axes = 0;
   sizes_.clear();
   Eigen::VectorXd told = Eigen::VectorXd::Zero(problem.rows());  // 1: known before.
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
@@ -139,16 +140,19 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
       continue;
     }
     square += weights_[i] * r * r, weight += weights_[i];
-    if (problem.kind(i) != RowKind::point) {
+    const RowKind kind = problem.kind(i);
+    if (kind == RowKind::end || kind == RowKind::marker) {
       if (std::abs(r) > cutoff) ++fit.contradicted;
       continue;
     }
     ++points, far += bounded_square(px, far_away);
-    if (std::abs(r) < cutoff) ++believed, square_px += px * px, sizes_.push_back(r);
+    if (!(std::abs(r) < cutoff)) continue;
+    ++believed;
+    if (kind == RowKind::point) ++on_axes, square_px += px * px, sizes_.push_back(r);
   }
   fit.scale = cutoff / doubtful;
   fit.cost = far / std::max(points, 1.0);
-  fit.rms = believed > 0 ? std::sqrt(square_px / believed) : 0.0;
+  fit.rms = on_axes > 0 ? std::sqrt(square_px / on_axes) : 0.0;
   fit.doubted = points > 0 ? 1 - believed / points : 0.0;
   fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
   const double correlated = correlation_factor(sizes_);

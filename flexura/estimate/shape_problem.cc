@@ -26,7 +26,7 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
   std::size_t rows = 2 * prior.arm.sections.size() + looks_.size();
   for (const BandLook& look : looks_)
     if (look.marker >= first_looks_.size()) first_looks_.resize(look.marker + 1);
-  for (const Sighting& seen : sightings) rows += seen.points.size() + 2 + 2 * seen.markers.size() + 4;
+  for (const Sighting& seen : sightings) rows += seen.points.size() + seen.borders.size() + 2 + 2 * seen.markers.size() + 4;
   if (belief != nullptr && belief->covariance.cols() == variables_.count()) {
     const Eigen::LLT<Eigen::MatrixXd> known(belief->covariance);
     const Eigen::Index count = variables_.count();
@@ -53,6 +53,7 @@ bool ShapeProblem::linearise(const Shape& shape) {
     const ViewError error = i < shape.views.size() ? shape.views[i] : ViewError{};
     if (!image_.set(seen.view, error, curve_, variables_.of_view(i), variables_.count())) return false;
     add_points(seen);
+    add_borders(seen, shape.arm);
     add_ends(seen);
     add_markers(seen, shape.arm);
     add_bands(i, shape.arm);
@@ -89,6 +90,24 @@ void ShapeProblem::add_points(const Sighting& seen) {
     const bool is_beyond = near.place <= 0 || near.place >= image_.last();
     if (is_beyond && off.squaredNorm() > 0) direction = off.normalized();
     add_row(RowKind::point, direction, off, near.place, point.sigma);
+  }
+}
+
+// A tube's silhouette is as far from its backbone's image as its radius is large there. Beyond the curve's ends
+// caps are seen, whose points are no farther than that.
+void ShapeProblem::add_borders(const Sighting& seen, const Arm& arm) {
+  for (const SeenBorder& border : seen.borders) {
+    const CurveImage::Point near =
+        image_.nearest(border.pixel, Eigen::Vector2d::Zero(), image_.everywhere());
+    const auto section = std::min(static_cast<std::size_t>(near.place) / curve_.intervals_a_section(),
+                                  arm.sections.size() - 1);
+    const auto [at_base, at_end] = arm.sections[section].radius;
+    const double share = near.place / static_cast<double>(curve_.intervals_a_section()) - static_cast<double>(section);
+    const Eigen::Vector2d off = border.pixel - near.pixel;
+    const double distance = off.norm(), radius = (at_base + share * (at_end - at_base)) * near.scale;
+    const bool is_beyond = near.place <= 0 || near.place >= image_.last();
+    if (!(distance > 0) || !(radius > 0) || (is_beyond && distance < radius)) continue;
+    add_row(RowKind::border, off / distance, off * (1 - radius / distance), near.place, border.sigma);
   }
 }
 

@@ -21,8 +21,8 @@ struct BandLook {
   std::optional<double> s;             ///< Where that is, m along the unstretched arm, when it is known.
 };
 
-/// How far a shape is from what was seen: distances of the seen points from the shape's images, of ends and
-/// markers from theirs, and the prior's own, each in units of its standard deviation.
+/// How far a shape is from what was seen: distances of the seen points from the shape's images, of borders from
+/// its silhouettes, of ends and markers from theirs, and the prior's own, each in units of its standard deviation.
 class ShapeProblem {
  public:
   /// `sightings` outlive the problem. Of the bands those of `looks` count: where a marker is known they are
@@ -32,7 +32,7 @@ class ShapeProblem {
                std::vector<BandLook> looks = {}, const ShapeBelief* belief = nullptr);
 
   /// What a row compares; the last two are not seen.
-  enum class RowKind { point, end, marker, prior, belief };
+  enum class RowKind { point, border, end, marker, prior, belief };
 
   /// False when part of the shape is out of a lens's sight.
   bool linearise(const Shape& shape);
@@ -49,6 +49,7 @@ class ShapeProblem {
 
  private:
   void add_points(const Sighting& seen);
+  void add_borders(const Sighting& seen, const Arm& arm);
   void add_ends(const Sighting& seen);
   void add_markers(const Sighting& seen, const Arm& arm);
   void add_bands(std::size_t sighting, const Arm& arm);

@@ -22,6 +22,9 @@ TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
     std::vector<Sighting> seen;
     for (const View& view : two_views()) {
       seen.push_back(sighting_of(backbone, view, random, 0.2, {0.05, 0.95}, 15));
+      for (const double s : {0.3, 0.5, 0.7})
+        seen.back().borders.push_back(
+            {view.project(backbone.pose(s).position).value() + random.vector<2>(-9, 9), 0.5});
       seen.back().markers.push_back({view.project(backbone.pose(0.4).position).value(), 0.37, 0.1});
       ViewError& error = shape.views.emplace_back();
       const bool is_doubted = (doubted >> (seen.size() - 1)) % 2 == 1;
@@ -39,7 +42,9 @@ TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
     ASSERT_TRUE(problem.linearise(shape));
     for (Eigen::Index row = 0; row < problem.rows(); ++row) {
       const Eigen::RowVectorXd there = problem.derivatives().row(row);
-      EXPECT_LT((there - expected.value.row(row)).norm(), 2e-3 * (1 + there.norm()))
+      // That a part of the tube looks larger when it comes nearer is left out.
+      const double close = problem.kind(row) == ShapeProblem::RowKind::border ? 5e-2 : 2e-3;
+      EXPECT_LT((there - expected.value.row(row)).norm(), close * (1 + there.norm()))
           << row << ": " << there << "\n"
           << expected.value.row(row);
     }

@@ -79,4 +79,23 @@ Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> poin
   return shape;
 }
 
+Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section, const View& view) {
+  const Backbone backbone(shape.arm, shape.state);
+  double s = 0;
+  for (std::size_t i = 0; i < section; ++i) s += shape.arm.sections[i].length * shape.state.stretches[i];
+  const Eigen::Vector3d joint = backbone.pose(std::min(s, backbone.length())).position,
+                        sight = (joint - view.X_WC.position).normalized();
+  constexpr int count = 60;
+  std::vector<Eigen::Vector3d> points;
+  for (int k = 0; k <= count; ++k) {
+    const double at = backbone.length() * k / count;
+    Eigen::Vector3d p = backbone.pose(std::min(at, backbone.length())).position;
+    if (at > s) p -= 2 * sight.dot(p - joint) * sight;
+    points.push_back(p);
+  }
+  Shape result = shape_along(prior, points);
+  result.views = shape.views;
+  return result;
+}
+
 }  // namespace flexura

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 
 #include "flexura/estimate/shape_variables.h"
@@ -11,6 +12,11 @@ namespace flexura {
 /// at its start to that at its end. What the prior knows of the base stays. At least two points, not all the
 /// same, else std::invalid_argument.
 [[nodiscard]] Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> points);
+
+/// `shape` with all that follows the start of a section mirrored in the plane through that across the line of
+/// sight: what `view` shows stays about the same, and what others show does not.
+[[nodiscard]] Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section,
+                             const View& view);
 
 /// The prior's arm, straight.
 [[nodiscard]] Shape straight_shape(const ShapePrior& prior);

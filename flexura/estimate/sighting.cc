@@ -17,6 +17,15 @@ View corrected(View view, const ViewError& error) {
   return view;
 }
 
+bool are_enough(std::span<const Sighting> sightings) {
+  constexpr std::size_t fewest = 4;
+  const auto has_axis = [](const Sighting& seen) { return seen.points.size() >= fewest; };
+  const auto is_seen = [&](const Sighting& seen) {
+    return has_axis(seen) || seen.borders.size() >= 2 * fewest;
+  };
+  return std::ranges::any_of(sightings, has_axis) && std::ranges::all_of(sightings, is_seen);
+}
+
 Sighting reversed(Sighting sighting) {
   std::ranges::reverse(sighting.points);
   std::swap(sighting.ends[0], sighting.ends[1]);
@@ -24,13 +33,23 @@ Sighting reversed(Sighting sighting) {
   return sighting;
 }
 
-Sighting thinned(const Sighting& sighting, std::size_t most) {
-  const std::size_t count = sighting.points.size();
-  if (count <= most || most < 2) return sighting;
-  Sighting thin{sighting.view, {}, sighting.ends, sighting.markers, sighting.bands,
-                sighting.doubt};
-  for (std::size_t i = 0; i < most; ++i) thin.points.push_back(sighting.points[i * (count - 1) / (most - 1)]);
-  return thin;
+namespace {
+
+// At most `most` of them, evenly taken, the first and the last among them.
+template <class Value>
+void thin(std::vector<Value>& values, std::size_t most) {
+  const std::size_t count = values.size();
+  if (count <= most || most < 2) return;
+  for (std::size_t i = 0; i < most; ++i) values[i] = values[i * (count - 1) / (most - 1)];
+  values.resize(most);
+}
+
+}  // namespace
+
+Sighting thinned(Sighting sighting, std::size_t most) {
+  thin(sighting.points, most);
+  thin(sighting.borders, most);
+  return sighting;
 }
 
 }  // namespace flexura

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "flexura/camera/view.h"
@@ -37,6 +38,12 @@ struct SeenEnd {
   double sigma = 0.3;  ///< Standard deviation along the curve, px; > 0.
 };
 
+/// A point of the arm's silhouette.
+struct SeenBorder {
+  Eigen::Vector2d pixel = {0, 0};
+  double sigma = 0.5;  ///< Standard deviation across the border, px; > 0.
+};
+
 /// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is: its
 /// frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
 struct ViewError {
@@ -64,12 +71,19 @@ struct Sighting {
   std::vector<SeenMarker> markers;
   std::vector<SeenBand> bands = {};  ///< In any order; which is which the estimator finds out.
   ViewDoubt doubt = {};              ///< In the view.
+  /// Points of the silhouette where no axis was found, in any order: of arms of known radius.
+  std::vector<SeenBorder> borders = {};
 };
+
+/// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of what it
+/// shows is enough.
+[[nodiscard]] bool are_enough(std::span<const Sighting> sightings);
 
 /// The same, followed from the other end.
 [[nodiscard]] Sighting reversed(Sighting sighting);
 
-/// The same with at most `most` points, evenly taken, the first and the last among them.
-[[nodiscard]] Sighting thinned(const Sighting& sighting, std::size_t most);
+/// The same with at most `most` points, evenly taken, the first and the last among them, and as many of the
+/// borders at most.
+[[nodiscard]] Sighting thinned(Sighting sighting, std::size_t most);
 
 }  // namespace flexura

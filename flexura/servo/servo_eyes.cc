@@ -73,9 +73,9 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
   };
   const ArmSighting& found = std::visit(find, picture);
   reason = found.reason;
-  if (!found.is_found()) return Sighting{view, {}, {}, {}};
+  const bool has_bands = has_markers_ && found.is_found();
   Sighting seen =
-      has_markers_ ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
+      has_bands ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
   seen.doubt = doubt_;
   return seen;
 }
@@ -87,13 +87,13 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
   sight.time = 0.5 * (frames[0].time + frames[1].time);
   for (std::size_t i = 0; i < 2; ++i)
     sight.seen[i] = sighting(i, *frames[i].picture, views[i], sight.reasons[i]);
-  constexpr std::size_t fewest = 4;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (sight.seen[i].points.size() >= fewest) continue;
-    if (sight.reasons[i].empty()) sight.reasons[i] = "too little of the arm is seen";
+  if (!are_enough(sight.seen)) {
+    for (std::size_t i = 0; i < 2; ++i)
+      if (sight.reasons[i].empty() && !are_enough({&sight.seen[i], 1}))
+        sight.reasons[i] = "too little of the arm is seen";
     sight.estimate.reason = "the arm is not seen in every image";
+    return sight;
   }
-  if (!sight.estimate.reason.empty()) return sight;
   sight.estimate = tracker_.look(sight.seen, sight.time, guess);
   if (!sight.estimate.is_found) return sight;
   const std::vector<ViewError>& errors = sight.estimate.shape.views;

@@ -32,7 +32,7 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
   if (problem_.empty()) problem_ = wrong_order(sight, frames, eyes, views);
   WantedShape& wanted = shapes_.emplace_back(WantedShape{ArmState::straight(arm.sections.size()), {}});
   for (std::size_t i = 0; i < 2; ++i)
-    if (problem_.empty() && !sight.reasons[i].empty())
+    if (problem_.empty() && !sight.estimate.is_found && !sight.reasons[i].empty())
       problem_ =
           fmt::format("picture {} of goal {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
   if (!problem_.empty()) return;

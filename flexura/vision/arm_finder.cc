@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "flexura/vision/axis_curve.h"
+#include "flexura/vision/border.h"
 #include "flexura/vision/runs.h"
 #include "flexura/vision/tube_seeds.h"
 #include "flexura/vision/tube_tracker.h"
@@ -34,6 +35,20 @@ constexpr double least_slenderness = 2.5;
 constexpr double least_covered = 0.3;
 
 constexpr std::size_t most_tries = 4, most_seeds = 4;
+
+// Where the axis explains more the rest is its ends and noise.
+constexpr double all_but_ends = 0.95;
+
+// Whether a point of the border lies beside the axis, where that has it.
+bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
+  constexpr double close = 1.5;  // px, across the axis and along it
+  return std::ranges::any_of(axis, [&](const AxisSample& sample) {
+    const Eigen::Vector2d off = point.pixel - sample.pixel;
+    const double across = std::abs(off.dot(sample.normal));
+    return std::abs(across - 0.5 * sample.width) < close &&
+           off.squaredNorm() < across * across + close * close;
+  });
+}
 
 // How much of the figure an axis explains, and how many of its ends it knows.
 double merit(const ArmSighting& seen) {
@@ -65,6 +80,7 @@ struct ArmFinder::Work {
   BlockThresholds blocks;
   Image<std::uint8_t> bytes;  // Of a picture with more bits.
   std::vector<std::uint32_t> order;
+  std::uint32_t followed = 0;  // The component that is the arm.
   std::vector<TubeSeed> seeds;
   std::vector<CrossSection> ahead, sections;
   BlurredSteps steps;
@@ -80,6 +96,7 @@ struct ArmFinder::Work {
                    const TubeSeed& rough);
   void order_ends();
   void note_others();
+  void add_unexplained(const Image<std::uint8_t>& gray);
 };
 
 ArmFinder::ArmFinder(ArmFinderConfig config) : work_(std::make_unique<Work>()) {
@@ -93,8 +110,10 @@ void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
   if (gray.channels() != 1)
     throw std::invalid_argument(
         fmt::format("a picture with {} channels: expected a gray one", gray.channels()));
+  order.clear();
   seen.axis.clear();
   seen.notes.clear();
+  seen.unexplained.clear();
   seen.ends = {};
   seen.blur = seen.noise = seen.contrast = seen.covered = 0;
   seen.is_closed = false;
@@ -122,6 +141,7 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
     const Component& component = components.list[order[i]];
     seen.reason.clear();
     if (follow(picture, scale, component)) {
+      followed = order[i];
       note_others();
       return;
     }
@@ -255,9 +275,20 @@ void ArmFinder::Work::note_others() {
                     100 * seen.covered));
 }
 
+// Of the figure that was followed, or of the largest.
+void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
+  if (order.empty() || (seen.is_found() && seen.covered >= all_but_ends)) return;
+  const std::uint32_t component = seen.is_found() ? followed : order.front();
+  constexpr double usual_blur = 0.8;  // px
+  find_border(gray, seen.threshold, components, component, seen.blur > 0 ? seen.blur : usual_blur,
+              seen.unexplained);
+  std::erase_if(seen.unexplained, [&](const BorderPoint& point) { return is_explained(point, seen.axis); });
+}
+
 const ArmSighting& ArmFinder::find(const Image<std::uint8_t>& gray) {
   work_->segment(gray);
   if (work_->seen.reason.empty()) work_->find_axis(gray, scale_of(gray, 255));
+  work_->add_unexplained(gray);
   return work_->seen;
 }
 
@@ -271,6 +302,7 @@ const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) 
     to[i] = static_cast<std::uint8_t>(std::min(255, (from[i] * 255 + white / 2) / white));
   work.segment(work.bytes);
   if (work.seen.reason.empty()) work.find_axis(gray, scale_of(gray, white));
+  work.add_unexplained(work.bytes);
   return work.seen;
 }
 

@@ -18,9 +18,9 @@ mkdir -p docs/studies
   echo "of 255; the row with bands has colour pictures of an arm with twelve bands, by which the rig is calibrated too."
   echo "From straight to bends drawn evenly from +-1.2 rad in each direction, the same for every law (\`moments\` is for the"
   echo "last way and begins within 0.15 rad of each bend); done when the error as seen stays below 0.2 % of the length for"
-  echo "1 s, given up after 8 s. What is left is the simulated truth's, in the end, in % of the arm's length; all figures are of the targets that converged. Four targets a"
-  echo "rig. The floor is where the arm stands when exact images of it by the true cameras are taken for the wanted shape by"
-  echo "those who believe in wrong ones. Rigs to be calibrated are up to 3 degrees in pan and tilt, 0.3 in roll and 6 cm along"
+  echo "1 s, given up after 8 s. What is left is the simulated truth's, in the end, in % of the arm's length; all figures are"
+  echo "of the targets that converged. Four targets a rig. The floors are where the arm stands when exact images of it by the true cameras are taken for the wanted shape by"
+  echo "those who believe in wrong ones, and by those who doubt them as the servo does. Rigs to be calibrated are up to 3 degrees in pan and tilt, 0.3 in roll and 6 cm along"
   echo "each axis other than believed, and zoom by 1 to 1.45."
   echo
   echo '```console'

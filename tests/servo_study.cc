@@ -64,7 +64,9 @@ std::vector<Method> all_methods() {
 struct Arrival {
   bool is_done = false;
   std::string reason;
-  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0, floor = 0;
+  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0;
+  // Of those who believe their cameras, and of those who doubt them as the servo does.
+  double believing = 0, doubting = 0;
 };
 
 ArmState random_target(TestRandom& random) {
@@ -107,10 +109,10 @@ std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
   return wrong;
 }
 
-// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise,
-// for the wanted shape: what cameras that are wrong leave at best.
+// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise, as far
+// as `doubt` goes, for the wanted shape: what cameras that are wrong leave at best.
 double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2>& truth,
-                const std::array<View, 2>& believed) {
+                const std::array<View, 2>& believed, const ViewDoubt& doubt) {
   ShapePrior prior;
   prior.arm = arm;
   EstimatorConfig config;
@@ -121,12 +123,15 @@ double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2
     std::vector<Sighting> seen(2);
     const Backbone backbone(arm, state);
     for (std::size_t i = 0; i < 2; ++i) {
-      seen[i].view = believed[i];
+      seen[i].view = believed[i], seen[i].doubt = doubt;
       constexpr int count = 80;
       for (int k = 0; k <= count; ++k) {
         const auto pixel = truth[i].project(backbone.pose(backbone.length() * k / count).position);
         if (pixel) seen[i].points.push_back({*pixel, 0.1});
       }
+      for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+        if (const auto pixel = truth[i].project(backbone.pose(static_cast<double>(end) * backbone.length()).position))
+          seen[i].ends[end] = SeenEnd{*pixel, 0.1};
     }
     const ShapeEstimate estimate = estimator.follow(seen, {arm, wanted});
     if (!estimate.is_found) return std::numeric_limits<double>::quiet_NaN();
@@ -199,8 +204,11 @@ class StudyRig {
                                         Backbone(arm, target), arm.length());
     arrival.rms = left.rms, arrival.most = left.most, arrival.tip = left.tip;
     arrival.limit = nearest_limit(arm, result);
-    if (cameras_ == Cameras::wrong)
-      arrival.floor = floor_of(arm, target, true_views(bench), believed_views(bench));
+    if (cameras_ == Cameras::wrong) {
+      const auto truth = true_views(bench), believed = believed_views(bench);
+      arrival.believing = floor_of(arm, target, truth, believed, {});
+      arrival.doubting = floor_of(arm, target, truth, believed, config.camera_doubt);
+    }
     return arrival;
   }
 
@@ -247,6 +255,7 @@ class StudyRig {
 };
 
 double quantile(std::vector<double> values, double share) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::ranges::sort(values);
   const double place = std::ceil(share * static_cast<double>(values.size()));
@@ -274,12 +283,16 @@ void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bo
                             most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
                             tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
                             limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
-                            floor = of_done(arrivals, [](const Arrival& a) { return 100 * a.floor; });
-  fmt::print("| {} | {}/{} | {} / {} | {} | {} / {} | {} | {} | {} | {} |\n", name, rms.size(),
+                            believing = of_done(arrivals, [](const Arrival& a) { return 100 * a.believing; }),
+                            doubting = of_done(arrivals, [](const Arrival& a) { return 100 * a.doubting; });
+  const auto pair = [&](const std::vector<double>& values) {
+    return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
+  };
+  fmt::print("| {} | {}/{} | {} / {} | {} | {} / {} | {} | {} | {} | {} | {} |\n", name, rms.size(),
              arrivals.size(), number(quantile(settled, 0.5), 2), number(quantile(settled, 0.95), 2),
              number(quantile(over, 0.95), 1), number(quantile(rms, 0.5), 3), number(quantile(rms, 0.95), 3),
              number(quantile(most, 1), 3), number(quantile(tip, 0.95), 3), number(quantile(limit, 0), 2),
-             has_floor ? number(quantile(floor, 0.5), 3) + " / " + number(quantile(floor, 0.95), 3) : "-");
+             pair(believing), pair(doubting));
 }
 
 // Its numbers left out: reasons that differ in these are one.
@@ -328,8 +341,9 @@ void study(Cameras cameras, const std::vector<Method>& methods, std::size_t targ
   for (std::thread& one : pool) one.join();
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, rms, % (median / 95 %) |\n"
-      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, cameras believed | "
+      "floor, cameras doubted |\n"
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t j = 0; j < methods.size(); ++j)
     print_row(methods[j].name, arrivals[j], cameras == Cameras::wrong);
   fmt::print("\n");

@@ -26,14 +26,14 @@ RigObservations marked(const RigObservations& seen) {
   return count > 0 ? marked : seen;
 }
 
-// Which columns belong to the first `count` slots, from `first` on, of any camera.
+// Frees, or holds, the columns that belong to the first `count` slots, from `first` on, of any camera.
 void free_slots(const RigVariables& variables, Eigen::Index first, Eigen::Index count,
-                std::vector<bool>& is_free) {
+                std::vector<bool>& is_free, bool free = true) {
   for (std::size_t camera = 0; camera < variables.guess().cameras.size(); ++camera) {
     for (Eigen::Index i = first; i < first + count; ++i) {
       const Eigen::Index column =
           variables.column(variables.camera_slots(camera) + static_cast<std::size_t>(i));
-      if (column >= 0) is_free[static_cast<std::size_t>(column)] = true;
+      if (column >= 0) is_free[static_cast<std::size_t>(column)] = free;
     }
   }
 }
@@ -85,8 +85,13 @@ RigDescent approach(RigProblem& coarse, RigProblem& problem, const Detour& detou
     free_slots(variables, first, count, descent.is_free);
     go(coarse);
   }
-  descent.is_free.clear(), descent.most_iterations = config.most_iterations;
+  descent.most_iterations = config.most_iterations;
+  // A few markers tell a distortion with which the lens shows the arm beside the picture nowhere.
+  descent.is_free.assign(static_cast<std::size_t>(variables.count()), true);
+  constexpr Eigen::Index of_distortion = 5;
+  free_slots(variables, distortion_slot, of_distortion, descent.is_free, false);
   go(coarse);
+  descent.is_free.clear();
   go(problem);
   descent.does_bound_rise = false;
   go(problem);

@@ -134,10 +134,13 @@ class Session {
               .seen = eyes_[i].see(*frame.picture, view.lens, expected),
               .values = {}};
     ++result_.pictures[i];
-    const bool is_of_use = sight_.seen.markers.size() >= config_.fewest;
+    // Of a rig that is known a few markers tell more, and are hardly taken for others.
+    constexpr std::size_t few = 2;
+    const std::size_t fewest = found_ ? std::min(few, config_.fewest) : config_.fewest;
+    const bool is_of_use = sight_.seen.markers.size() >= fewest;
     if (!is_of_use && sight_.seen.reason.empty())
       sight_.seen.reason =
-          fmt::format("{} markers are recognised, fewer than {}", sight_.seen.markers.size(), config_.fewest);
+          fmt::format("{} markers are recognised, fewer than {}", sight_.seen.markers.size(), fewest);
     misses_[i] = is_of_use ? 0 : misses_[i] + 1;
     watcher_.seen(sight_);
     if (!result_.before[i]) result_.before[i] = sight_;

@@ -53,11 +53,11 @@ std::vector<CurvePoint> independent_points(const std::vector<AxisSample>& axis,
 }  // namespace
 
 MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
-                             const View& view) {
+                             const View& view, const Arm& marked) {
   const Backbone backbone(arm, state);
   MarkerScene scene;
   for (const KnownMarker& marker : markers) {
-    const double s = arc_length_of(arm, state, material_point(arm, marker.s));
+    const double s = arc_length_of(arm, state, material_point(marked, marker.s));
     const auto pixel = view.project(backbone.pose(s).position);
     auto& place = scene.markers.emplace_back();
     if (pixel) place = MarkerScene::Place{*pixel, marker.color};

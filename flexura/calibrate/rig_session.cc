@@ -126,7 +126,7 @@ class Session {
     const View view = view_of(model(), std::get<RigStance>(stance));
     const ArmState& pose = seen_.poses.back();
     const MarkerScene expected =
-        expected_markers(model().arm, model().bent(pose), config_.picture.markers, view);
+        expected_markers(model().arm, model().bent(pose), config_.picture.markers, view, believed_.arm);
     sight_ = {.look = is_search ? 0 : result_.looks,
               .stance = std::get<RigStance>(stance),
               .pose = pose,
@@ -238,7 +238,7 @@ class Session {
     double squares = 0;
     for (const SeenMarker& marker : image.markers) {
       const MarkerScene foretold = expected_markers(model().arm, model().bent(seen_.poses[image.pose]),
-                                                    {KnownMarker{.s = marker.s}}, view);
+                                                    {KnownMarker{.s = marker.s}}, view, believed_.arm);
       if (foretold.markers[0]) squares += (foretold.markers[0]->pixel - marker.pixel).squaredNorm();
     }
     return std::sqrt(squares / static_cast<double>(image.markers.size()));

@@ -131,7 +131,7 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
     sights[i] = (target(model) - view.X_WC.position).normalized();
     const ArmState& shown = config_.poses.empty() ? home : config_.poses.front();
     for (const auto& marker :
-         expected_markers(model.arm, model.bent(shown), config_.picture.markers, view).markers)
+         expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm).markers)
       inside[i] += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
                            marker->pixel.y() <= view.height - 1
                        ? 1

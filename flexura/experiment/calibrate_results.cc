@@ -207,10 +207,8 @@ std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& r
   // Markers stay where they are on each section, as these are longer or shorter than believed.
   const Arm believed = experiment.arm.arm();
   const auto moved = [&](double s) {
-    const MaterialPoint point = material_point(believed, s);
-    double from = 0;
-    for (std::size_t i = 0; i < point.section; ++i) from += found.arm.sections[i].length;
-    return from + point.fraction * found.arm.sections[point.section].length;
+    const ArmState straight = ArmState::straight(found.arm.sections.size());
+    return arc_length_of(found.arm, straight, material_point(believed, s));
   };
   for (Marker& marker : file.arm.look.marker) marker.at = moved(marker.at);
   for (Disk& disk : file.arm.look.disk) disk.at = moved(disk.at);

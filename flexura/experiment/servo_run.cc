@@ -119,10 +119,8 @@ std::vector<double> band_places(const Experiment& experiment, const Arm& believe
   const Arm arm = experiment.arm.arm();
   std::vector<double> places;
   for (const Marker& marker : experiment.arm.look.markers(arm)) {
-    const MaterialPoint point = material_point(arm, marker.at);
-    double from = 0;
-    for (std::size_t i = 0; i < point.section; ++i) from += believed.sections[i].length;
-    places.push_back(from + point.fraction * believed.sections[point.section].length);
+    const ArmState straight = ArmState::straight(believed.sections.size());
+    places.push_back(arc_length_of(believed, straight, material_point(arm, marker.at)));
   }
   return places;
 }

@@ -28,8 +28,9 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
   print_row("reported spans with a sample worse than their worst value, by more than 1e-4 (m, or of it)",
             found.understated);
   print_row("the same, and the check says that it may be so", found.doubted);
-  std::printf("| what the worst values are short of, where the check says nothing (m, or of it), at most | %.1e |\n",
-              found.most_understated);
+  std::printf(
+      "| what the worst values are short of, where the check says nothing (m, or of it), at most | %.1e |\n",
+      found.most_understated);
   print_row("reported spans whose worst value is not there at its time", found.overstated);
   const bool is_right =
       found.missed + found.contacts_missed + found.refuted + found.understated + found.overstated == 0;

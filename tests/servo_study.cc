@@ -109,8 +109,8 @@ std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
   return wrong;
 }
 
-// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise, as far
-// as `doubt` goes, for the wanted shape: what cameras that are wrong leave at best.
+// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise,
+// as far as `doubt` goes, for the wanted shape: what cameras that are wrong leave at best.
 double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2>& truth,
                 const std::array<View, 2>& believed, const ViewDoubt& doubt) {
   ShapePrior prior;
@@ -130,7 +130,8 @@ double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2
         if (pixel) seen[i].points.push_back({*pixel, 0.1});
       }
       for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
-        if (const auto pixel = truth[i].project(backbone.pose(static_cast<double>(end) * backbone.length()).position))
+        if (const auto pixel =
+                truth[i].project(backbone.pose(static_cast<double>(end) * backbone.length()).position))
           seen[i].ends[end] = SeenEnd{*pixel, 0.1};
     }
     const ShapeEstimate estimate = estimator.follow(seen, {arm, wanted});
@@ -276,15 +277,15 @@ std::vector<double> of_done(const std::vector<Arrival>& arrivals, Of of) {
 }
 
 void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bool has_floor) {
-  const std::vector<double> settled = of_done(arrivals, [](const Arrival& a) { return a.settled; }),
+  const std::vector<double> settled = of_done(arrivals, [](const Arrival&a) { return a.settled; }),
                             over = of_done(arrivals,
-                                           [](const Arrival& a) { return 100 * std::max(0.0, a.overshoot); }),
-                            rms = of_done(arrivals, [](const Arrival& a) { return 100 * a.rms; }),
-                            most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
-                            tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
-                            limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
-                            believing = of_done(arrivals, [](const Arrival& a) { return 100 * a.believing; }),
-                            doubting = of_done(arrivals, [](const Arrival& a) { return 100 * a.doubting; });
+                                           [](const Arrival&a) { return 100 * std::max(0.0, a.overshoot); }),
+                            rms = of_done(arrivals, [](const Arrival&a) { return 100 * a.rms; }),
+                            most = of_done(arrivals, [](const Arrival&a) { return 100 * a.most; }),
+                            tip = of_done(arrivals, [](const Arrival&a) { return 100 * a.tip; }),
+                            limit = of_done(arrivals, [](const Arrival&a) { return a.limit; }),
+                            believing = of_done(arrivals, [](const Arrival&a) { return 100 * a.believing; }),
+                            doubting = of_done(arrivals, [](const Arrival&a) { return 100 * a.doubting; });
   const auto pair = [&](const std::vector<double>& values) {
     return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
   };

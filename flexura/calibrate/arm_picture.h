@@ -34,8 +34,8 @@ struct SeenArm {
   std::string reason;              ///< Why there are no markers; "" when there are.
 };
 
-/// Where an arm's markers and ends are to be seen, if the arm and the view are as believed. The markers' places
-/// are told along `marked`: the same arm, whose sections may have been taken for longer or shorter.
+/// Where an arm's markers and ends are to be seen, if the arm and the view are as believed. The markers'
+/// places are told along `marked`: the same arm, whose sections may have been taken for longer or shorter.
 [[nodiscard]] MarkerScene expected_markers(const Arm& arm, const ArmState& state,
                                            const std::vector<KnownMarker>& markers, const View& view,
                                            const Arm& marked);

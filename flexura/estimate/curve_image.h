@@ -16,8 +16,8 @@ class CurveImage {
  public:
   /// False when a knot is not seen by the lens.
   bool set(const View& view, const SpaceCurve& curve) { return set(view, {}, curve, -1, -1); }
-  /// The same with a view that is wrong by `error`, whose derivatives stand from column `own` on of `count`; -1:
-  /// nowhere.
+  /// The same with a view that is wrong by `error`, whose derivatives stand from column `own` on of `count`;
+  /// -1: nowhere.
   bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
            Eigen::Index count);
 

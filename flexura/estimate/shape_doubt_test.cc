@@ -4,8 +4,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "flexura/estimate/shape_estimator.h"
@@ -30,11 +32,13 @@ WrongCameras wrong_cameras(const Backbone& truth, TestRandom& random, double noi
   WrongCameras cameras{sightings_of(truth, random, noise), {}};
   for (Sighting& one : cameras.seen) {
     for (auto& end : one.ends) end->sigma = 0.1;
-    const ViewError believed{random.vector<3>(-0.5, 0.5) * most * one_degree, random.uniform(-0.01, 0.01) * most};
+    const ViewError believed{random.vector<3>(-0.5, 0.5) * most * one_degree,
+                             random.uniform(-0.01, 0.01) * most};
     const View is = one.view;
     one.view = corrected(is, believed);
     one.doubt = doubt;
-    cameras.errors.push_back({so3_log(one.view.X_WC.rotation.transpose() * is.X_WC.rotation), -believed.focal});
+    cameras.errors.push_back(
+        {so3_log(one.view.X_WC.rotation.transpose() * is.X_WC.rotation), -believed.focal});
   }
   return cameras;
 }
@@ -115,8 +119,7 @@ TEST(ShapeTracker, KnowsMoreWithEverySighting) {
       }
       // As drives tell: how far each section has gone, but for a hundredth.
       if (expected)
-        for (std::size_t i = 0; i < 3; ++i)
-          expected->bends[i] += 0.99 * (state.bends[i] - told.bends[i]);
+        for (std::size_t i = 0; i < 3; ++i) expected->bends[i] += 0.99 * (state.bends[i] - told.bends[i]);
       const ShapeEstimate found = tracker.look(seen, k / 30.0, expected);
       ASSERT_TRUE(found.is_found) << found.reason;
       expected = found.shape.state;
@@ -141,24 +144,134 @@ TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
     }
     for (Eigen::Vector2d& bend : state.bends) bend += random.vector<2>(-0.5, 0.5);
     const Backbone truth(prior.arm, state);
-    const ShapeEstimate found =
-        tracker.look(wrong_cameras(truth, random, 0.02, 0).seen, 11 / 30.0, expected);
+    const ShapeEstimate found = tracker.look(wrong_cameras(truth, random, 0.02, 0).seen, 11 / 30.0, expected);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 1e-3);
   });
 }
 
 TEST(ShapeTracker, ForgetsWhenTold) {
-  TestRandom random(1);
-  const ShapePrior prior{.arm = three_section_arm()};
-  const Backbone first(prior.arm, random_bends(random, prior.arm, 1.5)),
-      second(prior.arm, random_bends(random, prior.arm, 1.5));
-  const std::vector<Sighting> seen = wrong_cameras(second, random, 0.02).seen;
-  ShapeTracker fresh(prior, {}), used(prior, {});
-  (void)used.look(wrong_cameras(first, random, 0.02).seen, 0, std::nullopt);
-  used.forget();
-  const ArmState expected = random_bends(random, prior.arm, 1.5);
-  EXPECT_EQ(used.look(seen, 1, expected).shape.state.bends, fresh.look(seen, 1, expected).shape.state.bends);
+  int kept = 0;
+  for_random_cases(10, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone first(prior.arm, random_bends(random, prior.arm, 1.5)),
+        second(prior.arm, random_bends(random, prior.arm, 1.5));
+    const std::vector<Sighting> before = wrong_cameras(first, random, 0.02).seen,
+                                seen = wrong_cameras(second, random, 0.02).seen;
+    ShapeTracker fresh(prior, {}), used(prior, {}), keeps(prior, {});
+    (void)used.look(before, 0, std::nullopt);
+    (void)keeps.look(before, 0, std::nullopt);
+    used.forget();
+    const ArmState expected = random_bends(random, prior.arm, 1.5);
+    const auto alone = fresh.look(seen, 1, expected).shape.state.bends;
+    EXPECT_EQ(used.look(seen, 1, expected).shape.state.bends, alone);
+    if (keeps.look(seen, 1, expected).shape.state.bends != alone) ++kept;
+  });
+  EXPECT_GT(kept, 0);
+}
+
+TEST(ShapeTracker, LeavesAloneWhatIsNotDoubted) {
+  for_random_cases(5, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    ArmState state = random_bends(random, prior.arm, 1.5);
+    ShapeTracker tracker(prior, {});
+    std::optional<ArmState> expected;
+    for (int k = 0; k < 30; ++k) {
+      WrongCameras cameras = wrong_cameras(Backbone(prior.arm, state), random, 0.05);
+      for (Sighting& one : cameras.seen) one.doubt = {.turn = 0.02, .focal = 0};
+      const ShapeEstimate found = tracker.look(cameras.seen, k, expected);
+      for (const ViewError& error : found.shape.views) EXPECT_LT(std::abs(error.focal), 1e-4);
+      expected = found.shape.state;
+    }
+  });
+}
+
+TEST(ShapeTracker, NeedsAnArmWhoseLengthIsKnown) {
+  EXPECT_THROW(ShapeTracker({.arm = three_section_arm(), .is_length_known = false}, {}),
+               std::invalid_argument);
+}
+
+// The border of a straight or bent tube about its backbone's image, of three_section_arm's radius.
+std::vector<SeenBorder> borders_of(const Backbone& backbone, const View& view) {
+  std::vector<SeenBorder> borders;
+  constexpr int count = 30;
+  for (const double side : {-1.0, 1.0}) {
+    for (int k = 0; k <= count; ++k) {
+      const Pose X_WS = backbone.pose(backbone.length() * k / count);
+      const Eigen::Vector3d sight = (X_WS.position - view.X_WC.position).normalized(),
+                            across = sight.cross(X_WS.rotation.col(2)).normalized();
+      borders.push_back({view.project(X_WS.position + side * 0.02 * across).value()});
+    }
+  }
+  return borders;
+}
+
+// A picture without an axis: its silhouette's border counts, if it is the arm's.
+TEST(ShapeFromABorder, IsFollowed) {
+  for_random_cases(20, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    ArmState state = random_bends(random, prior.arm, 0.8);
+    ShapeTracker tracker(prior, {});
+    std::optional<ArmState> expected;
+    for (int k = 0; k < 12; ++k) {
+      if (k >= 4)
+        for (Eigen::Vector2d& bend : state.bends) bend += random.vector<2>(-0.02, 0.02);
+      const Backbone truth(prior.arm, state);
+      std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+      if (k >= 4) {
+        seen[1].borders = borders_of(truth, two_views()[1]);
+        seen[1].points.clear(), seen[1].ends = {};
+      }
+      const ShapeEstimate found = tracker.look(seen, k / 30.0, expected);
+      ASSERT_TRUE(found.is_found) << found.reason;
+      EXPECT_LT(shape_error(found.shape, truth), 1e-2) << k;
+      expected = found.shape.state;
+    }
+  });
+}
+
+std::vector<SeenBorder> disc(double radius) {
+  std::vector<SeenBorder> borders;
+  for (int k = 0; k < 40; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 40;
+    borders.push_back({{320 + radius * std::cos(angle), 240 + radius * std::sin(angle)}});
+  }
+  return borders;
+}
+
+TEST(ShapeFromABorder, IsNoneWhereItIsOfSomethingElse) {
+  for (const double radius : {12.0, 40.0}) {
+    for_random_cases(12, [&](TestRandom& random) {
+      const ShapePrior prior{.arm = three_section_arm()};
+      const ArmState state = random_bends(random, prior.arm, 1.5);
+      const Backbone truth(prior.arm, state);
+      std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+      ShapeTracker tracker(prior, {});
+      const std::optional<ArmState> expected = tracker.look(seen, 0, std::nullopt).shape.state;
+      seen[1].borders = disc(radius), seen[1].points.clear(), seen[1].ends = {};
+      EXPECT_FALSE(tracker.look(seen, 0.03, expected).is_found);
+      EXPECT_FALSE(ShapeEstimator(prior).estimate(seen).is_found);
+      EXPECT_FALSE(ShapeEstimator(unknown_arm(Eigen::Vector3d::Zero(), 1)).estimate(seen).is_found);
+      seen[1].borders.clear();
+      EXPECT_FALSE(tracker.look(seen, 0.06, expected).is_found);
+    });
+  }
+}
+
+// Something before the base in one picture: where the arm comes out is no base.
+TEST(ShapeWithDoubtfulViews, AreNotTurnedToWhereTheArmComesOut) {
+  for_random_cases(40, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.5));
+    std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+    Sighting& hidden = seen[1];
+    hidden = sighting_of(truth, two_views()[1], random, 0.02, {random.uniform(0.03, 0.25), 1});
+    hidden.doubt = doubt, hidden.ends[0] = SeenEnd{hidden.points.front().pixel};
+    const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
+    if (!found.is_found) return;
+    EXPECT_LT(shape_error(found.shape, truth), 0.02) << found.notes.size();
+    EXPECT_FALSE(found.notes.empty());
+  });
 }
 
 }  // namespace

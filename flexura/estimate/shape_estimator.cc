@@ -36,50 +36,108 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   if (!ray) return error;
   const Eigen::Vector3d looked = ray->homogeneous().normalized(),
                         there = (seen.view.X_WC.inverse() * p_WB).normalized();
-  error.turn = looked.cross(there);
+  // Farther off it is no base, but where the arm comes out from behind something.
+  constexpr double most = 3;  // Of the doubt.
+  const Eigen::Vector3d turn = looked.cross(there);
+  if (turn.norm() < most * seen.doubt.turn) error.turn = turn;
   return error;
 }
 
-// How much of a shape's images lies where nothing is seen, in pictures that show more than an axis: mean square of
-// the distances, bounded for each, px^2.
-double astray(std::span<const Sighting> sightings, const Shape& shape) {
-  constexpr double far = 3;  // px
-  // What is seen is thinned out to points so far from each other, px.
-  constexpr double apart = 4;
-  constexpr int count = 40;
-  double radius = 0;
-  for (const Section& section : shape.arm.sections) radius = std::max({radius, section.radius[0], section.radius[1]});
-  const Backbone backbone(shape.arm, shape.state);
-  double sum = 0;
-  int places = 0;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const Sighting& seen = sightings[i];
-    if (seen.borders.empty()) continue;
-    const View view = i < shape.views.size() ? corrected(seen.view, shape.views[i]) : seen.view;
-    for (int k = 0; k <= count; ++k, ++places) {
-      const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position;
-      const auto pixel = view.project(place);
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const CurvePoint& point : seen.points)
-        nearest = std::min(nearest, pixel ? (point.pixel - *pixel).norm() : nearest);
-      for (const SeenBorder& border : seen.borders)
-        nearest = std::min(nearest, pixel ? (border.pixel - *pixel).norm() : nearest);
-      const double half_width = radius * view.lens.intrinsics().fx / (place - view.X_WC.position).norm();
-      const double off = std::max(0.0, nearest - half_width - apart);
-      sum += std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
-    }
+// Whether what is wrong with the views is no more than they are doubted.
+bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape) {
+  constexpr double most = 5;         // standard deviations
+  constexpr double rounding = 1e-4;  // Of what is not doubted at all.
+  for (std::size_t i = 0; i < std::min(sightings.size(), shape.views.size()); ++i) {
+    const auto& [turn, focal] = sightings[i].doubt;
+    const ViewError& error = shape.views[i];
+    if (!(error.turn.norm() <= most * turn + rounding) || !(std::abs(error.focal) <= most * focal + rounding))
+      return false;
   }
-  return places > 0 ? sum / places : 0.0;
+  return true;
 }
 
-// The points of an axis as far from the camera as the base is.
-std::vector<Eigen::Vector3d> lifted(const Sighting& seen, const Eigen::Vector3d& p_WB) {
-  std::vector<Eigen::Vector3d> points = {p_WB};
-  const double depth = (seen.view.X_WC.inverse() * p_WB).z();
-  for (const CurvePoint& point : seen.points)
-    if (const auto ray = seen.view.lens.unproject(point.pixel))
-      points.push_back(seen.view.X_WC * (depth * ray->homogeneous()));
-  return points;
+bool have_axes(std::span<const Sighting> sightings) {
+  return std::ranges::all_of(sightings, [](const Sighting& seen) { return are_enough({&seen, 1}); });
+}
+
+// Where a shape is seen in one picture, and how far its borders are from there.
+struct SeenPlace {
+  std::optional<Eigen::Vector2d> pixel;
+  double half_width = 0;  // px
+};
+std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr int count = 80;
+  const Backbone backbone(shape.arm, shape.state);
+  const View view = corrected(seen.view, error);
+  double radius = 0;
+  for (const Section& section : shape.arm.sections)
+    radius = std::max({radius, section.radius[0], section.radius[1]});
+  std::vector<SeenPlace> places;
+  for (int k = 0; k <= count; ++k) {
+    const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position;
+    places.push_back(
+        {view.project(place), radius * view.lens.intrinsics().fx / (place - view.X_WC.position).norm()});
+  }
+  return places;
+}
+
+// How far from each other the points are that are left of what is seen, on average, px.
+double spacing(const Sighting& seen) {
+  double way = 0;
+  const auto count = static_cast<double>(std::max<std::size_t>(1, seen.points.size() + seen.borders.size()));
+  for (std::size_t i = 1; i < seen.points.size(); ++i)
+    way += (seen.points[i].pixel - seen.points[i - 1].pixel).norm();
+  for (std::size_t i = 1; i < seen.borders.size(); ++i)
+    way += (seen.borders[i].pixel - seen.borders[i - 1].pixel).norm();
+  return way / count;
+}
+
+// How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
+// px^2.
+double astray(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr double far = 3, gap = 2;  // px
+  const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  const double apart = gap + spacing(seen);
+  double sum = 0;
+  for (const auto& [pixel, half_width] : places) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const CurvePoint& point : seen.points)
+      nearest = std::min(nearest, pixel ? (point.pixel - *pixel).norm() : nearest);
+    for (const SeenBorder& border : seen.borders)
+      nearest = std::min(nearest, pixel ? (border.pixel - *pixel).norm() : nearest);
+    const double off = std::max(0.0, nearest - half_width - apart);
+    sum += std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
+  }
+  return sum / static_cast<double>(places.size());
+}
+
+ViewError error_of(const Shape& shape, std::size_t sighting) {
+  return sighting < shape.views.size() ? shape.views[sighting] : ViewError{};
+}
+
+// The same of all pictures that show more than an axis.
+double astray(std::span<const Sighting> sightings, const Shape& shape) {
+  double sum = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    if (!sightings[i].borders.empty()) sum += astray(sightings[i], error_of(shape, i), shape);
+  return sum;
+}
+
+// Whether the border of what a picture shows is the shape's, as far as it has no axis.
+bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr double most_astray = 1, close = 2, enough = 0.7;  // px^2, px, share
+  if (astray(seen, error, shape) > most_astray) return false;
+  const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  const auto is_explained = [&](const SeenBorder& border) {
+    double nearest = std::numeric_limits<double>::infinity(), half_width = 0;
+    for (const SeenPlace& place : places) {
+      const double distance = place.pixel ? (border.pixel - *place.pixel).norm() : nearest;
+      if (distance < nearest) nearest = distance, half_width = place.half_width;
+    }
+    return nearest < half_width + close;
+  };
+  const auto explained = static_cast<double>(std::ranges::count_if(seen.borders, is_explained));
+  return explained >= enough * static_cast<double>(seen.borders.size());
 }
 
 // Fills the places of the knots and their standard deviations; returns the arm's length.
@@ -119,7 +177,12 @@ bool ShapeEstimator::is_good(const ShapeFit& fit) const {
 std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
   std::vector<Sighting> result;
   for (const Sighting& seen : sightings) {
-    const Sighting thin = thinned(seen, config_.most_points);
+    Sighting thin = thinned(seen, config_.most_points);
+    // Of an arm that is no wider than its backbone borders tell nothing.
+    const auto has_radius = [](const Section& section) {
+      return section.radius[0] > 0 || section.radius[1] > 0;
+    };
+    if (!std::ranges::any_of(prior_.arm.sections, has_radius)) thin.borders.clear();
     result.push_back(prior_.is_base_position_known ? from_base(thin, prior_.arm.X_WB.position) : thin);
   }
   return result;
@@ -131,13 +194,7 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
   for (const Sighting& seen : sightings)
     views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
                                                   : ViewError{});
-  const auto has_axis = [](const Sighting& seen) { return !seen.points.empty(); };
-  if (prior_.is_base_position_known && !std::ranges::all_of(sightings, has_axis)) {
-    for (const Sighting& seen : sightings) {
-      const std::vector<Eigen::Vector3d> points = lifted(seen, prior_.arm.X_WB.position);
-      if (points.size() >= 2) shapes.push_back(shape_along(prior_, points));
-    }
-  } else if (sightings.size() >= 2) {
+  if (sightings.size() >= 2) {
     std::array<Sighting, 2> aimed = {sightings[0], sightings[1]};
     for (std::size_t i = 0; i < 2; ++i) aimed[i].view = corrected(aimed[i].view, views[i]);
     const Correspondence pairs = correspondence(aimed[0], aimed[1]);
@@ -153,10 +210,16 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
   }
   shapes.push_back(straight_shape(prior_));
   for (Shape& shape : shapes) shape.views = views;
+  const auto is_turned = [](const ViewError& error) { return error.turn.norm() > 0; };
+  if (!std::ranges::any_of(views, is_turned)) return shapes;
+  // What was taken for the base may be something else.
+  const std::size_t aimed = shapes.size();
+  for (std::size_t i = 0; i < aimed; ++i) shapes.emplace_back(shapes[i]).views.clear();
   return shapes;
 }
 
-std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightings, const Shape& shape) const {
+std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightings,
+                                               const Shape& shape) const {
   std::vector<Shape> shapes;
   const std::size_t sections = prior_.arm.sections.size();
   constexpr std::size_t most = 4;  // Of many short sections every so many.
@@ -167,37 +230,46 @@ std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightin
 
 ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   std::vector<Sighting> seen = prepared(sightings);
-  if (!are_enough(seen)) {
+  if (seen.empty() || !have_axes(seen)) {
     ShapeEstimate none;
     none.shape = straight_shape(prior_);
     none.reason = "the arm is not seen in every image";
     return none;
   }
   std::optional<ShapeFit> best;
+  double best_merit = 0;
   std::vector<Sighting> best_seen;
+  // What speaks against a shape, px^2.
+  const auto merit_of = [](std::span<const Sighting> what, const ShapeFit& fit) {
+    constexpr double impossible = 1e9;
+    return fit.cost + astray(what, fit.shape) + (are_as_doubted(what, fit.shape) ? 0.0 : impossible);
+  };
   const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
   for (std::size_t way = 0; way < ways; ++way) {
     if (way == 1) seen[1] = reversed(seen[1]);
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen)) {
       ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
-      fit.cost += astray(seen, fit.shape);
-      const bool is_last = is_good(fit);
-      if (!best || fit.cost < best->cost) best = std::move(fit), best_seen = seen;
+      const double merit = merit_of(seen, fit);
+      const bool is_last = is_good(fit) && are_as_doubted(seen, fit.shape);
+      if (!best || merit < best_merit) best = std::move(fit), best_merit = merit, best_seen = seen;
       if (is_last) break;
     }
   }
-  // What one picture shows in part may be one of several shapes: where all is not explained the others are tried.
+  // What one picture shows in part may be one of several shapes: where all is not explained the others are
+  // tried.
   constexpr int rounds = 2;
   constexpr double explained = 0.25;  // px^2
+  const auto is_explained = [&] { return is_good(*best) && best_merit < explained; };
   bool is_better = true;
-  for (int round = 0; round < rounds && is_better && !(is_good(*best) && best->cost < explained); ++round) {
+  for (int round = 0; round < rounds && is_better && !is_explained(); ++round) {
     is_better = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Shape& start : look_alikes(best_seen, Shape(best->shape))) {
       ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
-      fit.cost += astray(best_seen, fit.shape);
-      if (fit.cost < best->cost) best = std::move(fit), is_better = true;
+      const double merit = merit_of(best_seen, fit);
+      if (merit < best_merit) best = std::move(fit), best_merit = merit, is_better = true;
+      if (is_explained()) break;
     }
   }
   ShapeProblem problem(prior_, best_seen);
@@ -261,6 +333,16 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   const double sigma = root_mean_square(result.sigma);
   if (!(sigma < config_.hopeless * length)) {
     result.reason = "the images do not tell the shape";
+    return result;
+  }
+  if (!are_as_doubted(problem.sightings(), fit.shape)) {
+    result.reason = "the cameras would have to stand otherwise by far more than is doubted";
+    return result;
+  }
+  for (std::size_t i = 0; i < problem.sightings().size(); ++i) {
+    const Sighting& seen = problem.sightings()[i];
+    if (are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape)) continue;
+    result.reason = fmt::format("picture {} shows something else than the arm", i + 1);
     return result;
   }
   result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < most_scale);

@@ -26,8 +26,10 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
   std::size_t rows = 2 * prior.arm.sections.size() + looks_.size();
   for (const BandLook& look : looks_)
     if (look.marker >= first_looks_.size()) first_looks_.resize(look.marker + 1);
-  for (const Sighting& seen : sightings) rows += seen.points.size() + seen.borders.size() + 2 + 2 * seen.markers.size() + 4;
-  if (belief != nullptr && belief->covariance.cols() == variables_.count()) {
+  for (const Sighting& seen : sightings)
+    rows += seen.points.size() + seen.borders.size() + 2 + 2 * seen.markers.size() + 4;
+  if (belief != nullptr && belief->covariance.cols() == variables_.count() &&
+      belief->covariance.allFinite()) {
     const Eigen::LLT<Eigen::MatrixXd> known(belief->covariance);
     const Eigen::Index count = variables_.count();
     if (known.info() == Eigen::Success) {
@@ -93,16 +95,16 @@ void ShapeProblem::add_points(const Sighting& seen) {
   }
 }
 
-// A tube's silhouette is as far from its backbone's image as its radius is large there. Beyond the curve's ends
-// caps are seen, whose points are no farther than that.
+// A tube's silhouette is as far from its backbone's image as its radius is large there. Beyond the curve's
+// ends caps are seen, whose points are no farther than that.
 void ShapeProblem::add_borders(const Sighting& seen, const Arm& arm) {
   for (const SeenBorder& border : seen.borders) {
-    const CurveImage::Point near =
-        image_.nearest(border.pixel, Eigen::Vector2d::Zero(), image_.everywhere());
+    const CurveImage::Point near = image_.nearest(border.pixel, Eigen::Vector2d::Zero(), image_.everywhere());
     const auto section = std::min(static_cast<std::size_t>(near.place) / curve_.intervals_a_section(),
                                   arm.sections.size() - 1);
     const auto [at_base, at_end] = arm.sections[section].radius;
-    const double share = near.place / static_cast<double>(curve_.intervals_a_section()) - static_cast<double>(section);
+    const double share =
+        near.place / static_cast<double>(curve_.intervals_a_section()) - static_cast<double>(section);
     const Eigen::Vector2d off = border.pixel - near.pixel;
     const double distance = off.norm(), radius = (at_base + share * (at_end - at_base)) * near.scale;
     const bool is_beyond = near.place <= 0 || near.place >= image_.last();

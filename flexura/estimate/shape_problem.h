@@ -21,15 +21,16 @@ struct BandLook {
   std::optional<double> s;             ///< Where that is, m along the unstretched arm, when it is known.
 };
 
-/// How far a shape is from what was seen: distances of the seen points from the shape's images, of borders from
-/// its silhouettes, of ends and markers from theirs, and the prior's own, each in units of its standard deviation.
+/// How far a shape is from what was seen: distances of the seen points from the shape's images, of borders
+/// from its silhouettes, of ends and markers from theirs, and the prior's own, each in units of its standard
+/// deviation.
 class ShapeProblem {
  public:
   /// `sightings` outlive the problem. Of the bands those of `looks` count: where a marker is known they are
   /// compared with that place along the curve, otherwise with each other's. A belief stands for the doubts in
   /// the sightings' views, too; of a covariance that is none nothing counts.
-  ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
-               std::vector<BandLook> looks = {}, const ShapeBelief* belief = nullptr);
+  ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings, std::vector<BandLook> looks = {},
+               const ShapeBelief* belief = nullptr);
 
   /// What a row compares; the last two are not seen.
   enum class RowKind { point, border, end, marker, prior, belief };
@@ -46,6 +47,7 @@ class ShapeProblem {
   /// Standard deviation that a row was divided by: px, but for the prior's.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
   [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
+  [[nodiscard]] std::span<const Sighting> sightings() const { return sightings_; }
 
  private:
   void add_points(const Sighting& seen);

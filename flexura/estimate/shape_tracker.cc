@@ -2,14 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace flexura {
 
 ShapeTracker::ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config)
-    : arm_(prior.arm), config_(config), variables_(prior), estimator_(std::move(prior), estimator) {}
+    : prior_(prior),
+      arm_(prior.arm),
+      config_(config),
+      variables_(prior),
+      estimator_(std::move(prior), estimator) {
+  if (variables_.of_shape() != variables_.bends_a_section() * static_cast<Eigen::Index>(arm_.sections.size()))
+    throw std::invalid_argument("a tracker needs an arm whose base and length are known");
+}
 
-ShapeBelief ShapeTracker::gone_on(double time, const ArmState& expected) const {
+ShapeBelief ShapeTracker::gone_on(std::span<const Sighting> sightings, double time,
+                                  const ArmState& expected) const {
   ShapeBelief belief = *belief_;
   const double since = std::isfinite(time - time_) ? std::max(0.0, time - time_) : 0.0;
   auto variances = belief.covariance.diagonal();
@@ -20,10 +29,15 @@ ShapeBelief ShapeTracker::gone_on(double time, const ArmState& expected) const {
     variances.segment(static_cast<Eigen::Index>(i) * bends, bends).array() +=
         config_.drift * config_.drift * since + astray * astray;
   }
-  constexpr Eigen::Index of_view = 4;
-  for (Eigen::Index at = variables_.of_shape(); at < variances.size(); at += of_view) {
-    variances.segment<3>(at).array() += config_.turn_drift * config_.turn_drift * since;
-    variances[at + 3] += config_.focal_drift * config_.focal_drift * since;
+  // What is not doubted stays as it is.
+  const ShapeVariables variables(prior_, sightings);
+  for (std::size_t i = 0; i < sightings.size() && variables.count() == variances.size(); ++i) {
+    const Eigen::Index at = variables.of_view(i);
+    if (at < 0) continue;
+    const double turn = sightings[i].doubt.turn > 0 ? config_.turn_drift : 0,
+                 focal = sightings[i].doubt.focal > 0 ? config_.focal_drift : 0;
+    variances.segment<3>(at).array() += turn * turn * since;
+    variances[at + 3] += focal * focal * since;
   }
   belief.mean.state = expected;
   return belief;
@@ -40,7 +54,7 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
   ShapeEstimate best;
   bool is_surprising = false;
   if (expected && belief_) {
-    best = estimator_.update(sightings, gone_on(time, *expected));
+    best = estimator_.update(sightings, gone_on(sightings, time, *expected));
     is_surprising = best.is_found && !(best.surprise <= config_.most_surprise);
     if (is_as_usual(best) && !is_surprising) return best;
   }
@@ -56,6 +70,11 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
 
 ShapeEstimate ShapeTracker::look(std::span<const Sighting> sightings, double time,
                                  const std::optional<ArmState>& expected) {
+  if (!are_enough(sightings)) {
+    ShapeEstimate none;
+    none.reason = "the arm is not seen in every image";
+    return none;
+  }
   ShapeEstimate estimate = found(sightings, time, expected);
   if (!estimate.is_found) return estimate;
   belief_ = ShapeBelief{estimate.shape, estimate.covariance};

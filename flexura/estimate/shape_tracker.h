@@ -20,16 +20,17 @@ struct TrackerConfig {
   double most_surprise = 2.5;
 };
 
-/// An arm whose shape is seen again and again: what earlier sightings told of it, and of what is wrong with the
-/// cameras' views, counts in the next estimate (a Kalman filter whose update is the estimator's fit). What one
-/// pair of pictures hardly tells comes out of many. One thread at a time uses it.
+/// An arm whose shape is seen again and again: what earlier sightings told of it, and of what is wrong with
+/// the cameras' views, counts in the next estimate (a Kalman filter whose update is the estimator's fit).
+/// What one pair of pictures hardly tells comes out of many. One thread at a time uses it.
 class ShapeTracker {
  public:
+  /// std::invalid_argument: of the arm's base or length something is not known.
   ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config = {});
 
-  /// The shape at `time` (s), expected to be `expected`, if anything is: that of the estimate before, moved on
-  /// by what is known of the arm's motion since. Without that nothing earlier counts. Estimates that are found
-  /// have the views' errors in `shape.views`.
+  /// The shape at `time` (s), expected to be `expected`, if anything is: that of the estimate before, moved
+  /// on by what is known of the arm's motion since. Without that nothing earlier counts. Estimates that are
+  /// found have the views' errors in `shape.views`.
   [[nodiscard]] ShapeEstimate look(std::span<const Sighting> sightings, double time,
                                    const std::optional<ArmState>& expected);
 
@@ -38,11 +39,13 @@ class ShapeTracker {
 
  private:
   // What is believed of an arm that is expected to have gone on so.
-  [[nodiscard]] ShapeBelief gone_on(double time, const ArmState& expected) const;
+  [[nodiscard]] ShapeBelief gone_on(std::span<const Sighting> sightings, double time,
+                                    const ArmState& expected) const;
   [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
   [[nodiscard]] ShapeEstimate found(std::span<const Sighting> sightings, double time,
                                     const std::optional<ArmState>& expected);
 
+  ShapePrior prior_;
   Arm arm_;
   TrackerConfig config_;
   ShapeVariables variables_;

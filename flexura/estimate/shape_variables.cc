@@ -48,8 +48,7 @@ Eigen::VectorXd ShapeVariables::between(const Shape& from, const Shape& to) cons
   if (direction_ >= 0)
     step.segment<2>(direction_) =
         so3_log(from.arm.X_WB.rotation.transpose() * to.arm.X_WB.rotation).head<2>();
-  if (stretch_ >= 0)
-    step[stretch_] = std::log(to.state.stretches.front() / from.state.stretches.front());
+  if (stretch_ >= 0) step[stretch_] = std::log(to.state.stretches.front() / from.state.stretches.front());
   for (std::size_t i = 0; i < views_.size(); ++i) {
     if (views_[i] < 0) continue;
     const ViewError was = i < from.views.size() ? from.views[i] : ViewError{},

@@ -39,8 +39,8 @@ struct ShapeBelief {
 };
 
 /// The unknowns of a prior, in this order: the bends (x and y of each section; of planar arms x alone), the
-/// base's position (m, W), its turn about its own x and y (rad), the logarithm of the stretch; then of every view
-/// that is in doubt its error (turn in rad, focal).
+/// base's position (m, W), its turn about its own x and y (rad), the logarithm of the stretch; then of every
+/// view that is in doubt its error (turn in rad, focal).
 class ShapeVariables {
  public:
   explicit ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings = {});

@@ -44,8 +44,8 @@ struct SeenBorder {
   double sigma = 0.5;  ///< Standard deviation across the border, px; > 0.
 };
 
-/// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is: its
-/// frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
+/// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is:
+/// its frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
 struct ViewError {
   Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the optical frame as it is believed to be, rad.
   double focal = 0;
@@ -75,8 +75,8 @@ struct Sighting {
   std::vector<SeenBorder> borders = {};
 };
 
-/// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of what it
-/// shows is enough.
+/// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of
+/// what it shows is enough.
 [[nodiscard]] bool are_enough(std::span<const Sighting> sightings);
 
 /// The same, followed from the other end.

@@ -34,7 +34,7 @@ class LoggedServo : public ServoWatcher {
       ServoSightingMessage message;
       message.time = sight.frames[i].time, message.camera = run_.cameras[i];
       message.frame = sight.frames[i].number;
-      if (!sight.reasons[i].empty()) message.reason = sight.reasons[i];
+      if (!sight.estimate.is_found && !sight.reasons[i].empty()) message.reason = sight.reasons[i];
       const Sighting few = thinned(sight.seen[i], most_points);
       for (const CurvePoint& point : few.points)
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});

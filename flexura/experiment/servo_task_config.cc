@@ -109,17 +109,16 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
 }
 
 const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*) {
-  static const auto table =
-      Table<ServoDoubtConfig>(
-          "doubt",
-          "How wrong the cameras may be, as they are believed to stand: standard deviations. What is wrong is "
-          "estimated with the arm's shape; 0: nothing is.")
-          .field("turn", &ServoDoubtConfig::turn,
-                 {.meaning = "Of how a camera is turned, about each axis of its view.",
-                  .unit = Unit::radian,
-                  .range = between(0, 1)})
-          .field("focal", &ServoDoubtConfig::focal,
-                 {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
+  static const auto table = Table<ServoDoubtConfig>("doubt",
+                                                    "How wrong the cameras may be, as they are believed to "
+                                                    "stand: standard deviations. What is wrong is "
+                                                    "estimated with the arm's shape; 0: nothing is.")
+                                .field("turn", &ServoDoubtConfig::turn,
+                                       {.meaning = "Of how a camera is turned, about each axis of its view.",
+                                        .unit = Unit::radian,
+                                        .range = between(0, 1)})
+                                .field("focal", &ServoDoubtConfig::focal,
+                                       {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
   return table;
 }
 

@@ -26,8 +26,8 @@ struct ServoTargetConfig : ShapeConfig {
   std::vector<std::string> pictures;  ///< Two files, of the task's cameras in this order.
 };
 
-/// How wrong the cameras may be, as the task believes them: standard deviations of a view's turn about each axis,
-/// rad, and of its focal length, a share (ViewDoubt).
+/// How wrong the cameras may be, as the task believes them: standard deviations of a view's turn about each
+/// axis, rad, and of its focal length, a share (ViewDoubt).
 struct ServoDoubtConfig {
   double turn = 0.02;
   double focal = 0.02;

@@ -67,7 +67,8 @@ struct ServoConfig {
   double settle = 0.5;               ///< The error has to stay below it for so long, s.
   bool follows = false;              ///< Heads turn so that the arm stays in the middle of the pictures.
   std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, rising.
-  /// In each camera's view: about where the base is seen, and how the arm goes on from it, tells what is wrong.
+  /// In each camera's view: about where the base is seen, and how the arm goes on from it, tells what is
+  /// wrong.
   ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
   double step = 1.0 / 30;  ///< From one command to the next, s.
   std::optional<Drive> drive = {};

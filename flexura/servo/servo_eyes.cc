@@ -157,8 +157,8 @@ class AxisStretches {
   std::vector<Eigen::AlignedBox2d> boxes_;  // Of each stretch's points and the next one's first.
 };
 
-// What is not measured, at the ends and behind something, is off by as much as the nearest that is, if cameras
-// are wrong.
+// What is not measured, at the ends and behind something, is off by as much as the nearest that is, if
+// cameras are wrong.
 double offset_near(const std::vector<Place>& places, const std::vector<double>& shares, std::size_t k) {
   double offset = 0, nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -23,9 +23,9 @@ class ServoEyes {
   ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>& cameras, std::vector<double> markers,
             const ViewDoubt& doubt);
 
-  /// What the pictures show of the arm, seen by these views, of which `guess` is expected (ShapeTracker::look).
-  /// Where a picture shows no arm, its reason is set and the estimate is not found. Where it is found, the sightings' views
-  /// are without the errors that were found with it.
+  /// What the pictures show of the arm, seen by these views, of which `guess` is expected
+  /// (ShapeTracker::look). Where a picture shows no arm, its reason is set and the estimate is not found.
+  /// Where it is found, the sightings' views are without the errors that were found with it.
   [[nodiscard]] ServoSight look(const std::array<Frame, 2>& frames, const std::array<View, 2>& views,
                                 const std::optional<ArmState>& guess);
 

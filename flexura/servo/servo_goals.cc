@@ -61,8 +61,7 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   if (frames[0].picture->index() != frames[1].picture->index() || !is_taken_by(0, 1) || !is_taken_by(1, 0))
     return "";
   const ShapeEstimate given = eyes.as_believed(sight, views),
-                      other =
-                          eyes.as_believed(eyes.look({frames[1], frames[0]}, views, std::nullopt), views);
+                      other = eyes.as_believed(eyes.look({frames[1], frames[0]}, views, std::nullopt), views);
   const bool is_worse = !given.is_found || given.scale >= far_worse * other.scale;
   if (!other.is_found || other.scale > noise || !is_worse) return "";
   const std::string than = given.is_found ? fmt::format(", not {:.2g} px", given.rms) : "";

@@ -29,7 +29,7 @@ struct ServoSight {
   double time = 0;               ///< Middle of the exposures, s.
   ArmState desired;              ///< Then.
   std::array<Frame, 2> frames;   ///< Of both cameras.
-  std::array<Sighting, 2> seen;  ///< Median axes and bands, in the views as believed, less their errors.
+  std::array<Sighting, 2> seen;  ///< Axes, bands and borders, in the views as believed, less their errors.
   ShapeEstimate estimate;
   std::array<std::string, 2> reasons;  ///< Why a picture shows no arm; "" when it does.
 };

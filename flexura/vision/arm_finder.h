@@ -60,8 +60,8 @@ struct ArmSighting {
   double contrast = 0;             ///< Across its borders, of 0 to 255.
   bool is_closed = false;          ///< The axis comes back to where it starts: it has no ends.
   double covered = 0;              ///< The share of the silhouette that the axis and its widths explain.
-  /// Where that is little: the points of the figure's outer border that they do not explain; all of them where
-  /// there is no axis.
+  /// Where that is little: the points of the figure's outer border that they do not explain; all of them
+  /// where there is no axis.
   std::vector<BorderPoint> unexplained;
 
   [[nodiscard]] bool is_found() const { return !axis.empty(); }

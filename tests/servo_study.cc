@@ -277,15 +277,15 @@ std::vector<double> of_done(const std::vector<Arrival>& arrivals, Of of) {
 }
 
 void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bool has_floor) {
-  const std::vector<double> settled = of_done(arrivals, [](const Arrival&a) { return a.settled; }),
+  const std::vector<double> settled = of_done(arrivals, [](const Arrival& a) { return a.settled; }),
                             over = of_done(arrivals,
-                                           [](const Arrival&a) { return 100 * std::max(0.0, a.overshoot); }),
-                            rms = of_done(arrivals, [](const Arrival&a) { return 100 * a.rms; }),
-                            most = of_done(arrivals, [](const Arrival&a) { return 100 * a.most; }),
-                            tip = of_done(arrivals, [](const Arrival&a) { return 100 * a.tip; }),
-                            limit = of_done(arrivals, [](const Arrival&a) { return a.limit; }),
-                            believing = of_done(arrivals, [](const Arrival&a) { return 100 * a.believing; }),
-                            doubting = of_done(arrivals, [](const Arrival&a) { return 100 * a.doubting; });
+                                           [](const Arrival& a) { return 100 * std::max(0.0, a.overshoot); }),
+                            rms = of_done(arrivals, [](const Arrival& a) { return 100 * a.rms; }),
+                            most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
+                            tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
+                            limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
+                            believing = of_done(arrivals, [](const Arrival& a) { return 100 * a.believing; }),
+                            doubting = of_done(arrivals, [](const Arrival& a) { return 100 * a.doubting; });
   const auto pair = [&](const std::vector<double>& values) {
     return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
   };

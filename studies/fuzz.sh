@@ -44,9 +44,12 @@ run_part() {
 }
 export -f run_part parts_of is_of_scenes
 export cases seed
+parts=()
 for target in "${targets[@]}"; do
-  for ((part = 0; part < $(parts_of "$target"); ++part)); do echo "$target $part"; done
-done | xargs -P "$(nproc)" -L1 bash -euo pipefail -c 'run_part "$0" "$1"'
+  for ((part = 0; part < $(parts_of "$target"); ++part)); do parts+=("$target $part"); done
+done
+# shellcheck disable=SC2016 # It is that shell which puts its words in.
+printf '%s\n' "${parts[@]}" | xargs -P "$(nproc)" -L1 bash -euo pipefail -c 'run_part "$@"' run_part
 
 # The row of a target: from the log of this run, or the one that the page has.
 row_of() {

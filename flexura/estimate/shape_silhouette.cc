@@ -1,0 +1,95 @@
+#include "flexura/estimate/shape_silhouette.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+// Where a shape is seen in one picture, and how far its borders are from there.
+struct SeenPlace {
+  std::optional<Eigen::Vector2d> pixel;
+  double half_width = 0;  // px
+};
+std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr int count = 80;
+  const Backbone backbone(shape.arm, shape.state);
+  const View view = corrected(seen.view, error);
+  double radius = 0;
+  for (const Section& section : shape.arm.sections)
+    radius = std::max({radius, section.radius[0], section.radius[1]});
+  std::vector<SeenPlace> places;
+  for (int k = 0; k <= count; ++k) {
+    const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position;
+    places.push_back(
+        {view.project(place), radius * view.lens.intrinsics().fx / (place - view.X_WC.position).norm()});
+  }
+  return places;
+}
+
+// How far from each other the points are that are left of what is seen, on average, px.
+double spacing(const Sighting& seen) {
+  double way = 0;
+  const auto count = static_cast<double>(std::max<std::size_t>(1, seen.points.size() + seen.borders.size()));
+  for (std::size_t i = 1; i < seen.points.size(); ++i)
+    way += (seen.points[i].pixel - seen.points[i - 1].pixel).norm();
+  for (std::size_t i = 1; i < seen.borders.size(); ++i)
+    way += (seen.borders[i].pixel - seen.borders[i - 1].pixel).norm();
+  return way / count;
+}
+
+// How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
+// px^2.
+double astray(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr double far = 3, gap = 2;  // px
+  const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  const double apart = gap + spacing(seen);
+  double sum = 0;
+  for (const auto& [pixel, half_width] : places) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const CurvePoint& point : seen.points)
+      nearest = std::min(nearest, pixel ? (point.pixel - *pixel).norm() : nearest);
+    for (const SeenBorder& border : seen.borders)
+      nearest = std::min(nearest, pixel ? (border.pixel - *pixel).norm() : nearest);
+    const double off = std::max(0.0, nearest - half_width - apart);
+    sum += std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
+  }
+  return sum / static_cast<double>(places.size());
+}
+
+}  // namespace
+
+ViewError error_of(const Shape& shape, std::size_t sighting) {
+  return sighting < shape.views.size() ? shape.views[sighting] : ViewError{};
+}
+
+double astray(std::span<const Sighting> sightings, const Shape& shape) {
+  double sum = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    if (!sightings[i].borders.empty()) sum += astray(sightings[i], error_of(shape, i), shape);
+  return sum;
+}
+
+bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  constexpr double most_astray = 1, close = 2, enough = 0.7;  // px^2, px, share
+  if (astray(seen, error, shape) > most_astray) return false;
+  const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  const auto is_explained = [&](const SeenBorder& border) {
+    double nearest = std::numeric_limits<double>::infinity(), half_width = 0;
+    for (const SeenPlace& place : places) {
+      const double distance = place.pixel ? (border.pixel - *place.pixel).norm() : nearest;
+      if (distance < nearest) nearest = distance, half_width = place.half_width;
+    }
+    return nearest < half_width + close;
+  };
+  const auto explained = static_cast<double>(std::ranges::count_if(seen.borders, is_explained));
+  return explained >= enough * static_cast<double>(seen.borders.size());
+}
+
+}  // namespace flexura

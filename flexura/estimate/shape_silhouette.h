@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/sighting.h"
+
+namespace flexura {
+
+/// What is wrong with the view of a shape's sighting `sighting`; nothing where that is not told.
+[[nodiscard]] ViewError error_of(const Shape& shape, std::size_t sighting);
+
+/// How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
+/// px^2; summed over the pictures that show more than an axis (Sighting::borders).
+[[nodiscard]] double astray(std::span<const Sighting> sightings, const Shape& shape);
+
+/// Whether the borders of a sighting are the shape's, most of them, and the shape is seen within them.
+[[nodiscard]] bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape);
+
+}  // namespace flexura

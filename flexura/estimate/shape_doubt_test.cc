@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -151,8 +151,11 @@ TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
 }
 
 TEST(ShapeTracker, ForgetsWhenTold) {
+  // Of so many seeds some tell a tracker that forgets from one that does not.
+  constexpr std::uint64_t seeds = 10;
   int kept = 0;
-  for_random_cases(10, [&](TestRandom& random) {
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    TestRandom random(seed);
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone first(prior.arm, random_bends(random, prior.arm, 1.5)),
         second(prior.arm, random_bends(random, prior.arm, 1.5));
@@ -164,9 +167,9 @@ TEST(ShapeTracker, ForgetsWhenTold) {
     used.forget();
     const ArmState expected = random_bends(random, prior.arm, 1.5);
     const auto alone = fresh.look(seen, 1, expected).shape.state.bends;
-    EXPECT_EQ(used.look(seen, 1, expected).shape.state.bends, alone);
+    EXPECT_EQ(used.look(seen, 1, expected).shape.state.bends, alone) << seed;
     if (keeps.look(seen, 1, expected).shape.state.bends != alone) ++kept;
-  });
+  }
   EXPECT_GT(kept, 0);
 }
 

@@ -26,4 +26,28 @@ export function rig_tests(start: () => Promise<Served>, fake: () => FakeServer |
   test('the browser had nothing to complain of, the security policy neither', () => {
     expect(opened.complaints).toEqual([]);
   });
+
+  test('what is not the page’s own does not run, and nothing is asked of others', async () => {
+    const { ran, stopped } = await opened.page.evaluate(async () => {
+      const violated: string[] = [];
+      addEventListener('securitypolicyviolation', ({ effectiveDirective }) => violated.push(effectiveDirective));
+      document.body.dataset['ran'] = 'nothing';
+      const script = document.createElement('script');
+      script.textContent = 'document.body.dataset.ran = "a script"';
+      const button = document.createElement('button');
+      button.setAttribute('onclick', 'document.body.dataset.ran = "a handler"');
+      document.body.append(script, button);
+      button.click();
+      const elsewhere = 'http://127.0.0.1:9/';
+      const image = new Image();
+      image.src = `${elsewhere}picture.png`;
+      await fetch(elsewhere).catch(() => null);
+      await new Promise((done) => setTimeout(done, 200));
+      script.remove();
+      button.remove();
+      return { ran: document.body.dataset['ran'], stopped: violated };
+    });
+    expect(ran).toBe('nothing');
+    expect(stopped).toEqual(expect.arrayContaining(['script-src-elem', 'script-src-attr', 'img-src', 'connect-src']));
+  });
 }

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_tracker.h"
 #include "flexura/vision/arm_finder.h"
 #include "tests/support/seen_arms.h"
 
@@ -22,6 +24,7 @@ struct Film {
   std::array<View, 2> views;
   std::vector<std::array<Image<std::uint8_t>, 2>> frames;
   std::vector<std::vector<Sighting>> sightings;
+  std::vector<ArmState> states;
 };
 
 Film make_film() {
@@ -36,6 +39,7 @@ Film make_film() {
     const double swing = 0.03 * static_cast<double>(i < count / 2 ? i : count - i);
     ArmState state = ArmState::straight(3);
     state.bends = {{0.5 + swing, 0.4}, {-0.9, 0.6 + swing}, {0.8, -0.7 - swing}};
+    film.states.push_back(state);
     Scene scene;
     scene.background = Color::Constant(0.8);
     scene.arm.tube = tube_of(film.arm, Backbone(film.arm, state));
@@ -91,6 +95,28 @@ void fit_following(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(fit_following)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// As a servo does it: what is wrong with the views is estimated, too, what was seen before counts, and drives
+// tell how the arm went on.
+void fit_tracking(benchmark::State& state) {
+  std::vector<std::vector<Sighting>> sightings = film().sightings;
+  for (std::vector<Sighting>& seen : sightings)
+    for (Sighting& one : seen) one.doubt = {.turn = 0.02, .focal = 0.02};
+  ShapeTracker tracker({.arm = film().arm}, {});
+  std::optional<ArmState> expected;
+  std::size_t i = 0, iterations = 0;
+  for (auto _ : state) {
+    const std::size_t now = i % sightings.size(), next = (i + 1) % sightings.size();
+    const ShapeEstimate found = tracker.look(sightings[now], static_cast<double>(i++) / 30, expected);
+    require(found), iterations += static_cast<std::size_t>(found.iterations);
+    expected = found.shape.state;
+    for (std::size_t k = 0; k < expected->bends.size(); ++k)
+      expected->bends[k] += film().states[next].bends[k] - film().states[now].bends[k];
+  }
+  state.counters["iterations"] = static_cast<double>(iterations) / static_cast<double>(state.iterations());
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(fit_tracking)->Unit(benchmark::kMicrosecond);
 
 std::vector<Sighting> looks_at(std::size_t frame, std::array<ArmFinder, 2>& finders) {
   std::vector<Sighting> seen;

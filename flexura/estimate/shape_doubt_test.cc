@@ -261,6 +261,21 @@ TEST(ShapeFromABorder, IsNoneWhereItIsOfSomethingElse) {
   }
 }
 
+// A short axis of something else in one picture: the other one alone would tell the shape.
+TEST(ShapeTracker, RefusesAnAxisOfSomethingElse) {
+  for_random_cases(20, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const ArmState state = random_bends(random, prior.arm, 1.5);
+    std::vector<Sighting> seen = wrong_cameras(Backbone(prior.arm, state), random, 0.02, 0).seen;
+    ShapeTracker tracker(prior, {});
+    ArmState expected = tracker.look(seen, 0, std::nullopt).shape.state;
+    for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.1, 0.1);
+    seen[1].points.clear(), seen[1].ends = {};
+    for (int k = 0; k < 10; ++k) seen[1].points.push_back({{100.0 + k, 60}, 0.05});
+    EXPECT_FALSE(tracker.look(seen, 0.03, expected).is_found);
+  });
+}
+
 // Something before the base in one picture: where the arm comes out is no base.
 TEST(ShapeWithDoubtfulViews, AreNotTurnedToWhereTheArmComesOut) {
   for_random_cases(40, [](TestRandom& random) {

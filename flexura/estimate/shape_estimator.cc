@@ -262,7 +262,11 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   for (std::size_t i = 0; i < problem.sightings().size(); ++i) {
     const Sighting& seen = problem.sightings()[i];
-    if (are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape)) continue;
+    // Most of one picture's axis is somewhere else.
+    constexpr double most_doubted = 0.6;
+    const bool is_other = fit.doubted_in[i] > most_doubted;
+    if (!is_other && (are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape)))
+      continue;
     result.reason = fmt::format("picture {} shows something else than the arm", i + 1);
     return result;
   }

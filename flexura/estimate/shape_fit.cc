@@ -131,6 +131,7 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
   double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0, against = 0, beliefs = 0,
          on_axes = 0;
   sizes_.clear();
+  std::vector<double> seen_in(problem.sightings().size()), believed_in(seen_in.size());
   Eigen::VectorXd told = Eigen::VectorXd::Zero(problem.rows());  // 1: known before.
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double r = problem.residuals()[i], px = r * problem.sigma(i);
@@ -145,15 +146,17 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
       if (std::abs(r) > cutoff) ++fit.contradicted;
       continue;
     }
-    ++points, far += bounded_square(px, far_away);
+    ++points, far += bounded_square(px, far_away), ++seen_in[problem.sighting(i)];
     if (!(std::abs(r) < cutoff)) continue;
-    ++believed;
+    ++believed, ++believed_in[problem.sighting(i)];
     if (kind == RowKind::point) ++on_axes, square_px += px * px, sizes_.push_back(r);
   }
   fit.scale = cutoff / doubtful;
   fit.cost = far / std::max(points, 1.0);
   fit.rms = on_axes > 0 ? std::sqrt(square_px / on_axes) : 0.0;
   fit.doubted = points > 0 ? 1 - believed / points : 0.0;
+  for (std::size_t i = 0; i < seen_in.size(); ++i)
+    fit.doubted_in.push_back(seen_in[i] > 0 ? 1 - believed_in[i] / seen_in[i] : 0.0);
   fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
   const double correlated = correlation_factor(sizes_);
   const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));

@@ -13,10 +13,11 @@ struct ShapeFit {
   Shape shape;
   bool is_settled = false;  ///< No step leads further down.
   int iterations = 0;
-  double scale = 1;            ///< Of the residuals, in units of their sigmas: robust, at least 1.
-  double cost = 0;             ///< Mean over the points of their distances squared, bounded for each, px^2.
-  double rms = 0;              ///< Of the believed points' distances, px.
-  double doubted = 0;          ///< The share of the points that are taken for something else's.
+  double scale = 1;    ///< Of the residuals, in units of their sigmas: robust, at least 1.
+  double cost = 0;     ///< Mean over the points of their distances squared, bounded for each, px^2.
+  double rms = 0;      ///< Of the believed points' distances, px.
+  double doubted = 0;  ///< The share of the points that are taken for something else's.
+  std::vector<double> doubted_in = {};  ///< The same of each sighting.
   double surprise = 0;         ///< Of a belief: root mean square of what speaks against it, in its sigmas.
   int contradicted = 0;        ///< Ends and markers that are seen elsewhere than the shape has them.
   Eigen::MatrixXd covariance;  ///< Of the unknowns; of infinite entries where the sightings tell nothing.

@@ -43,6 +43,7 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
   derivatives_.resize(static_cast<Eigen::Index>(rows), variables_.count());
   kinds_.resize(rows);
   sigmas_.resize(rows);
+  of_sighting_.resize(rows);
   row_.resize(variables_.count());
 }
 
@@ -54,11 +55,13 @@ bool ShapeProblem::linearise(const Shape& shape) {
     const Sighting& seen = sightings_[i];
     const ViewError error = i < shape.views.size() ? shape.views[i] : ViewError{};
     if (!image_.set(seen.view, error, curve_, variables_.of_view(i), variables_.count())) return false;
+    const auto first = static_cast<std::ptrdiff_t>(count_);
     add_points(seen);
     add_borders(seen, shape.arm);
     add_ends(seen);
     add_markers(seen, shape.arm);
     add_bands(i, shape.arm);
+    std::fill(of_sighting_.begin() + first, of_sighting_.begin() + static_cast<std::ptrdiff_t>(count_), i);
     if (seen.doubt.is_any() && !believed_) add_doubt(i, error);
   }
   if (std::isfinite(prior_.curvature_step)) add_prior(shape);

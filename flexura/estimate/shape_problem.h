@@ -46,6 +46,10 @@ class ShapeProblem {
   [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
   /// Standard deviation that a row was divided by: px, but for the prior's.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
+  /// Whose row it is, of those that are seen.
+  [[nodiscard]] std::size_t sighting(Eigen::Index row) const {
+    return of_sighting_[static_cast<std::size_t>(row)];
+  }
   [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
   [[nodiscard]] std::span<const Sighting> sightings() const { return sightings_; }
 
@@ -75,6 +79,7 @@ class ShapeProblem {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> derivatives_;
   std::vector<RowKind> kinds_;
   std::vector<double> sigmas_;
+  std::vector<std::size_t> of_sighting_;
   Eigen::RowVectorXd row_;
   // Where along the curve a marker was seen first.
   struct FirstLook {

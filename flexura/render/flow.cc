@@ -69,6 +69,7 @@ class Carrier {
 
 Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view) {
   check(scene);
+  check_camera(view.X_WC);
   const Stage& stage = renderer.stage();
   const Carrier carrier(*stage.scene, scene);
   const RayField& rays = renderer.rays();

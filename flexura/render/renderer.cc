@@ -1,10 +1,6 @@
 #include "flexura/render/renderer.h"
 
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "flexura/render/cell.h"
 #include "flexura/render/tracer.h"
@@ -29,10 +25,7 @@ void fit(int width, int height, int channels, Image<float>& image) {
 
 void Renderer::prepare(const Scene& scene, const View& view) {
   check(scene);
-  const Eigen::Matrix3d& R = view.X_WC.rotation;
-  if (!view.X_WC.position.allFinite() || !R.allFinite() ||
-      !((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6))
-    throw std::invalid_argument("the camera's pose is not a finite position and a rotation");
+  check_camera(view.X_WC);
   view_ = view;
   rays_.set(view.lens, view.width, view.height);
   build_stage(scene, view.X_WC, rays_.largest_step(), stage_);

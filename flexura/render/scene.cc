@@ -191,4 +191,6 @@ void check(const Scene& scene) {
   require_color(scene.background, {"background"});
 }
 
+void check_camera(const Pose& X_WC) { require_pose(X_WC, {"camera"}); }
+
 }  // namespace flexura

@@ -95,5 +95,7 @@ struct Scene {
 /// positive, sizes and places beyond 1e9 m, a direction of length zero, a rotation that is none, tube arcs
 /// that do not continue each other.
 void check(const Scene& scene);
+/// The same of where a camera stands.
+void check_camera(const Pose& X_WC);
 
 }  // namespace flexura

@@ -1,0 +1,85 @@
+// Scenes and cameras that cannot be drawn, refused by a line that names the part and the value.
+#include "flexura/render/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "flexura/render/renderer.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/render_scenes.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Sight {
+  Scene scene;
+  View view;
+};
+
+// What the renderer says of it; nothing if it draws it.
+std::string refusal_of(const Sight& sight) {
+  Renderer renderer;
+  LightImage picture;
+  try {
+    renderer.render(sight.scene, sight.view, PixelKind::gray, picture);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Scene, RefusesWhatCannotBeDrawn) {
+  TestRandom random(1);
+  const BentArm bent = random_bent_arm(random, 0.003, 0.003);
+  const Sight good = {crowded_scene(random, bent, bent.backbone()), random_view_of(random, bent.backbone())};
+  ASSERT_EQ(refusal_of(good), "");
+
+  struct Case {
+    std::function<void(Sight&)> change;
+    std::string words;
+  };
+  const std::vector<Case> cases = {
+      {[](Sight& s) { s.view.X_WC.position.x() = nan; }, "camera: the pose"},
+      {[](Sight& s) { s.view.X_WC.position.x() = -3e154; }, "camera: (-3e+154"},
+      {[](Sight& s) { s.view.X_WC.rotation.col(0) *= -1; }, "camera: the pose"},
+      {[](Sight& s) { s.view.width = 0; }, "0 x"},
+      {[](Sight& s) { s.scene.arm.tube[0].radius[1] = 0; }, "the arm's arc 0, radius: 0"},
+      {[](Sight& s) { s.scene.arm.tube[1].arc.X_WS.position.x() += 1e-3; },
+       "the arm's arc 1 does not continue"},
+      {[](Sight& s) { s.scene.arm.tube[1].arc.length = 2e9; }, "the arm's arc 1, length: 2000000000"},
+      {[](Sight& s) { s.scene.arm.tube[0].arc.bend.x() = nan; }, "the arm's arc 0, bend: nan"},
+      {[](Sight& s) { s.scene.arm.albedo[0] = -1; }, "arm: (-1"},
+      {[](Sight& s) { s.scene.arm.markers.push_back({.s_from = 0.2, .s_to = 0.1}); }, "from 0.2 to 0.1"},
+      {[](Sight& s) { s.scene.arm.disks.push_back({.s = 0.1, .radius = 0.01, .thickness = 0}); },
+       "disk, thickness"},
+      {[](Sight& s) { s.scene.screens.at(0).size = {1, -1}; }, "screen, size: -1"},
+      {[](Sight& s) { s.scene.etalon.emplace().radius = nan; }, "etalon, radius: nan"},
+      {[](Sight& s) {
+         s.scene.obstacles.push_back({.shape = SphereConfig{.center = {0, 2e9, 0}, .radius = 1}});
+       },
+       "sphere, center: (0, 2000000000, 0)"},
+      {[](Sight& s) { s.scene.obstacles.push_back({.shape = PlaneConfig{.point = {}, .normal = {}}}); },
+       "plane, normal's length: 0"},
+      {[](Sight& s) { s.scene.light.direction.setZero(); }, "light, direction's length: 0"},
+      {[](Sight& s) { s.scene.light.shadow = 2; }, "light: shadow 2"},
+      {[](Sight& s) { s.scene.background[2] = std::numeric_limits<double>::infinity(); }, "background"},
+  };
+  for (const Case& one : cases) {
+    Sight bad = good;
+    one.change(bad);
+    EXPECT_THAT(refusal_of(bad), HasSubstr(one.words));
+  }
+}
+
+}  // namespace
+}  // namespace flexura

@@ -75,7 +75,7 @@ ArmState random_target(TestRandom& random) {
   return state;
 }
 
-// Steps between sights are of a frame; sensors as the issue of real cameras has them: late, short exposures.
+// Steps between sights are of a frame; sensors as real cameras have them: late, short exposures.
 LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
   LoopRig rig = arcs_cameras(wrong);
   rig.sensor = ", delay = 0.06, exposure = 0.002", rig.frame_rate = 30;

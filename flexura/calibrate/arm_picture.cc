@@ -9,7 +9,6 @@
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
 #include "flexura/vision/backbone_image.h"
-#include "flexura/vision/markers.h"
 #include "flexura/vision/picture_file.h"
 
 namespace flexura {
@@ -66,8 +65,7 @@ MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::v
   return scene;
 }
 
-SeenArm ArmPicture::see(const Picture& picture, const Lens& lens, const MarkerScene& expected) {
-  SeenArm seen;
+ArmFigure ArmPicture::look(const Picture& picture) {
   const auto find = [&]<typename Value>(const Image<Value>& image) -> const ArmSighting& {
     const Image<Value> gray = image.channels() == 1 ? image : gray_picture(image);
     if constexpr (sizeof(Value) == 1) {
@@ -76,27 +74,45 @@ SeenArm ArmPicture::see(const Picture& picture, const Lens& lens, const MarkerSc
       return finder_.find(gray, config_.white);
     }
   };
-  ArmSighting arm = std::visit(find, picture);
+  const ArmSighting& arm = std::visit(find, picture);
+  ArmFigure look;
   if (!arm.is_found()) {
-    seen.reason = arm.reason;
-    return seen;
+    look.reason = arm.reason;
+    return look;
   }
-  to_backbone_image(lens, arm.axis);
   const Image<std::uint8_t> bytes = eight_bits(picture, config_.white);
-  const std::vector<MarkerSighting> markers = find_markers(bytes, arm).markers;
-  const MarkerMatch match = match_markers(expected, scene_of(arm, markers), {bytes.width(), bytes.height()});
-  for (std::size_t i = 0; i < markers.size(); ++i) {
-    if (!match.markers[i]) {
+  look.axis = arm.axis;
+  look.markers = find_markers(bytes, arm).markers;
+  look.scene = scene_of(arm, look.markers);
+  look.size = {bytes.width(), bytes.height()};
+  return look;
+}
+
+SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,
+                   const ArmPictureConfig& config) {
+  SeenArm seen;
+  seen.reason = look.reason;
+  if (!look.reason.empty()) return seen;
+  for (std::size_t i = 0; i < look.markers.size(); ++i) {
+    const MarkerSighting& marker = look.markers[i];
+    if (match.markers[i]) {
+      seen.markers.push_back(
+          {marker.pixel, config.markers[*match.markers[i]].s, std::max(marker.sigma, least_marker_sigma)});
+    } else {
       ++seen.unknown;
-      continue;
     }
-    seen.markers.push_back({markers[i].pixel, config_.markers[*match.markers[i]].s,
-                            std::max(markers[i].sigma, least_marker_sigma)});
   }
   if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
-  if (match.is_reversed) std::ranges::reverse(arm.axis);
-  seen.points = independent_points(arm.axis, config_);
+  std::vector<AxisSample> axis = look.axis;
+  to_backbone_image(lens, axis);
+  if (match.is_reversed) std::ranges::reverse(axis);
+  seen.points = independent_points(axis, config);
   return seen;
+}
+
+SeenArm ArmPicture::see(const Picture& picture, const Lens& lens, const MarkerScene& expected) {
+  const ArmFigure seen = look(picture);
+  return recognised(seen, match_markers(expected, seen.scene, seen.size), lens, config_);
 }
 
 }  // namespace flexura

@@ -13,6 +13,7 @@
 #include "flexura/model/arm.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/markers.h"
 
 namespace flexura {
 
@@ -24,6 +25,15 @@ struct ArmPictureConfig {
   /// No axis point is known better than this, px: lenses are not. Markers are known to 0.2 px at best.
   double least_sigma = 0.05;
   int white = 255;  ///< The largest value of a picture.
+};
+
+/// What is seen of an arm in one picture before anybody asks which of its markers is which.
+struct ArmFigure {
+  std::vector<AxisSample> axis;
+  std::vector<MarkerSighting> markers;  ///< Along the axis.
+  MarkerScene scene;                    ///< Those of them, and those ends of the arm, that can be recognised.
+  std::array<int, 2> size = {0, 0};     ///< Of the picture, px.
+  std::string reason;                   ///< Why there is no arm; "" when there is.
 };
 
 /// What is seen of an arm in one picture, its markers recognised.
@@ -44,14 +54,19 @@ struct SeenArm {
   return expected_markers(arm, state, markers, view, arm);
 }
 
+/// Markers and axis points of a look, when it is known which marker is which. `lens` corrects for what a wide
+/// tube shows of itself (vision/backbone_image.h).
+[[nodiscard]] SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,
+                                 const ArmPictureConfig& config);
+
 /// Measures pictures of an arm. The same picture and expectation give the same answer, whatever was seen
 /// before.
 class ArmPicture {
  public:
   explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
 
-  /// `lens` corrects for what a wide tube shows of itself (vision/backbone_image.h); `expected` tells which
-  /// marker is which.
+  [[nodiscard]] ArmFigure look(const Picture& picture);
+  /// The same, and which marker is which by what is expected in this picture alone.
   [[nodiscard]] SeenArm see(const Picture& picture, const Lens& lens, const MarkerScene& expected);
 
  private:

@@ -39,6 +39,9 @@ class Descent {
       ++result.iterations;
       result.is_settled = step(result.x);
     }
+    // Less is left than a thousandth of a standard deviation of anything.
+    constexpr double nothing = 1e-6;
+    result.is_settled = result.is_settled || promised_ < nothing;
     (void)problem_.linearise(result.x);
     result.cost = problem_.cost(config_.bound);
     return result;
@@ -57,8 +60,8 @@ class Descent {
       const Eigen::LLT<Eigen::MatrixXd> factors(damped_);
       if (factors.info() != Eigen::Success) continue;
       move_ = factors.solve(-gradient_);
-      const double promised = -0.5 * gradient_.dot(move_);
-      if (!(promised > small * before)) return true;
+      promised_ = -0.5 * gradient_.dot(move_);
+      if (!(promised_ > small * before)) return true;
       there_ = x + move_;
       if (!problem_.linearise(there_) || !(problem_.cost(bound) < before)) continue;
       x = there_;
@@ -71,6 +74,8 @@ class Descent {
   RigProblem& problem_;
   const RigDescentConfig& config_;
   double damping_ = 1e-4;
+  double promised_ =
+      std::numeric_limits<double>::infinity();  // By how much the last step would lower the cost.
   Eigen::VectorXd gradient_, move_, there_;
   Eigen::MatrixXd normal_, damped_;
 };

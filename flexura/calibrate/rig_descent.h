@@ -18,7 +18,7 @@ struct RigDescentConfig {
 struct RigDescent {
   Eigen::VectorXd x;
   double cost = 0;  ///< With the bound as configured; infinite where nothing can be seen from the start.
-  bool is_settled = false;
+  bool is_settled = false;  ///< No step leads further down, or none by more than nothing.
   int iterations = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "flexura/calibrate/rig_session_plan.h"
+#include "flexura/calibrate/rig_sights.h"
 #include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
@@ -16,6 +17,11 @@ namespace flexura {
 namespace {
 
 using Trouble = RigHands::Trouble;
+
+// Of a rig that is known a few markers tell more, and are hardly taken for others.
+constexpr std::size_t few = 2;
+// What may be wrong with where its cameras look.
+constexpr SightDoubt of_found = {.sideways = 0.03, .roll = 0.02, .scale = 0.05};
 
 class Session {
  public:
@@ -27,7 +33,8 @@ class Session {
         watcher_(watcher),
         hands_(ports, believed, config.patience),
         trip_(hands_, watcher, config.cameras, config.move_duration),
-        plan_(believed, config) {
+        plan_(believed, config),
+        sights_(believed.arm, config.picture, config.cameras) {
     if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
       throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
     if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
@@ -60,7 +67,7 @@ class Session {
       if (found_ && is_enough()) break;
       if (auto trouble = look(next())) return trouble;
     }
-    if (!found_ || problem_->observations().images.size() < seen_.images.size())
+    if (!found_ || result_.steps.back().looks < result_.looks)
       if (auto trouble = calibrate()) return trouble;
     if (!found_) return "no rig explains what was seen: " + result_.steps.back().reason;
     if (auto trouble = move()) return trouble;
@@ -85,12 +92,15 @@ class Session {
     ++result_.looks;
     const auto arm = hands_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    if (seen_.poses.empty() || !is_same(seen_.poses.back(), std::get<ArmState>(arm)))
-      seen_.poses.push_back(std::get<ArmState>(arm));
+    if (sights_.poses.empty() || !is_same(sights_.poses.back(), std::get<ArmState>(arm)))
+      sights_.poses.push_back(std::get<ArmState>(arm));
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;
-      if (result_.looks == 1 && misses_[i] > 0)
-        if (auto trouble = search(i)) return trouble;
+      // As long as nothing is known, the arm may have bent out of view.
+      if (!found_ && misses_[i] > 0) {
+        auto trouble = search(i);
+        if (trouble && result_.looks == 1) return trouble;
+      }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
         return fmt::format("camera {} does not see the arm in {} pictures in a row: {}", name(i), patience,
@@ -123,46 +133,50 @@ class Session {
     const auto& frame = std::get<Frame>(taken);
     const auto stance = hands_.stance(config_.cameras[i]);
     if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-    const View view = view_of(model(), std::get<RigStance>(stance));
-    const ArmState& pose = seen_.poses.back();
-    const MarkerScene expected =
-        expected_markers(model().arm, model().bent(pose), config_.picture.markers, view, believed_.arm);
     sight_ = {.look = is_search ? 0 : result_.looks,
               .stance = std::get<RigStance>(stance),
-              .pose = pose,
+              .pose = sights_.poses.back(),
               .frame = frame,
-              .seen = eyes_[i].see(*frame.picture, view.lens, expected),
+              .seen = {},
               .values = {}};
+    sight_.seen = recognise(i, eyes_[i].look(*frame.picture));
     ++result_.pictures[i];
-    // Of a rig that is known a few markers tell more, and are hardly taken for others.
-    constexpr std::size_t few = 2;
     const std::size_t fewest = found_ ? std::min(few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
     if (!is_of_use && sight_.seen.reason.empty())
       sight_.seen.reason =
           fmt::format("{} markers are recognised, fewer than {}", sight_.seen.markers.size(), fewest);
     misses_[i] = is_of_use ? 0 : misses_[i] + 1;
+    if (!is_of_use) missed_.push_back({sight_.pose, {sight_.stance}});
     watcher_.seen(sight_);
     if (!result_.before[i]) result_.before[i] = sight_;
     result_.after[i] = sight_;
-    if (is_of_use) add(i);
     return std::nullopt;
   }
 
-  void add(std::size_t i) {
+  // Keeps a look, and tells which of its markers is which by all that are kept.
+  SeenArm recognise(std::size_t i, ArmFigure look) {
+    // One marker alone may be any.
+    constexpr std::size_t fewest = 2;
+    if (markers_of(look.scene) < fewest) {
+      MarkerMatch none;
+      none.markers.resize(look.markers.size());
+      return recognised(look, none, view_of(model(), sight_.stance).lens, config_.picture);
+    }
     if (!stance_[i]) {
       RigStance stance = sight_.stance;
       if (!is_turned_[i]) stance.turned_as = last_stance_[i];
-      seen_.stances.push_back(stance);
-      stance_[i] = last_stance_[i] = seen_.stances.size() - 1;
+      sights_.stances.push_back(stance);
+      stance_[i] = last_stance_[i] = sights_.stances.size() - 1;
       is_turned_[i] = false;
     }
-    seen_.images.push_back({.stance = *stance_[i],
-                            .pose = seen_.poses.size() - 1,
-                            .markers = sight_.seen.markers,
-                            .points = sight_.seen.points});
-    result_.markers += sight_.seen.markers.size(), result_.points += sight_.seen.points.size();
+    sights_.looks.push_back(
+        {.stance = *stance_[i], .pose = sights_.poses.size() - 1, .arm = std::move(look)});
+    const MarkerMatch match = sights_.recognise(model(), doubt()).back();
+    return sights_.seen(model(), sights_.looks.size() - 1, match);
   }
+  // Of where cameras look, as they are believed just then.
+  [[nodiscard]] SightDoubt doubt() const { return found_ ? of_found : plan_.doubt(prior_); }
 
   // Turns the head about until enough of the arm is seen.
   Trouble search(std::size_t i) {
@@ -180,8 +194,7 @@ class Session {
   }
 
   Trouble calibrate() {
-    problem_.emplace(believed_, prior_, seen_);
-    RigCalibration found = calibrate_rig(*problem_);
+    RigCalibration found = best_attempt();
     RigStep& step = result_.steps.emplace_back();
     step.time = hands_.now(), step.looks = result_.looks;
     step.is_found = found.is_found, step.reason = found.reason, step.rms = found.rms;
@@ -200,6 +213,67 @@ class Session {
     return plan_.trouble_with(found_->model, wanted_, step, trip_.home());
   }
 
+  // A rig as it was found, and by what: markers that were taken for others count against it.
+  struct Attempt {
+    std::optional<RigProblem> problem;
+    RigCalibration found;
+    double explained =
+        0;  // Things that were seen, less those that it does not explain, and markers of nobody.
+    bool is_whole = false;
+  };
+
+  // By markers as the rig that was found before has them, or as the guess does, one camera's or both's taken
+  // for something else if need be.
+  RigCalibration best_attempt() {
+    std::vector<Attempt> attempts;
+    if (found_) attempts.push_back(attempt(found_->model, of_found, {0, 0}));
+    constexpr std::array<std::array<std::size_t, 2>, 6> ranks = {
+        {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}}};
+    for (const auto& rank : ranks) {
+      if (!attempts.empty() && attempts.back().is_whole) break;
+      attempts.push_back(attempt(believed_, plan_.doubt(prior_), rank));
+    }
+    const auto best = std::ranges::max_element(attempts, [](const Attempt& a, const Attempt& b) {
+      if (a.found.is_found != b.found.is_found) return b.found.is_found;
+      return a.explained < b.explained;
+    });
+    problem_ = std::move(best->problem);
+    return std::move(best->found);
+  }
+
+  Attempt attempt(const RigModel& guess, const SightDoubt& doubt,
+                  const std::array<std::size_t, 2>& rank) const {
+    Attempt result;
+    std::vector<MarkerMatch> matches = sights_.recognise(guess, doubt, rank);
+    constexpr int rounds = 4;
+    const RigModel* model = &guess;
+    for (int round = 0; round < rounds; ++round) {
+      result.problem.emplace(believed_, prior_,
+                             sights_.observations(*model, matches, round == 0 ? config_.fewest : few));
+      result.found = calibrate_rig(*result.problem);
+      if (!result.found.is_found) break;
+      model = &result.found.model;
+      std::vector<MarkerMatch> again = sights_.recognise(*model, of_found);
+      if (round > 0 && again == matches) break;
+      matches = std::move(again);
+    }
+    rate(matches, result);
+    return result;
+  }
+  void rate(const std::vector<MarkerMatch>& matches, Attempt& result) const {
+    double things = 0, unknown = 0;
+    for (const RigImage& image : result.problem->observations().images)
+      things += static_cast<double>(image.markers.size() + image.points.size());
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      unknown +=
+          static_cast<double>(markers_of(sights_.looks[i].arm.scene)) - static_cast<double>(matches[i].count);
+    }
+    const auto doubted = static_cast<double>(result.found.doubts.size());
+    constexpr double tolerated = 0.05;
+    result.explained = things - 2 * doubted - unknown;
+    result.is_whole = result.found.is_found && doubted + unknown <= tolerated * things;
+  }
+
   // What to look at next, if the session goes on.
   void choose(RigStep& step) {
     next_.reset();
@@ -208,7 +282,7 @@ class Session {
           result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
       return;
     }
-    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_);
+    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, missed_);
     next_ = candidate, step.next = why;
   }
   [[nodiscard]] ViewCandidate next() const {
@@ -225,27 +299,31 @@ class Session {
   Trouble move() {
     has_moved_ = true;
     result_.wanted = wanted_;
-    const std::size_t known = seen_.images.size();
     if (auto trouble = look({pose(0), {wanted_.stances[0], wanted_.stances[1]}})) return trouble;
-    if (seen_.images.size() < known + 2)
-      return fmt::format("the arm is not seen by both cameras after the move: {}", sight_.seen.reason);
-    for (std::size_t i = 0; i < 2; ++i) result_.verified[i] = off_foretold(seen_.images[known + i]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (misses_[i] > 0)
+        return fmt::format("the arm is not seen by camera {} after the move: {}", name(i),
+                           result_.after[i]->seen.reason);
+      result_.verified[i] = off_foretold(*result_.after[i]);
+    }
     return std::nullopt;
   }
 
-  [[nodiscard]] double off_foretold(const RigImage& image) const {
-    const View view = view_of(model(), seen_.stances[image.stance]);
+  [[nodiscard]] double off_foretold(const RigSight& sight) const {
+    const View view = view_of(model(), sight.stance);
     double squares = 0;
-    for (const SeenMarker& marker : image.markers) {
-      const MarkerScene foretold = expected_markers(model().arm, model().bent(seen_.poses[image.pose]),
+    for (const SeenMarker& marker : sight.seen.markers) {
+      const MarkerScene foretold = expected_markers(model().arm, model().bent(sight.pose),
                                                     {KnownMarker{.s = marker.s}}, view, believed_.arm);
       if (foretold.markers[0]) squares += (foretold.markers[0]->pixel - marker.pixel).squaredNorm();
     }
-    return std::sqrt(squares / static_cast<double>(image.markers.size()));
+    return std::sqrt(squares / static_cast<double>(sight.seen.markers.size()));
   }
 
   void finish() {
     if (!found_ || !problem_) return;
+    for (const RigImage& image : problem_->observations().images)
+      result_.markers += image.markers.size(), result_.points += image.points.size();
     result_.observability = observability(problem_->variables(), found_->covariance);
     const Eigen::Vector3d target = plan_.target(found_->model);
     result_.target = target, result_.start = trip_.start();
@@ -276,8 +354,9 @@ class Session {
   std::array<bool, 2> is_turned_ = {true, true};  // Since the last stance.
   std::array<std::optional<std::size_t>, 2> stance_, last_stance_;
   std::array<int, 2> misses_ = {0, 0};
-  RigSight sight_;  // The last one.
-  RigObservations seen_;
+  std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was seen.
+  RigSight sight_;                     // The last one.
+  RigSights sights_;
   std::optional<RigProblem> problem_;
   std::optional<RigCalibration> found_;
   WantedRig wanted_;

@@ -30,6 +30,22 @@ double position_of(const Camera& camera, double ratio) {
   return 0.5 * (low + high);
 }
 
+// Whether a camera would see much the same as in a look of its own: the arm bent like then, from about there.
+bool is_like(const ViewCandidate& candidate, const ViewCandidate& look) {
+  constexpr double turn = 2 * degree, way = 0.05, zoom = 0.1;  // rad; m; share.
+  const auto is_near = [&](const RigStance& a, const RigStance& b) {
+    return a.camera == b.camera && std::abs(a.head.pan - b.head.pan) < turn &&
+           std::abs(a.head.tilt - b.head.tilt) < turn && (a.stage.offset - b.stage.offset).norm() < way &&
+           std::abs(a.head.zoom - b.head.zoom) <= zoom * std::abs(b.head.zoom);
+  };
+  double bent = 0;
+  for (std::size_t i = 0; i < candidate.pose.bends.size(); ++i)
+    bent = std::max(bent, (candidate.pose.bends[i] - look.pose.bends.at(i)).norm());
+  return bent < turn && std::ranges::any_of(
+                            candidate.stances,
+                            [&](const RigStance& stance) { return is_near(stance, look.stances.front()); });
+}
+
 }  // namespace
 
 Eigen::Vector3d RigSessionPlan::target(const RigModel& model) const {
@@ -91,15 +107,18 @@ ViewGrid RigSessionPlan::grid() const {
   return grid;
 }
 
-std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(const RigProblem& problem,
-                                                                          const RigCalibration& found,
-                                                                          const WantedRig& wanted) const {
+std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
+    const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
+    const std::vector<ViewCandidate>& missed) const {
   std::vector<ViewCandidate> candidates = view_candidates(found.model, grid());
   for (ViewCandidate& candidate : candidates) {
     std::erase_if(candidate.stances, [&](const RigStance& stance) {
       return std::ranges::find(config_.cameras, stance.camera) == config_.cameras.end();
     });
   }
+  std::erase_if(candidates, [&](const ViewCandidate& candidate) {
+    return std::ranges::any_of(missed, [&](const ViewCandidate& one) { return is_like(candidate, one); });
+  });
   ViewConfig view;
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
@@ -152,6 +171,19 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
                        model.cameras[wanted.stances[i].camera].config.name, why);
   }
   return std::nullopt;
+}
+
+SightDoubt RigSessionPlan::doubt(const RigPrior& prior) const {
+  SightDoubt doubt = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};
+  for (const std::size_t i : config_.cameras) {
+    const CameraPrior& camera = prior.cameras.at(i);
+    const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
+    const double moved = camera.position / distance;
+    doubt.sideways = std::max(doubt.sideways, std::hypot(camera.rotation, moved));
+    doubt.roll = std::max(doubt.roll, camera.rotation);
+    doubt.scale = std::max(doubt.scale, std::hypot(camera.focal, moved));
+  }
+  return doubt;
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

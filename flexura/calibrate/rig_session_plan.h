@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/calibrate/marker_vote.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/calibrate/rig_views.h"
 
@@ -24,14 +25,17 @@ class RigSessionPlan {
   /// Fills in what is known of the wanted configuration.
   void know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
             RigStep& step) const;
-  /// The next look, and what is hoped from it, in words.
-  [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(const RigProblem& problem,
-                                                                          const RigCalibration& found,
-                                                                          const WantedRig& wanted) const;
+  /// The next look, and what is hoped from it, in words. None that is much like one of those `missed`, each
+  /// of one camera, at which too little was seen.
+  [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(
+      const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
+      const std::vector<ViewCandidate>& missed) const;
   /// Why the wanted configuration is none: both cameras look from one side, or would not see the arm. Nothing
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
                                                const RigStep& step, const ArmState& home) const;
+  /// How wrong it may be where the cameras look, as they were guessed.
+  [[nodiscard]] SightDoubt doubt(const RigPrior& prior) const;
   /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
 

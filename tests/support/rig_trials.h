@@ -20,8 +20,7 @@ namespace flexura {
 
 inline constexpr double degree = std::numbers::pi / 180;
 
-/// How far a rig is from what is believed of it: evenly within these bounds. As issue "Calibrating the two
-/// cameras" has them.
+/// How far a rig is from what is believed of it: evenly within these bounds.
 struct RigTrialConfig {
   double turn = 10 * std::numbers::pi / 180;  ///< Of the mounts, in pan and in tilt.
   double roll = std::numbers::pi / 180;

@@ -1,0 +1,255 @@
+#include "flexura/calibrate/marker_vote.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <utility>
+
+#include "flexura/calibrate/marker_features.h"
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+using Point = std::complex<double>;
+
+Point point(const Eigen::Vector2d& pixel) { return {pixel.x(), pixel.y()}; }
+
+// Places in W as a camera that is wrong sees them.
+class WrongSight {
+ public:
+  WrongSight(const View& view, const SightError& error)
+      : view_(view), turn_(so3_exp(error.turn)), scale_(std::exp(error.scale)) {}
+  [[nodiscard]] std::optional<Eigen::Vector2d> operator()(const Eigen::Vector3d& p_W) const {
+    const Eigen::Vector3d& eye = view_.X_WC.position;
+    auto pixel = view_.project(eye + turn_ * (p_W - eye));
+    if (!pixel) return pixel;
+    const Eigen::Vector2d middle(view_.lens.intrinsics().cx, view_.lens.intrinsics().cy);
+    return Eigen::Vector2d(middle + scale_ * (*pixel - middle));
+  }
+
+ private:
+  const View& view_;
+  Eigen::Matrix3d turn_;
+  double scale_;
+};
+
+// Of what a believed arm's markers are off, once its camera is right, px. What speaks for an error is counted
+// in pairs, and falls by half a pair for one that is so far off.
+constexpr double pair_sigma = 20;
+
+struct Candidate {
+  SightError error;
+  double score = 0;
+  std::vector<std::vector<MarkerPairs::Pair>> pairs;  // Of each picture.
+
+  [[nodiscard]] bool is_better_than(const Candidate& other) const { return score > other.score; }
+};
+
+class Vote {
+ public:
+  Vote(std::span<const MarkerPicture> pictures, const SightDoubt& doubt)
+      : pictures_(pictures), doubt_(doubt) {
+    for (const MarkerPicture& picture : pictures) {
+      const MarkerScene expected = expected_scene(picture, {});
+      const MarkerPalette palette(expected, picture.seen);
+      Side& side = sides_.emplace_back();
+      side.expected = features_of(expected, palette), side.seen = features_of(picture.seen, palette);
+      side.tolerance = tolerances(side.expected);
+      for (const MarkerFeature& one : side.expected)
+        side.places.push_back(one.kind == MarkerFeature::end_kind ? picture.ends[one.number]
+                                                                  : picture.markers[one.number].p_W);
+    }
+  }
+
+  std::vector<SightError> best(std::size_t most) {
+    consider(tried({}));
+    for (std::size_t k = 0; k < sides_.size(); ++k) hypothesise(k);
+    for (Candidate& one : best_) one = refined(std::move(one));
+    std::ranges::stable_sort(best_, [](const auto& a, const auto& b) { return a.is_better_than(b); });
+    std::vector<SightError> result;
+    std::vector<const Candidate*> kept;
+    for (const Candidate& one : best_) {
+      if (result.size() == most) break;
+      const bool is_new =
+          std::ranges::none_of(kept, [&](const Candidate* other) { return other->pairs == one.pairs; });
+      if (is_new) result.push_back(one.error), kept.push_back(&one);
+    }
+    return result;
+  }
+
+ private:
+  // A picture's features, and where in W the expected ones are.
+  struct Side {
+    std::vector<MarkerFeature> expected, seen;
+    std::vector<double> tolerance;
+    std::vector<Eigen::Vector3d> places;
+    std::vector<MarkerFeature> moved;  // Scratch.
+  };
+
+  // The errors that bring two expected features onto two seen ones.
+  void hypothesise(std::size_t k) {
+    const Side& side = sides_[k];
+    for (std::size_t i = 0; i < side.seen.size(); ++i) {
+      for (std::size_t j = i + 1; j < side.seen.size(); ++j) {
+        if (side.seen.size() > 3 && 2 * (j - i) < side.seen.size()) continue;  // Short ways say little.
+        for (std::size_t a = 0; a < side.expected.size(); ++a) {
+          for (std::size_t b = 0; b < side.expected.size(); ++b) {
+            if (a == b || side.expected[a].kind != side.seen[i].kind ||
+                side.expected[b].kind != side.seen[j].kind)
+              continue;
+            const Point way = side.expected[b].at - side.expected[a].at;
+            if (!(std::abs(way) > 1)) continue;
+            const Point turn = (side.seen[j].at - side.seen[i].at) / way;
+            if (const auto error = error_of(pictures_[k].view, turn, side.expected[a].at, side.seen[i].at))
+              consider(tried(*error));
+          }
+        }
+      }
+    }
+  }
+  // The error that turns and scales a picture like this, and brings one place in it to another.
+  [[nodiscard]] std::optional<SightError> error_of(const View& view, const Point& turn, const Point& from,
+                                                   const Point& to) const {
+    const double scale = std::log(std::abs(turn)), roll = std::arg(turn);
+    const Intrinsics& lens = view.lens.intrinsics();
+    const Point middle(lens.cx, lens.cy), back = middle + (to - middle) / std::abs(turn);
+    const auto ray = [&](const Point& at) {
+      return Eigen::Vector3d((at.real() - lens.cx) / lens.fx, (at.imag() - lens.cy) / lens.fy, 1)
+          .normalized();
+    };
+    const Eigen::Vector3d rolled = so3_exp(Eigen::Vector3d(0, 0, roll)) * ray(from), aimed = ray(back);
+    const Eigen::Matrix3d R = so3_exp(between(rolled, aimed)) * so3_exp(Eigen::Vector3d(0, 0, roll));
+    const SightError error{view.X_WC.rotation * so3_log(R), scale};
+    constexpr double unlikely = 9;
+    if (!error.turn.allFinite() || surprise(view, error) > unlikely) return std::nullopt;
+    return error;
+  }
+  // The rotation vector that takes one direction to another.
+  static Eigen::Vector3d between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const Eigen::Vector3d axis = from.cross(to);
+    const double sine = axis.norm();
+    return sine > 0 ? Eigen::Vector3d(axis * (std::atan2(sine, from.dot(to)) / sine)) : axis;
+  }
+  // A sum of squares, in standard deviations.
+  [[nodiscard]] double surprise(const View& view, const SightError& error) const {
+    const double roll = error.turn.dot(view.X_WC.rotation.col(2));
+    const double sideways = (error.turn - roll * view.X_WC.rotation.col(2)).squaredNorm();
+    return sideways / (doubt_.sideways * doubt_.sideways) + roll * roll / (doubt_.roll * doubt_.roll) +
+           error.scale * error.scale / (doubt_.scale * doubt_.scale);
+  }
+
+  [[nodiscard]] Candidate tried(const SightError& error) {
+    Candidate result;
+    result.error = error;
+    result.score = -0.5 * surprise(pictures_.front().view, error);
+    for (std::size_t k = 0; k < sides_.size(); ++k) {
+      Side& side = sides_[k];
+      const WrongSight sight(pictures_[k].view, error);
+      side.moved = side.expected;
+      for (std::size_t a = 0; a < side.moved.size(); ++a) {
+        constexpr double nowhere = 1e6;
+        const auto pixel = sight(side.places[a]);
+        side.moved[a].at = pixel ? point(*pixel) : Point(-nowhere, -nowhere);
+      }
+      MarkerPairs found = nearest_pairs(side.moved, side.tolerance, std::exp(error.scale), side.seen,
+                                        {pictures_[k].view.width, pictures_[k].view.height});
+      result.score += found.score - 0.5 * found.off / (pair_sigma * pair_sigma);
+      result.pairs.push_back(std::move(found.pairs));
+    }
+    return result;
+  }
+
+  // Of those that take the same for the same only the best is kept.
+  void consider(Candidate candidate) {
+    constexpr std::size_t most = 12;
+    for (Candidate& one : best_) {
+      if (one.pairs != candidate.pairs) continue;
+      if (candidate.is_better_than(one)) one = std::move(candidate);
+      return;
+    }
+    if (best_.size() < most) {
+      best_.push_back(std::move(candidate));
+      return;
+    }
+    const auto worst =
+        std::ranges::min_element(best_, [](const auto& a, const auto& b) { return b.is_better_than(a); });
+    if (candidate.is_better_than(*worst)) *worst = std::move(candidate);
+  }
+
+  // At least squares of what its pairs are off, as long as that explains more.
+  Candidate refined(Candidate candidate) {
+    constexpr int rounds = 6;
+    for (int round = 0; round < rounds; ++round) {
+      Candidate next = tried(step_from(candidate));
+      if (!next.is_better_than(candidate)) break;
+      candidate = std::move(next);
+    }
+    return candidate;
+  }
+  [[nodiscard]] SightError step_from(const Candidate& candidate) const {
+    constexpr double h = 1e-6;  // rad
+    const View& first = pictures_.front().view;
+    const Eigen::Vector3d axis = first.X_WC.rotation.col(2);
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    normal.topLeftCorner<3, 3>() =
+        (Eigen::Matrix3d::Identity() - axis * axis.transpose()) / (doubt_.sideways * doubt_.sideways) +
+        axis * axis.transpose() / (doubt_.roll * doubt_.roll);
+    normal(3, 3) = 1 / (doubt_.scale * doubt_.scale);
+    Eigen::Vector4d x;
+    x << candidate.error.turn, candidate.error.scale;
+    Eigen::Vector4d gradient = normal * x;
+    for (std::size_t k = 0; k < sides_.size(); ++k) {
+      for (const auto& [i, a] : candidate.pairs[k]) {
+        const auto pixel_at = [&](const Eigen::Vector4d& at) {
+          return WrongSight(pictures_[k].view, {at.head<3>(), at[3]})(sides_[k].places[a]);
+        };
+        const auto here = pixel_at(x);
+        if (!here) continue;
+        Eigen::Matrix<double, 2, 4> J;
+        bool is_seen = true;
+        for (Eigen::Index d = 0; d < 4; ++d) {
+          Eigen::Vector4d beside = x;
+          beside[d] += h;
+          const auto there = pixel_at(beside);
+          is_seen = is_seen && there;
+          if (there) J.col(d) = (*there - *here) / (h * pair_sigma);
+        }
+        if (!is_seen) continue;
+        const Point& seen = sides_[k].seen[i].at;
+        const Eigen::Vector2d off = (*here - Eigen::Vector2d(seen.real(), seen.imag())) / pair_sigma;
+        normal += J.transpose() * J, gradient += J.transpose() * off;
+      }
+    }
+    x -= Eigen::LLT<Eigen::Matrix4d>(normal).solve(gradient);
+    if (!x.allFinite()) return candidate.error;
+    return {x.head<3>(), x[3]};
+  }
+
+  std::span<const MarkerPicture> pictures_;
+  SightDoubt doubt_;
+  std::vector<Side> sides_;
+  std::vector<Candidate> best_;
+};
+
+}  // namespace
+
+MarkerScene expected_scene(const MarkerPicture& picture, const SightError& error) {
+  const WrongSight sight(picture.view, error);
+  MarkerScene scene;
+  for (const MarkerPicture::Place& marker : picture.markers) {
+    auto& place = scene.markers.emplace_back();
+    if (const auto pixel = sight(marker.p_W)) place = MarkerScene::Place{*pixel, marker.color};
+  }
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) scene.ends[i] = sight(picture.ends[i]);
+  return scene;
+}
+
+std::vector<SightError> likely_errors(std::span<const MarkerPicture> pictures, const SightDoubt& doubt,
+                                      std::size_t most) {
+  if (pictures.empty()) return {};
+  return Vote(pictures, doubt).best(most);
+}
+
+}  // namespace flexura

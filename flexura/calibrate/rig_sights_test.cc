@@ -1,0 +1,178 @@
+// Which marker is which, by one picture alone and by all pictures of a camera together.
+#include "flexura/calibrate/rig_sights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "flexura/math/so3.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+namespace {
+
+const std::vector<Eigen::Vector3d> colors = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
+
+std::vector<KnownMarker> bands() {
+  std::vector<KnownMarker> markers;
+  for (std::size_t i = 0; i < 12; ++i)
+    markers.push_back({.s = (static_cast<double>(i) + 0.5) / 12, .color = colors[i % colors.size()]});
+  return markers;
+}
+
+// Mild bends, and such as bend every part to every side.
+std::vector<ArmState> some_poses() {
+  std::vector<ArmState> poses(3, ArmState::straight(3));
+  poses[0].bends = {{0.5, 0}, {0.5, 0}, {0.5, 0}};
+  poses[1].bends = {{0, 0.5}, {0, 0.5}, {0, 0.5}};
+  poses[2].bends = {{-0.6, 0.3}, {0.7, 0.1}, {0.5, -0.8}};
+  return poses;
+}
+
+constexpr SightDoubt rough = {.sideways = 0.26, .roll = 0.17, .scale = 0.22};
+
+// What a camera truly sees of an arm, and which of its markers each one is: some are missed, some are
+// nobody's.
+struct TrueSight {
+  MarkerScene scene;
+  std::vector<std::optional<std::size_t>> names;
+};
+
+TrueSight look(const RigModel& truth, const Arm& told, const RigStance& stance, const ArmState& pose,
+               TestRandom& random) {
+  const View view = view_of(truth, stance);
+  const MarkerScene all = expected_markers(truth.arm, truth.bent(pose), bands(), view, told);
+  const auto is_inside = [&](const std::optional<Eigen::Vector2d>& at) {
+    return at && at->minCoeff() > 2 && at->x() < view.width - 3 && at->y() < view.height - 3;
+  };
+  TrueSight sight;
+  for (std::size_t i = 0; i < all.markers.size(); ++i) {
+    if (!all.markers[i] || !is_inside(all.markers[i]->pixel)) continue;
+    if (random.uniform(0, 1) < 0.08) continue;
+    sight.scene.markers.push_back(
+        MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-0.3, 0.3), all.markers[i]->color});
+    sight.names.emplace_back(i);
+    if (random.uniform(0, 1) > 0.03) continue;
+    sight.scene.markers.push_back(MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-30, 30),
+                                                     colors[static_cast<std::size_t>(random.integer(0, 2))]});
+    sight.names.emplace_back();
+  }
+  if (is_inside(all.ends[0]) && is_inside(all.ends[1])) sight.scene.ends = all.ends;
+  return sight;
+}
+
+// Markers that are taken for others than they are.
+int wrong_ones(const MarkerMatch& match, const TrueSight& sight) {
+  int wrong = 0;
+  for (std::size_t i = 0; i < sight.names.size(); ++i)
+    if (match.markers[i] && match.markers[i] != sight.names[i]) ++wrong;
+  return wrong;
+}
+
+struct Session {
+  RigModel believed = believed_rig(), truth;
+  RigSights sights{believed.arm, {.markers = bands()}, {0, 1}};
+  std::vector<TrueSight> seen;
+
+  explicit Session(TestRandom& random) : truth(true_rig(believed, {}, random)) {
+    sights.poses = some_poses();
+  }
+  void take(const RigStance& stance, std::size_t pose, TestRandom& random) {
+    sights.stances.push_back(stance);
+    seen.push_back(look(truth, believed.arm, stance, sights.poses[pose], random));
+    ArmFigure figure;
+    figure.scene = seen.back().scene, figure.size = {640, 480};
+    sights.looks.push_back({.stance = sights.stances.size() - 1, .pose = pose, .arm = std::move(figure)});
+  }
+};
+
+// With lenses that show a part of the arm, and guesses as rough as they may be.
+TEST(RigSights, TogetherTellMarkersThatOnePictureTakesForOthers) {
+  constexpr int trials = 100;
+  int looks = 0, misled = 0, misled_alone = 0, recognised = 0, markers = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    TestRandom random(case_seed(trial));
+    Session session(random);
+    for (const std::size_t camera : {std::size_t{0}, std::size_t{1}})
+      for (std::size_t pose = 0; pose < 3; ++pose)
+        session.take({.camera = camera, .head = {.zoom = 1.8}}, pose, random);
+    const auto matches = session.sights.recognise(session.believed, rough);
+    for (std::size_t i = 0; i < session.seen.size(); ++i) {
+      const TrueSight& sight = session.seen[i];
+      if (sight.scene.markers.size() < 5) continue;
+      ++looks;
+      if (wrong_ones(matches[i], sight) > 2) ++misled;
+      recognised += static_cast<int>(matches[i].count), markers += static_cast<int>(sight.names.size());
+      const RigSights::Look& taken = session.sights.looks[i];
+      const MarkerScene expected =
+          expected_markers(session.believed.arm, session.sights.poses[taken.pose], bands(),
+                           view_of(session.believed, session.sights.stances[taken.stance]));
+      if (wrong_ones(match_markers(expected, sight.scene, {640, 480}), sight) > 2) ++misled_alone;
+    }
+  }
+  RecordProperty("looks", looks), RecordProperty("misled", misled),
+      RecordProperty("misled_alone", misled_alone);
+  EXPECT_GT(looks, 4 * trials);
+  EXPECT_GT(misled_alone, looks / 40) << "the case is too easy to tell anything";
+  EXPECT_LE(4 * misled, misled_alone);
+  EXPECT_GT(recognised, 0.9 * markers);
+}
+
+TEST(RigSights, OfAKnownRigAreRecognisedFromWhereNothingWasSeenBefore) {
+  for_random_cases(20, [](TestRandom& random) {
+    Session session(random);
+    for (std::size_t pose = 0; pose < 3; ++pose) session.take({.camera = 0}, pose, random);
+    session.take({.camera = 0, .head = {.pan = 0.1, .tilt = -0.05, .zoom = 2}}, 2, random);
+    const auto matches =
+        session.sights.recognise(session.truth, {.sideways = 0.03, .roll = 0.02, .scale = 0.05});
+    for (std::size_t i = 0; i < session.seen.size(); ++i) {
+      const auto named =
+          std::ranges::count_if(session.seen[i].names, [](const auto& one) { return one.has_value(); });
+      EXPECT_LE(wrong_ones(matches[i], session.seen[i]), 1) << i;
+      EXPECT_GE(static_cast<std::ptrdiff_t>(matches[i].count), named - 1) << i;
+    }
+  });
+}
+
+TEST(LikelyErrors, AreTheCamerasWhereItIsTurnedAndItsLensIsLonger) {
+  for_random_cases(20, [](TestRandom& random) {
+    const RigModel believed = believed_rig();
+    const SightError error{random.vector<3>(-0.1, 0.1), random.uniform(-0.1, 0.1)};
+    std::vector<MarkerPicture> pictures;
+    for (const ArmState& pose : some_poses()) {
+      const Backbone backbone(believed.arm, pose);
+      MarkerPicture& picture = pictures.emplace_back();
+      picture.view = view_of(believed, {.camera = 0});
+      picture.ends = {backbone.pose(0).position, backbone.tip().position};
+      for (const KnownMarker& marker : bands())
+        picture.markers.push_back({backbone.pose(marker.s).position, marker.color});
+      picture.seen = expected_scene(picture, error);
+    }
+    const auto found = likely_errors(pictures, rough, 3);
+    ASSERT_FALSE(found.empty());
+    // What is guessed counts a little.
+    EXPECT_LT((found.front().turn - error.turn).norm(), 6e-3);
+    EXPECT_NEAR(found.front().scale, error.scale, 6e-3);
+  });
+}
+
+TEST(LikelyErrors, AreNoneWhereThereIsNoPicture) { EXPECT_TRUE(likely_errors({}, rough, 3).empty()); }
+
+// Equal markers in a row, of which a picture shows some: shifted by one they look the same.
+TEST(MarkerMatch, TakesTheLikelierOfTwoShifts) {
+  MarkerScene expected, seen;
+  for (int i = 0; i < 12; ++i) {
+    expected.markers.emplace_back(MarkerScene::Place{{320.0, 40.0 * i + 20}});
+    if (i >= 2 && i < 9) seen.markers.emplace_back(MarkerScene::Place{{324.0, 40.0 * i + 23}});
+  }
+  const MarkerMatch match =
+      match_markers(expected, seen, {640, 480}, {.shift = 10, .turn = 0.05, .scale = 0.05});
+  EXPECT_EQ(match.count, 7U);
+  for (std::size_t i = 0; i < match.markers.size(); ++i) EXPECT_EQ(match.markers[i], i + 2);
+}
+
+}  // namespace
+}  // namespace flexura

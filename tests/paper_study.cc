@@ -40,17 +40,14 @@ std::string kind_of(const std::string& reason) {
 
 Ending run_one(const std::string& method, std::uint64_t seed) {
   TestRandom random(seed);
-  const WrongStart front = wrong_start(random), side = wrong_start(random);
-  std::array<double, 3> longer = {};
-  std::vector<double> gains(3);
-  for (double& share : longer) share = random.uniform(-0.005, 0.005);
-  for (double& gain : gains) gain = 1 + random.uniform(-0.01, 0.01);
+  const WrongRig wrong = wrong_rig(random);
   const std::string task = "method = \"" + method + "\"\n";
   const bool has_arm = !method.starts_with("etalon");
-  CalibrationBench bench(has_arm ? arcs_rig(task, arcs_cameras({front, side}, method == "arcs-paper"), longer)
-                                 : etalon_rig(task, {.wrong = {front, side}}));
+  const LoopRig cameras = arcs_cameras({wrong.front, wrong.side}, method == "arcs-paper");
+  CalibrationBench bench(has_arm ? arcs_rig(task, cameras, wrong.longer)
+                                 : etalon_rig(task, {.wrong = {wrong.front, wrong.side}}));
   RigPorts ports = bench.ports();
-  WrongArm arm(*ports.arm, gains);
+  WrongArm arm(*ports.arm, wrong.gains);
   if (has_arm) ports.arm = &arm;
   Ending ending;
   if (method == "bundle") {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/support/random_cases.h"
 
@@ -27,6 +28,22 @@ inline WrongStart wrong_start(TestRandom& random, double size = 1) {
   start.cx = size * random.uniform(-1, 1), start.cy = size * random.uniform(-1, 1);
   for (double& way : start.shift) way = size * random.uniform(-0.2, 0.2);
   return start;
+}
+
+/// A rig that is wrong in all of that, and an arm whose lengths and bends are: shares.
+struct WrongRig {
+  WrongStart front, side;
+  std::array<double, 3> longer = {};
+  std::vector<double> gains = {1, 1, 1};
+};
+
+/// Evenly: lengths by half a per cent, bends by one.
+inline WrongRig wrong_rig(TestRandom& random) {
+  WrongRig rig;
+  rig.front = wrong_start(random), rig.side = wrong_start(random);
+  for (double& share : rig.longer) share = random.uniform(-0.005, 0.005);
+  for (double& gain : rig.gains) gain = 1 + random.uniform(-0.01, 0.01);
+  return rig;
 }
 
 /// A rig for the paper's methods: two cameras at 640 x 480 px, or smaller.

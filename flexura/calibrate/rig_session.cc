@@ -178,10 +178,11 @@ class Session {
   // Of where cameras look, as they are believed just then.
   [[nodiscard]] SightDoubt doubt() const { return found_ ? of_found : plan_.doubt(prior_); }
 
-  // Turns the head about until enough of the arm is seen.
+  // Turns the head about where it stands until enough of the arm is seen.
   Trouble search(std::size_t i) {
+    const RigStance middle = stands_[i];
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
-      RigStance stance = trip_.start()[i];
+      RigStance stance = middle;
       stance.head.pan += way.x(), stance.head.tilt += way.y();
       stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
       if (auto trouble = send(stance)) return trouble;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -252,12 +253,78 @@ TEST(ShapeFromABorder, IsNoneWhereItIsOfSomethingElse) {
       ShapeTracker tracker(prior, {});
       const std::optional<ArmState> expected = tracker.look(seen, 0, std::nullopt).shape.state;
       seen[1].borders = disc(radius), seen[1].points.clear(), seen[1].ends = {};
-      EXPECT_FALSE(tracker.look(seen, 0.03, expected).is_found);
+      const ShapeEstimate none = tracker.look(seen, 0.03, expected);
+      EXPECT_FALSE(none.is_found);
+      EXPECT_NE(none.reason, "the arm is not seen in every image");
       EXPECT_FALSE(ShapeEstimator(prior).estimate(seen).is_found);
       EXPECT_FALSE(ShapeEstimator(unknown_arm(Eigen::Vector3d::Zero(), 1)).estimate(seen).is_found);
       seen[1].borders.clear();
       EXPECT_FALSE(tracker.look(seen, 0.06, expected).is_found);
     });
+  }
+}
+
+// Magnified until a thin arm's width is less than the way between the places along it at which it is looked
+// for.
+TEST(ShapeFromABorder, IsFollowedOfAThinArmInALargePicture) {
+  for_random_cases(8, [](TestRandom& random) {
+    ShapePrior prior{.arm = three_section_arm()};
+    for (Section& section : prior.arm.sections) section.radius = {0.002, 0.002};
+    const ArmState state = random_bends(random, prior.arm, 0.8);
+    const Backbone truth(prior.arm, state);
+    std::vector<Sighting> seen;
+    for (View view : two_views()) {
+      Intrinsics lens = view.lens.intrinsics();
+      for (double* value : {&lens.fx, &lens.fy, &lens.cx, &lens.cy}) *value *= 8;
+      view.lens = Lens(lens), view.width *= 8, view.height *= 8;
+      seen.push_back(sighting_of(truth, view, random, 0.02));
+    }
+    ShapeTracker tracker(prior, {});
+    const ShapeEstimate first = tracker.look(seen, 0, std::nullopt);
+    ASSERT_TRUE(first.is_found) << first.reason;
+    constexpr int count = 150;
+    const View view = seen[1].view;
+    for (const double side : {-1.0, 1.0}) {
+      for (int k = 0; k <= count; ++k) {
+        const Pose X_WS = truth.pose(truth.length() * k / count);
+        const Eigen::Vector3d sight = (X_WS.position - view.X_WC.position).normalized(),
+                              across = sight.cross(X_WS.rotation.col(2)).normalized();
+        seen[1].borders.push_back({view.project(X_WS.position + side * 0.002 * across).value()});
+      }
+    }
+    seen[1].points.clear(), seen[1].ends = {};
+    const ShapeEstimate found = tracker.look(seen, 0.03, first.shape.state);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 1e-2);
+  });
+}
+
+TEST(ShapeFromABorder, LeavesOutWhatIsNoPoint) {
+  TestRandom random(1);
+  const ShapePrior prior{.arm = three_section_arm()};
+  const Backbone truth(prior.arm, random_bends(random, prior.arm, 0.8));
+  std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+  ShapeTracker tracker(prior, {});
+  const ArmState expected = tracker.look(seen, 0, std::nullopt).shape.state;
+  seen[1].borders = borders_of(truth, two_views()[1]);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  seen[1].borders[3].pixel.x() = nan, seen[1].borders[7].sigma = 0, seen[0].points[2].pixel.y() = nan;
+  seen[1].points.clear(), seen[1].ends = {};
+  const ShapeEstimate found = tracker.look(seen, 0.03, expected);
+  ASSERT_TRUE(found.is_found) << found.reason;
+  EXPECT_LT(shape_error(found.shape, truth), 1e-2);
+}
+
+TEST(ShapeEstimator, FindsNothingWhereNothingIsSeen) {
+  const ShapePrior prior{.arm = three_section_arm()};
+  const Shape straight{prior.arm, ArmState::straight(prior.arm.sections.size()), {}};
+  ShapeEstimator estimator(prior);
+  const ShapeVariables variables(prior);
+  const ShapeBelief belief{straight, Eigen::MatrixXd::Identity(variables.count(), variables.count())};
+  for (const ShapeEstimate& none :
+       {estimator.estimate({}), estimator.follow({}, straight), estimator.update({}, belief)}) {
+    EXPECT_FALSE(none.is_found);
+    EXPECT_EQ(none.reason, "the arm is not seen in every image");
   }
 }
 
@@ -272,7 +339,9 @@ TEST(ShapeTracker, RefusesAnAxisOfSomethingElse) {
     for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.1, 0.1);
     seen[1].points.clear(), seen[1].ends = {};
     for (int k = 0; k < 10; ++k) seen[1].points.push_back({{100.0 + k, 60}, 0.05});
-    EXPECT_FALSE(tracker.look(seen, 0.03, expected).is_found);
+    const ShapeEstimate none = tracker.look(seen, 0.03, expected);
+    EXPECT_FALSE(none.is_found);
+    EXPECT_NE(none.reason, "");
   });
 }
 

@@ -81,6 +81,13 @@ double root_mean_square(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
+ShapeEstimate unseen(Shape shape) {
+  ShapeEstimate none;
+  none.shape = std::move(shape);
+  none.reason = "the arm is not seen in every image";
+  return none;
+}
+
 Shape scaled(Shape shape, double factor) {
   for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
   return shape;
@@ -99,6 +106,10 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
   std::vector<Sighting> result;
   for (const Sighting& seen : sightings) {
     Sighting thin = thinned(seen, config_.most_points);
+    const auto is_none = [](const auto& point) {
+      return !point.pixel.allFinite() || !(point.sigma > 0) || !std::isfinite(point.sigma);
+    };
+    std::erase_if(thin.points, is_none), std::erase_if(thin.borders, is_none);
     // Of an arm that is no wider than its backbone borders tell nothing.
     const auto has_radius = [](const Section& section) {
       return section.radius[0] > 0 || section.radius[1] > 0;
@@ -151,12 +162,7 @@ std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightin
 
 ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   std::vector<Sighting> seen = prepared(sightings);
-  if (seen.empty() || !have_axes(seen)) {
-    ShapeEstimate none;
-    none.shape = straight_shape(prior_);
-    none.reason = "the arm is not seen in every image";
-    return none;
-  }
+  if (seen.empty() || !have_axes(seen)) return unseen(straight_shape(prior_));
   std::optional<ShapeFit> best;
   double best_merit = 0;
   std::vector<Sighting> best_seen;
@@ -201,6 +207,7 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
 
 ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const Shape& before) {
   const std::vector<Sighting> seen = prepared(sightings);
+  if (!are_enough(seen)) return unseen(before);
   ShapeProblem problem(prior_, seen);
   ShapeFit fit = descent_.descend(problem, before, config_.most_iterations, StartKind::near);
   if (!is_good(fit)) {
@@ -214,6 +221,7 @@ ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const 
 
 ShapeEstimate ShapeEstimator::update(std::span<const Sighting> sightings, const ShapeBelief& before) {
   const std::vector<Sighting> seen = prepared(sightings);
+  if (!are_enough(seen)) return unseen(before.mean);
   ShapeProblem problem(prior_, seen, {}, &before);
   ShapeFit fit = descent_.descend(problem, before.mean, config_.most_iterations, StartKind::near);
   const double cost = fit.cost;

@@ -80,13 +80,18 @@ bool explains_border(const Sighting& seen, const ViewError& error, const Shape& 
   constexpr double most_astray = 1, close = 2, enough = 0.7;  // px^2, px, share
   if (astray(seen, error, shape) > most_astray) return false;
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  // Within the stretch between two places.
+  const auto is_between = [&](const SeenPlace& a, const SeenPlace& b, const Eigen::Vector2d& pixel) {
+    if (!a.pixel || !b.pixel) return false;
+    const Eigen::Vector2d way = *b.pixel - *a.pixel;
+    const double square = way.squaredNorm();
+    const double t = square > 0 ? std::clamp(way.dot(pixel - *a.pixel) / square, 0.0, 1.0) : 0.0;
+    return (*a.pixel + t * way - pixel).norm() < (1 - t) * a.half_width + t * b.half_width + close;
+  };
   const auto is_explained = [&](const SeenBorder& border) {
-    double nearest = std::numeric_limits<double>::infinity(), half_width = 0;
-    for (const SeenPlace& place : places) {
-      const double distance = place.pixel ? (border.pixel - *place.pixel).norm() : nearest;
-      if (distance < nearest) nearest = distance, half_width = place.half_width;
-    }
-    return nearest < half_width + close;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i)
+      if (is_between(places[i], places[i + 1], border.pixel)) return true;
+    return false;
   };
   const auto explained = static_cast<double>(std::ranges::count_if(seen.borders, is_explained));
   return explained >= enough * static_cast<double>(seen.borders.size());

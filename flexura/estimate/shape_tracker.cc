@@ -64,7 +64,9 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
     if (is_as_usual(best) && !is_surprising) return best;
   }
   ShapeEstimate anew = estimator_.estimate(sightings);
-  // Where there is none, it is the second that says why.
+  // Where there is none, it is the second that says why, unless it could not be tried.
+  const bool is_tried = !anew.sigma.empty() || !expected;
+  if (!best.is_found && !anew.is_found && !is_tried) return best;
   return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
 }
 

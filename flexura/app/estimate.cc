@@ -152,14 +152,20 @@ Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapeP
   const ArmSighting found = sighted(photograph, finder);
   look.reason = found.reason, look.notes = found.notes;
   look.sighting = sighting_of(found, view, photograph.bytes);
+  look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();
   return look;
 }
 
-Node image_node(const std::string& name, const MeasuredCamera& camera, const Look& look) {
+Node image_node(const std::string& name, const MeasuredCamera& camera, const Look& look,
+                const ViewError& error) {
   Node::Table entry{{"image", {}, text_node(name)},
                     {"camera", {}, text_node(camera.name)},
                     {"points", {}, {static_cast<std::int64_t>(look.samples), {}}}};
+  if (look.sighting.doubt.is_any()) {
+    Node::Table off{{"turn", {}, vector(error.turn)}, {"focal", {}, number_node(error.focal)}};
+    entry.push_back({"camera_error", {}, {std::move(off), {}}});
+  }
   if (!look.reason.empty()) entry.push_back({"reason", {}, text_node(look.reason)});
   if (!look.notes.empty()) entry.push_back({"notes", {}, texts_node(look.notes)});
   return {std::move(entry), {}};
@@ -259,14 +265,18 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   const std::vector<MeasuredCamera> cameras = cameras_of(arguments);
   const ShapePrior prior = prior_of(arguments);
   const ThresholdConfig threshold = threshold_config(arguments.threshold);
+  std::vector<Look> looks;
   std::vector<Sighting> sightings;
-  Node::Array images;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Look look = look_at(arguments.images[i], cameras[i], prior, threshold);
-    images.push_back(image_node(arguments.images[i], cameras[i], look));
-    sightings.push_back(std::move(look.sighting));
+    looks.push_back(look_at(arguments.images[i], cameras[i], prior, threshold));
+    sightings.push_back(looks.back().sighting);
   }
   const ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
+  Node::Array images;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const ViewError error = i < found.shape.views.size() ? found.shape.views[i] : ViewError{};
+    images.push_back(image_node(arguments.images[i], cameras[i], looks[i], error));
+  }
   Node::Table answer{{"found", {}, {found.is_found, {}}}};
   if (found.is_found)
     add_shape(found, sightings, arguments, answer);

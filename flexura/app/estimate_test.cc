@@ -172,6 +172,29 @@ TEST_F(Estimate, UsesBandsOfWhichBothPicturesShowTheSame) {
   EXPECT_LT(error(answer(exit_done)), 5e-3);
 }
 
+// The second camera is turned by half a degree and believed not to be.
+TEST_F(Estimate, FindsWhatIsWrongWithACameraThatIsDoubted) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  const std::string turned =
+      "rotation = [[0.0087265, 0, 0.99996192], [0, -1, 0], [0.99996192, 0, -0.0087265]]";
+  const std::string wrong = replaced(cameras_text, "rotation = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]", turned);
+  arguments_.cameras = (folder_.path() / "wrong.toml").string();
+  write_new_file(arguments_.cameras, wrong);
+  std::ostringstream out;
+  if (estimate_command(arguments_, out) == exit_done) {
+    EXPECT_GT(error(parse_json(out.str(), "answer")), 5e-3);
+  }
+  arguments_.cameras = (folder_.path() / "doubted.toml").string();
+  write_new_file(arguments_.cameras, replaced(wrong, "name = \"side\"",
+                                              "name = \"side\"\ndoubt = { turn_deg = 1, focal = 0.01 }"));
+  const Node found = answer(exit_done);
+  EXPECT_LT(error(found), 1.5e-3);
+  const auto& images = *found.find("images")->as<Node::Array>();
+  EXPECT_EQ(images[0].find("camera_error"), nullptr);
+  const auto& turn = *images[1].find("camera_error")->find("turn")->as<Node::Array>();
+  EXPECT_NEAR(std::abs(*turn[1].as<double>()), 0.0087265, 5e-4);
+}
+
 TEST_F(Estimate, SaysWhyThereIsNone) {
   arguments_.images[1] = (folder_.path() / "blank.png").string();
   write_new_file(arguments_.images[1], png(Image<std::uint8_t>(64, 48)));

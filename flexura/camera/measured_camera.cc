@@ -82,6 +82,21 @@ Lens MeasuredCamera::lens() const {
 
 Pose MeasuredCamera::pose() const { return {rotation.matrix(), {position[0], position[1], position[2]}}; }
 
+const Table<CameraDoubtConfig>& fields_of(const CameraDoubtConfig*) {
+  using C = CameraDoubtConfig;
+  static const Table<C> table =
+      Table<C>(
+          "doubt",
+          "How wrong a camera's description may be: standard deviations. What is wrong is then found with "
+          "the shape.")
+          .field("turn", &C::turn,
+                 {.meaning = "Of where it looks, about each axis.",
+                  .unit = Unit::radian,
+                  .range = between(0, 0.3)})
+          .field("focal", &C::focal, {.meaning = "Of its focal length, a share.", .range = between(0, 0.3)});
+  return table;
+}
+
 const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
   using C = MeasuredCamera;
   static const Table<C> table =
@@ -100,6 +115,7 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
               "rotation", &C::rotation,
               {.meaning = "Of the camera's frame (x right, y down, z forward) in the world: three rows of a "
                           "matrix, or [w, x, y, z]."})
+          .field("doubt", &C::doubt, {.meaning = "How wrong all that may be.", .default_text = "not at all"})
           .check(check_measured_camera);
   return table;
 }

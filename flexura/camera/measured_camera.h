@@ -30,6 +30,12 @@ struct Codec<RotationConfig> {
   static Node write(const RotationConfig& value);
 };
 
+/// How wrong the description of a camera may be: standard deviations; of 0 it is believed.
+struct CameraDoubtConfig {
+  double turn = 0;   ///< Of its frame, about each axis, rad.
+  double focal = 0;  ///< Share of the focal lengths.
+};
+
 /// One `[[camera]]` of a file of cameras as they were measured: a lens that stands still, and where it
 /// stands.
 struct MeasuredCamera {
@@ -40,6 +46,7 @@ struct MeasuredCamera {
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
   std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
+  CameraDoubtConfig doubt;
 
   [[nodiscard]] Lens lens() const;
   /// X_WC.
@@ -51,6 +58,7 @@ struct MeasuredCameras {
   std::vector<MeasuredCamera> camera;
 };
 
+const Table<CameraDoubtConfig>& fields_of(const CameraDoubtConfig*);
 const Table<MeasuredCamera>& fields_of(const MeasuredCamera*);
 const Table<MeasuredCameras>& fields_of(const MeasuredCameras*);
 

@@ -2,6 +2,7 @@
 import { expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { opened_before, type Served } from './opened';
+import { frustum_tests } from './rig_frustum_tests';
 import { move_tests, pick_tests } from './rig_move_tests';
 import { page_tests } from './rig_page_tests';
 import { picture_tests, time_tests } from './rig_picture_tests';
@@ -19,6 +20,7 @@ export function rig_tests(start: () => Promise<Served>, fake: () => FakeServer |
   move_tests(opened, fake);
   pick_tests(opened);
   picture_tests(opened, fake);
+  frustum_tests(opened);
   eye_tests(opened, fake);
   time_tests(opened);
   page_tests(opened);

@@ -1,4 +1,4 @@
-import { Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Vector3, type Group } from 'three';
+import { type Group, type InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Vector3 } from 'three';
 import { expect, test, vi } from 'vitest';
 import { point_at } from '../../src/math/arc';
 import { sample_arm } from '../../src/math/forward';
@@ -98,6 +98,36 @@ test('the skin’s normals have length one and point outwards', () => {
   for (let i = 0; i < normals.count; ++i) {
     expect(Math.hypot(normals.getX(i), normals.getY(i), normals.getZ(i))).toBeCloseTo(1, 5);
   }
+});
+
+test('each guide disk stands across the backbone at its own place', () => {
+  const [length, bend] = [0.6, 1.2];
+  const disks = [{ at: 0, radius: 0.05, thickness: 0.01 }, { at: 0.25, radius: 0.04, thickness: 0.02 }, { at: 0.6, radius: 0.03, thickness: 0.006 }];
+  const scene = { ...rig.scene, arm: { ...arm, sections: [{ ...arm.sections[0], length }], markers: [], disks } };
+  const [part] = make_arm({ scene, span: length, floor: 0, theme: 'dark' });
+  // From straight on: they go with the arm.
+  for (const bend_x of [0, bend]) part.draw!({ samples: sample_arm(arm.base, [{ length, bend_x, bend_y: 0, stretch: 1 }], 4) } as State);
+  const mesh = (part.group as Group).children[1] as InstancedMesh;
+  const corners = mesh.geometry.getAttribute('position');
+  expect(mesh.count).toBe(disks.length);
+  disks.forEach(({ at, radius, thickness }, i) => {
+    // An arc from the origin, upright, to the side of +x.
+    const [bow, turned] = [length / bend, (bend * at) / length];
+    const middle = new Vector3(bow * (1 - Math.cos(turned)), bow * Math.sin(turned), 0);
+    const along = new Vector3(Math.sin(turned), Math.cos(turned), 0);
+    const matrix = new Matrix4();
+    mesh.getMatrixAt(i, matrix);
+    const off = Array.from({ length: corners.count }, (_, corner) => {
+      const from_middle = new Vector3().fromBufferAttribute(corners, corner).applyMatrix4(matrix).sub(middle);
+      const height = from_middle.dot(along);
+      return { height, width: from_middle.addScaledVector(along, -height).length() };
+    });
+    for (const { height } of off) expect(Math.abs(height)).toBeCloseTo(thickness / 2, 5);
+    // Corners on the rim, and the middles of both faces.
+    for (const { width } of off) expect(Math.min(width, Math.abs(width - radius))).toBeLessThan(1e-5);
+    expect(Math.max(...off.map(({ width }) => width))).toBeCloseTo(radius, 5);
+    expect(new Set(off.map(({ height }) => Math.sign(height)))).toEqual(new Set([-1, 1]));
+  });
 });
 
 test('markers begin and end where the scene says', () => {

@@ -33,6 +33,8 @@ class Outbox {
   void done();
   /// Of all messages, the one being sent among them.
   [[nodiscard]] std::size_t bytes() const { return text_bytes_ + stream_bytes_ + sending_bytes_; }
+  /// Whether a message is being sent.
+  [[nodiscard]] bool is_sending() const { return sending_bytes_ > 0; }
 
  private:
   std::size_t texts_limit_;

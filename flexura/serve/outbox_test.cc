@@ -80,9 +80,12 @@ TEST(Outbox, BoundsHowMuchTextWaits) {
 TEST(Outbox, CountsWhatIsBeingSent) {
   Outbox outbox(10, 100);
   EXPECT_TRUE(outbox.push("abc"));
+  EXPECT_FALSE(outbox.is_sending());
   const auto message = outbox.next();
   EXPECT_EQ(outbox.bytes(), 3U);
+  EXPECT_TRUE(outbox.is_sending());
   outbox.done();
+  EXPECT_FALSE(outbox.is_sending());
   EXPECT_EQ(outbox.bytes(), 0U);
   EXPECT_FALSE(outbox.next());
 }

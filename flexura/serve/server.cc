@@ -1,6 +1,8 @@
 #include "flexura/serve/server.h"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
+#include <cstddef>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -108,6 +110,12 @@ std::size_t Server::Loop::waiting_bytes() {
   return bytes;
 }
 
+std::size_t Server::Loop::busy_clients() {
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(clients_, [](const auto& entry) { return entry.second->outbox.is_sending(); }));
+}
+
 /// Called with the mutex held. However often it is called, one flush() waits: the loop's own queue is
 /// short.
 void Server::Loop::wake() {
@@ -140,5 +148,6 @@ void Server::post(ClientId client, std::uint32_t stream, std::shared_ptr<const s
   loop_->post(client, stream, std::move(message));
 }
 std::size_t Server::waiting_bytes() const { return loop_->waiting_bytes(); }
+std::size_t Server::busy_clients() const { return loop_->busy_clients(); }
 
 }  // namespace flexura

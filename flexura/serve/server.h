@@ -84,6 +84,8 @@ class Server {
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
   /// Of all messages that wait for a client or are being sent to one.
   [[nodiscard]] std::size_t waiting_bytes() const;
+  /// Clients to whom a message is being sent: one that does not read stays among them.
+  [[nodiscard]] std::size_t busy_clients() const;
 
  private:
   class Loop;

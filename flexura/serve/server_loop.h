@@ -40,6 +40,7 @@ class Server::Loop {
   void send(ClientId client, std::string text);
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
   [[nodiscard]] std::size_t waiting_bytes();
+  [[nodiscard]] std::size_t busy_clients();
 
  private:
   class Visit;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,9 @@ class ViewServer {
   [[nodiscard]] std::string url() const { return server_.url(); }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] const std::string& token() const { return server_.token(); }
+  /// Both as of the server itself.
+  [[nodiscard]] std::size_t waiting_bytes() const { return server_.waiting_bytes(); }
+  [[nodiscard]] std::size_t busy_clients() const { return server_.busy_clients(); }
 
  private:
   class ServerMessenger : public Messenger {

@@ -16,8 +16,9 @@ for (const [i, bend] of [0.75, 0.5, -1.25, 0.75, 1.25].entries()) {
   await page.waitForTimeout(700);
 }
 for (const label of ['Edges', 'Axis']) await page.getByRole('button', { name: new RegExp(`^${label}: `) }).click();
-// All of the way from straight to bent is in the plots, and the view has come to rest.
+// All of the way from straight to bent is in the plots, the view has come to rest, and no picture is late.
 await page.waitForTimeout(4000);
+await until(async () => (await page.locator('.picture .old').count()) === 0, 30000);
 await page.screenshot({ path: `${root}docs/images/viewer.png` });
 
 const teach = await open_page(browser, `${new URL(served.url).origin}/#/teach`, { width: 1280, height: 720, dark: false });

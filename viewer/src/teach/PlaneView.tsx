@@ -74,7 +74,11 @@ function Tangent({ row, length, unit }: { row: Row; length: number; unit: number
   const r = Math.min(0.55 * length, 16 * unit);
   const [x0, y0] = far(row.tangent, r);
   const [x1, y1] = far(row.cord_angle, r);
-  const [tx, ty] = far(row.tangent + row.arching / 2, r + 4 * unit);
+  // In a short section the next joint would lie upon it: there it stands on the tangent's other side.
+  const is_short = length < r + 8 * unit;
+  const [tx, ty] = is_short
+    ? far(row.tangent - Math.sign(row.arching) * 0.6, Math.max(r, 6.5 * unit))
+    : far(row.tangent + row.arching / 2, r + 4 * unit);
   return (
     <g class="tangent" stroke-width={0.4 * unit}>
       <line x1={row.x} y1={-row.y} x2={x} y2={y} stroke-dasharray={`${1.4 * unit} ${unit}`} />

@@ -83,10 +83,10 @@ export async function started(what: string | string[] = ['view']): Promise<Serve
   return served;
 }
 
-/** The program on what it recorded of an experiment's file. */
-export async function recorded(file: string): Promise<Served> {
+/** The program on what it recorded of an experiment's file; `status` is how the run ends. */
+export async function recorded(file: string, status = 0): Promise<Served> {
   const made = new Program();
-  const shown = await started(['view', made.record(file)]);
+  const shown = await started(['view', made.record(file, status)]);
   return {
     url: shown.url,
     stop: async () => {

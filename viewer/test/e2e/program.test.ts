@@ -1,4 +1,5 @@
 // The page against the program itself.
+import { type AddressInfo, connect, createServer, type Socket } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import type { Browser } from 'playwright-core';
@@ -9,9 +10,63 @@ import { rig_tests } from './rig_tests';
 
 const rig = fileURLToPath(new URL('rig.toml', import.meta.url));
 
+/** What comes to its port goes to another one, and back: as `ssh -L` does it. */
+interface Tunnel {
+  port: number;
+  to: number;
+  close(): Promise<void>;
+}
+
+async function open_tunnel(): Promise<Tunnel> {
+  const ends = new Set<Socket>();
+  const server = createServer((near) => {
+    const far = connect(tunnel.to, '127.0.0.1');
+    for (const [one, other] of [[near, far], [far, near]]) {
+      ends.add(one);
+      one.on('error', () => other.destroy()).on('close', () => other.destroy());
+      one.pipe(other);
+    }
+  });
+  const tunnel: Tunnel = {
+    port: 0,
+    to: 0,
+    close: () => new Promise((resolve) => {
+      server.close(() => resolve());
+      for (const end of ends) end.destroy();
+    }),
+  };
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  tunnel.port = (server.address() as AddressInfo).port;
+  return tunnel;
+}
+
 describe.skipIf(!program)('the program', () => {
   describe('with its rig', () => {
     rig_tests(() => started(rig));
+  });
+
+  describe('behind a tunnel', () => {
+    let [browser, tunnel, served]: [Browser?, Tunnel?, Program?] = [];
+
+    afterAll(async () => {
+      await browser?.close();
+      await tunnel?.close();
+      await served?.stop();
+    });
+
+    // As docs/command-line.md has it for `ssh -L` with another port than the program's.
+    test('the page works under another port, once that is named', async () => {
+      browser = await launch();
+      tunnel = await open_tunnel();
+      served = new Program(['view', rig, '--name', `127.0.0.1:${tunnel.port}`]);
+      await served.start();
+      tunnel.to = served.port;
+      const { page, complaints } = await open_page(browser, served.url.replace(`:${served.port}`, `:${tunnel.port}`));
+      await page.waitForSelector('.badge[data-kind="live"]');
+      await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
+      expect(new URL(page.url()).port).toBe(String(tunnel.port));
+      expect(complaints).toEqual([]);
+    });
   });
 
   describe('started again', () => {

@@ -1,5 +1,5 @@
 // `flexura view` and `run` as a person starts them, of the build whose program FLEXURA_PROGRAM names.
-import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
+import { spawn, spawnSync, type ChildProcess } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -38,10 +38,11 @@ export class Program {
     });
   }
 
-  /** Runs an experiment; gives the folder of its results. */
-  record(file: string): string {
+  /** Runs an experiment, which ends with this status (1: it was unsafe); gives the folder of its results. */
+  record(file: string, status = 0): string {
     const results = join(this.folder, 'recorded');
-    execFileSync(program!, ['run', file, '--out', results], { stdio: ['ignore', 'ignore', 'inherit'] });
+    const ended = spawnSync(program!, ['run', file, '--out', results], { stdio: ['ignore', 'ignore', status ? 'ignore' : 'inherit'] });
+    if (ended.status !== status) throw new Error(`run ended with ${ended.status}`);
     return results;
   }
 

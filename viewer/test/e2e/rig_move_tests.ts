@@ -138,6 +138,13 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
       const { tip } = await server_state(page);
       return tip[0] < before[0] - 0.01 && tip[1] < before[1];
     });
+    // Where it was let go, in the plane that faced the viewer.
+    const wanted = { x: from.x - 50, y: from.y + 30 };
+    await until(async () => {
+      const at = await tip_on_screen(page);
+      return Math.hypot(at.x - wanted.x, at.y - wanted.y) < 3;
+    }, 8000, 'the tip is not where it was dragged to');
+    expect(Math.abs((await server_state(page)).tip[2] - before[2])).toBeLessThan(0.01);
     if (fake()) {
       const tips = fake()!.log.filter((request) => request.do === 'tip');
       expect(tips.length).toBeGreaterThan(0);

@@ -45,6 +45,54 @@ test('values follow the hand', async () => {
   expect(await effector()).not.toBe(before);
 });
 
+/** An arm of these archings, by a walk along its backbone in small straight steps: without the page's own formulas. */
+function walked(lengths: number[], archings: number[]) {
+  const steps = 20000;
+  let [x, y, tangent] = [0, 0, Math.PI / 2];
+  return lengths.map((length, i) => {
+    const row = { tangent, x, y, cord: 0, cord_angle: 0, end_x: 0, end_y: 0 };
+    for (let k = 0; k < steps; ++k) {
+      const angle = tangent + (2 * archings[i] * (k + 0.5)) / steps;
+      x += (length / steps) * Math.cos(angle);
+      y += (length / steps) * Math.sin(angle);
+    }
+    tangent += 2 * archings[i];
+    return { ...row, cord: Math.hypot(x - row.x, y - row.y), cord_angle: Math.atan2(y - row.y, x - row.x), end_x: x, end_y: y };
+  });
+}
+
+test('the live values are those of the arm, whoever computes them', async () => {
+  await open('The paper’s arm, free');
+  const number = (text: string | null): number => Number(text!.replace('−', '-').replace('°', ''));
+  const archings: number[] = [];
+  for (const [i, degrees] of [20, -35, 80, 0, -10.5, 60, -75, 12].entries()) {
+    await set(i, degrees);
+    // A slider has steps.
+    archings.push(Number(await page.locator(`#arching-${i}`).inputValue()));
+    expect(Math.abs(archings[i] / degree - degrees)).toBeLessThan(0.2);
+  }
+  const rows = walked([2, 3, 1, 2, 4, 2, 1, 1], archings);
+  const last = rows.at(-1)!;
+  const [x, y] = /\((.+), (.+)\)/.exec((await effector())!)!.slice(1).map(number);
+  expect(Math.hypot(x - last.end_x, y - last.end_y)).toBeLessThan(1e-3);
+  for (const [i, row] of rows.entries()) {
+    const line = page.locator('.recurrence tbody tr').nth(i);
+    const cells = (await line.locator('td').allTextContents()).map(number);
+    const wanted = [row.tangent / degree, archings[i] / degree, row.cord_angle / degree, row.cord, row.end_x, row.end_y];
+    // Angles may differ by whole turns.
+    wanted.forEach((value, k) => {
+      const off = k < 3 ? ((((cells[k] - value + 180) % 360) + 360) % 360) - 180 : cells[k] - value;
+      expect(Math.abs(off), `section ${i + 1}, column ${k + 1}`).toBeLessThan(k < 3 ? 0.051 : 6e-4);
+    });
+    await line.click();
+    const ends = await page.locator('.equation').evaluateAll((all) => all.map((each) => [...each.querySelectorAll('mn')].at(-1)!.textContent));
+    const shown = ends.map(number);
+    [archings[i] / degree, row.cord, cells[2], row.end_x, row.end_y].forEach((value, k) =>
+      expect(Math.abs(shown[k] - value), `section ${i + 1}, equation ${k + 1}`).toBeLessThan(k % 2 === 0 && k < 4 ? 0.051 : 6e-4));
+  }
+  await open('The paper’s arm, free');
+});
+
 test('between the lines of an equation there is room', async () => {
   const overlaps = () => page.evaluate(() => [...document.querySelectorAll('.equation')].flatMap((equation) => {
     // As it is drawn: what stands in a formula may reach out of the box that the browser makes of it.

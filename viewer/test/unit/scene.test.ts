@@ -1,4 +1,4 @@
-import { Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Vector3, type Group } from 'three';
+import { type Group, type InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Vector3 } from 'three';
 import { expect, test, vi } from 'vitest';
 import { point_at } from '../../src/math/arc';
 import { sample_arm } from '../../src/math/forward';
@@ -11,7 +11,7 @@ import { gap_between, make_cameras } from '../../src/scene/parts/cameras';
 import { nearest_point } from '../../src/scene/pick';
 import { make_ghosts, samples_of } from '../../src/scene/parts/ghosts';
 import { grid_step } from '../../src/scene/parts/floor';
-import { plan_rings, radius_at, total_length } from '../../src/scene/rings';
+import { medium, painter, plan_rings, radius_at, total_length } from '../../src/scene/rings';
 import { Tube } from '../../src/scene/tube';
 import { FakeArm } from '../fake/arm';
 import { planar_rig, spatial_rig } from '../fake/rigs';
@@ -56,7 +56,8 @@ test('between two corners the skin is round to a quarter of a pixel, however nea
   for (const away of [30, 5, 2, 1.2, 0.5].map((f) => f * span)) {
     part.seen_from!(new Vector3(tip[0] + away, tip[1], tip[2]), 1000);
     const positions = skin.geometry.getAttribute('position');
-    const rings = plan_rings(arm);
+    const [few, all] = [plan_rings(arm, painter(arm), medium), plan_rings(arm)];
+    const rings = positions.count === 17 * few.length ? few : all;
     const around = positions.count / rings.length;
     sides.push(around - 1);
     // The middle of each facet of a ring, against the radius there; no point of the arm is nearer than that.
@@ -97,6 +98,51 @@ test('the skin’s normals have length one and point outwards', () => {
   const normals = tube.geometry.getAttribute('normal');
   for (let i = 0; i < normals.count; ++i) {
     expect(Math.hypot(normals.getX(i), normals.getY(i), normals.getZ(i))).toBeCloseTo(1, 5);
+  }
+});
+
+test('each guide disk stands across the backbone at its own place', () => {
+  const [length, bend] = [0.6, 1.2];
+  const disks = [{ at: 0, radius: 0.05, thickness: 0.01 }, { at: 0.25, radius: 0.04, thickness: 0.02 }, { at: 0.6, radius: 0.03, thickness: 0.006 }];
+  const scene = { ...rig.scene, arm: { ...arm, sections: [{ ...arm.sections[0], length }], markers: [], disks } };
+  const [part] = make_arm({ scene, span: length, floor: 0, theme: 'dark' });
+  // From straight on: they go with the arm.
+  for (const bend_x of [0, bend]) part.draw!({ samples: sample_arm(arm.base, [{ length, bend_x, bend_y: 0, stretch: 1 }], 4) } as State);
+  const mesh = (part.group as Group).children[1] as InstancedMesh;
+  const corners = mesh.geometry.getAttribute('position');
+  expect(mesh.count).toBe(disks.length);
+  disks.forEach(({ at, radius, thickness }, i) => {
+    // An arc from the origin, upright, to the side of +x.
+    const [bow, turned] = [length / bend, (bend * at) / length];
+    const middle = new Vector3(bow * (1 - Math.cos(turned)), bow * Math.sin(turned), 0);
+    const along = new Vector3(Math.sin(turned), Math.cos(turned), 0);
+    const matrix = new Matrix4();
+    mesh.getMatrixAt(i, matrix);
+    const off = Array.from({ length: corners.count }, (_, corner) => {
+      const from_middle = new Vector3().fromBufferAttribute(corners, corner).applyMatrix4(matrix).sub(middle);
+      const height = from_middle.dot(along);
+      return { height, width: from_middle.addScaledVector(along, -height).length() };
+    });
+    for (const { height } of off) expect(Math.abs(height)).toBeCloseTo(thickness / 2, 5);
+    // Corners on the rim, and the middles of both faces.
+    for (const { width } of off) expect(Math.min(width, Math.abs(width - radius))).toBeLessThan(1e-5);
+    expect(Math.max(...off.map(({ width }) => width))).toBeCloseTo(radius, 5);
+    expect(new Set(off.map(({ height }) => Math.sign(height)))).toEqual(new Set([-1, 1]));
+  });
+});
+
+test('seen thin, the arm’s outline is a quarter of a pixel beside its arcs at most, at all bends', () => {
+  for (const { scene } of [rig, planar_rig()]) {
+    const pixels = 600 / total_length(scene.arm);
+    // Where a section is as much bent as it can be, between two rings.
+    let start = 0;
+    for (const { length, max_bend } of scene.arm.sections) {
+      const own = plan_rings(scene.arm, painter(scene.arm), medium).map(({ s }) => s)
+        .filter((s) => s >= start - 1e-9 && s <= start + length + 1e-9);
+      const widest = Math.max(...own.slice(1).map((s, i) => s - own[i]));
+      expect(((widest * widest * max_bend!) / length / 8) * pixels).toBeLessThan(0.25);
+      start += length;
+    }
   }
 });
 

@@ -5,7 +5,8 @@ import {
 import { Arc, locate, new_pose } from '../../math/arc';
 import { sample_stride, type State } from '../../protocol/state';
 import type { Part, PartContext } from '../part';
-import { coarse, painter, plan_rings, radius_at } from '../rings';
+import { plain } from '../plain';
+import { coarse, medium, painter, plan_rings, radius_at } from '../rings';
 import { fineness_of, sides, Tube } from '../tube';
 
 /** The arm: skin, disks, and its shadow on the floor, which says where it is in depth. */
@@ -13,10 +14,11 @@ export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
   const { arm } = scene;
   if (!arm.visible) return [];
   const rings = plan_rings(arm);
+  const few_rings = plan_rings(arm, painter(arm), medium);
   const thickest = rings.reduce((most, { radius }) => Math.max(most, radius), 0);
-  // From near, more sides: each is made when it is first needed, and only the one that is seen is laid.
+  // From near, more rings and sides: each is made when it is first needed, and only the one that is seen is laid.
   const tubes: Tube[] = [];
-  const tube_of = (level: number): Tube => (tubes[level] ??= new Tube(rings, sides[level]));
+  const tube_of = (level: number): Tube => (tubes[level] ??= new Tube(level > 0 ? rings : few_rings, sides[level]));
   let tube = tube_of(0);
   let samples: ArrayLike<number> | null = null;
   // Arms are dark, for the cameras' sake; on a dark ground a little light of its own keeps one in sight.
@@ -28,7 +30,7 @@ export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
   const shade = new Tube(plan_rings({ ...arm, markers: [] }, painter(arm), coarse), 6);
   const shadow = new Mesh(
     shade.geometry,
-    new MeshBasicMaterial({ color: theme === 'dark' ? 0x0c1218 : 0xc3ccd4, side: DoubleSide }),
+    plain(new MeshBasicMaterial({ color: theme === 'dark' ? 0x0c1218 : 0xc3ccd4, side: DoubleSide })),
   );
   shadow.frustumCulled = false;
   shadow.matrixAutoUpdate = false;

@@ -1,10 +1,11 @@
 // The rig's cameras as frusta that hold their pictures.
 import {
   BufferAttribute, BufferGeometry, CanvasTexture, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-  DoubleSide, SRGBColorSpace, LinearFilter, Matrix4, Vector3,
+  DoubleSide, LinearFilter, Matrix4, Vector3,
 } from 'three';
 import { camera_cx, camera_cy, camera_fx, camera_fy, camera_stride, sample_stride, type State } from '../../protocol/state';
 import type { Part, PartContext } from '../part';
+import { plain } from '../plain';
 
 /** How far before the camera its picture hangs: a part of the way to the arm's base. */
 const depth_share = 0.35;
@@ -25,7 +26,7 @@ export function make_cameras({ scene, span, theme }: PartContext): Part[] {
     group.matrixAutoUpdate = false;
     const corners = new Float32Array(24 * 3);
     const edge_geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(corners, 3));
-    const edges = new LineSegments(edge_geometry, new LineBasicMaterial({ color: theme === 'dark' ? 0x6fb7ff : 0x1f6fc4 }));
+    const edges = new LineSegments(edge_geometry, plain(new LineBasicMaterial({ color: theme === 'dark' ? 0x6fb7ff : 0x1f6fc4 })));
     const plane = new Float32Array(4 * 3);
     const plane_geometry = new BufferGeometry()
       .setAttribute('position', new BufferAttribute(plane, 3))
@@ -35,10 +36,9 @@ export function make_cameras({ scene, span, theme }: PartContext): Part[] {
     canvas.width = Math.min(width, texture_width);
     canvas.height = Math.max(1, Math.round((canvas.width * height) / width));
     const texture = new CanvasTexture(canvas);
-    texture.colorSpace = SRGBColorSpace;
     texture.generateMipmaps = false;
     texture.minFilter = LinearFilter;
-    const film = new MeshBasicMaterial({ map: texture, side: DoubleSide, transparent: true, opacity });
+    const film = plain(new MeshBasicMaterial({ map: texture, side: DoubleSide, transparent: true, opacity }));
     const picture = new Mesh(plane_geometry, film);
     picture.visible = false;
     let has_picture = false;

@@ -1,6 +1,7 @@
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments } from 'three';
 import type { Part, PartContext } from '../part';
 import { dispose_tree } from '../part';
+import { plain } from '../plain';
 
 /** A round number of metres that gives some ten squares along the arm. */
 export function grid_step(span: number): number {
@@ -40,5 +41,5 @@ function format_step(step: number): string {
 
 export function lines(points: number[], color: number, opacity = 1): LineSegments {
   const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
-  return new LineSegments(geometry, new LineBasicMaterial({ color, opacity, transparent: opacity < 1 }));
+  return new LineSegments(geometry, plain(new LineBasicMaterial({ color, opacity, transparent: opacity < 1 })));
 }

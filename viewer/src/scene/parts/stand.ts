@@ -5,6 +5,7 @@ import {
 } from 'three';
 import type { Pose, SceneEtalon, SceneObstacle, SceneScreen } from '../../protocol/types';
 import { dispose_tree, type Part, type PartContext } from '../part';
+import { plain } from '../plain';
 import { lines } from './floor';
 
 export function make_stand(context: PartContext): Part[] {
@@ -40,9 +41,9 @@ function screen_of({ pose, size, brightness }: SceneScreen, { theme }: PartConte
   const sheet = new Mesh(
     new PlaneGeometry(size[0], size[1]),
     // Pushed back a little, so that its edges lie upon it.
-    new MeshBasicMaterial({
+    plain(new MeshBasicMaterial({
       color: new Color(sheen, sheen, 1.08 * sheen), polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
-    }),
+    })),
   );
   const edge = lines(
     [-w, -h, 0, w, -h, 0, w, -h, 0, w, h, 0, w, h, 0, -w, h, 0, -w, h, 0, -w, -h, 0],

@@ -1,6 +1,7 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Line, LineBasicMaterial } from 'three';
 import { sample_stride, type State } from '../../protocol/state';
 import type { Part, PartContext } from '../part';
+import { plain } from '../plain';
 
 export const most_points = 3000;
 /** Time and way between two shown states above which the tip was not seen to go there: one scrubbed. */
@@ -12,7 +13,7 @@ export function make_trail({ span, theme }: PartContext): Part[] {
   const points = new Float32Array(3 * most_points);
   const attribute = new BufferAttribute(points, 3).setUsage(DynamicDrawUsage);
   const geometry = new BufferGeometry().setAttribute('position', attribute);
-  const line = new Line(geometry, new LineBasicMaterial({ color: theme === 'dark' ? 0xffc857 : 0xb36b00 }));
+  const line = new Line(geometry, plain(new LineBasicMaterial({ color: theme === 'dark' ? 0xffc857 : 0xb36b00 })));
   line.frustumCulled = false;
   let count = 0;
   let time = 0;

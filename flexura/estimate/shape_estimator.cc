@@ -13,6 +13,7 @@
 #include "flexura/estimate/correspondence.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
+#include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
@@ -153,6 +154,10 @@ std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) c
 std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightings,
                                                const Shape& shape) const {
   std::vector<Shape> shapes;
+  // A fit that went astray may have shrunk an arm of unknown length to nothing.
+  constexpr double least = 1e-6;  // m
+  const Backbone backbone(shape.arm, shape.state);
+  if (!(backbone.length() > least) || !backbone.tip().position.allFinite()) return shapes;
   const std::size_t sections = prior_.arm.sections.size();
   constexpr std::size_t most = 4;  // Of many short sections every so many.
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)

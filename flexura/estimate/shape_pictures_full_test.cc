@@ -39,5 +39,19 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   EXPECT_LT(static_cast<double>(within), 0.75 * static_cast<double>(shares.size()));
 }
 
+// Of which nothing is known but two pictures that hardly fit each other: the fit shrinks it to a point.
+TEST(ShapesInPictures, OfAnArmThatTheFitShrinksToNothingAreNone) {
+  TestRandom random(3199);
+  const SeenShape one = random_seen_shape(random);
+  std::vector<Sighting> seen;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
+    seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+  }
+  const ShapeEstimate none = ShapeEstimator(unknown_arm({}, {})).estimate(seen);
+  EXPECT_FALSE(none.is_found);
+  EXPECT_NE(none.reason, "");
+}
+
 }  // namespace
 }  // namespace flexura

@@ -138,7 +138,7 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                       "second one's ZOY)."})
           .field("jacobian", &T::jacobian,
                  {.meaning =
-                      "Where the derivatives of what is seen come from: the model, or learned on the way by "
+                      "How the arm follows its drives: as the model has it, or as learned on the way by "
                       "Broyden's update or by recursive least squares."})
           .field("cameras", &T::cameras,
                  {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})

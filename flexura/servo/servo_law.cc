@@ -26,25 +26,32 @@ bool is_same(const WantedShape& a, const WantedShape& b) {
 }  // namespace
 
 ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& features)
-    : config_(config), features_(features), law_(arm, gains_of(config)) {}
+    : config_(config),
+      features_(features),
+      law_(arm, gains_of(config)),
+      response_(config.jacobian, law_.variables().size()) {}
 
-void ServoLaw::learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model) {
-  // Smaller motions show less in the features than the pictures' noise: they are waited for until they add
-  // up.
-  constexpr double least = 0.03;  // rad
-  constexpr double share = 0.5, forgetting = 0.97, doubt = 300;
-  const Eigen::VectorXd x = law_.variables().pack(said);
-  if (!x_before_) {
-    if (config_.jacobian == ServoJacobian::broyden) learned_ = BroydenEstimate(model, share, least);
-    if (config_.jacobian == ServoJacobian::recursive)
-      learned_ = RecursiveEstimate(model, forgetting, doubt, least);
-  } else {
-    const Eigen::VectorXd dx = x - *x_before_, df = seen - *f_before_;
-    if (dx.norm() < least) return;
-    if (auto* broyden = std::get_if<BroydenEstimate>(&learned_)) (void)broyden->learn(dx, df);
-    if (auto* recursive = std::get_if<RecursiveEstimate>(&learned_)) (void)recursive->learn(dx, df);
+Eigen::VectorXd ServoLaw::variables_of(const ArmState& state) const {
+  Eigen::VectorXd x(law_.variables().size());
+  const auto& parts = law_.variables().parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    x[parts[i].at] = state.bends[i].x();
+    if (parts[i].is_spatial) x[parts[i].at + 1] = state.bends[i].y();
+    if (parts[i].is_stretchable) x[parts[i].stretch_at()] = state.stretches[i];
   }
-  x_before_ = x, f_before_ = seen;
+  return x;
+}
+
+void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) const {
+  if (response_.is_learned()) {
+    const Eigen::VectorXd way = response_.drives_for(variables_of(next) - variables_of(wanted));
+    asked = law_.variables().state(variables_of(asked) + way);
+    return;
+  }
+  for (std::size_t i = 0; i < asked.bends.size(); ++i) {
+    asked.bends[i] += next.bends[i] - wanted.bends[i];
+    asked.stretches[i] += next.stretches[i] - wanted.stretches[i];
+  }
 }
 
 ServoLaw::Wish ServoLaw::step(const Input& input) {
@@ -65,21 +72,19 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
     potential = 0.5 * was->error.squaredNorm();
   }
   Eigen::MatrixXd& J = J_;
-  law_.by_variables(is->by_state, J);
-  if (config_.jacobian != ServoJacobian::model) {
-    if (input.is_fresh) learn(*seen, input.said, J);
-    if (const auto* broyden = std::get_if<BroydenEstimate>(&learned_)) J = broyden->jacobian();
-    if (const auto* recursive = std::get_if<RecursiveEstimate>(&learned_)) J = recursive->jacobian();
+  if (response_.is_learned()) {
+    if (input.is_fresh) response_.learn(variables_of(input.said), variables_of(estimate));
+    law_.by_variables(is->by_state, by_shape_);
+    J.noalias() = by_shape_ * response_.matrix();
+  } else {
+    law_.by_variables(is->by_state, J);
   }
   Eigen::VectorXd error = is->error;
   // What was sent since the pictures were taken is on its way.
   if (config_.predicts) error += J * (law_.variables().pack(input.sent) - law_.variables().pack(input.said));
   ImageStep step;
   law_.step(input.sent, error, J, config_.step, work_, step);
-  for (std::size_t i = 0; i < step.asked.bends.size(); ++i) {
-    step.asked.bends[i] += input.next.bends[i] - input.wanted.state.bends[i];
-    step.asked.stretches[i] += input.next.stretches[i] - input.wanted.state.stretches[i];
-  }
+  go_along(input.wanted.state, input.next, step.asked);
   return {std::move(step.asked), potential, step.is_singular};
 }
 

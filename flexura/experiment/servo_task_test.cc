@@ -34,6 +34,24 @@ TEST_P(ServoLaws, BringTheArmToAShape) {
 
 INSTANTIATE_TEST_SUITE_P(All, ServoLaws, testing::Values("shape", "points", "chords", "potential"));
 
+// Chords near a quarter turn of the azimuth, on the way across one, and along a camera's sight, where two
+// parallel readings say little or the opposite: targets of the servo's study.
+TEST(Servo, FollowsThePotentialAcrossQuarterTurns) {
+  for (const char* bends :
+       {"[0.73, 1.13], [0.36, -0.06], [0.77, -0.41]", "[-0.09, 1.01], [-0.91, -0.55], [-1.19, 0.10]",
+        "[-0.59, -0.20], [0.51, -0.43], [0.90, -0.97]"}) {
+    ServoBench bench(servo_file(fmt::format(
+        "law = \"potential\"\ntolerance = 0.002\nsettle = 1\n[[task.target]]\nbends = [{}]\n", bends)));
+    const ServoResult result = bench.servo();
+    ASSERT_TRUE(result.is_done) << bends << ": " << result.reason;
+    const auto goal = std::get<ArmState>(bench.config().goals.front().shape);
+    std::printf("settled in %.2f s, %.4f %% of the length left\n", result.settled.value_or(-1),
+                100 * bench.truth(goal).rms);
+    EXPECT_LT(bench.truth(goal).rms, 0.003);
+    EXPECT_LT(*result.settled, 4);
+  }
+}
+
 // Without delay and noise an arm that does what it is sent leaves its law's potential falling.
 class IdealServo : public testing::TestWithParam<std::string> {};
 

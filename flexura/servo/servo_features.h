@@ -45,7 +45,8 @@ class ServoFeatures {
 
 /// Those of the law `potential`: angles of chords in two image planes, read as parallel projections (the
 /// paper's section 2; docs/control.md, eq. 14). The error is the spatial one's parts: cos q e_theta and e_q
-/// of each chord, over the root of their number. Chords that the reading says little of weigh nothing.
+/// of each chord, over the root of their number. Chords that the reading says little of, near a quarter turn
+/// of theta or q or on the way across one, are read from the shape.
 [[nodiscard]] std::unique_ptr<ServoFeatures> plane_features(const Arm& arm, int points);
 
 }  // namespace flexura

@@ -50,39 +50,35 @@ class PlaneFeatures : public ServoFeatures {
     for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
   }
 
-  [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>& seen) override {
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+                              Eigen::VectorXd& values) override {
     std::array<Eigen::Matrix2Xd, 2> pixels;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto measured = measured_pixels(arm_, estimate, seen[i], shares_);
-      if (!measured) return std::nullopt;
+      if (!measured) return false;
       pixels[i] = *measured;
     }
-    return with_chords(plane_angles_of({seen[0].view, seen[1].view}, pixels), estimate);
+    values = with_chords(plane_angles_of({seen[0].view, seen[1].view}, pixels), estimate);
+    return true;
   }
-  [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>& views) override {
-    std::array<Eigen::Matrix2Xd, 2> pixels;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto projected = measured_pixels(arm_, state, {views[i], {}, {}, {}}, shares_);
-      if (!projected) return std::nullopt;
-      pixels[i] = *projected;
-    }
-    return with_chords(plane_angles_of(views, pixels), state);
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
+                              Eigen::VectorXd& values) override {
+    return measured(state, {Sighting{views[0], {}, {}, {}}, Sighting{views[1], {}, {}, {}}}, values);
   }
-  [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState& estimate,
-                                                  const std::array<View, 2>&) override {
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                           const ArmState& estimate, const std::array<View, 2>&,
+                           FeatureError& result) override {
     const Eigen::Index chords = seen.size() / 4;
     const double share = 1 / std::sqrt(static_cast<double>(chords));
-    FeatureError result{Eigen::VectorXd::Zero(2 * chords), chord_derivatives(estimate)};
+    result.error.resize(2 * chords);
+    result.by_state = chord_derivatives(estimate);
     for (Eigen::Index k = 0; k < chords; ++k) {
       const PlaneError error = chord_error(seen, desired, k);
       const double across = share * std::cos(error.q);
       result.error[2 * k] = across * error.e_theta, result.error[2 * k + 1] = share * error.e_q;
       result.by_state.row(2 * k) *= across, result.by_state.row(2 * k + 1) *= share;
     }
-    return result;
+    return true;
   }
 
  private:

@@ -1,7 +1,6 @@
 #include "flexura/servo/servo_law.h"
 
 #include <array>
-#include <utility>
 
 namespace flexura {
 namespace {
@@ -11,11 +10,6 @@ ImageLawGains gains_of(const ServoConfig& config) {
   gains.rate = config.rate;
   gains.damping = config.law == ServoLawKind::shape ? 0 : config.damping;
   return gains;
-}
-
-Eigen::VectorXd with_offset(Eigen::VectorXd values, const Eigen::VectorXd& offset) {
-  if (offset.size() == values.size()) values += offset;
-  return values;
 }
 
 bool is_same(const WantedShape& a, const WantedShape& b) {
@@ -31,21 +25,31 @@ ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& fea
       law_(arm, gains_of(config)),
       response_(config.jacobian, law_.variables().size()) {}
 
-Eigen::VectorXd ServoLaw::variables_of(const ArmState& state) const {
-  Eigen::VectorXd x(law_.variables().size());
+void ServoLaw::pack(const ArmState& state, Eigen::VectorXd& x) const {
   const auto& parts = law_.variables().parts();
+  x.resize(law_.variables().size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     x[parts[i].at] = state.bends[i].x();
     if (parts[i].is_spatial) x[parts[i].at + 1] = state.bends[i].y();
     if (parts[i].is_stretchable) x[parts[i].stretch_at()] = state.stretches[i];
   }
-  return x;
 }
 
-void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) const {
+bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, FeatureError& result) {
+  const ArmState& estimate = input.sight.estimate.shape.state;
+  const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
+  if (!features_.foreseen(wanted.state, views, desired_)) return false;
+  if (wanted.offset.size() == desired_.size()) desired_ += wanted.offset;
+  return features_.error(seen_, desired_, estimate, views, result);
+}
+
+void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) {
+  if (next.bends == wanted.bends && next.stretches == wanted.stretches) return;
   if (response_.is_learned()) {
-    const Eigen::VectorXd way = response_.drives_for(variables_of(next) - variables_of(wanted));
-    asked = law_.variables().state(variables_of(asked) + way);
+    pack(next, x_), pack(wanted, y_);
+    y_ = response_.drives_for(x_ - y_);
+    pack(asked, x_);
+    law_.variables().state(x_ + y_, asked);
     return;
   }
   for (std::size_t i = 0; i < asked.bends.size(); ++i) {
@@ -56,36 +60,32 @@ void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& 
 
 ServoLaw::Wish ServoLaw::step(const Input& input) {
   const ArmState& estimate = input.sight.estimate.shape.state;
-  const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
-  const auto seen = features_.measured(estimate, input.sight.seen);
-  const auto error_from = [&](const WantedShape& wanted) -> std::optional<FeatureError> {
-    const auto desired = seen ? features_.foreseen(wanted.state, views) : std::nullopt;
-    if (!desired) return std::nullopt;
-    return features_.error(*seen, with_offset(*desired, wanted.offset), estimate, views);
-  };
-  const auto is = error_from(input.wanted);
-  if (!is) return {input.sent, 0, true};
-  double potential = 0.5 * is->error.squaredNorm();
+  if (!features_.measured(estimate, input.sight.seen, seen_) || !find_error(input, input.wanted, is_))
+    return {input.sent, 0, true};
+  double potential = 0.5 * is_.error.squaredNorm();
   if (!is_same(input.then, input.wanted)) {
-    const auto was = error_from(input.then);
-    if (!was) return {input.sent, 0, true};
-    potential = 0.5 * was->error.squaredNorm();
+    if (!find_error(input, input.then, was_)) return {input.sent, 0, true};
+    potential = 0.5 * was_.error.squaredNorm();
   }
-  Eigen::MatrixXd& J = J_;
   if (response_.is_learned()) {
-    if (input.is_fresh) response_.learn(variables_of(input.said), variables_of(estimate));
-    law_.by_variables(is->by_state, by_shape_);
-    J.noalias() = by_shape_ * response_.matrix();
+    if (input.is_fresh) {
+      pack(input.said, x_), pack(estimate, y_);
+      response_.learn(x_, y_);
+    }
+    law_.by_variables(is_.by_state, by_shape_);
+    J_.noalias() = by_shape_ * response_.matrix();
   } else {
-    law_.by_variables(is->by_state, J);
+    law_.by_variables(is_.by_state, J_);
   }
-  Eigen::VectorXd error = is->error;
   // What was sent since the pictures were taken is on its way.
-  if (config_.predicts) error += J * (law_.variables().pack(input.sent) - law_.variables().pack(input.said));
-  ImageStep step;
-  law_.step(input.sent, error, J, config_.step, work_, step);
-  go_along(input.wanted.state, input.next, step.asked);
-  return {std::move(step.asked), potential, step.is_singular};
+  if (config_.predicts) {
+    law_.variables().pack(input.sent, x_), law_.variables().pack(input.said, y_);
+    x_ -= y_;
+    is_.error.noalias() += J_ * x_;
+  }
+  law_.step(input.sent, is_.error, J_, config_.step, work_, step_);
+  go_along(input.wanted.state, input.next, step_.asked);
+  return {step_.asked, potential, step_.is_singular};
 }
 
 }  // namespace flexura

@@ -39,16 +39,22 @@ class ServoLaw {
 
  private:
   // The variables of a state, within the limits or not.
-  [[nodiscard]] Eigen::VectorXd variables_of(const ArmState& state) const;
+  void pack(const ArmState& state, Eigen::VectorXd& x) const;
+  // Of what is seen, in seen_.
+  [[nodiscard]] bool find_error(const Input& input, const WantedShape& wanted, FeatureError& result);
   // What the drives do while what is wanted goes on.
-  void go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) const;
+  void go_along(const ArmState& wanted, const ArmState& next, ArmState& asked);
 
   const ServoConfig& config_;
   ServoFeatures& features_;
   ImageLaw law_;
   DriveResponse response_;
+  // What a step works on, kept so that none allocates it anew.
+  Eigen::VectorXd seen_, desired_, x_, y_;
+  FeatureError is_, was_;
   Eigen::MatrixXd by_shape_, J_;
   ImageLaw::Work work_;
+  ImageStep step_;
 };
 
 }  // namespace flexura

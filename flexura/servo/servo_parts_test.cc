@@ -45,20 +45,20 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
       const std::array<View, 2> views = servo_views();
       const auto features = servo_features(law, arm, 8);
       const ArmState state = random_servo_state(random, arm, 0.6);
-      const auto desired = features->foreseen(state, views);
-      ASSERT_TRUE(desired);
-      const auto at = features->error(*desired, *desired, state, views);
-      ASSERT_TRUE(at);
-      EXPECT_NEAR(at->error.norm(), 0, 1e-12);
+      Eigen::VectorXd desired, seen;
+      FeatureError at, off;
+      ASSERT_TRUE(features->foreseen(state, views, desired));
+      ASSERT_TRUE(features->error(desired, desired, state, views, at));
+      EXPECT_NEAR(at.error.norm(), 0, 1e-12);
       for (std::size_t i = 0; i < state.bends.size(); ++i) {
         for (Eigen::Index axis = 0; axis < 2; ++axis) {
           constexpr double step = 1e-4;
           ArmState moved = state;
           moved.bends[i][axis] += step;
-          const auto seen = features->foreseen(moved, views);
-          ASSERT_TRUE(seen);
-          const Eigen::VectorXd by = features->error(*seen, *desired, state, views)->error / step;
-          const Eigen::VectorXd column = at->by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
+          ASSERT_TRUE(features->foreseen(moved, views, seen));
+          ASSERT_TRUE(features->error(seen, desired, state, views, off));
+          const Eigen::VectorXd by = off.error / step;
+          const Eigen::VectorXd column = at.by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
           // The plane angles are read as if from afar: near, and never the other way.
           const bool is_parallel = law == ServoLawKind::potential;
           EXPECT_LT((by - column).norm(), (is_parallel ? 0.35 : 2e-3) * column.norm() + 1e-6);

@@ -89,13 +89,15 @@ void as_used(benchmark::State& state) {
   ImageStep step;
   Eigen::MatrixXd J;
   std::size_t i = 0;
-  const Eigen::VectorXd seen = features->foreseen(way()[20], views).value();
+  Eigen::VectorXd seen, desired;
+  FeatureError error;
+  if (!features->foreseen(way()[20], views, seen)) return state.SkipWithError("not seen");
   for (auto _ : state) {
     const ArmState& here = way()[i++ % way().size()];
-    const auto desired = features->foreseen(goal(), views);
-    const auto error = features->error(seen, desired.value(), here, views);
-    law.by_variables(error.value().by_state, J);
-    law.step(here, error->error, J, step_time, work, step);
+    if (!features->foreseen(goal(), views, desired) || !features->error(seen, desired, here, views, error))
+      return state.SkipWithError("not seen");
+    law.by_variables(error.by_state, J);
+    law.step(here, error.error, J, step_time, work, step);
     benchmark::DoNotOptimize(step);
   }
   state.SetLabel(names_of(&kind)[static_cast<std::size_t>(kind)]);

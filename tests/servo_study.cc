@@ -1,5 +1,6 @@
 // Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
-// [TARGETS] [SEED] [THREADS] [PART], of all parts calibrated, wrong and recorded. docs/studies/servo.md
+// [TARGETS] [SEED] [THREADS] [PART], of all parts calibrated, wrong, recorded and turned.
+// docs/studies/servo.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,6 +40,7 @@ struct Method {
   ServoJacobian jacobian = ServoJacobian::model;
   bool has_bands = false;  // Colour pictures of an arm with bands.
   bool is_near = false;    // From within 0.15 rad a bend.
+  bool is_turned = false;  // Drives mounted a quarter turn round, which bend the arm 1.3 times as far.
 };
 
 const std::vector<Method>& main_methods() {
@@ -57,6 +59,22 @@ std::vector<Method> all_methods() {
   methods.push_back(
       {.name = "points, recursive", .law = ServoLawKind::points, .jacobian = ServoJacobian::recursive});
   methods.push_back({.name = "shape, with bands", .has_bands = true});
+  return methods;
+}
+
+// By the model, and learned.
+std::vector<Method> methods_of_turned_arm() {
+  std::vector<Method> methods;
+  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::potential}) {
+    const auto kind = static_cast<std::size_t>(law);
+    for (const ServoJacobian learned :
+         {ServoJacobian::model, ServoJacobian::broyden, ServoJacobian::recursive})
+      methods.push_back(
+          {.name = names_of(&law)[kind] + ", " + names_of(&learned)[static_cast<std::size_t>(learned)],
+           .law = law,
+           .jacobian = learned,
+           .is_turned = true});
+  }
   return methods;
 }
 
@@ -197,7 +215,10 @@ class StudyRig {
       if (method.is_near) bend += random.vector<2>(-0.15, 0.15);
     rest_at(bench, start);
     ServoNotes notes;
-    const ServoResult result = servo_in_session(bench.ports(), believed_, config, notes);
+    RigPorts ports = bench.ports();
+    TurnedArm turned(*ports.arm, std::numbers::pi / 2, 1.3);
+    if (method.is_turned) ports.arm = &turned;
+    const ServoResult result = servo_in_session(ports, believed_, config, notes);
     Arrival arrival;
     arrival.is_done = result.is_done, arrival.reason = result.reason;
     arrival.settled = result.settled.value_or(0), arrival.overshoot = result.overshoot;
@@ -373,6 +394,10 @@ int main(int count, char** arguments) {
   if (is_asked("recorded")) {
     fmt::print("## The same cameras, targets that they recorded\n\n");
     study(Cameras::recorded, main_methods(), targets, seed, threads);
+  }
+  if (is_asked("turned")) {
+    fmt::print("## Calibrated cameras, an arm mounted a quarter turn round that bends 1.3 times as far\n\n");
+    study(Cameras::calibrated, methods_of_turned_arm(), targets, seed, threads);
   }
   return 0;
 }

@@ -136,10 +136,10 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                       "points, chords and moments compare features of the images; potential is the paper's "
                       "artificial potential on the errors in two image planes (the first camera's XOY, the "
                       "second one's ZOY)."})
-          .field("jacobian", &T::jacobian,
-                 {.meaning =
-                      "Where the derivatives of what is seen come from: the model, or learned on the way by "
-                      "Broyden's update or by recursive least squares."})
+          .field(
+              "jacobian", &T::jacobian,
+              {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
+                          "Broyden's update or by recursive least squares."})
           .field("cameras", &T::cameras,
                  {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("target", &T::target,

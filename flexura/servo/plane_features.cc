@@ -7,6 +7,7 @@
 #include "flexura/control/plane_errors.h"
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/model/backbone.h"
 #include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
 
@@ -34,53 +35,91 @@ Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
   return angles;
 }
 
+// The cosine of 80 degrees.
+constexpr double least_cosine = 0.17364817766693033;
+
+// Two planes tell an azimuth and an elevation well: far from both quarter turns.
+bool is_told(double theta, double q) {
+  return std::abs(std::cos(theta)) >= least_cosine && std::cos(q) >= least_cosine;
+}
+
+// alpha_1 and alpha_2 of each chord as both planes show it, then theta and q as the shape has them.
 class PlaneFeatures : public ServoFeatures {
  public:
   PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)) {
     for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
   }
 
-  [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>& seen) override {
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+                              Eigen::VectorXd& values) override {
     std::array<Eigen::Matrix2Xd, 2> pixels;
     for (std::size_t i = 0; i < 2; ++i) {
       const auto measured = measured_pixels(arm_, estimate, seen[i], shares_);
-      if (!measured) return std::nullopt;
+      if (!measured) return false;
       pixels[i] = *measured;
     }
-    return plane_angles_of({seen[0].view, seen[1].view}, pixels);
+    values = with_chords(plane_angles_of({seen[0].view, seen[1].view}, pixels), estimate);
+    return true;
   }
-  [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>& views) override {
-    std::array<Eigen::Matrix2Xd, 2> pixels;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto projected = measured_pixels(arm_, state, {views[i], {}, {}, {}}, shares_);
-      if (!projected) return std::nullopt;
-      pixels[i] = *projected;
-    }
-    return plane_angles_of(views, pixels);
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
+                              Eigen::VectorXd& values) override {
+    return measured(state, {Sighting{views[0], {}, {}, {}}, Sighting{views[1], {}, {}, {}}}, values);
   }
-  [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState& estimate,
-                                                  const std::array<View, 2>&) override {
-    const Eigen::Index chords = seen.size() / 2;
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                           const ArmState& estimate, const std::array<View, 2>&,
+                           FeatureError& result) override {
+    const Eigen::Index chords = seen.size() / 4;
     const double share = 1 / std::sqrt(static_cast<double>(chords));
-    FeatureError result{Eigen::VectorXd::Zero(2 * chords), chord_derivatives(estimate)};
+    result.error.resize(2 * chords);
+    result.by_state = chord_derivatives(estimate);
     for (Eigen::Index k = 0; k < chords; ++k) {
-      const PlaneError error =
-          plane_error({seen[k], seen[chords + k]},
-                      {near(desired[k], seen[k]), near(desired[chords + k], seen[chords + k])});
-      const double weight = error.is_singular ? 0 : share, across = weight * std::cos(error.q);
-      result.error[2 * k] = across * error.e_theta, result.error[2 * k + 1] = weight * error.e_q;
-      result.by_state.row(2 * k) *= across, result.by_state.row(2 * k + 1) *= weight;
+      const PlaneError error = chord_error(seen, desired, k);
+      const double across = share * std::cos(error.q);
+      result.error[2 * k] = across * error.e_theta, result.error[2 * k + 1] = share * error.e_q;
+      result.by_state.row(2 * k) *= across, result.by_state.row(2 * k + 1) *= share;
     }
-    return result;
+    return true;
   }
 
  private:
   // The angle that differs from another one by half a turn at most.
   static double near(double angle, double other) {
     return other + std::remainder(angle - other, 2 * std::numbers::pi);
+  }
+
+  [[nodiscard]] Eigen::VectorXd with_chords(const Eigen::VectorXd& plane, const ArmState& state) const {
+    const Eigen::Index chords = plane.size() / 2;
+    Eigen::VectorXd values(2 * plane.size());
+    values.head(2 * chords) = plane;
+    const Backbone backbone(arm_, state);
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k <= chords; ++k) {
+      const MaterialPoint point = material_point(arm_, shares_[static_cast<std::size_t>(k)] * arm_.length());
+      const double s = std::min(arc_length_of(arm_, state, point), backbone.length());
+      const Eigen::Vector3d p = backbone.pose(s).position, c = p - before;
+      if (k > 0) {
+        values[2 * chords + k - 1] = std::atan2(c.x(), c.y());
+        values[3 * chords + k - 1] = std::atan2(c.z(), c.head<2>().norm());
+      }
+      before = p;
+    }
+    return values;
+  }
+
+  // As the planes tell it; as the shape does where they hardly can, or not by a derivative: at a quarter turn
+  // of theta or of q, and on the way across one.
+  [[nodiscard]] static PlaneError chord_error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                                              Eigen::Index k) {
+    const Eigen::Index chords = seen.size() / 4;
+    const double theta = seen[2 * chords + k], q = seen[3 * chords + k];
+    const double theta_d = desired[2 * chords + k], q_d = desired[3 * chords + k];
+    if (is_told(theta, q) && is_told(theta_d, q_d) && std::cos(theta) * std::cos(theta_d) > 0)
+      return plane_error({seen[k], seen[chords + k]},
+                         {near(desired[k], seen[k]), near(desired[chords + k], seen[chords + k])});
+    PlaneError error;
+    error.theta = theta, error.q = q;
+    error.e_theta = theta - near(theta_d, theta), error.e_q = q - q_d;
+    return error;
   }
 
   // Of theta and q of each chord, by the state; rad.

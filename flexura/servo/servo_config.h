@@ -26,10 +26,10 @@ enum class ServoLawKind : std::uint8_t {
   potential,  ///< The paper's: the errors in two image planes, an artificial potential in two angles.
 };
 
-/// Where the derivatives of what is seen come from.
+/// How the arm follows its drives; what its shape shows is known from the cameras.
 enum class ServoJacobian : std::uint8_t {
-  model,      ///< From arm and cameras as they are believed to be.
-  broyden,    ///< Learned on the way (control/jacobian_estimate.h), beginning with the model's.
+  model,      ///< As they are believed to be.
+  broyden,    ///< Learned on the way (servo/drive_response.h), beginning with the model's.
   recursive,  ///< Likewise, by recursive least squares.
 };
 

@@ -10,29 +10,30 @@ namespace flexura {
 namespace {
 
 // Every section's bend_x, bend_y and stretch.
-Eigen::VectorXd all_of(const ArmState& state) {
-  Eigen::VectorXd values(3 * static_cast<Eigen::Index>(state.bends.size()));
+void all_of(const ArmState& state, Eigen::VectorXd& values) {
+  values.resize(3 * static_cast<Eigen::Index>(state.bends.size()));
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const auto at = 3 * static_cast<Eigen::Index>(i);
     values.segment<2>(at) = state.bends[i], values[at + 2] = state.stretches[i];
   }
-  return values;
 }
 
 // The estimated shape itself.
 class EstimatedShape : public ServoFeatures {
  public:
-  [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>&) override {
-    return all_of(estimate);
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>&,
+                              Eigen::VectorXd& values) override {
+    return all_of(estimate, values), true;
   }
-  [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>&) override {
-    return all_of(state);
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>&,
+                              Eigen::VectorXd& values) override {
+    return all_of(state, values), true;
   }
-  [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState&, const std::array<View, 2>&) override {
-    return FeatureError{seen - desired, Eigen::MatrixXd::Identity(seen.size(), seen.size())};
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ArmState&,
+                           const std::array<View, 2>&, FeatureError& result) override {
+    result.error = seen - desired;
+    result.by_state.setIdentity(seen.size(), seen.size());
+    return true;
   }
 };
 
@@ -42,30 +43,26 @@ class ImageFeatures : public ServoFeatures {
   ImageFeatures(Arm arm, FeatureSet set)
       : arm_(std::move(arm)), set_(std::move(set)), shares_(needed_shares(set_)), images_(arm_, set_) {}
 
-  [[nodiscard]] std::optional<Eigen::VectorXd> measured(const ArmState& estimate,
-                                                        const std::array<Sighting, 2>& seen) override {
-    Eigen::VectorXd values(2 * set_.rows());
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+                              Eigen::VectorXd& values) override {
+    values.resize(2 * set_.rows());
     for (std::size_t i = 0; i < 2; ++i) {
       const auto pixels = measured_pixels(arm_, estimate, seen[i], shares_);
       const auto one = pixels ? feature_values(set_, *pixels) : std::nullopt;
-      if (!one) return std::nullopt;
+      if (!one) return false;
       values.segment(static_cast<Eigen::Index>(i) * set_.rows(), set_.rows()) = *one;
     }
-    return values;
+    return true;
   }
-  [[nodiscard]] std::optional<Eigen::VectorXd> foreseen(const ArmState& state,
-                                                        const std::array<View, 2>& views) override {
-    Eigen::VectorXd values;
-    if (!images_.values(state, views, values)) return std::nullopt;
-    return values;
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
+                              Eigen::VectorXd& values) override {
+    return images_.values(state, views, values);
   }
-  [[nodiscard]] std::optional<FeatureError> error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                                  const ArmState& estimate,
-                                                  const std::array<View, 2>& views) override {
-    Eigen::VectorXd values;
-    FeatureError result{feature_error(set_, seen, desired), {}};
-    if (!images_.derive(estimate, views, values, result.by_state)) return std::nullopt;
-    return result;
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                           const ArmState& estimate, const std::array<View, 2>& views,
+                           FeatureError& result) override {
+    feature_error(set_, seen, desired, result.error);
+    return images_.derive(estimate, views, values_, result.by_state);
   }
 
  private:
@@ -73,6 +70,7 @@ class ImageFeatures : public ServoFeatures {
   FeatureSet set_;
   std::vector<double> shares_;
   FeatureImages images_;
+  Eigen::VectorXd values_;
 };
 
 }  // namespace

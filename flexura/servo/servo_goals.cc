@@ -41,9 +41,10 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
     return;
   }
   wanted.state = sight.estimate.shape.state;
-  const auto seen = features.measured(wanted.state, sight.seen),
-             foreseen = features.foreseen(wanted.state, {sight.seen[0].view, sight.seen[1].view});
-  if (seen && foreseen) wanted.offset = *seen - *foreseen;
+  Eigen::VectorXd seen, foreseen;
+  if (features.measured(wanted.state, sight.seen, seen) &&
+      features.foreseen(wanted.state, {sight.seen[0].view, sight.seen[1].view}, foreseen))
+    wanted.offset = seen - foreseen;
 }
 
 // Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but

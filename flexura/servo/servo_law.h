@@ -1,12 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
-#include <variant>
 
 #include "flexura/control/image_law.h"
-#include "flexura/control/jacobian_estimate.h"
 #include "flexura/model/arm.h"
+#include "flexura/servo/drive_response.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
@@ -40,15 +38,23 @@ class ServoLaw {
   [[nodiscard]] Wish step(const Input& input);
 
  private:
-  void learn(const Eigen::VectorXd& seen, const ArmState& said, const Eigen::MatrixXd& model);
+  // The variables of a state, within the limits or not.
+  void pack(const ArmState& state, Eigen::VectorXd& x) const;
+  // Of what is seen, in seen_.
+  [[nodiscard]] bool find_error(const Input& input, const WantedShape& wanted, FeatureError& result);
+  // What the drives do while what is wanted goes on.
+  void go_along(const ArmState& wanted, const ArmState& next, ArmState& asked);
 
   const ServoConfig& config_;
   ServoFeatures& features_;
   ImageLaw law_;
-  std::variant<std::monostate, BroydenEstimate, RecursiveEstimate> learned_;
-  std::optional<Eigen::VectorXd> x_before_, f_before_;
-  Eigen::MatrixXd J_;
+  DriveResponse response_;
+  // What a step works on, kept so that none allocates it anew.
+  Eigen::VectorXd seen_, desired_, x_, y_;
+  FeatureError is_, was_;
+  Eigen::MatrixXd by_shape_, J_;
   ImageLaw::Work work_;
+  ImageStep step_;
 };
 
 }  // namespace flexura

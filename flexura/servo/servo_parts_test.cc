@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/model/backbone.h"
+#include "flexura/servo/drive_response.h"
 #include "flexura/servo/motion_history.h"
 #include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
@@ -44,20 +45,20 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
       const std::array<View, 2> views = servo_views();
       const auto features = servo_features(law, arm, 8);
       const ArmState state = random_servo_state(random, arm, 0.6);
-      const auto desired = features->foreseen(state, views);
-      ASSERT_TRUE(desired);
-      const auto at = features->error(*desired, *desired, state, views);
-      ASSERT_TRUE(at);
-      EXPECT_NEAR(at->error.norm(), 0, 1e-12);
+      Eigen::VectorXd desired, seen;
+      FeatureError at, off;
+      ASSERT_TRUE(features->foreseen(state, views, desired));
+      ASSERT_TRUE(features->error(desired, desired, state, views, at));
+      EXPECT_NEAR(at.error.norm(), 0, 1e-12);
       for (std::size_t i = 0; i < state.bends.size(); ++i) {
         for (Eigen::Index axis = 0; axis < 2; ++axis) {
           constexpr double step = 1e-4;
           ArmState moved = state;
           moved.bends[i][axis] += step;
-          const auto seen = features->foreseen(moved, views);
-          ASSERT_TRUE(seen);
-          const Eigen::VectorXd by = features->error(*seen, *desired, state, views)->error / step;
-          const Eigen::VectorXd column = at->by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
+          ASSERT_TRUE(features->foreseen(moved, views, seen));
+          ASSERT_TRUE(features->error(seen, desired, state, views, off));
+          const Eigen::VectorXd by = off.error / step;
+          const Eigen::VectorXd column = at.by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
           // The plane angles are read as if from afar: near, and never the other way.
           const bool is_parallel = law == ServoLawKind::potential;
           EXPECT_LT((by - column).norm(), (is_parallel ? 0.35 : 2e-3) * column.norm() + 1e-6);
@@ -134,6 +135,54 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
     }
   });
   EXPECT_GT(met, 100 / one_case_of);
+}
+
+// Random ways of an arm that does not do what its model says, seen with a picture's noise.
+TEST(DriveResponse, LearnsWhatTheArmMakesOfItsDrives) {
+  for (const ServoJacobian how : {ServoJacobian::broyden, ServoJacobian::recursive}) {
+    for_random_cases(20, [&](TestRandom& random) {
+      constexpr Eigen::Index n = 6;
+      Eigen::MatrixXd truth = Eigen::MatrixXd::Identity(n, n);
+      for (double& entry : truth.reshaped()) entry += random.uniform(-0.5, 0.5);
+      DriveResponse response(how, n);
+      EXPECT_EQ(response.matrix(), Eigen::MatrixXd::Identity(n, n));
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+      const auto seen = [&] {
+        Eigen::VectorXd y = truth * x;
+        for (double& value : y) value += random.uniform(-1, 1) * 1e-3;
+        return y;
+      };
+      for (int k = 0; k < 150; ++k) {
+        for (double& value : x) value += random.uniform(-0.05, 0.05);
+        response.learn(x, seen());
+      }
+      EXPECT_LT((response.matrix() - truth).norm(), 0.1 * truth.norm());
+      // What rests, and what is no number, teaches nothing.
+      const Eigen::MatrixXd before = response.matrix();
+      for (int k = 0; k < 200; ++k) response.learn(x, seen());
+      response.learn(Eigen::VectorXd::Constant(n, std::nan("")), x);
+      EXPECT_EQ(response.matrix(), before);
+      // A shape that was never there costs little: no more than one rad a rad of the way.
+      response.learn(x + Eigen::VectorXd::Constant(n, 0.02), x + Eigen::VectorXd::Constant(n, 3));
+      EXPECT_LE((response.matrix() - before).norm(), 1.0);
+    });
+  }
+}
+
+// What moves as wanted is sent the drives' way, whatever they make of it.
+TEST(DriveResponse, TellsTheDrivesPartOfAWay) {
+  DriveResponse response(ServoJacobian::recursive, 2), model(ServoJacobian::model, 2);
+  Eigen::Matrix2d truth;
+  truth << 0.3, -1.2, 1.1, 0.2;
+  for (int k = 0; k < 60; ++k) {
+    const Eigen::Vector2d x(std::cos(0.5 * k), std::sin(0.7 * k));
+    response.learn(x, truth * x);
+    model.learn(x, truth * x);
+  }
+  const Eigen::Vector2d way(0.1, 0.2);
+  EXPECT_LT((truth * response.drives_for(way) - way).norm(), 1e-3);
+  EXPECT_EQ(model.drives_for(way), way);
+  EXPECT_EQ(model.matrix(), Eigen::Matrix2d::Identity());
 }
 
 ServoStep step_at(double time, double rms) {

@@ -11,8 +11,6 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
-#include "flexura/control/image_law.h"
-#include "flexura/control/jacobian_estimate.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <functional>
 #include <memory>
@@ -114,6 +115,30 @@ class BrokenArm : public ArmPort {
   ClockPort& clock_;
   Kind kind_;
   double from_;
+};
+
+/// An arm whose drives are not mounted as the model has them: it bends into `share` of what it is told,
+/// turned by `angle` rad about its sections' axes. What it says of itself is what its drives know.
+class TurnedArm : public ArmPort {
+ public:
+  TurnedArm(ArmPort& arm, double angle, double share) : arm_(arm), angle_(angle), share_(share) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    return arm_.command(turned(state, angle_, share_), duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    ArmReading reading = arm_.read().value();
+    reading.state = turned(reading.state, -angle_, 1 / share_);
+    return reading;
+  }
+
+ private:
+  static ArmState turned(ArmState state, double angle, double share) {
+    for (Eigen::Vector2d& bend : state.bends) bend = share * (Eigen::Rotation2Dd(angle) * bend);
+    return state;
+  }
+  ArmPort& arm_;
+  double angle_, share_;
 };
 
 }  // namespace flexura

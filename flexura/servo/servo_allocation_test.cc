@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+
+#include "flexura/servo/servo_law.h"
+#include "tests/support/servo_views.h"
+
+// Sanitizers have an allocator of their own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+namespace {
+std::atomic<long> mallocs{0};
+}  // namespace
+
+extern "C" {
+// glibc's own. NOLINTNEXTLINE(readability-identifier-naming)
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  ++mallocs;
+  return __libc_malloc(size);
+}
+}
+
+namespace flexura {
+namespace {
+
+// The law's matrices are its own: a step that goes by the shape allocates but the state that it asks for.
+TEST(ServoLaw, AllocatesNothingButItsAnswer) {
+  for (const ServoJacobian jacobian : {ServoJacobian::model, ServoJacobian::recursive}) {
+    const Arm arm = servo_arm();
+    ServoConfig config;
+    config.jacobian = jacobian;
+    const auto features = servo_features(config.law, arm, config.points);
+    ServoLaw law(arm, config, *features);
+    ServoSight sight;
+    sight.seen[0].view = servo_views()[0], sight.seen[1].view = servo_views()[1];
+    sight.estimate.shape.state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
+    const ArmState& state = sight.estimate.shape.state;
+    const WantedShape wanted{{{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}}, {}};
+    const ServoLaw::Input input{.sight = sight,
+                                .is_fresh = false,
+                                .said = state,
+                                .sent = state,
+                                .then = wanted,
+                                .wanted = wanted,
+                                .next = wanted.state};
+    for (int i = 0; i < 2; ++i) EXPECT_FALSE(law.step(input).is_singular);
+    const long before = mallocs;
+    for (int i = 0; i < 10; ++i) (void)law.step(input);
+    constexpr long of_a_state = 2;  // Bends and stretches.
+    EXPECT_LE(mallocs - before, 10 * of_a_state);
+  }
+}
+
+// What both images should show, and its derivatives.
+TEST(ServoFeatures, AllocateNothingOnceTheyHaveServed) {
+  const Arm arm = servo_arm();
+  const std::array<View, 2> views = servo_views();
+  const ArmState state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
+  for (const ServoLawKind law :
+       {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords, ServoLawKind::moments}) {
+    const auto features = servo_features(law, arm, 12);
+    Eigen::VectorXd values;
+    FeatureError error;
+    const auto look = [&] {
+      return features->foreseen(state, views, values) && features->error(values, values, state, views, error);
+    };
+    ASSERT_TRUE(look());
+    const long before = mallocs;
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(look());
+    EXPECT_EQ(mallocs - before, 0);
+  }
+}
+
+}  // namespace
+}  // namespace flexura
+
+#endif

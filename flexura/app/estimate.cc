@@ -158,12 +158,12 @@ Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapeP
 }
 
 Node image_node(const std::string& name, const MeasuredCamera& camera, const Look& look,
-                const ViewError& error) {
+                const std::optional<ViewError>& error) {
   Node::Table entry{{"image", {}, text_node(name)},
                     {"camera", {}, text_node(camera.name)},
                     {"points", {}, {static_cast<std::int64_t>(look.samples), {}}}};
-  if (look.sighting.doubt.is_any()) {
-    Node::Table off{{"turn", {}, vector(error.turn)}, {"focal", {}, number_node(error.focal)}};
+  if (error) {
+    Node::Table off{{"turn", {}, vector(error->turn)}, {"focal", {}, number_node(error->focal)}};
     entry.push_back({"camera_error", {}, {std::move(off), {}}});
   }
   if (!look.reason.empty()) entry.push_back({"reason", {}, text_node(look.reason)});
@@ -274,7 +274,8 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   const ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
   Node::Array images;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const ViewError error = i < found.shape.views.size() ? found.shape.views[i] : ViewError{};
+    std::optional<ViewError> error;
+    if (found.is_found && sightings[i].doubt.is_any()) error = found.shape.views.at(i);
     images.push_back(image_node(arguments.images[i], cameras[i], looks[i], error));
   }
   Node::Table answer{{"found", {}, {found.is_found, {}}}};

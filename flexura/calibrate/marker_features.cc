@@ -1,6 +1,7 @@
 #include "flexura/calibrate/marker_features.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace flexura {
 namespace {
@@ -57,6 +58,24 @@ std::vector<double> tolerances(const std::vector<MarkerFeature>& expected) {
   return result;
 }
 
+std::vector<std::array<std::size_t, 2>> anchors(const std::vector<MarkerFeature>& seen) {
+  std::vector<std::array<std::size_t, 2>> all, chosen;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    for (std::size_t j = i + 1; j < seen.size(); ++j) all.push_back({i, j});
+  std::ranges::stable_sort(all, std::ranges::greater{},
+                           [&](const auto& pair) { return std::abs(seen[pair[0]].at - seen[pair[1]].at); });
+  constexpr std::size_t most = 12;
+  constexpr int most_each = 3;
+  std::vector<int> count(seen.size(), 0);
+  for (const auto& [i, j] : all) {
+    if (chosen.size() == most) break;
+    if (count[i] == most_each || count[j] == most_each) continue;
+    ++count[i], ++count[j];
+    chosen.push_back({i, j});
+  }
+  return chosen;
+}
+
 MarkerPairs nearest_pairs(const std::vector<MarkerFeature>& expected, const std::vector<double>& tolerance,
                           double scale, const std::vector<MarkerFeature>& seen,
                           const std::array<int, 2>& size) {
@@ -87,6 +106,7 @@ MarkerPairs nearest_pairs(const std::vector<MarkerFeature>& expected, const std:
       unseen += 0.5;
     }
   }
+  std::ranges::sort(result.pairs, {}, &MarkerPairs::Pair::seen);
   const auto found = static_cast<double>(result.pairs.size());
   result.score = found - (static_cast<double>(seen.size()) - found) - unseen;
   return result;

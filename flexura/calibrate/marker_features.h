@@ -32,8 +32,13 @@ class MarkerPalette {
 /// Markers in their order, then the ends, as far as they are there.
 [[nodiscard]] std::vector<MarkerFeature> features_of(const MarkerScene& scene, const MarkerPalette& palette);
 
-/// How far from each of these one of its kind may be seen, px: a third of the way to the nearest other one.
+/// How far from each of these one of its kind may be seen, px: a third of the way to the
+/// nearest other one of its kind, and 40 px at most.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
+
+/// Pairs of seen features that say most of how a picture is moved: the farthest apart, a dozen at most, and
+/// none of which any is in more than three.
+[[nodiscard]] std::vector<std::array<std::size_t, 2>> anchors(const std::vector<MarkerFeature>& seen);
 
 /// Which seen feature is which expected one, and what speaks for it.
 struct MarkerPairs {
@@ -41,7 +46,7 @@ struct MarkerPairs {
     std::size_t seen = 0, expected = 0;
     bool operator==(const Pair&) const = default;
   };
-  std::vector<Pair> pairs;
+  std::vector<Pair> pairs;  ///< In the order of what is seen.
   double score =
       0;  ///< Found ones, less those seen and not expected, less half of those expected and not seen.
   double off = 0;  ///< Sum of the pairs' distances squared, px^2.

@@ -41,12 +41,9 @@ class Matcher {
     Trial best;
     // As it is expected.
     if (!expected_.empty() && std::isfinite(doubt_.shift)) try_map({}, best);
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-      for (std::size_t j = i + 1; j < seen_.size(); ++j) {
-        if (seen_.size() > 3 && 2 * (j - i) < seen_.size()) continue;  // Short ways say little.
-        for (std::size_t a = 0; a < expected_.size(); ++a)
-          for (std::size_t b = 0; b < expected_.size(); ++b) try_pairs(i, j, a, b, best);
-      }
+    for (const auto& [i, j] : anchors(seen_)) {
+      for (std::size_t a = 0; a < expected_.size(); ++a)
+        for (std::size_t b = 0; b < expected_.size(); ++b) try_pairs(i, j, a, b, best);
     }
     return best;
   }

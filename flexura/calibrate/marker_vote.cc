@@ -45,6 +45,21 @@ struct Candidate {
   std::vector<std::vector<MarkerPairs::Pair>> pairs;  // Of each picture.
 
   [[nodiscard]] bool is_better_than(const Candidate& other) const { return score > other.score; }
+  // Whether what both name they name alike.
+  [[nodiscard]] bool names_like(const Candidate& other) const {
+    bool is_any = false;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      auto two = other.pairs[k].begin();
+      for (const auto& one : pairs[k]) {
+        while (two != other.pairs[k].end() && two->seen < one.seen) ++two;
+        if (two == other.pairs[k].end()) break;
+        if (two->seen != one.seen) continue;
+        if (two->expected != one.expected) return false;
+        is_any = true;
+      }
+    }
+    return is_any;
+  }
 };
 
 class Vote {
@@ -64,7 +79,7 @@ class Vote {
   }
 
   std::vector<SightError> best(std::size_t most) {
-    consider(tried({}));
+    keep(tried({}, 0, sides_.size()), most_kept, best_);
     for (std::size_t k = 0; k < sides_.size(); ++k) hypothesise(k);
     for (Candidate& one : best_) one = refined(std::move(one));
     std::ranges::stable_sort(best_, [](const auto& a, const auto& b) { return a.is_better_than(b); });
@@ -73,7 +88,7 @@ class Vote {
     for (const Candidate& one : best_) {
       if (result.size() == most) break;
       const bool is_new =
-          std::ranges::none_of(kept, [&](const Candidate* other) { return other->pairs == one.pairs; });
+          std::ranges::none_of(kept, [&](const Candidate* other) { return other->names_like(one); });
       if (is_new) result.push_back(one.error), kept.push_back(&one);
     }
     return result;
@@ -88,26 +103,27 @@ class Vote {
     std::vector<MarkerFeature> moved;  // Scratch.
   };
 
-  // The errors that bring two expected features onto two seen ones.
+  // Of the errors that bring two expected features of a picture onto two seen ones, those that explain most
+  // of that picture are tried on all.
   void hypothesise(std::size_t k) {
     const Side& side = sides_[k];
-    for (std::size_t i = 0; i < side.seen.size(); ++i) {
-      for (std::size_t j = i + 1; j < side.seen.size(); ++j) {
-        if (side.seen.size() > 3 && 2 * (j - i) < side.seen.size()) continue;  // Short ways say little.
-        for (std::size_t a = 0; a < side.expected.size(); ++a) {
-          for (std::size_t b = 0; b < side.expected.size(); ++b) {
-            if (a == b || side.expected[a].kind != side.seen[i].kind ||
-                side.expected[b].kind != side.seen[j].kind)
-              continue;
-            const Point way = side.expected[b].at - side.expected[a].at;
-            if (!(std::abs(way) > 1)) continue;
-            const Point turn = (side.seen[j].at - side.seen[i].at) / way;
-            if (const auto error = error_of(pictures_[k].view, turn, side.expected[a].at, side.seen[i].at))
-              consider(tried(*error));
-          }
+    constexpr std::size_t most = 40;
+    std::vector<Candidate> likely;
+    for (const auto& [i, j] : anchors(side.seen)) {
+      for (std::size_t a = 0; a < side.expected.size(); ++a) {
+        for (std::size_t b = 0; b < side.expected.size(); ++b) {
+          if (a == b || side.expected[a].kind != side.seen[i].kind ||
+              side.expected[b].kind != side.seen[j].kind)
+            continue;
+          const Point way = side.expected[b].at - side.expected[a].at;
+          if (!(std::abs(way) > 1)) continue;
+          const Point turn = (side.seen[j].at - side.seen[i].at) / way;
+          if (const auto error = error_of(pictures_[k].view, turn, side.expected[a].at, side.seen[i].at))
+            keep(tried(*error, k, k + 1), most, likely);
         }
       }
     }
+    for (const Candidate& one : likely) keep(tried(one.error, 0, sides_.size()), most_kept, best_);
   }
   // The error that turns and scales a picture like this, and brings one place in it to another.
   [[nodiscard]] std::optional<SightError> error_of(const View& view, const Point& turn, const Point& from,
@@ -122,7 +138,7 @@ class Vote {
     const Eigen::Vector3d rolled = so3_exp(Eigen::Vector3d(0, 0, roll)) * ray(from), aimed = ray(back);
     const Eigen::Matrix3d R = so3_exp(between(rolled, aimed)) * so3_exp(Eigen::Vector3d(0, 0, roll));
     const SightError error{view.X_WC.rotation * so3_log(R), scale};
-    constexpr double unlikely = 9;
+    constexpr double unlikely = 16;
     if (!error.turn.allFinite() || surprise(view, error) > unlikely) return std::nullopt;
     return error;
   }
@@ -140,11 +156,12 @@ class Vote {
            error.scale * error.scale / (doubt_.scale * doubt_.scale);
   }
 
-  [[nodiscard]] Candidate tried(const SightError& error) {
+  // By the pictures from `from` to before `to`.
+  [[nodiscard]] Candidate tried(const SightError& error, std::size_t from, std::size_t to) {
     Candidate result;
     result.error = error;
     result.score = -0.5 * surprise(pictures_.front().view, error);
-    for (std::size_t k = 0; k < sides_.size(); ++k) {
+    for (std::size_t k = from; k < to; ++k) {
       Side& side = sides_[k];
       const WrongSight sight(pictures_[k].view, error);
       side.moved = side.expected;
@@ -161,28 +178,28 @@ class Vote {
     return result;
   }
 
-  // Of those that take the same for the same only the best is kept.
-  void consider(Candidate candidate) {
-    constexpr std::size_t most = 12;
-    for (Candidate& one : best_) {
-      if (one.pairs != candidate.pairs) continue;
+  // Of those that take nothing for something else than one another only the best is kept, and so many at
+  // most.
+  static void keep(Candidate candidate, std::size_t most, std::vector<Candidate>& kept) {
+    const auto is_worse = [](const auto& a, const auto& b) { return b.is_better_than(a); };
+    const auto worst = std::ranges::min_element(kept, is_worse);
+    if (kept.size() == most && !candidate.is_better_than(*worst)) return;
+    for (Candidate& one : kept) {
+      if (!one.names_like(candidate)) continue;
       if (candidate.is_better_than(one)) one = std::move(candidate);
       return;
     }
-    if (best_.size() < most) {
-      best_.push_back(std::move(candidate));
-      return;
-    }
-    const auto worst =
-        std::ranges::min_element(best_, [](const auto& a, const auto& b) { return b.is_better_than(a); });
-    if (candidate.is_better_than(*worst)) *worst = std::move(candidate);
+    if (kept.size() < most)
+      kept.push_back(std::move(candidate));
+    else
+      *worst = std::move(candidate);
   }
 
   // At least squares of what its pairs are off, as long as that explains more.
   Candidate refined(Candidate candidate) {
     constexpr int rounds = 6;
     for (int round = 0; round < rounds; ++round) {
-      Candidate next = tried(step_from(candidate));
+      Candidate next = tried(step_from(candidate), 0, sides_.size());
       if (!next.is_better_than(candidate)) break;
       candidate = std::move(next);
     }
@@ -226,6 +243,8 @@ class Vote {
     if (!x.allFinite()) return candidate.error;
     return {x.head<3>(), x[3]};
   }
+
+  static constexpr std::size_t most_kept = 12;
 
   std::span<const MarkerPicture> pictures_;
   SightDoubt doubt_;

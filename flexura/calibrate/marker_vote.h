@@ -45,7 +45,7 @@ struct SightDoubt {
 /// The errors of one camera that explain most of what is seen in all of its pictures together, the best one
 /// first, `most` at most; those that take the same for the same count once. Of one picture alone a chain of
 /// markers that leaves it may be taken for the same shifted along the arm; arms bent in other ways would have
-/// to be shifted elsewhere. None where nothing is seen.
+/// to be shifted elsewhere. None without pictures; no error where nothing is seen. Doubts are above 0.
 [[nodiscard]] std::vector<SightError> likely_errors(std::span<const MarkerPicture> pictures,
                                                     const SightDoubt& doubt, std::size_t most);
 

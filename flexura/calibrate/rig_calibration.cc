@@ -139,7 +139,9 @@ void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibr
   constexpr double most_doubted = 0.3;
   const auto doubted = static_cast<double>(result.doubts.size());
   const double all = doubted + static_cast<double>(problem.sizes().size());
-  if (!std::isfinite(descent.cost)) {
+  if (!(all > 0)) {
+    result.reason = "nothing was seen";
+  } else if (!std::isfinite(descent.cost)) {
     result.reason = "nothing that was seen can be seen from where the cameras are guessed to stand";
   } else if (!(doubted <= most_doubted * all)) {
     result.reason = fmt::format("{:.0f} % of what was seen is not explained by any rig near the guess",

@@ -138,6 +138,14 @@ TEST(RigCalibration, LeavesOutWhatIsNotTheArm) {
   });
 }
 
+TEST(RigCalibration, IsNoneWhereNothingWasSeen) {
+  const RigModel believed = believed_rig();
+  RigProblem problem(believed, rough_prior(believed), {});
+  const RigCalibration none = calibrate_rig(problem);
+  EXPECT_FALSE(none.is_found);
+  EXPECT_EQ(none.reason, "nothing was seen");
+}
+
 TEST(RigCalibration, SaysWhyWhenNothingFits) {
   for_random_cases(1, [](TestRandom& random) {
     RigTrial trial = planned_trial({}, random, 3);

@@ -39,10 +39,8 @@ class Descent {
       ++result.iterations;
       result.is_settled = step(result.x);
     }
-    // Less is left than a thousandth of a standard deviation of anything.
-    constexpr double nothing = 1e-6;
-    result.is_settled = result.is_settled || promised_ < nothing;
     (void)problem_.linearise(result.x);
+    result.is_settled = result.is_settled || is_at_the_bottom();
     result.cost = problem_.cost(config_.bound);
     return result;
   }
@@ -60,8 +58,8 @@ class Descent {
       const Eigen::LLT<Eigen::MatrixXd> factors(damped_);
       if (factors.info() != Eigen::Success) continue;
       move_ = factors.solve(-gradient_);
-      promised_ = -0.5 * gradient_.dot(move_);
-      if (!(promised_ > small * before)) return true;
+      const double promised = -0.5 * gradient_.dot(move_);
+      if (!(promised > small * before)) return true;
       there_ = x + move_;
       if (!problem_.linearise(there_) || !(problem_.cost(bound) < before)) continue;
       x = there_;
@@ -69,6 +67,16 @@ class Descent {
       return false;
     }
     return true;
+  }
+
+  // Whether a whole step would lower the cost by less than a thousandth of a standard deviation of anything
+  // does.
+  bool is_at_the_bottom() {
+    constexpr double nothing = 1e-6;
+    problem_.normal(bound_of(problem_, config_), gradient_, normal_);
+    hold(config_.is_free, gradient_, normal_);
+    const Eigen::LLT<Eigen::MatrixXd> factors(normal_);
+    return factors.info() == Eigen::Success && 0.5 * gradient_.dot(factors.solve(gradient_)) < nothing;
   }
 
   RigProblem& problem_;

@@ -98,8 +98,10 @@ class Session {
       if (auto trouble = picture(i)) return trouble;
       // As long as nothing is known, the arm may have bent out of view.
       if (!found_ && misses_[i] > 0) {
-        auto trouble = search(i);
-        if (trouble && result_.looks == 1) return trouble;
+        if (auto trouble = search(i)) return trouble;
+        if (misses_[i] > 0 && result_.looks == 1)
+          return fmt::format("the arm is out of view of camera {}, also {:.3g} rad to all sides: {}", name(i),
+                             config_.search, sight_.seen.reason);
       }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
@@ -112,12 +114,13 @@ class Session {
   Trouble send(const RigStance& stance) {
     RigStance& stands = stands_[place_of(stance.camera)];
     if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
+    watcher_.camera_sent(hands_.now(), stance);
+    if (auto trouble = hands_.go(stance)) return trouble;
     is_turned_[place_of(stance.camera)] |=
         stance.head.pan != stands.head.pan || stance.head.tilt != stands.head.tilt;
-    watcher_.camera_sent(hands_.now(), stance);
     stands = stance;
     stance_[place_of(stance.camera)].reset();
-    return hands_.go(stance);
+    return std::nullopt;
   }
   [[nodiscard]] std::size_t place_of(std::size_t camera) const {
     return camera == config_.cameras[0] ? 0 : 1;
@@ -178,9 +181,11 @@ class Session {
   // Of where cameras look, as they are believed just then.
   [[nodiscard]] SightDoubt doubt() const { return found_ ? of_found : plan_.doubt(prior_); }
 
-  // Turns the head about where it stands until enough of the arm is seen.
+  // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
+  // one miss in all.
   Trouble search(std::size_t i) {
     const RigStance middle = stands_[i];
+    const int misses = misses_[i];
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
       RigStance stance = middle;
       stance.head.pan += way.x(), stance.head.tilt += way.y();
@@ -190,8 +195,9 @@ class Session {
       if (auto trouble = picture(i, true)) return trouble;
       if (misses_[i] == 0) return std::nullopt;
     }
-    return fmt::format("the arm is out of view of camera {}, also {:.3g} rad to all sides: {}", name(i),
-                       config_.search, sight_.seen.reason);
+    misses_[i] = misses;
+    if (auto trouble = send(middle)) return trouble;
+    return hands_.settle();
   }
 
   Trouble calibrate() {
@@ -218,8 +224,8 @@ class Session {
   struct Attempt {
     std::optional<RigProblem> problem;
     RigCalibration found;
-    double explained =
-        0;  // Things that were seen, less those that it does not explain, and markers of nobody.
+    // Things that were seen, less twice those that it does not explain, and less markers of nobody.
+    double explained = 0;
     bool is_whole = false;
   };
 
@@ -242,29 +248,43 @@ class Session {
     return std::move(best->found);
   }
 
+  // Recognised anew with each rig that is found, until nothing changes, or for so many rounds; the round that
+  // explains most.
   Attempt attempt(const RigModel& guess, const SightDoubt& doubt,
                   const std::array<std::size_t, 2>& rank) const {
-    Attempt result;
+    Attempt best;
     std::vector<MarkerMatch> matches = sights_.recognise(guess, doubt, rank);
+    RigModel model = guess;
     constexpr int rounds = 4;
-    const RigModel* model = &guess;
     for (int round = 0; round < rounds; ++round) {
-      result.problem.emplace(believed_, prior_,
-                             sights_.observations(*model, matches, round == 0 ? config_.fewest : few));
-      result.found = calibrate_rig(*result.problem);
-      if (!result.found.is_found) break;
-      model = &result.found.model;
-      std::vector<MarkerMatch> again = sights_.recognise(*model, of_found);
+      Attempt now;
+      now.problem.emplace(believed_, prior_,
+                          sights_.observations(model, matches, round == 0 ? config_.fewest : few));
+      now.found = calibrate_rig(*now.problem);
+      rate(matches, now);
+      const bool is_found = now.found.is_found;
+      if (is_found) model = now.found.model;
+      if (round == 0 || (is_found && now.explained >= best.explained)) best = std::move(now);
+      if (!is_found) break;
+      std::vector<MarkerMatch> again = sights_.recognise(model, of_found);
       if (round > 0 && again == matches) break;
       matches = std::move(again);
     }
-    rate(matches, result);
-    return result;
+    return best;
   }
+  // Nothing is found by one camera alone.
   void rate(const std::vector<MarkerMatch>& matches, Attempt& result) const {
     double things = 0, unknown = 0;
-    for (const RigImage& image : result.problem->observations().images)
+    std::array<std::size_t, 2> images = {0, 0};
+    for (const RigImage& image : result.problem->observations().images) {
       things += static_cast<double>(image.markers.size() + image.points.size());
+      ++images[place_of(sights_.stances[image.stance].camera)];
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (images[i] > 0 || !result.found.is_found) continue;
+      result.found.is_found = false;
+      result.found.reason = fmt::format("the arm is recognised in no picture of camera {}", name(i));
+    }
     for (std::size_t i = 0; i < matches.size(); ++i) {
       unknown +=
           static_cast<double>(markers_of(sights_.looks[i].arm.scene)) - static_cast<double>(matches[i].count);

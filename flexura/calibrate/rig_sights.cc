@@ -54,7 +54,8 @@ std::vector<MarkerMatch> RigSights::recognise(const RigModel& model, const Sight
       MarkerMatch wide =
           match_markers(expected, pictures[k].seen, size,
                         {.shift = more * rest.shift, .turn = more * rest.turn, .scale = more * rest.scale});
-      if (wide.count > match.count) match = std::move(wide);
+      if (4 * wide.count >= 3 * markers_of(pictures[k].seen) && wide.count > match.count)
+        match = std::move(wide);
     }
   }
   return matches;

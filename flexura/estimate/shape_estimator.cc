@@ -13,7 +13,6 @@
 #include "flexura/estimate/correspondence.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
-#include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
@@ -106,11 +105,15 @@ bool ShapeEstimator::is_good(const ShapeFit& fit) const {
 std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
   std::vector<Sighting> result;
   for (const Sighting& seen : sightings) {
-    Sighting thin = thinned(seen, config_.most_points);
     const auto is_none = [](const auto& point) {
       return !point.pixel.allFinite() || !(point.sigma > 0) || !std::isfinite(point.sigma);
     };
-    std::erase_if(thin.points, is_none), std::erase_if(thin.borders, is_none);
+    Sighting whole = seen;
+    std::erase_if(whole.points, is_none), std::erase_if(whole.borders, is_none);
+    std::erase_if(whole.markers, is_none), std::erase_if(whole.bands, is_none);
+    for (auto& end : whole.ends)
+      if (end && is_none(*end)) end.reset();
+    Sighting thin = thinned(std::move(whole), config_.most_points);
     // Of an arm that is no wider than its backbone borders tell nothing.
     const auto has_radius = [](const Section& section) {
       return section.radius[0] > 0 || section.radius[1] > 0;
@@ -156,8 +159,10 @@ std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightin
   std::vector<Shape> shapes;
   // A fit that went astray may have shrunk an arm of unknown length to nothing.
   constexpr double least = 1e-6;  // m
-  const Backbone backbone(shape.arm, shape.state);
-  if (!(backbone.length() > least) || !backbone.tip().position.allFinite()) return shapes;
+  double length = 0;
+  for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
+    length += shape.arm.sections[i].length * shape.state.stretches[i];
+  if (!(length > least) || !std::isfinite(length)) return shapes;
   const std::size_t sections = prior_.arm.sections.size();
   constexpr std::size_t most = 4;  // Of many short sections every so many.
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
@@ -275,9 +280,10 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   for (std::size_t i = 0; i < problem.sightings().size(); ++i) {
     const Sighting& seen = problem.sightings()[i];
-    // Most of one picture's axis is somewhere else.
+    // Most of what one picture shows is somewhere else; of a few points that says little.
     constexpr double most_doubted = 0.6;
-    const bool is_other = fit.doubted_in[i] > most_doubted;
+    constexpr std::size_t few = 8;
+    const bool is_other = fit.doubted_in[i] > most_doubted && seen.points.size() + seen.borders.size() >= few;
     if (!is_other && (are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape)))
       continue;
     result.reason = fmt::format("picture {} shows something else than the arm", i + 1);

@@ -65,7 +65,9 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
   }
   ShapeEstimate anew = estimator_.estimate(sightings);
   // Where there is none, it is the second that says why, unless it could not be tried.
-  const bool is_tried = !anew.sigma.empty() || !expected;
+  const bool is_tried = !expected || std::ranges::all_of(sightings, [](const Sighting& seen) {
+    return are_enough({&seen, 1});
+  });
   if (!best.is_found && !anew.is_found && !is_tried) return best;
   return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
 }

@@ -91,11 +91,16 @@ void as_used(benchmark::State& state) {
   std::size_t i = 0;
   Eigen::VectorXd seen, desired;
   FeatureError error;
-  if (!features->foreseen(way()[20], views, seen)) return state.SkipWithError("not seen");
+  if (!features->foreseen(way()[20], views, seen)) {
+    state.SkipWithError("not seen");
+    return;
+  }
   for (auto _ : state) {
     const ArmState& here = way()[i++ % way().size()];
-    if (!features->foreseen(goal(), views, desired) || !features->error(seen, desired, here, views, error))
-      return state.SkipWithError("not seen");
+    if (!features->foreseen(goal(), views, desired) || !features->error(seen, desired, here, views, error)) {
+      state.SkipWithError("not seen");
+      return;
+    }
     law.by_variables(error.by_state, J);
     law.step(here, error.error, J, step_time, work, step);
     benchmark::DoNotOptimize(step);

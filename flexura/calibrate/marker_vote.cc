@@ -137,7 +137,7 @@ class Vote {
     };
     const Eigen::Vector3d rolled = so3_exp(Eigen::Vector3d(0, 0, roll)) * ray(from), aimed = ray(back);
     const Eigen::Matrix3d R = so3_exp(between(rolled, aimed)) * so3_exp(Eigen::Vector3d(0, 0, roll));
-    const SightError error{view.X_WC.rotation * so3_log(R), scale};
+    SightError error{view.X_WC.rotation * so3_log(R), scale};
     constexpr double unlikely = 16;
     if (!error.turn.allFinite() || surprise(view, error) > unlikely) return std::nullopt;
     return error;

@@ -17,9 +17,10 @@ namespace {
 const std::vector<Eigen::Vector3d> colors = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
 
 std::vector<KnownMarker> bands() {
-  std::vector<KnownMarker> markers;
-  for (std::size_t i = 0; i < 12; ++i)
-    markers.push_back({.s = (static_cast<double>(i) + 0.5) / 12, .color = colors[i % colors.size()]});
+  constexpr std::size_t count = 12;
+  std::vector<KnownMarker> markers(count);
+  for (std::size_t i = 0; i < count; ++i)
+    markers[i] = {.s = (static_cast<double>(i) + 0.5) / count, .color = colors[i % colors.size()]};
   return markers;
 }
 
@@ -52,12 +53,13 @@ TrueSight look(const RigModel& truth, const Arm& told, const RigStance& stance, 
   for (std::size_t i = 0; i < all.markers.size(); ++i) {
     if (!all.markers[i] || !is_inside(all.markers[i]->pixel)) continue;
     if (random.uniform(0, 1) < 0.08) continue;
-    sight.scene.markers.push_back(
+    sight.scene.markers.emplace_back(
         MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-0.3, 0.3), all.markers[i]->color});
     sight.names.emplace_back(i);
     if (random.uniform(0, 1) > 0.03) continue;
-    sight.scene.markers.push_back(MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-30, 30),
-                                                     colors[static_cast<std::size_t>(random.integer(0, 2))]});
+    sight.scene.markers.emplace_back(
+        MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-30, 30),
+                           colors[static_cast<std::size_t>(random.integer(0, 2))]});
     sight.names.emplace_back();
   }
   if (is_inside(all.ends[0]) && is_inside(all.ends[1])) sight.scene.ends = all.ends;

@@ -79,7 +79,8 @@ export async function stage_at_rest(page: Page, ms = 8000): Promise<Buffer> {
   let before = await stage_picture(page);
   const end = Date.now() + patience * ms;
   for (;;) {
-    await page.waitForTimeout(300);
+    // A picture of it takes longer than that, too.
+    await page.waitForTimeout(150);
     const now = await stage_picture(page);
     if (now.equals(before)) return now;
     if (Date.now() > end) throw new Error('the 3D view does not come to rest');

@@ -5,10 +5,12 @@
 // It needs jpeglib.h before it.
 #include <jerror.h>
 
+#include <array>
 #include <csetjmp>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "flexura/picture/picture_kinds.h"
 
@@ -67,12 +69,27 @@ bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job
   return true;
 }
 
-bool read_rows(jpeg_decompress_struct* job, JpegInput* input, Image<std::uint8_t>* image) {
+// Red, green and blue of cyan, magenta, yellow and black. Files of inks have them inverted (255: no ink), as
+// Adobe began it; the rounding is OpenCV's.
+void mix_inks(std::span<const std::uint8_t> inks, std::uint8_t* to) {
+  constexpr std::size_t count = 4;
+  for (; !inks.empty(); inks = inks.subspan(count)) {
+    const int light = inks[3];
+    for (std::size_t c = 0; c < 3; ++c)
+      *to++ = static_cast<std::uint8_t>(light - ((255 - inks[c]) * light >> 8));
+  }
+}
+
+// `inks` has room for a row of them; it is empty when the file has none.
+bool read_rows(jpeg_decompress_struct* job, JpegInput* input, std::span<std::uint8_t> inks,
+               Image<std::uint8_t>* image) {
   if (setjmp(input->back) != 0) return false;
   jpeg_start_decompress(job);
   while (job->output_scanline < job->output_height) {
-    JSAMPROW row = image->row(static_cast<int>(job->output_scanline)).data();
+    std::uint8_t* values = image->row(static_cast<int>(job->output_scanline)).data();
+    JSAMPROW row = inks.empty() ? values : inks.data();
     jpeg_read_scanlines(job, &row, 1);
+    if (!inks.empty()) mix_inks(inks, values);
   }
   jpeg_finish_decompress(job);
   return true;
@@ -109,14 +126,16 @@ Picture read_jpeg(std::span<const std::uint8_t> file, std::size_t most_pixels) {
     check_picture_size(reader.job.image_width, reader.job.image_height, most_pixels);
   if (!has_header) throw reader.problem();
   const int channels = reader.job.num_components;
-  if (channels != 1 && channels != 3)
+  if (channels != 1 && channels != 3 && channels != 4)
     throw std::runtime_error("the JPEG file has " + std::to_string(channels) +
-                             (channels == 4 ? " inks (CMYK)" : " values a pixel") +
-                             ": expected gray, or red, green and blue");
-  reader.job.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+                             " values a pixel: expected gray, colours or four inks (CMYK)");
+  constexpr std::array<J_COLOR_SPACE, 5> spaces = {JCS_UNKNOWN, JCS_GRAYSCALE, JCS_UNKNOWN, JCS_RGB,
+                                                   JCS_CMYK};
+  reader.job.out_color_space = spaces[static_cast<std::size_t>(channels)];
   Image<std::uint8_t> image(static_cast<int>(reader.job.image_width),
-                            static_cast<int>(reader.job.image_height), channels);
-  if (!read_rows(&reader.job, &reader.input, &image)) throw reader.problem();
+                            static_cast<int>(reader.job.image_height), channels == 1 ? 1 : 3);
+  std::vector<std::uint8_t> inks(channels == 4 ? std::size_t{4} * reader.job.image_width : 0);
+  if (!read_rows(&reader.job, &reader.input, inks, &image)) throw reader.problem();
   return image;
 }
 

@@ -88,7 +88,7 @@ Image<Value> image_of(const PnmHeader& header, Next&& next) {
   const bool is_scaled = sizeof(Value) == 1 && header.most != 255;
   for (Value& value : image.values()) {
     const std::int64_t written = std::min<std::int64_t>(next(), header.most);
-    value = static_cast<Value>(is_scaled ? (written * 255 + header.most / 2) / header.most : written);
+    value = is_scaled ? byte_of(written, header.most) : static_cast<Value>(written);
   }
   return image;
 }

@@ -8,6 +8,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "flexura/base/image.h"
+
 namespace flexura {
 
 /// A TIFF file in memory, as libtiff reads it, and what it found wrong with it.
@@ -29,5 +31,9 @@ using OpenTiff = std::unique_ptr<TIFF, CloseTiff>;
 /// Opens the first picture of `input`, which has to outlive it. libtiff prints nothing, and allocates no more
 /// than `most_bytes` at once. std::runtime_error: no TIFF file.
 [[nodiscard]] OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes);
+
+/// Red, green and blue as libtiff mixes them: for colours that a file has otherwise, in bytes. The sizes were
+/// judged. std::runtime_error: damaged, or of a form that libtiff does not mix.
+[[nodiscard]] Image<std::uint8_t> read_mixed_tiff(TIFF* open, const TiffInput& input);
 
 }  // namespace flexura

@@ -23,6 +23,11 @@ struct TiffLayout {
   std::size_t row_size = 0, block_size = 0;  // Bytes.
 
   [[nodiscard]] std::size_t samples_in_block() const { return is_separate ? 1 : samples; }
+  // Colours that libtiff mixes.
+  [[nodiscard]] bool is_mixed() const {
+    return bits == 8 && (photometric == PHOTOMETRIC_SEPARATED || photometric == PHOTOMETRIC_YCBCR ||
+                         photometric == PHOTOMETRIC_CIELAB);
+  }
   [[nodiscard]] int channels() const { return photometric == PHOTOMETRIC_RGB ? 3 : 1; }
 };
 
@@ -43,12 +48,12 @@ void read_values(TIFF* open, TiffLayout* layout) {
       layout->samples > 1 && field<std::uint16_t>(open, TIFFTAG_PLANARCONFIG, 0) == PLANARCONFIG_SEPARATE;
   const auto format = field<std::uint16_t>(open, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
   const bool is_whole = format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
-  constexpr std::array<std::uint16_t, 5> known = {1, 2, 4, 8, 16};
+  constexpr std::array<std::uint16_t, 8> known = {1, 2, 4, 8, 10, 12, 14, 16};
   if (is_whole && std::ranges::count(known, layout->bits) == 1) return;
   const char* name = is_whole ? "" : "signed ";
   if (format == SAMPLEFORMAT_IEEEFP) name = "floating point ";
   refuse_tiff(fmt::format("{}values of {} bits", name, layout->bits),
-              "whole ones of 1, 2, 4, 8 or 16 bits, without a sign");
+              "whole ones of 1, 2, 4, 8, 10, 12, 14 or 16 bits, without a sign");
 }
 
 // What the values are, and that they are what is read.
@@ -65,8 +70,9 @@ void read_form(TIFF* open, TiffLayout* layout) {
   if (layout->photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG && !layout->is_separate &&
       TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB) == 1)
     layout->photometric = PHOTOMETRIC_RGB;
-  if (layout->photometric > PHOTOMETRIC_PALETTE)
-    refuse_tiff(fmt::format("colours of kind {}", layout->photometric), "gray, RGB or a palette");
+  if (layout->photometric > PHOTOMETRIC_PALETTE && !layout->is_mixed())
+    refuse_tiff(fmt::format("colours of kind {}", layout->photometric),
+                "gray, RGB, a palette, or CMYK, YCbCr or CIELab of 8 bits");
   constexpr int most_samples = 8;  // Red, green, blue, and what is passed over.
   if (layout->samples < layout->channels() || layout->samples > most_samples ||
       (layout->bits < 8 && layout->samples > 1) ||
@@ -82,18 +88,25 @@ void read_blocks(TIFF* open, TiffLayout* layout, std::size_t most_pixels) {
                              ? field<std::uint32_t>(open, TIFFTAG_TILELENGTH, 0)
                              : std::min(layout->height, field<std::uint32_t>(open, TIFFTAG_ROWSPERSTRIP, 0));
   check_picture_size(layout->block_width, layout->block_height, most_pixels);
+  if (layout->is_mixed()) return;  // Some have fewer values than pixels.
   layout->row_size = (layout->block_width * layout->samples_in_block() * layout->bits + 7) / 8;
   layout->block_size = layout->row_size * layout->block_height;
   const auto size = static_cast<std::size_t>(layout->is_tiled ? TIFFTileSize64(open) : TIFFStripSize64(open));
   if (size != layout->block_size) throw damaged("TIFF", "blocks of another size than their pixels");
 }
 
-// A value of 1, 2, 4 or 8 bits, or of 16 in this machine's byte order, which libtiff has made.
+// A value of 1 to 14 bits, the highest first, or of 16 in this machine's byte order, which libtiff has made.
 template <typename Value>
 Value value_in(const std::uint8_t* row, std::size_t index, std::size_t bits) {
   Value value{};
-  if (sizeof(Value) == 2 || bits == 8) {
+  if (bits == 8 || bits == 16) {
     std::memcpy(&value, row + index * sizeof(Value), sizeof(Value));
+  } else if (bits > 8) {
+    // All are even: a value stands in two bytes, or in three when it begins late in the first.
+    const std::size_t at = index * bits, end = at % 8 + bits;
+    auto window = static_cast<std::uint32_t>(row[at / 8] << 16U | row[at / 8 + 1] << 8U);
+    if (end > 16) window |= row[at / 8 + 2];
+    value = static_cast<Value>(window >> (24 - end) & ((1U << bits) - 1U));
   } else {
     const std::size_t at = index * bits;
     value = static_cast<Value>(row[at / 8] >> (8 - bits - at % 8) & ((1U << bits) - 1U));
@@ -166,7 +179,8 @@ Picture read_tiff(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   check_picture_size(layout.width, layout.height, most_pixels);
   read_form(open.get(), &layout);
   read_blocks(open.get(), &layout, most_block);
-  if (layout.bits == 16) {
+  if (layout.is_mixed()) return read_mixed_tiff(open.get(), input);
+  if (layout.bits > 8) {
     auto image = values_of<std::uint16_t>(open.get(), layout, input);
     if (layout.channels() == 1) make_gray(&image, layout);
     return image;

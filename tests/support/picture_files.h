@@ -56,7 +56,9 @@ std::string packed(std::span<const T> values, int bits) {
       row[2 * i] = static_cast<char>(values[i] & 0xFF);
       row[2 * i + 1] = static_cast<char>(values[i] >> 8);
     } else {
-      row[bit / 8] = static_cast<char>(row[bit / 8] | values[i] << (8 - bits - static_cast<int>(bit % 8)));
+      for (std::size_t b = bit; b < bit + static_cast<std::size_t>(bits); ++b)
+        if ((values[i] >> (bit + static_cast<std::size_t>(bits) - 1 - b) & 1) == 1)
+          row[b / 8] = static_cast<char>(row[b / 8] | 0x80 >> b % 8);
     }
   }
   return row;
@@ -102,8 +104,8 @@ std::string png_file(const Image<T>& image, const PngForm& form) {
   return file;
 }
 
-/// One channel for gray, three for colours, four for inks.
-inline std::string jpeg_file(const Image<std::uint8_t>& image, bool is_progressive) {
+/// One channel for gray, three for colours, four for inks (as brightness and colours if `is_luma`).
+inline std::string jpeg_file(const Image<std::uint8_t>& image, bool is_progressive, bool is_luma = false) {
   constexpr std::array<J_COLOR_SPACE, 5> spaces = {JCS_UNKNOWN, JCS_GRAYSCALE, JCS_UNKNOWN, JCS_RGB,
                                                    JCS_CMYK};
   jpeg_compress_struct job{};
@@ -118,6 +120,7 @@ inline std::string jpeg_file(const Image<std::uint8_t>& image, bool is_progressi
   job.input_components = image.channels();
   job.in_color_space = spaces[static_cast<std::size_t>(image.channels())];
   jpeg_set_defaults(&job);
+  if (is_luma && image.channels() == 4) jpeg_set_colorspace(&job, JCS_YCCK);
   jpeg_set_quality(&job, 95, TRUE);
   if (is_progressive) jpeg_simple_progression(&job);
   jpeg_start_compress(&job, TRUE);
@@ -199,9 +202,13 @@ std::string tiff_file(const Image<T>& image, const TiffForm& form) {
   TIFFSetField(open, TIFFTAG_PHOTOMETRIC, form.photometric);
   TIFFSetField(open, TIFFTAG_PLANARCONFIG, form.is_separate ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
   TIFFSetField(open, TIFFTAG_COMPRESSION, form.compression);
-  if (form.photometric == PHOTOMETRIC_YCBCR) TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+  if (form.photometric == PHOTOMETRIC_YCBCR && form.compression == COMPRESSION_JPEG)
+    TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+  else if (form.photometric == PHOTOMETRIC_YCBCR)
+    TIFFSetField(open, TIFFTAG_YCBCRSUBSAMPLING, 1, 1);
   const std::uint16_t alpha = EXTRASAMPLE_UNASSALPHA;
-  if (image.channels() % 2 == 0) TIFFSetField(open, TIFFTAG_EXTRASAMPLES, 1, &alpha);
+  if (image.channels() % 2 == 0 && form.photometric != PHOTOMETRIC_SEPARATED)
+    TIFFSetField(open, TIFFTAG_EXTRASAMPLES, 1, &alpha);
   std::array<std::vector<std::uint16_t>, 3> map;
   for (std::size_t c = 0; c < 3; ++c) {
     for (const auto& color : form.palette) map[c].push_back(static_cast<std::uint16_t>(color[c] * 257));

@@ -26,8 +26,11 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   constexpr double most = 1e6;  // Of the principal point and of focal lengths, px: single precision.
   const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
                              intrinsics.fx < most && intrinsics.fy < most;
+  // Regions of the image are bounded across the images of axes: pixels have to be nearly square.
+  constexpr double squarest = 4.0 / 3;
+  const bool is_square = intrinsics.fx < squarest * intrinsics.fy && intrinsics.fy < squarest * intrinsics.fx;
   const bool is_known =
-      is_lens_known && stage.scene->light.shadow == 0 && width_ >= static_cast<int>(span_step);
+      is_lens_known && is_square && stage.scene->light.shadow == 0 && width_ >= static_cast<int>(span_step);
   if (!is_known) return false;
   intrinsics_ = intrinsics;
   picture_ = &picture;

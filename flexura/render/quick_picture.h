@@ -21,10 +21,10 @@ namespace flexura {
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
 /// Draws what is plain to see: screens and their edges, the skin of the arm, its contours before one surface,
-/// the rims of its ends and the edges of its markers, many pixels at a time in single precision; and tells
-/// which pixels are not, for the exact way. What it draws agrees with the exact way to 1/500 of full scale,
-/// but where markers' edges are seen: there a part of up to 0.02 of a pixel may show the other colour. Depths
-/// agree to 2e-6 of them, nearly all to 1e-6.
+/// the rims of its ends and the edges of its markers, and an etalon that stands alone but for its lines,
+/// many pixels at a time in single precision; and tells which pixels are not, for the exact way. What it
+/// draws agrees with the exact way to 1/500 of full scale, but where markers' edges are seen: there a part of
+/// up to 0.02 of a pixel may show the other colour. Depths agree to 2e-6 of them, nearly all to 1e-6.
 class QuickPicture {
  public:
   struct Pixel {
@@ -84,8 +84,10 @@ class QuickPicture {
   bool plan_pieces(const Stage& stage);
   void find_meetings(const Stage& stage);
   bool plan_piece(const Stage& stage, const TubePiece& piece);
+  [[nodiscard]] bool is_drawn_skin(const Stage& stage, const TubePiece& piece) const;
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;
   [[nodiscard]] bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
+  [[nodiscard]] bool leave_lines(const Stage& stage);
   void draw_pieces(SpanRow& row);
   bool leave_face(const FacePart& part);
   void leave_plane(const PlanePart& plane);

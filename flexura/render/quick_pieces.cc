@@ -58,6 +58,12 @@ bool do_meet(const TubePiece& one, const TubePiece& other) {
          reach + sagitta(one) + sagitta(other);
 }
 
+// Nothing but screens before, behind and beside it.
+bool is_etalon_alone(const Stage& stage) {
+  return stage.pieces.size() == 1 && stage.planes.empty() &&
+         std::ranges::all_of(stage.faces, [](const FacePart& face) { return face.screen >= 0; });
+}
+
 // Whether the quick way may take a piece so bent.
 bool is_gentle(const TubePiece& piece) { return piece.curvature * piece.radius < 0.5; }
 
@@ -112,6 +118,12 @@ void QuickPicture::find_meetings(const Stage& stage) {
   }
 }
 
+bool QuickPicture::is_drawn_skin(const Stage& stage, const TubePiece& piece) const {
+  const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
+  if (body.is_etalon) return is_etalon_alone(stage);
+  return body.is_arm && meets_[static_cast<std::size_t>(&piece - stage.pieces.data())] == 0;
+}
+
 bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
   const double widest = widest_of(piece);
@@ -128,18 +140,19 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
                                       piece.is_ball ? 2 * widest : widest * (lean + 0.1));
   if (!region) return false;
-  const bool is_skin = stage.bodies[static_cast<std::size_t>(piece.body)].is_arm &&
-                       meets_[static_cast<std::size_t>(&piece - stage.pieces.data())] == 0;
-  bool is_quick = is_skin && !piece.is_ball && piece.widening == 0 && slant * slant < 0.5 &&
-                  is_gentle(piece) && center.z() > 4 * piece.bound_radius && is_near_picture(center) &&
-                  !meets_screen(stage, center, piece.bound_radius);
+  bool is_quick = is_drawn_skin(stage, piece) && !piece.is_ball && piece.widening == 0 &&
+                  slant * slant < 0.5 && is_gentle(piece) && center.z() > 4 * piece.bound_radius &&
+                  is_near_picture(center) && !meets_screen(stage, center, piece.bound_radius);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];
     fill_span_piece(stage, piece, skin);
     // Two pixels across the radius, so that a pixel with one contour does not reach over the axis to the
     // other.
-    is_quick = 2.1F * skin.piece.reach < skin.piece.radius && add_edges(stage, piece, skin);
+    // And not so many that single precision, and what is drawn beyond an end, are seen.
+    constexpr float most_pixels = 700;
+    is_quick = 2.1F * skin.piece.reach < skin.piece.radius &&
+               skin.piece.radius < most_pixels * skin.piece.reach && add_edges(stage, piece, skin);
   }
   if (!is_quick) {
     leave(*region);

@@ -5,9 +5,29 @@
 #include "flexura/render/quick_picture.h"
 
 namespace flexura {
+namespace {
 
-// The arm's flat ends; where the skin at one is not drawn the quick way, and of all other discs, the exact
-// way draws all.
+// Of which piece of the stage a disc is a flat end, and which one.
+struct EndOf {
+  int piece = -1;  // -1: none, or not the end of a whole tube.
+  bool is_base = false;
+};
+
+EndOf end_of(const Stage& stage, const DiscPart& disc) {
+  const SurfaceLabel label = stage.bodies[static_cast<std::size_t>(disc.body)].label;
+  if (label.kind == SurfaceKind::cap && label.index < 2)
+    return label.index == 0 ? EndOf{stage.first_arm_piece, true} : EndOf{stage.last_arm_piece, false};
+  if (label.kind != SurfaceKind::etalon) return {};
+  const auto skin = std::ranges::find_if(stage.pieces, [&](const TubePiece& piece) {
+    return stage.bodies[static_cast<std::size_t>(piece.body)].is_etalon;
+  });
+  return {static_cast<int>(skin - stage.pieces.begin()), label.index == 2};
+}
+
+}  // namespace
+
+// Flat ends of the arm and of the etalon; where the skin at one is not drawn the quick way, and of all other
+// discs, the exact way draws all.
 bool QuickPicture::plan_rims(const Stage& stage) {
   rim_count_ = 0;
   for (const DiscPart& disc : stage.discs) {
@@ -23,11 +43,14 @@ bool QuickPicture::plan_rims(const Stage& stage) {
     const auto region = ImageRegion::of(intrinsics_, circle.center - way, circle.center + way,
                                         std::min(narrow, circle.radius));
     if (!region) return false;
-    const SurfaceLabel label = stage.bodies[static_cast<std::size_t>(disc.body)].label;
-    const bool is_end = label.kind == SurfaceKind::cap && label.index < 2 && is_near_picture(circle.center);
-    const int piece = label.index == 0 ? stage.first_arm_piece : stage.last_arm_piece;
+    const EndOf end = end_of(stage, disc);
+    // Seen from its edge, both sides of it are in the same pixels.
+    constexpr double thinnest = 2;  // px
+    const double thickness = 2 * circle.radius * std::abs(circle.normal.dot(circle.center)) /
+                             (circle.center.squaredNorm() * pixel_);
+    const bool is_end = end.piece >= 0 && is_near_picture(circle.center) && thickness > thinnest;
     const auto skin = std::find_if(skins_.begin(), skins_.begin() + static_cast<std::ptrdiff_t>(skin_count_),
-                                   [&](const Skin& one) { return is_end && one.index == piece; });
+                                   [&](const Skin& one) { return is_end && one.index == end.piece; });
     if (skin == skins_.begin() + static_cast<std::ptrdiff_t>(skin_count_)) {
       leave(*region);
       continue;
@@ -37,7 +60,7 @@ bool QuickPicture::plan_rims(const Stage& stage) {
     rim.skin = static_cast<std::size_t>(skin - skins_.begin());
     rim.region = *region;
     rim.rows = map_.rows(*region);
-    rim.rim.state = label.index == 0 ? state_base : state_tip;
+    rim.rim.state = end.is_base ? state_base : state_tip;
     skin->piece.rims |= rim.rim.state;
     rim.depth = circle.center.z();
     fill_rim(stage, disc, rim.rim);

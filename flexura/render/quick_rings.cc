@@ -63,18 +63,24 @@ Color albedo_at(const ArmLook& arm, double s) {
 // The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
 // to a ring beyond its ends, where the arm turns sharply, and when rings finer than pixels are seen aslant.
 bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
-  const ArmLook& arm = stage.scene->arm;
-  const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
-  const double margin = std::max(8 * pixel, steepest_aspect(piece).reach(piece.radius, pixel));
   const auto channel = [&](const Color& color, std::size_t c) {
     return static_cast<float>(channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)]);
   };
+  skin.first_edge = edges_.size();
+  const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
+  if (body.is_etalon) {
+    for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = channel(body.albedo, c);
+    skin.piece.edge_count = 0;
+    return leave_lines(stage);
+  }
+  const ArmLook& arm = stage.scene->arm;
+  const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
+  const double margin = std::max(8 * pixel, steepest_aspect(piece).reach(piece.radius, pixel));
   const auto& rings = stage.ring_edges;
   const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
   const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
   Color before = albedo_at(arm, begin == end ? piece.s + 0.5 * piece.length : std::nextafter(begin->s, -1e9));
   for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = channel(before, c);
-  skin.first_edge = edges_.size();
   bool is_fine = false;
   double s_before = -std::numeric_limits<double>::infinity();
   for (auto ring = begin; ring != end; ++ring) {
@@ -104,6 +110,23 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
     before = after;
   }
   skin.piece.edge_count = edges_.size() - skin.first_edge;
+  return true;
+}
+
+// The etalon's red lines, of which each has two edges; false when the camera is too near.
+bool QuickPicture::leave_lines(const Stage& stage) {
+  const Eigen::Vector3d& axis_at = stage.X_CE.position;
+  const auto faces_away = [&](const LineEdge& edge) {
+    return (0.5 * (edge.from + edge.to) - axis_at).dot(edge.from) > 0;
+  };
+  for (std::size_t i = 0; i + 1 < stage.line_edges.size(); i += 2) {
+    const LineEdge &left = stage.line_edges[i], &right = stage.line_edges[i + 1];
+    if (faces_away(left) && faces_away(right)) continue;
+    const auto region = ImageRegion::of(intrinsics_, 0.5 * (left.from + right.from),
+                                        0.5 * (left.to + right.to), 0.5 * (left.from - right.from).norm());
+    if (!region) return false;
+    leave(*region);
+  }
   return true;
 }
 

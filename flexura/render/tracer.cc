@@ -306,7 +306,8 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
   if (body.is_etalon) {
     const double angle = etalon_angle(stage, hit.depth * ray.direction);
     for (const LineEdge& edge : stage.line_edges) {
-      if (std::abs(std::remainder(edge.angle - angle, 2 * std::numbers::pi)) < 1.2)
+      const double apart = std::abs(edge.angle - angle);
+      if (std::min(apart, 2 * std::numbers::pi - apart) < 1.2)
         sights.add(line_border(edge.from, edge.to, ray));
     }
   }

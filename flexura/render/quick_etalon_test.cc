@@ -1,0 +1,130 @@
+// An etalon that stands alone before a screen is drawn the quick way, but for its lines.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "flexura/math/so3.h"
+#include "flexura/render/quick_picture.h"
+#include "flexura/render/renderer.h"
+#include "tests/support/render_scenes.h"
+
+namespace flexura {
+namespace {
+
+Scene etalon_scene(TestRandom& random) {
+  Scene scene;
+  Etalon& etalon = scene.etalon.emplace();
+  etalon.X_WE = {so3_exp(random.vector<3>(-1, 1)), random.vector<3>(-0.2, 0.2)};
+  etalon.radius = random.uniform(0.03, 0.15), etalon.height = random.uniform(0.2, 0.8);
+  etalon.line_width = random.integer(0, 4) == 0 ? 0 : random.uniform(0.002, 0.03);
+  etalon.albedo = {0.1, 0.15, 0.2}, etalon.line_albedo = {0.9, 0.1, 0.1};
+  return scene;
+}
+
+// From 1.5 to 4 m, the etalon anywhere in the picture, half of the lenses with distortion.
+View view_of(TestRandom& random, const Scene& scene, int width, int height) {
+  const Eigen::Vector3d middle = scene.etalon->X_WE.position;
+  const Eigen::Vector3d eye = middle + random.uniform(1.5, 4) * random.vector<3>(-1, 1).normalized();
+  View view = pinhole_view(look_at(eye, middle + random.vector<3>(-0.2, 0.2)), width, height,
+                           width * random.uniform(0.6, 5));
+  Intrinsics lens = view.lens.intrinsics();
+  lens.fy *= random.uniform(0.8, 1.25);
+  if (random.integer(0, 1) == 1) lens.distortion[0] = random.uniform(-0.2, 0.2);
+  view.lens = Lens(lens);
+  return view;
+}
+
+// Beside the etalon, before it, behind it or through it.
+void add_screen(TestRandom& random, Scene& scene, const View& view) {
+  const Eigen::Vector3d ahead = view.X_WC.rotation.col(2);
+  Screen& screen = scene.screens.emplace_back();
+  screen.X_WS.rotation = rotation_from_z((-ahead + 0.6 * random.vector<3>(-1, 1)).normalized());
+  screen.X_WS.position =
+      scene.etalon->X_WE.position + random.uniform(-0.5, 1.5) * ahead + random.vector<3>(-0.6, 0.6);
+  screen.size = {random.uniform(0.3, 3), random.uniform(0.3, 3)};
+}
+
+TEST(QuickEtalon, AgreesWithTheExactWay) {
+  double worst = 0;
+  int drawn = 0, pixels = 0, left = 0;
+  for_random_cases(300, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    const View view = view_of(random, scene, 64, 48);
+    for (int i = random.integer(0, 2); i > 0; --i) add_screen(random, scene, view);
+    const PixelKind kind = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
+    Renderer renderer;
+    LightImage exact, quick;
+    renderer.render(scene, view, kind, exact, true);
+    renderer.render(scene, view, kind, quick);
+    for (std::size_t i = 0; i < exact.light.values().size(); ++i)
+      worst = std::max(worst, std::abs(exact.light.values()[i] - quick.light.values()[i]) + 0.0);
+    for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {
+      const double a = exact.depth.values()[i] + 0.0, b = quick.depth.values()[i] + 0.0;
+      if (a != b) {
+        EXPECT_NEAR(b, a, 2e-6 * a);
+      }
+    }
+    QuickPicture picture;
+    renderer.prepare(scene, view);
+    if (!picture.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), kind, quick)) return;
+    ++drawn, pixels += 64 * 48, left += static_cast<int>(picture.left_out().size());
+  });
+  std::printf("etalon: light differs by %.5f at worst, %.1f %% of %d pictures left out\n", worst,
+              100.0 * left / pixels, drawn);
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(drawn, 0);
+}
+
+// Bright ones, flat ones, some seen from so near, or by so long a lens, that they are hundreds of pixels
+// wide.
+TEST(QuickEtalon, AgreesWithTheExactWayWhateverItsSize) {
+  double worst = 0;
+  for_random_cases(300, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    scene.etalon->albedo = Color::Constant(0.9), scene.background = Color::Zero();
+    scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
+    View view = view_of(random, scene, 64, 48);
+    Intrinsics lens = view.lens.intrinsics();
+    const double longer = std::pow(10, random.uniform(0, 2.5));
+    lens.fx *= longer, lens.fy *= longer, lens.distortion = {};
+    view.lens = Lens(lens);
+    Renderer renderer;
+    LightImage exact, quick;
+    renderer.render(scene, view, PixelKind::gray, exact, true);
+    renderer.render(scene, view, PixelKind::gray, quick);
+    for (std::size_t i = 0; i < exact.light.values().size(); ++i)
+      worst = std::max(worst, std::abs(exact.light.values()[i] - quick.light.values()[i]) + 0.0);
+    for (std::size_t i = 0; i < exact.depth.values().size(); ++i)
+      EXPECT_EQ(std::isinf(exact.depth.values()[i]), std::isinf(quick.depth.values()[i]));
+  });
+  std::printf("etalons of all sizes: light differs by %.5f at worst\n", worst);
+  EXPECT_LT(worst, 0.05);
+}
+
+// What a calibration looks at: upright, 1.5 m away, by 640 x 480 px, zoomed in.
+TEST(QuickEtalon, LeavesItsLinesToTheExactWay) {
+  constexpr double f = 2000, far = 1.53;  // px, m
+  Scene scene = plain_scene();
+  scene.etalon.emplace().X_WE.position = {0, 0.3, 0};
+  const View view = pinhole_view(look_at({0.3, 0.3, 1.5}, {0, 0.3, 0}), 640, 480, f);
+  Renderer renderer;
+  const auto left_out = [&] {
+    renderer.prepare(scene, view);
+    LightImage picture{Image<float>(640, 480), Image<float>(640, 480)};
+    QuickPicture quick;
+    EXPECT_TRUE(
+        quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    return quick.left_out().size();
+  };
+  const double area = 2 * f * scene.etalon->radius / far * f * scene.etalon->height / far;  // px
+  const std::size_t alone = left_out();
+  EXPECT_LT(static_cast<double>(alone), 0.15 * area);
+  // Beside something else it is left.
+  scene.obstacles.push_back({SphereConfig{.center = {2, 0, -1}, .radius = 0.05}, {0.4, 0.5, 0.4}});
+  EXPECT_GT(static_cast<double>(left_out()), 0.9 * area);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,27 +1,12 @@
 import { readFileSync } from 'node:fs';
 import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
-import { BaseSequencer, type TestSpecification } from 'vitest/node';
 
 /** What is in the bundle of others': their licences ask to come with it. */
 const bundled = ['three', 'preact', '@preact/signals', '@preact/signals-core', 'uplot'];
 
 /** As for the tests in a browser themselves: test/e2e/browser.ts. */
 const patience = Number(process.env.FLEXURA_PATIENCE ?? 1);
-
-/** The files that take longest begin first, so that two workers end together also where none has run before. */
-class LongestFirst extends BaseSequencer {
-  private static readonly longest = ['rig', 'program', 'trouble', 'recording', 'held', 'measured', 'access', 'planar', 'watched'];
-
-  override async sort(files: TestSpecification[]): Promise<TestSpecification[]> {
-    const { longest } = LongestFirst;
-    const rank = ({ moduleId }: TestSpecification): number => {
-      const place = longest.findIndex((name) => moduleId.endsWith(`/${name}.test.ts`));
-      return place < 0 ? longest.length : place;
-    };
-    return [...files].sort((a, b) => rank(a) - rank(b));
-  }
-}
 
 function licences(): Plugin {
   return {
@@ -53,7 +38,6 @@ export default defineConfig({
     // Two browsers at a time: much of what they do is to wait.
     maxWorkers: 2,
     minWorkers: 1,
-    sequence: { sequencer: LongestFirst },
     projects: [
       { extends: true, test: { name: 'unit', include: ['test/unit/**/*.test.ts'], environment: 'node' } },
       {

@@ -43,7 +43,8 @@ std::string session_name() {
 
 ViewStart start_of(const std::string& what) {
   ViewStart start;
-  if (std::filesystem::is_directory(what)) {
+  std::error_code error;  // What cannot be looked at is said by whoever reads it.
+  if (std::filesystem::is_directory(what, error)) {
     start.recording = std::make_shared<const Recording>(what);
     start.results = std::filesystem::path("results") / "view";
   } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
@@ -69,6 +70,8 @@ void require_hosts(const std::vector<std::string>& names) {
                                     text_node(name).brief()));
   }
 }
+
+bool listens_everywhere(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
 
 std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments& arguments,
                                   std::span<const Asset> assets) {
@@ -113,6 +116,9 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   if (assets.empty()) assets = {&parts_->no_page_asset, 1};
   parts_->server = serve(start, arguments, assets);
   out << "viewer: " << parts_->server->url() << '\n' << std::flush;
+  if (listens_everywhere(arguments.address))
+    out << "it can be called by every address of this machine; by a name of it once --name says so\n"
+        << std::flush;
   if (arguments.browser) parts_->page.emplace(parts_->server->url());
 }
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <set>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -163,6 +165,21 @@ TEST(Token, HasNewBitsEachTime) {
     tokens.insert(fresh);
   }
   EXPECT_EQ(tokens.size(), 100U);
+}
+
+// The time itself would be a poor test: what is looked at decides about it.
+TEST(Token, IsComparedToItsEndWhereverItDiffers) {
+  for (std::size_t wrong = 0; wrong <= gate_token.size(); ++wrong) {
+    std::string other = gate_token;
+    if (wrong < other.size()) other[wrong] = 'x';
+    std::vector<std::size_t> looks(gate_token.size());
+    const auto difference = difference_of(gate_token, other, [&](std::string_view text, std::size_t i) {
+      ++looks[i];
+      return text[i];
+    });
+    EXPECT_EQ(difference == 0, wrong == gate_token.size());
+    EXPECT_EQ(looks, std::vector<std::size_t>(gate_token.size(), 2)) << "wrong at " << wrong;
+  }
 }
 
 TEST(Token, IsEqualToItselfOnly) {

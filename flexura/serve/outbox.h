@@ -22,6 +22,10 @@ class Outbox {
   /// How much text may wait.
   Outbox(std::size_t texts, std::size_t bytes) : texts_limit_(texts), bytes_limit_(bytes) {}
 
+  /// Whether so little text waits that the client may ask for more: a quarter of what may.
+  [[nodiscard]] bool has_room() const {
+    return texts_.size() < texts_limit_ / 4 && text_bytes_ < bytes_limit_ / 4;
+  }
   /// False when too much would wait: the client does not read.
   [[nodiscard]] bool push(std::string text);
   /// In place of an older message of the stream, which was not sent then.

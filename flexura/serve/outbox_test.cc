@@ -29,6 +29,23 @@ TEST(Outbox, KeepsAllTextsInTheirOrder) {
   EXPECT_EQ(drained(outbox), "\"a\" \"b\" \"c\" ");
 }
 
+TEST(Outbox, HasRoomUpToAQuarterOfWhatMayWait) {
+  Outbox few(8, 1000), small(1000, 80);
+  EXPECT_TRUE(few.push("a"));
+  EXPECT_TRUE(few.has_room());
+  EXPECT_TRUE(few.push("b"));
+  EXPECT_FALSE(few.has_room());
+  (void)few.next();
+  EXPECT_TRUE(few.has_room()) << "what is being sent waits no more";
+  EXPECT_TRUE(small.push(std::string(19, 'a')));
+  EXPECT_TRUE(small.has_room());
+  EXPECT_TRUE(small.push("b"));
+  EXPECT_FALSE(small.has_room());
+  small.post(1, bytes("state"));
+  (void)small.next();
+  EXPECT_TRUE(small.has_room());
+}
+
 TEST(Outbox, KeepsTheNewestOfEachStream) {
   Outbox outbox(10, 100);
   outbox.post(1, bytes("old"));

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/serve/own_address.h"
 #include "flexura/serve/server_client.h"
 #include "flexura/serve/server_loop.h"
 #include "flexura/serve/server_visit.h"
@@ -61,7 +62,9 @@ Site Server::Loop::make_site(std::span<const Asset> assets) const {
 
 std::string Server::Loop::make_url() const {
   const auto address = acceptor_.local_endpoint().address();
-  const std::string shown = address.is_unspecified() ? "127.0.0.1" : address.to_string();
+  // Who listens everywhere wants to be called from elsewhere.
+  const std::string shown =
+      address.is_unspecified() ? outward_address(own_addresses(), address.is_v6()) : address.to_string();
   return "http://" + url_host(shown) + ':' + std::to_string(port_) + "/#token=" + gate().token();
 }
 
@@ -101,6 +104,12 @@ void Server::Loop::post(ClientId client, std::uint32_t stream, std::shared_ptr<c
   if (place == clients_.end()) return;
   place->second->outbox.post(stream, std::move(message));
   wake();
+}
+
+bool Server::Loop::has_room(ClientId client) {
+  const std::lock_guard lock(mutex_);
+  const auto place = clients_.find(client);
+  return place == clients_.end() || place->second->outbox.has_room();
 }
 
 std::size_t Server::Loop::waiting_bytes() {
@@ -147,6 +156,7 @@ void Server::send(ClientId client, std::string text) { loop_->send(client, std::
 void Server::post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) {
   loop_->post(client, stream, std::move(message));
 }
+bool Server::has_room(ClientId client) const { return loop_->has_room(client); }
 std::size_t Server::waiting_bytes() const { return loop_->waiting_bytes(); }
 std::size_t Server::busy_clients() const { return loop_->busy_clients(); }
 

@@ -23,7 +23,9 @@ struct ServerConfig {
   std::size_t longest_body = std::size_t{256} * 1024;
   std::size_t longest_message = std::size_t{64} * 1024;
   std::size_t clients = 8;
-  std::size_t waiting_texts = 256;  ///< Of a client that does not read; one more and it is cut off.
+  /// Of a client that does not read; one more and it is cut off. From a quarter of them on nothing is read
+  /// from it.
+  std::size_t waiting_texts = 1024;
   std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;  ///< Of those texts; as above.
   std::chrono::milliseconds handshake{5000};
   std::chrono::milliseconds idle{20000};
@@ -75,11 +77,15 @@ class Server {
 
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] const std::string& token() const;
-  /// "http://127.0.0.1:8421/#token=..."
+  /// "http://127.0.0.1:8421/#token=..."; where it listens on all addresses with one that others can call, if
+  /// there is any.
   [[nodiscard]] std::string url() const;
 
   /// Every text reaches the client, in order; one that does not read is cut off.
   void send(ClientId client, std::string text);
+  /// Whether a client reads what it is sent, so that a Host may answer more of what it said. Of one that does
+  /// not nothing more is read, and it is closed when that goes on for `idle`.
+  [[nodiscard]] bool has_room(ClientId client) const;
   /// The newest message of a stream (a small number) reaches it; older ones that were not sent are dropped.
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
   /// Of all messages that wait for a client or are being sent to one.

@@ -70,11 +70,18 @@ void Server::Loop::Client::begin() {
 }
 
 void Server::Loop::Client::read() {
+  if (reading_ || closing_ || !open_) return;
+  {
+    const std::lock_guard lock(loop_->mutex_);
+    if (!outbox.has_room()) return;  // What waits is being written: wrote() comes here again.
+  }
+  reading_ = true;
   stream_->socket.async_read(
       stream_->incoming, [self = shared_from_this()](ErrorCode error, std::size_t) { self->heard(error); });
 }
 
 void Server::Loop::Client::heard(const ErrorCode& error) {
+  reading_ = false;
   const auto data = stream_->incoming.data();
   const std::string_view message(static_cast<const char*>(data.data()), data.size());
   if (error) {
@@ -98,16 +105,20 @@ void Server::Loop::Client::close(int code) {
 }
 
 void Server::Loop::Client::write() {
+  bool is_over = false;
   {
     const std::lock_guard lock(loop_->mutex_);
-    if (overflowed) {
-      cut_off();
-      return;
+    is_over = overflowed;
+    if (!is_over) {
+      if (writing_ || closing_ || !open_) return;
+      auto message = outbox.next();
+      if (!message) return;
+      sending_ = std::move(*message);
     }
-    if (writing_ || closing_ || !open_) return;
-    auto message = outbox.next();
-    if (!message) return;
-    sending_ = std::move(*message);
+  }
+  if (is_over) {
+    end();
+    return;
   }
   writing_ = true;
   stream_->socket.text(sending_.text);
@@ -124,9 +135,10 @@ void Server::Loop::Client::wrote(const ErrorCode& error) {
   sending_ = {};
   writing_ = false;
   if (error) {
-    cut_off();
+    end();
   } else {
     write();
+    read();
   }
 }
 

@@ -28,6 +28,7 @@ class Server::Loop::Client : public std::enable_shared_from_this<Client> {
   struct Stream;  // Beast's.
 
   void begin();
+  /// Hears the next message, as soon as the client has read enough of what it was sent.
   void read();
   void heard(const ErrorCode& error);
   void wrote(const ErrorCode& error);
@@ -40,6 +41,7 @@ class Server::Loop::Client : public std::enable_shared_from_this<Client> {
   std::unique_ptr<Stream> stream_;
   Outbox::Message sending_;
   bool open_ = false;
+  bool reading_ = false;
   bool writing_ = false;
   bool closing_ = false;
 };

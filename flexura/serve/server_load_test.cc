@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -144,6 +145,50 @@ TEST(ServerLoad, EndsWithClientsInItAndCallsNothingAfterwards) {
   EXPECT_EQ(client.read_frame().opcode, 0);
   EXPECT_EQ(visitor.read_to_end(), "");
   EXPECT_EQ(host.lines(), lines);
+}
+
+// Says twice what it is told: more than it hears.
+class EchoingHost : public TestHost {
+ public:
+  void said(ClientId client, std::string text) override {
+    ++heard;
+    server.load()->send(client, text);
+    server.load()->send(client, std::move(text));
+  }
+  std::atomic<Server*> server = nullptr;
+  std::atomic<int> heard = 0;
+};
+
+TEST(ServerLoad, CutsNobodyOffWhoReads) {
+  EchoingHost host;
+  Server server({}, {}, host);
+  host.server = &server;
+  RawClient client = connected(server);
+  constexpr int count = 20000;  // more than all buffers hold
+  std::thread asking([&] {
+    for (int i = 0; i < count; ++i) client.say(std::to_string(i));
+  });
+  int i = 0;
+  while (i < 2 * count && client.read_frame().payload == std::to_string(i / 2)) ++i;
+  EXPECT_EQ(i, 2 * count);
+  asking.join();
+}
+
+TEST(ServerLoad, ListensToNobodyWhoDoesNotReadAndThenEndsIt) {
+  EchoingHost host;
+  ServerConfig config;
+  config.idle = std::chrono::milliseconds(1000);
+  Server server(config, {}, host);
+  host.server = &server;
+  RawClient deaf = connected(server, 4096);
+  const std::string text(10000, 't');
+  while (deaf.say(text)) {
+  }
+  EXPECT_TRUE(host.wait_for("closed 1"));
+  // A quarter of what may wait, and what the system takes.
+  EXPECT_LE(2 * text.size() * static_cast<std::size_t>(host.heard),
+            ServerConfig{}.waiting_bytes / 4 + (std::size_t{1} << 20));
+  EXPECT_EQ(server.waiting_bytes(), 0U);
 }
 
 TEST(ServerLoad, ManyThreadsMaySendWhileClientsComeAndGo) {

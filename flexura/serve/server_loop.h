@@ -39,6 +39,7 @@ class Server::Loop {
   [[nodiscard]] const std::string& url() const { return url_; }
   void send(ClientId client, std::string text);
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
+  [[nodiscard]] bool has_room(ClientId client);
   [[nodiscard]] std::size_t waiting_bytes();
   [[nodiscard]] std::size_t busy_clients();
 

@@ -31,12 +31,8 @@ std::string new_token() {
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
-  // volatile: no reason for a compiler to leave the loop early.
-  volatile unsigned char difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference = static_cast<unsigned char>(difference | (a[i] ^ b[i]));
-  }
-  return difference == 0;
+  const auto at = [](std::string_view text, std::size_t i) { return text[i]; };
+  return difference_of(a, b, at) == 0;
 }
 
 }  // namespace flexura

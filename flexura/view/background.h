@@ -13,7 +13,7 @@ inline constexpr std::size_t lane_count = 4;
 class Background {
  public:
   using After = std::function<void()>;  ///< Called on the session's thread; may be empty.
-  using Job = std::function<After()>;   ///< Must not throw.
+  using Job = std::function<After()>;   ///< What it throws, its After throws.
 
   virtual ~Background() = default;
   Background() = default;

@@ -4,10 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <future>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
@@ -25,11 +31,24 @@ class CountingMessenger : public Messenger {
   void send(ClientId client, std::string text) override {
     const std::lock_guard lock(mutex_);
     ++texts_[client];
+    all_.push_back(text);
     last_ = std::move(text);
   }
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string>) override {
+    if (client == broken) throw std::runtime_error("nothing goes there,\nat all");
     const std::lock_guard lock(mutex_);
     ++posts_[{client, stream}];
+  }
+  [[nodiscard]] bool has_room(ClientId client) const override { return client != slow; }
+  // How many texts have this in them.
+  [[nodiscard]] std::ptrdiff_t count(const std::string& part) const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::count_if(
+        all_, [&](const std::string& text) { return text.find(part) != std::string::npos; });
+  }
+  [[nodiscard]] std::vector<std::string> all() const {
+    const std::lock_guard lock(mutex_);
+    return all_;
   }
   [[nodiscard]] int texts(ClientId client) const {
     const std::lock_guard lock(mutex_);
@@ -46,10 +65,13 @@ class CountingMessenger : public Messenger {
     return last_;
   }
 
+  std::atomic<ClientId> broken = 0, slow = 0;
+
  private:
   mutable std::mutex mutex_;
   std::map<ClientId, int> texts_;
   std::map<std::pair<ClientId, std::uint32_t>, int> posts_;
+  std::vector<std::string> all_;
   std::string last_;
 };
 
@@ -120,6 +142,98 @@ TEST_F(FrontDoorTest, RefusesWhatOneClientHeapsUp) {
   start(door);
   door.opened(1);
   EXPECT_TRUE(soon([&] { return messenger_.posts(1, 0) > 0; }));
+}
+
+const std::string too_many = R"({"type":"reply","id":null,"error":"too many requests wait"})";
+
+TEST_F(FrontDoorTest, TellsAClientWhichOfItsRequestsAreTooMany) {
+  FrontDoor door({.clock = wall_clock, .waiting_of_a_client = 2});
+  start(door);
+  messenger_.slow = 1;
+  door.opened(1);
+  door.opened(2);
+  for (int i = 0; i < 5; ++i) door.said(1, R"({"id":1,"do":"ping"})");
+  EXPECT_EQ(messenger_.count(too_many), 3);
+  door.said(2, R"({"id":7,"do":"ping"})");
+  EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":7,"result")") == 1; }));
+  EXPECT_EQ(messenger_.count(R"("id":1,)"), 0) << "whoever does not read is asked for nothing more";
+  messenger_.slow = 0;
+  EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":1,"result")") == 2; }));
+  // What has its answer waits no more.
+  EXPECT_TRUE(soon([&] {
+    door.said(1, R"({"id":3,"do":"ping"})");
+    return messenger_.count(R"("id":3,"result")") > 10;
+  }));
+}
+
+TEST_F(FrontDoorTest, KeepsTheOrderOfWhatASlowClientAsks) {
+  FrontDoor door({.clock = wall_clock});
+  start(door);
+  messenger_.slow = 1;
+  door.opened(1);
+  for (int i = 10; i < 60; ++i) {
+    door.said(1, R"({"do":"ping","id":)" + std::to_string(i) + '}');
+    if (i == 35) messenger_.slow = 0;
+  }
+  EXPECT_TRUE(soon([&] { return messenger_.count("\"result\"") == 50; }));
+  const std::vector<std::string> all = messenger_.all();
+  EXPECT_TRUE(std::is_sorted(all.begin() + 1, all.end())) << "but for hello";
+}
+
+// A request that is being done waits for its answer as one that was not begun.
+TEST_F(FrontDoorTest, CountsRequestsUntilTheyAreAnswered) {
+  FrontDoor door({.clock = wall_clock, .waiting_of_a_client = 1});
+  start(door);
+  door.opened(1);
+  door.opened(2);
+  std::promise<void> go;
+  // Who takes this picture and then answers for the pixel is kept from it.
+  door.asked("/image/front.png", [gone = go.get_future().share()](const HttpAnswer&) { gone.wait(); });
+  door.said(1, R"({"id":2,"do":"pixel","camera":"front","u":3,"v":4})");
+  door.said(2, R"({"id":9,"do":"ping"})");
+  EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":9,"result")") == 1; })) << "so the pixel is begun";
+  door.said(1, R"({"id":3,"do":"ping"})");
+  EXPECT_EQ(messenger_.count(too_many), 1);
+  go.set_value();
+  EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":2,"result")") == 1; }));
+  EXPECT_TRUE(soon([&] {
+    door.said(1, R"({"id":4,"do":"ping"})");
+    return messenger_.count(R"("id":4,"result")") > 0;
+  }));
+}
+
+TEST_F(FrontDoorTest, TellsWhatFailsAndGoesOn) {
+  FrontDoor door({.clock = wall_clock});
+  start(door);
+  messenger_.broken = 1;
+  door.opened(1);
+  const std::string failure = R"({"type":"reply","id":null,"error":"nothing goes there, at all"})";
+  EXPECT_TRUE(soon([&] { return messenger_.count(failure) == 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  messenger_.broken = 0;
+  const int before = messenger_.posts(1, 0);
+  EXPECT_TRUE(soon([&] { return messenger_.posts(1, 0) > before + 5; })) << "time goes on";
+  EXPECT_EQ(messenger_.count(failure), 1) << "the same is said once, not 60 times a second";
+  door.said(1, R"({"id":4,"do":"ping"})");
+  EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":4,"result")") == 1; }));
+}
+
+TEST_F(FrontDoorTest, SaysWhatKeepsTheViewerFromBeingMade) {
+  FrontDoor door({.clock = []() -> double { throw std::runtime_error("no time"); }});
+  EXPECT_THROW(start(door), std::runtime_error);
+}
+
+TEST(Workers, HandBackWhatAJobThrows) {
+  std::promise<std::string> told;
+  Workers workers([&](const Background::After& after) {
+    try {
+      after();
+    } catch (const std::exception& error) {
+      told.set_value(error.what());
+    }
+  });
+  workers.run(Lane::checks, []() -> Background::After { throw std::runtime_error("too much"); });
+  EXPECT_EQ(told.get_future().get(), "too much");
 }
 
 TEST_F(FrontDoorTest, EndsInTheMiddleOfARun) {

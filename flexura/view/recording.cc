@@ -45,7 +45,8 @@ Recording::Recording(const std::filesystem::path& folder)
     : folder_(folder), rig_(rig_of(folder)), log_(open_log(folder)) {
   index();
   if (states_.empty()) throw input_error(folder.string(), "its log holds no state of the arm");
-  (void)state(0);
+  // None is met for the first time when somebody looks at it.
+  for (std::size_t place = 0; place < states_.size(); ++place) (void)state(place);
   read_marks();
 }
 
@@ -100,7 +101,7 @@ void Recording::read_marks() {
 
 // The log says when something begins to be unsafe, the summary how long it lasts.
 void Recording::mark_violations() {
-  if (!std::filesystem::exists(folder_ / summary_file_name)) return;
+  if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
   const Node summary = parse_json(read_text_file(file, largest_summary), file.string());
   const Node* list = summary.find("violations");

@@ -33,6 +33,19 @@ HttpAnswer failure(int status, const std::string& why) {
   return {status, "application/json", write_json({Node::Table{{"error", {}, {why, {}}}}, {}}), ""};
 }
 
+// A link that leads out of the folder is none of the results.
+std::filesystem::path report_of(const Recording& recording) {
+  return file_inside(recording.folder(), report_file_name);
+}
+
+bool has_report(const Recording& recording) {
+  try {
+    return !report_of(recording).empty();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 struct RecordingSession::Table {
@@ -86,7 +99,7 @@ Hello RecordingSession::hello() const {
   hello.interval = recording_->interval();
   hello.marks = recording_->marks();
   hello.quantities = SeriesTable::quantities(*recording_);
-  hello.report = std::filesystem::exists(recording_->folder() / report_file_name);
+  hello.report = has_report(*recording_);
   hello.readonly = true;
   return hello;
 }
@@ -280,9 +293,8 @@ void RecordingSession::give_series(const SeriesAsk& ask, std::function<void(Http
 void RecordingSession::give_report(std::function<void(HttpAnswer)> answer) {
   background().run(Lane::checks, [recording = recording_, answer = std::move(answer)]() -> Background::After {
     try {
-      // A link that leads out of the folder is none of the results.
-      const auto file = file_inside(recording->folder(), report_file_name);
-      answer({200, "text/html; charset=utf-8", read_text_file(file, largest_report), report_policy});
+      answer({200, "text/html; charset=utf-8", read_text_file(report_of(*recording), largest_report),
+              report_policy});
     } catch (const std::exception&) {
       answer(failure(404, "the run has no report"));
     }

@@ -293,6 +293,54 @@ TEST_F(RecordingSessionTest, OpensNoFileThatALinkLeadsOutTo) {
   }
 }
 
+// The system says of such a link neither that something is there nor that nothing is.
+TEST_F(RecordingSessionTest, SaysInOneLineThatAFileIsALinkToItself) {
+  record();
+  for (const char* name : {log_file_name, experiment_file_name, summary_file_name}) {
+    const auto file = folder_.path() / name;
+    std::filesystem::rename(file, folder_.path() / "moved");
+    std::filesystem::create_symlink(name, file);
+    try {
+      open();
+      ADD_FAILURE() << name;
+    } catch (const InputError& refusal) {
+      EXPECT_THAT(refusal.what(), HasSubstr("\"" + std::string(name) + "\": Too many levels"));
+      EXPECT_THAT(refusal.what(), ::testing::Not(HasSubstr("\n")));
+    }
+    std::filesystem::rename(folder_.path() / "moved", file);
+  }
+}
+
+TEST_F(RecordingSessionTest, HasNoReportWhereItIsALinkToItself) {
+  record();
+  std::filesystem::remove(folder_.path() / report_file_name);
+  std::filesystem::create_symlink(report_file_name, folder_.path() / report_file_name);
+  open();
+  EXPECT_FALSE(session_->hello().report);
+  EXPECT_EQ(get(ReportAsk{}).status, 404);
+}
+
+// Whose time is that of the first, so that it stands where clients start.
+TEST_F(RecordingSessionTest, OpensNoLogWithAStateThatIsNoShape) {
+  write_new_file(folder_.path() / experiment_file_name, viewed_text);
+  const Arm arm = parse_experiment(viewed_text, "x.toml").arm.arm();
+  const ArmState straight = ArmState::straight(2);
+  ArmState flat = straight;
+  flat.stretches[1] = 0;
+  {
+    Recorder recorder(folder_.path() / log_file_name, arm);
+    for (const ArmState& state : {straight, flat, straight})
+      recorder.state(0, state, Backbone(arm, straight));
+    recorder.close();
+  }
+  try {
+    open();
+    ADD_FAILURE() << "opened";
+  } catch (const InputError& refusal) {
+    EXPECT_THAT(refusal.what(), HasSubstr("state at 0 s does not fit its arm"));
+  }
+}
+
 TEST_F(RecordingSessionTest, OpensTheLogOfAKilledRun) {
   record(replaced(viewed_text, "duration = 1", "duration = 30"));
   const auto log = folder_.path() / log_file_name;

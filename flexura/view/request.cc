@@ -86,7 +86,9 @@ std::string read(Node document, Request& request) {
   const Node name = taken(*table, "do");
   const auto* text = name.as<std::string>();
   if (text == nullptr) return "do is missing: expected what to do";
-  if (!request.id && (*text != "ack" || !id.empty())) return "id is missing: expected a whole number";
+  if (!request.id && !id.empty())
+    return fmt::format("id = {}: expected a whole number from -2^53 to 2^53", id.brief());
+  if (!request.id && *text != "ack") return "id is missing: expected a whole number";
   Reader reader;
   if (!read_ask(*text, document, reader, request.ask)) {
     const auto names = all_names(static_cast<const Ask*>(nullptr));

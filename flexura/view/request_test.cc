@@ -73,8 +73,11 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {"{", "JSON"},
       {"[1]", "expected a JSON object"},
       {R"({"do":"ping"})", "id is missing"},
-      {R"({"id":1.5,"do":"ping"})", "id is missing"},
-      {R"({"id":99999999999999999,"do":"ping"})", "id is missing"},
+      {R"({"id":null,"do":"ping"})", "id is missing"},
+      {R"({"id":1.5,"do":"ping"})", "id = 1.5: expected a whole number"},
+      {R"({"id":1e99,"do":"ping"})", "id = 1e+99: expected a whole number from -2^53 to 2^53"},
+      {R"({"id":99999999999999999,"do":"ping"})", "id = 99999999999999999: expected"},
+      {R"({"id":1e99,"do":"ack","camera":"a","number":0})", "id = 1e+99"},
       {R"({"id":7})", "do is missing"},
       {R"({"id":7,"do":"fly"})", "expected one of arm, tip"},
       {R"({"id":7,"do":"fly\nhigh"})", "expected one of arm, tip"},
@@ -95,7 +98,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"measure","camera":"a","layers":"axis"})", "layers"},
       {R"({"id":7,"do":"shape","camera":"a"})", "camera: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},
-      {R"({"id":"7","do":"ack","camera":"a","number":0})", "id is missing"}};
+      {R"({"id":"7","do":"ack","camera":"a","number":0})", "id = \"7\": expected a whole number"}};
   for (const auto& [text, error] : cases) {
     const Request request = read_request(text);
     EXPECT_THAT(request.error, HasSubstr(error)) << text;

@@ -135,7 +135,7 @@ void add_circle(const FoundArm& found, const std::vector<AxisSample>& axis, Node
                           {"axes", {}, {Node::Array{shown(circle->radius), shown(circle->radius)}, {}}},
                           {"angle", {}, {0.0, {}}},
                           {"rms", {}, number_node(circle->rms)},
-                          {"verified", {}, {circle->is_verified, {}}}}));
+                          {"verified", {}, {circle->is_circle(), {}}}}));
 }
 
 Node::Table outcome(bool is_found, const std::string& reason, const std::vector<std::string>& notes) {

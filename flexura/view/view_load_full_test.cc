@@ -140,8 +140,11 @@ TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
   const std::size_t before = resident_bytes();
   std::size_t most = 0, most_waiting = 0;
   std::vector<double> seen, states, images, pace;  // shares of what there was, or is without deaf ones
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; static_cast<int>(pace.size()) < rounds; ++round) {
     const Seen alone = watch(server, good, seconds);
+    // On a busy machine something may be on its way to the good client whenever it is looked: then who is
+    // blocked cannot be told, and another round is taken.
+    if (alone.least_busy > 0 && round < 3 * rounds) continue;
     const std::vector<DeafClient> deaf = blocked_clients(server, good);
     const Seen among = watch(server, good, seconds, deaf);
     most = std::max(most, resident_bytes());

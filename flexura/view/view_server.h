@@ -37,6 +37,7 @@ class ViewServer {
     void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) override {
       server_.post(client, stream, std::move(message));
     }
+    [[nodiscard]] bool has_room(ClientId client) const override { return server_.has_room(client); }
 
    private:
     Server& server_;

@@ -1,5 +1,6 @@
 #include "flexura/view/viewer.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -66,21 +67,22 @@ void Viewer::greet(ClientId client) {
 
 void Viewer::closed(ClientId client) {
   clients_.erase(client);
+  failures_.erase(client);
   shown_->closed(client);
 }
 
-Reply Viewer::reply_to(ClientId client, std::int64_t id) {
-  return [this, client, id](const ViewAnswer& answer) {
+Reply Viewer::reply_to(ClientId client, std::int64_t id, std::shared_ptr<const void> debt) {
+  return [this, client, id, debt = std::move(debt)](const ViewAnswer& answer) {
     if (clients_.contains(client)) messenger_.send(client, reply_text(id, answer));
   };
 }
 
-void Viewer::said(ClientId client, const std::string& said_text) {
+void Viewer::said(ClientId client, const std::string& said_text, const std::shared_ptr<const void>& debt) {
   if (!clients_.contains(client)) return;
   const Request request = read_request(said_text);
   std::string error = request.error;
   try {
-    if (error.empty()) take(client, request);
+    if (error.empty()) take(client, request, debt);
   } catch (const std::exception& refusal) {
     error = refusal.what();
   }
@@ -88,8 +90,8 @@ void Viewer::said(ClientId client, const std::string& said_text) {
   if (!error.empty()) messenger_.send(client, reply_text(request.id, {{}, error}));
 }
 
-void Viewer::take(ClientId client, const Request& request) {
-  Reply reply = request.id ? reply_to(client, *request.id) : [](const ViewAnswer&) {};
+void Viewer::take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt) {
+  Reply reply = request.id ? reply_to(client, *request.id, debt) : [](const ViewAnswer&) {};
   if (std::holds_alternative<OpenRequest>(request.ask)) {
     open_last(std::move(reply));
   } else if (std::holds_alternative<LiveRequest>(request.ask)) {
@@ -133,9 +135,10 @@ void Viewer::open(const std::filesystem::path& folder, Reply reply) {
           is_opening_ = false;
           reply({nothing(), error});
           if (recording == nullptr) return;
-          auto opened = std::make_unique<RecordingSession>(recording, messenger_, background_);
-          show(*opened);
-          recording_ = std::move(opened);
+          // The one before goes when nobody is in it any more.
+          const auto before = std::exchange(
+              recording_, std::make_unique<RecordingSession>(recording, messenger_, background_));
+          show(*recording_);
         };
       });
 }
@@ -153,11 +156,17 @@ void Viewer::go_live(const Reply& reply) {
 
 void Viewer::show(Session& session) {
   if (shown_ == &session) return;
+  Session* before = std::exchange(shown_, &session);
   for (const ClientId client : clients_) {
-    if (shown_ != nullptr) shown_->closed(client);
+    if (before != nullptr) before->closed(client);
   }
-  shown_ = &session;
-  for (const ClientId client : clients_) greet(client);
+  for (const ClientId client : clients_) {
+    try {
+      greet(client);
+    } catch (const std::exception& error) {
+      failed(client, error.what());  // The others come in all the same.
+    }
+  }
 }
 
 void Viewer::asked(const std::string& target, const std::function<void(HttpAnswer)>& answer) {
@@ -174,6 +183,14 @@ void Viewer::advance(double now) {
   shown_->advance(now);
   if (shown_ != live_.get() || !live_->is_over() || is_opening_ || !live_->results()) return;
   open(*live_->results(), [](const ViewAnswer&) {});
+}
+
+void Viewer::failed(std::optional<ClientId> client, std::string why) {
+  std::ranges::replace_if(why, [](char c) { return c >= 0 && c < ' '; }, ' ');
+  const std::string text = reply_text(std::nullopt, {{}, why});
+  for (const ClientId told : client ? std::set{*client} : clients_) {
+    if (std::exchange(failures_[told], why) != why) messenger_.send(told, text);
+  }
 }
 
 void Viewer::cancel() {

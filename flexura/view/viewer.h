@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -32,9 +34,13 @@ class Viewer {
 
   void opened(ClientId client);
   void closed(ClientId client);
-  void said(ClientId client, const std::string& text);
+  /// `debt`: is let go of when the client has its answer, or none can come any more.
+  void said(ClientId client, const std::string& text, const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
   void advance(double now);
+
+  /// Tells a client, or all of them, what failed on the way to them; what fails again and again, once.
+  void failed(std::optional<ClientId> client, std::string why);
 
   /// Ends a run of tasks early.
   void cancel();
@@ -44,8 +50,8 @@ class Viewer {
 
  private:
   void greet(ClientId client);
-  [[nodiscard]] Reply reply_to(ClientId client, std::int64_t id);
-  void take(ClientId client, const Request& request);
+  [[nodiscard]] Reply reply_to(ClientId client, std::int64_t id, std::shared_ptr<const void> debt);
+  void take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt);
   void open_last(Reply reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
@@ -59,6 +65,7 @@ class Viewer {
   Background& background_;
   double clock_ = 0;  // of advance(), s
   std::set<ClientId> clients_;
+  std::map<ClientId, std::string> failures_;     // the last that a client was told of
   std::unique_ptr<LiveSession> live_;            // may be null where a recording was opened first
   std::unique_ptr<RecordingSession> recording_;  // the last one opened; may be null
   Session* shown_ = nullptr;                     // one of these

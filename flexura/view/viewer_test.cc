@@ -3,6 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include "flexura/view/describe.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
@@ -141,6 +147,36 @@ TEST_F(ViewerTest, SaysWhetherThereIsARecordingToOpen) {
   EXPECT_EQ(mode(), "live");
   EXPECT_TRUE(says("recording"));
   EXPECT_TRUE(says("rig"));
+}
+
+// To whom nothing can be posted.
+class BrokenMessenger : public FakeMessenger {
+ public:
+  void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) override {
+    if (is_broken && client == me) throw std::runtime_error("nothing goes there");
+    FakeMessenger::post(client, stream, std::move(message));
+  }
+  bool is_broken = false;
+};
+
+TEST(ViewerOfARig, ShowsARecordingToAllWhereItFailsForOne) {
+  const TemporaryFolder folder;
+  BrokenMessenger messenger;
+  FakeBackground background;
+  Viewer viewer({.session = "1", .rig = viewed_rig(), .results = folder.path() / "run"}, messenger,
+                background, 0);
+  viewer.opened(me);
+  viewer.opened(other);
+  viewer.said(me, R"({"id":1,"do":"run"})");
+  viewer.advance(1);
+  messenger.is_broken = true;
+  viewer.said(other, R"({"id":2,"do":"open"})");
+  EXPECT_EQ(messenger.texts[me].back(), R"({"type":"reply","id":null,"error":"nothing goes there"})");
+  EXPECT_EQ(*messenger.last(other, "hello").find("mode")->as<std::string>(), "recording");
+  EXPECT_TRUE(messenger.state(other).is_recording);
+  viewer.said(other, R"({"id":3,"do":"at","time":0.5})");
+  EXPECT_EQ(messenger.state(other).time, 0.5);
+  viewer.advance(2);
 }
 
 TEST_F(ViewerTest, AnswersDocuments) {

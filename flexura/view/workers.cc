@@ -1,6 +1,9 @@
 #include "flexura/view/workers.h"
 
 #include <cstddef>
+#include <exception>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace flexura {
@@ -33,7 +36,14 @@ void Workers::work(Queue& queue) {
     const Job job = std::move(queue.jobs.front());
     queue.jobs.pop_front();
     lock.unlock();
-    if (After after = job()) back_(std::move(after));
+    After after;
+    try {
+      after = job();
+    } catch (const std::exception& error) {
+      // Told where all else that fails is told.
+      after = [why = std::string(error.what())] { throw std::runtime_error(why); };
+    }
+    if (after) back_(std::move(after));
   }
 }
 

@@ -11,7 +11,7 @@ import './panels/cameras.css';
 import './plots/plots.css';
 import './timeline/timeline.css';
 import './teach/teach.css';
-import { keep_pasted, kept_token, take_token } from './connection/address';
+import { forget_token, keep_pasted, kept_token, take_token } from './connection/address';
 import { bindings_of, is_in_sight } from './keys/bindings';
 import { KeyMap } from './keys/keys';
 import { preferences, theme_now } from './state/preferences';
@@ -23,6 +23,7 @@ take_token(location, history, sessionStorage);
 const viewer = new Viewer({
   base: new URL('.', location.href).href,
   token: () => kept_token(sessionStorage),
+  forget: () => forget_token(sessionStorage),
 });
 const app = make_app(viewer, new KeyMap({
   enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value),

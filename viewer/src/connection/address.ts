@@ -1,14 +1,30 @@
 // The token comes behind the address's #, which never leaves the browser; it is taken out of the address bar at once
 // and kept for this tab only, so that reloading works.
 const key = 'flexura.token';
+/** The one that this tab had before, which may be the right one. */
+const key_before = 'flexura.token.before';
 
-/** Takes `#token=...` out of the address; true when there was one. */
-export function take_token(location: Location, history: History, storage: Storage): boolean {
-  const token = /^#token=([0-9a-fA-F]+)$/.exec(location.hash)?.[1];
-  if (!token) return false;
+function keep(token: string, storage: Storage): void {
+  const before = storage.getItem(key);
+  if (before !== null && before !== token) storage.setItem(key_before, before);
   storage.setItem(key, token);
+}
+
+/** Takes `#token=...` out of the address; true when there was one. What is no token is one that lets nobody in. */
+export function take_token(location: Location, history: History, storage: Storage): boolean {
+  const token = /^#token=(.*)$/.exec(location.hash)?.[1];
+  if (token === undefined) return false;
+  keep(token, storage);
   history.replaceState(null, '', location.pathname + location.search);
   return true;
+}
+
+/** Forgets a token that lets nobody in: the one before counts again, if there was any. */
+export function forget_token(storage: Storage): void {
+  const before = storage.getItem(key_before);
+  storage.removeItem(key_before);
+  if (before === null) storage.removeItem(key);
+  else storage.setItem(key, before);
 }
 
 export function kept_token(storage: Storage): string | null {
@@ -19,6 +35,6 @@ export function kept_token(storage: Storage): string | null {
 export function keep_pasted(text: string, storage: Storage): boolean {
   const token = /(?:^|token=)([0-9a-fA-F]{32,})$/.exec(text.trim())?.[1];
   if (!token) return false;
-  storage.setItem(key, token);
+  keep(token, storage);
   return true;
 }

@@ -16,6 +16,8 @@ export interface LinkListener {
   text(message: TextMessage): void;
   bytes(message: ArrayBuffer): void;
   closed(): void;
+  /** What failed, of no request. */
+  failed(why: string): void;
 }
 
 export class RequestError extends Error {}
@@ -133,6 +135,7 @@ export class Link {
   }
 
   private reply({ id, result, error }: Reply): void {
+    if (id === null) return this.listener.failed(error ?? 'Something failed.');
     const waiting = this.waiting.get(id);
     if (!waiting) return;
     this.waiting.delete(id);

@@ -1,6 +1,6 @@
 import type { Overlay } from './overlay';
 
-/** Fitted circles and ellipses; the angle is from u towards v. */
+/** Fitted circles and ellipses; the angle is from u towards v. Dashed where what was seen is found to be none. */
 export const ellipse: Overlay = {
   kind: 'ellipse',
   color: '#4dabf7',
@@ -8,6 +8,7 @@ export const ellipse: Overlay = {
     const [u, v] = layer.center as [number, number];
     const [a, b] = layer.axes as [number, number];
     context.lineWidth = 2 * scale;
+    if (layer.dashed || layer.verified === false) context.setLineDash([6 * scale, 5 * scale]);
     context.beginPath();
     context.ellipse(u, v, a, b, (layer.angle as number | undefined) ?? 0, 0, 2 * Math.PI);
     context.stroke();

@@ -14,7 +14,7 @@ export const measures: Measure[] = [
   { id: 'silhouette', label: 'Edges', title: 'The silhouette’s edges, to a part of a pixel', color: '#69db7c' },
   { id: 'axis', label: 'Axis', title: 'The median axis: where the backbone is seen', color: '#ffd43b' },
   { id: 'markers', label: 'Marks', title: 'Markers along the arm', color: '#ff6b6b' },
-  { id: 'circle', label: 'Circle', title: 'The circle through the axis', color: '#4dabf7' },
+  { id: 'circle', label: 'Circle', title: 'The circle through the axis; dashed where the axis is no arc', color: '#4dabf7' },
 ];
 
 /** The arm's shape from the pictures of all cameras together, as a ghost in the 3D view. */

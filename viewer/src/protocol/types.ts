@@ -227,7 +227,8 @@ export interface Along {
   curves: { id: string; label: string; color: string; values: (number | null)[] }[];
 }
 
-export type Reply = { type: 'reply'; id: number; result?: unknown; error?: string };
+/** Without an id it answers no request: something failed. */
+export type Reply = { type: 'reply'; id: number | null; result?: unknown; error?: string };
 
 export type TextMessage =
   | Hello

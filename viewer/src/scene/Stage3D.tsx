@@ -45,7 +45,7 @@ function connect(canvas: HTMLCanvasElement, app: ReturnType<typeof use_app>): ()
     effect(() => {
       const scene = viewer.scene.value;
       const theme = theme_now();
-      if (!scene) return;
+      if (!scene) return view.show_ground(theme);
       const afresh = epoch !== viewer.epoch.value;
       epoch = viewer.epoch.value;
       if (afresh) view.state = viewer.shown;

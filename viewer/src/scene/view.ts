@@ -53,6 +53,12 @@ export class SceneView {
     this.world.add(this.ambient, this.sun, this.camera);
   }
 
+  /** What is behind everything, also before anything is there. */
+  show_ground(theme: Theme): void {
+    this.world.background = new Color(backgrounds[theme]);
+    this.invalidate();
+  }
+
   /** Builds what stands there anew; the view stays where it was unless `frame_all`. */
   build(scene: Scene, theme: Theme, frame_all: boolean): void {
     this.clear();
@@ -63,7 +69,7 @@ export class SceneView {
     this.handles = make_handles(context);
     this.parts = [...part_makers.flatMap((make) => make(context)), this.handles];
     for (const { group } of this.parts) this.world.add(group);
-    this.world.background = new Color(backgrounds[theme]);
+    this.show_ground(theme);
     this.ambient.intensity = Math.PI * Math.max(0.25, scene.light.ambient * 0.8);
     this.sun.intensity = Math.PI * scene.light.directional;
     this.sun.position.set(...scene.light.towards);

@@ -17,7 +17,7 @@ import { extra_ghosts } from '../overlays/extras';
 import { shape } from '../overlays/measures';
 
 /** What one can believe of what is on the screen. */
-export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none';
+export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none' | 'refused';
 
 const kept_events = 200;
 /** Panels read the state so often; the 3D view has every one. */
@@ -120,6 +120,10 @@ export class Viewer implements LinkListener {
       case 'ghost':
         return this.take_ghost(message);
     }
+  }
+
+  failed(why: string): void {
+    this.notices.error(why);
   }
 
   bytes(message: ArrayBuffer): void {
@@ -259,7 +263,7 @@ export class Viewer implements LinkListener {
 
   private judge(): Freshness {
     const link = this.link.status.value;
-    if (!this.hello.value) return 'none';
+    if (!this.hello.value) return link.kind === 'refused' ? 'refused' : 'none';
     if (link.kind !== 'open') return 'lost';
     if (!this.link.fresh.value || this.stateless.value) return 'stale';
     if (this.hello.value.mode === 'recording') return 'recording';

@@ -3,6 +3,7 @@ import { speeds } from '../state/playback';
 import { use_app } from '../ui/app';
 import { format_time } from '../ui/format';
 import { Icon } from '../ui/Icon';
+import { labels_of, name_of } from './labels';
 
 /** Time: play, pause, step, speed, and a line to scrub along, with marks for what happened. */
 export function Timeline() {
@@ -65,15 +66,13 @@ function Line() {
           {hover !== null && hover >= from && hover <= to && <span class="hover" style={{ left: part(hover) }} />}
         </div>
         <div class="marks">
-          {marks.map((mark, i) => (
-            <button key={i} type="button" class="mark" data-level={mark.level} data-span={mark.end > mark.time} tabIndex={-1}
-              style={{ left: part(mark.time), width: `calc(${part(room_of(mark, marks, to))} - ${part(mark.time)})` }}
-              title={`${format_time(mark.time)}  ${mark.name}${mark.text ? `: ${mark.text}` : ''}`}
-              aria-label={`${mark.level}: ${mark.name} at ${format_time(mark.time)}`}
-              // Keeps no focus: Space after it is to play, not to come back here.
-              onMouseDown={(event) => event.preventDefault()} onClick={() => playback.seek(mark.time)}>
-              {!is_band(mark) && <span>{mark.name}</span>}
-            </button>
+          {labels_of(marks.filter((mark) => !is_band(mark)), from, to).map((label, i) => (
+            <MarkButton key={i} marks={label.marks} time={label.marks[0].time} is_span={label.end > label.time} words={name_of(label)}
+              left={part(label.time)} width={`calc(${part(label.until)} - ${part(label.time)})`} />
+          ))}
+          {marks.filter(is_band).map((mark, i) => (
+            <MarkButton key={i} marks={[mark]} time={mark.time} is_span={mark.end > mark.time}
+              left={part(mark.time)} width={`calc(${part(mark.end)} - ${part(mark.time)})`} />
           ))}
         </div>
       </div>
@@ -87,10 +86,26 @@ function is_band({ level }: Mark): boolean {
   return level !== 'info';
 }
 
-/** Where a mark's label must end: with the mark, or where the next label begins. */
-function room_of(mark: Mark, marks: Mark[], to: number): number {
-  if (mark.end > mark.time || is_band(mark)) return mark.end;
-  return Math.min(to, ...marks.filter((other) => other.time > mark.time && !is_band(other)).map(({ time }) => time));
+interface MarkButtonProps {
+  marks: Mark[];
+  time: number;
+  is_span: boolean;
+  left: string;
+  width: string;
+  words?: string;
+}
+
+function MarkButton({ marks, time, is_span, left, width, words }: MarkButtonProps) {
+  const { viewer } = use_app();
+  return (
+    <button type="button" class="mark" data-level={marks[0].level} data-span={is_span} tabIndex={-1} style={{ left, width }}
+      title={marks.map((mark) => `${format_time(mark.time)}  ${mark.name}${mark.text ? `: ${mark.text}` : ''}`).join('\n')}
+      aria-label={marks.map((mark) => `${mark.level}: ${mark.name} at ${format_time(mark.time)}`).join('; ')}
+      // Keeps no focus: Space after it is to play, not to come back here.
+      onMouseDown={(event) => event.preventDefault()} onClick={() => viewer.playback.seek(time)}>
+      {words !== undefined && <span>{words}</span>}
+    </button>
+  );
 }
 
 function marks_of(marks: Mark[], events: Omit<Mark, 'end'>[], from: number, to: number): Mark[] {

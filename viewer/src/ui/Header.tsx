@@ -11,6 +11,7 @@ const badges = {
   stale: ['STALE', 'No new data come: what is shown is old.'],
   lost: ['NO CONNECTION', 'The connection is lost: what is shown is old.'],
   none: ['CONNECTING', 'Nothing was received yet.'],
+  refused: ['NO ACCESS', 'The program does not let this page in: open the address that it printed.'],
 } as const;
 
 export function Header() {

@@ -3,7 +3,7 @@ import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { planar_rig, spatial_rig } from '../fake/rigs';
 import { FakeServer } from '../fake/server';
-import { dist, launch, open_page, until } from './browser';
+import { dist, launch, open_page, stage_at_rest, until } from './browser';
 
 const width = 1280;
 const height = 720;
@@ -109,6 +109,22 @@ test('these tests see what is wrong', async () => {
   await server.stop();
 });
 
+/** The colour in the 3D view's upper right corner. */
+async function ground_of_stage(page: Page): Promise<number[]> {
+  const png = (await stage_at_rest(page)).toString('base64');
+  return page.evaluate(async (text) => {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d')!;
+    context.drawImage(bitmap, 0, 0);
+    return Array.from(context.getImageData(bitmap.width - 5, 5, 1, 1).data);
+  }, png);
+}
+
+/** How much of a box can be seen only by scrolling it, px. */
+const hidden_of = (page: Page, box: string) =>
+  page.locator(box).evaluate(({ scrollHeight, clientHeight }) => Math.max(0, scrollHeight - clientHeight));
+
 async function expect_usable(page: Page, where: string): Promise<void> {
   expect(await nameless(page), `${where}: without a name`).toEqual([]);
   expect(await overflowing(page), `${where}: reaches out`).toEqual([]);
@@ -140,6 +156,9 @@ for (const dark of [true, false]) {
       for (const chip of await page.locator('.chip').all()) await chip.click();
       await until(async () => (await page.locator('.shape-said').textContent())!.startsWith('Shape ±'));
       await page.keyboard.press('k');
+      await page.locator('.picture canvas').first().hover();
+      await until(async () => /section 2 at s/.test((await page.locator('.pixel').textContent())!));
+      expect(await hidden_of(page, '.right')).toBe(0);
       server.tell_all({ type: 'event', time: 1, level: 'error', name: 'safety', text: 'stopped before section 2: contact with ball' });
       server.tell_all({ type: 'progress', what: 'a task with a name that is rather long', fraction: 0.4 });
       await page.waitForTimeout(300);
@@ -148,9 +167,32 @@ for (const dark of [true, false]) {
 
     test('a recording', () => opened('recording', (page) => expect_usable(page, 'a recording')));
 
+    test('who is not let in sees that, what to do about it, and nothing that nobody knows', async () => {
+      const server = new FakeServer(dist, spatial_rig());
+      await server.start();
+      const ground = dark ? [0x13, 0x1b, 0x23] : [0xee, 0xf2, 0xf5];
+      for (const [hash, why] of [['', 'came without a token'], [`#token=${'0'.repeat(32)}`, 'does not know this page’s token'], ['#token=zz', 'does not know']]) {
+        const { page, complaints } = await open_page(browser, server.url.replace(/#.*/, hash), { width, height, dark });
+        await page.waitForSelector('.badge[data-kind="refused"]');
+        expect(await page.locator('.badge').first().textContent()).toBe('NO ACCESS');
+        const form = (await page.getByRole('alertdialog').textContent())!;
+        expect(form).toContain(why);
+        expect(form).toContain('Open the address that');
+        expect(await page.locator('.right').textContent()).toBe('Nothing has come yet.');
+        expect(new URL(page.url()).hash).toBe('');
+        const shown = await ground_of_stage(page);
+        for (let i = 0; i < 3; ++i) expect(Math.abs(shown[i] - ground[i]), `${shown.join()} of the 3D view`).toBeLessThan(6);
+        await expect_usable(page, 'not let in');
+        expect(complaints).toEqual([]);
+        await page.context().close();
+      }
+      await server.stop();
+    });
+
     test('help, and the teaching page with an exercise', () => opened('live', async (page) => {
       await page.keyboard.press('F1');
       await expect_usable(page, 'help');
+      expect(await hidden_of(page, 'dialog.help')).toBe(0);
       await page.keyboard.press('Escape');
       await page.getByRole('link', { name: 'Learn' }).click();
       await page.waitForSelector('.plane');

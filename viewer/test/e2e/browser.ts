@@ -156,6 +156,23 @@ export async function server_state(page: Page): Promise<ServerState> {
   }));
 }
 
+/** What the server answers to another client than the page: read from its reply, not from the page. */
+export async function ask_server<Result>(page: Page, request: Record<string, unknown>): Promise<Result> {
+  return page.evaluate((asked) => new Promise<Result>((resolve, reject) => {
+    const socket = new WebSocket(new URL('socket', location.href.replace(/^http/, 'ws').replace(/#.*/, '')));
+    socket.binaryType = 'arraybuffer';
+    socket.onerror = () => reject(new Error('no second connection'));
+    socket.onopen = () => socket.send(JSON.stringify({ id: 1, ...asked }));
+    socket.onmessage = ({ data }) => {
+      const message = typeof data === 'string' ? (JSON.parse(data) as { type: string; error?: string; result: Result }) : null;
+      if (message?.type !== 'reply') return;
+      socket.close();
+      if (message.error === undefined) resolve(message.result);
+      else reject(new Error(message.error));
+    };
+  }), request);
+}
+
 /** How many names each plot's legend shows in full: within the plot, above its chart. */
 export async function legends(page: Page): Promise<{ names: number; seen: number }[]> {
   return page.evaluate(() => [...document.querySelectorAll('.plot')].map((plot) => {

@@ -118,7 +118,7 @@ function recording_tests(a_state: number, interval: number, title: string): void
     await page.mouse.move(box.x - 200, box.y);
   });
 
-  test('no label lies upon a band of the timeline', async () => {
+  test('no label lies upon a band of the timeline, or upon another', async () => {
     const rects = (selector: string) => page.locator(selector).evaluateAll((marks) => marks.map((mark) => {
       const { left, right, top, bottom } = mark.getBoundingClientRect();
       return { left, right, top, bottom };
@@ -126,6 +126,8 @@ function recording_tests(a_state: number, interval: number, title: string): void
     const labels = await rects('.mark[data-level="info"]');
     const bands = await rects('.mark:not([data-level="info"])');
     expect(labels.length).toBeGreaterThan(1);
+    labels.forEach((one, i) => labels.slice(i + 1).forEach((other) =>
+      expect(one.right <= other.left + 0.5 || other.right <= one.left + 0.5, 'two labels').toBe(true)));
     for (const band of bands) {
       for (const label of labels) expect(label.top >= band.bottom || band.top >= label.bottom).toBe(true);
       expect(band.bottom).toBeLessThanOrEqual(720);

@@ -7,7 +7,7 @@ import { Orbit } from '../../src/scene/orbit';
 import { hang } from '../../src/scene/parts/cameras';
 import { type Opened, orbit_of, server_state, slide, stage_at_rest, until } from './browser';
 
-/** Of both rigs: the arm stands in the origin. */
+/** The arm stands in the origin. */
 const [span, base, size] = [0.75, [0, 0, 0], { width: 640, height: 480 }];
 
 interface Place {

@@ -2,7 +2,7 @@
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
-import { type Opened, server_state, slide, tip_on_screen, until } from './browser';
+import { ask_server, type Opened, server_state, slide, tip_on_screen, until } from './browser';
 
 /** Of the arm and the cameras. */
 export function move_tests(opened: Opened, fake: () => FakeServer | null): void {
@@ -177,6 +177,47 @@ export function pick_tests(opened: Opened): void {
     expect(await page.locator('.picked dd').first().textContent()).not.toBe(before);
     await page.keyboard.press('Escape');
     expect(await page.locator('.picked').count()).toBe(0);
+  });
+
+  test('what is said of a picked point is what the server says of it', async () => {
+    const wanted = [[0.4, 0.25], [-0.3, 0.35], [0.15, -0.4]];
+    await ask_server(page, { do: 'arm', bends: wanted });
+    // At rest: two states in a row are one.
+    let before: number[] = [];
+    await until(async () => {
+      const { bends } = await server_state(page);
+      const is_there = bends.every((bend, i) => Math.abs(bend - wanted.flat()[i]) < 0.05 && bend === before[i]);
+      before = bends;
+      return is_there;
+    }, 15000, 'the arm does not come to rest where it was sent');
+    await page.keyboard.press('k');
+    const span = Number(await page.locator('#picked-s').getAttribute('max'));
+    const numbers = (text: string | null): number[] => (text!.replaceAll('−', '-').match(/-?\d+\.?\d*/g) ?? []).map(Number);
+    const sections = new Set<number>();
+    for (const share of [0.05, 0.2, 0.45, 0.6, 0.8, 1]) {
+      await slide(page, '#picked-s', share * span);
+      const s = Number(await page.locator('#picked-s').inputValue());
+      const point = await ask_server<{ position: number[]; tangent: number[]; curvature: number; bending_plane: number; section: number }>(
+        page, { do: 'point', s });
+      const said = async (name: string) =>
+        numbers(await page.locator('.picked dl div').filter({ has: page.locator('dt', { hasText: new RegExp(`^${name}$`) }) }).locator('dd').textContent());
+      const [at, section] = await said('s');
+      expect(at).toBeCloseTo(s, 3);
+      expect(section).toBe(point.section + 1);
+      sections.add(section);
+      const [curvature, , radius] = await said('Curvature');  // "1.6 1/m (radius 0.6 m)"
+      expect(Math.abs(curvature - point.curvature), `curvature at ${s}`).toBeLessThan(0.002);
+      expect(Math.abs(radius * point.curvature - 1)).toBeLessThan(0.002);
+      const [plane] = await said('Bending plane');
+      const off = plane - (point.bending_plane * 180) / Math.PI;
+      expect(Math.abs(off - 360 * Math.round(off / 360)), `plane at ${s}`).toBeLessThan(0.2);
+      (await said('Position')).forEach((p, i) => expect(Math.abs(p - point.position[i]), `position at ${s}`).toBeLessThan(2e-4));
+      (await said('Tangent')).forEach((t, i) => expect(Math.abs(t - point.tangent[i])).toBeLessThan(0.002));
+    }
+    expect(sections.size).toBe(3);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Backspace');
+    await until(async () => (await server_state(page)).bends.every((bend) => Math.abs(bend) < 1e-3), 15000);
   });
 
   test('without a mouse: K picks the tip, the rest is Tab, Enter and arrows', async () => {

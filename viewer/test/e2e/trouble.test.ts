@@ -99,6 +99,21 @@ test('a restart with another token is told plainly, and a pasted address lets on
   await until(async () => (await badge()) === 'live');
 });
 
+test('a wrong token in the address ends no session that is good, nor is it kept', async () => {
+  for (const wrong of ['0'.repeat(32), 'zz']) {
+    await page.evaluate((token) => (location.hash = `#token=${token}`), wrong);
+    await until(() => new URL(page.url()).hash === '');
+    await until(async () => (await badge()) === 'live');
+    await page.waitForTimeout(300);
+    expect(await badge()).toBe('live');
+  }
+  // The token that let it in counts again: the program started anew takes it, and knows the old cookie no more.
+  await page.context().clearCookies();
+  await server.restart(true);
+  await until(async () => (await badge()) === 'live', 12000);
+  expect(await page.locator('[role="alertdialog"]').count()).toBe(0);
+});
+
 test('a reloaded page comes in again', async () => {
   await page.reload();
   await until(async () => (await badge()) === 'live');
@@ -125,6 +140,22 @@ test('tasks run with progress, can be cancelled, and their recording can be open
   await page.reload();
   await page.getByRole('button', { name: 'Recording' }).click();
   await page.waitForSelector('.badge[data-kind="recording"]');
+});
+
+test('what happens at once has one label, and all of it is in its words', async () => {
+  const { time } = server.session;
+  for (const [name, at] of [['stand', time], ['run', time], ['later', time + 0.001]] as const) {
+    server.tell_all({ type: 'event', time: at, level: 'info', name, text: '' });
+  }
+  const labels = page.locator('.mark[data-level="info"]');
+  await until(async () => (await labels.allTextContents()).join('; ').includes('later'));
+  expect(await labels.allTextContents()).toEqual(['stand, run, later']);
+  expect(await labels.first().getAttribute('aria-label')).toMatch(/stand at .*; info: run at .*; info: later at /);
+});
+
+test('what the program says to nobody in particular is shown', async () => {
+  server.tell_all({ type: 'reply', id: null, error: 'too many requests wait' });
+  await until(async () => (await page.locator('[role="alert"]').textContent())!.includes('too many requests wait'));
 });
 
 test('a run that a terminal has started is not to be cancelled here, by a button or a key', async () => {

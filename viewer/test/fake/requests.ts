@@ -136,7 +136,7 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     const sent = client.sent.get(request.camera as string);
     if (!sent) throw new Error('no picture was sent yet');
     const value = sent.pixels[(request.v as number) * width + (request.u as number)];
-    return { value: [value], bits: 8, label: 'arm', depth: 2.58, s: 0.41, number: sent.number };
+    return { value: [value], bits: 8, label: 'section 2', depth: 2.58, s: 0.41, number: sent.number };
   },
   measure: ({ session }, request, client) => {
     const { width } = session.rig.scene.cameras[camera_of(session, request)];
@@ -151,11 +151,16 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
   shape: ({ session }, _, client) => {
     const rows = Array.from(session.arm.samples());
     return {
-      found: true, reason: '', notes: [], numbers: [...client.sent.values()].map(({ number }) => number),
+      found: true, reason: '', notes: ['one camera sees little of the arm'], numbers: [...client.sent.values()].map(({ number }) => number),
       poses: Array.from({ length: rows.length / 8 }, (_row, i) => rows.slice(8 * i + 1, 8 * i + 8)), sigma: 1.2e-4, rms_px: 0.08,
     };
   },
-  point: ({ session }, request) => ({ ...point_at(session.arm.samples(), request.s as number), section: 0 }),
+  point: ({ session }, request) => {
+    const { plane, ...point } = point_at(session.arm.samples(), request.s as number);
+    let end = 0;
+    const section = session.rig.scene.arm.sections.findIndex(({ length }) => point.s <= (end += length));
+    return { ...point, bending_plane: plane, section };
+  },
   backbone: ({ session }, request) => ({ poses: session.arm.samples(request.bends as Bends) }),
   ping: () => ({}),
   // For the tests only: what the rig's state is, and what the cord angles of it are.

@@ -1,11 +1,11 @@
 import { expect, test } from 'vitest';
-import { keep_pasted, kept_token, take_token } from '../../src/connection/address';
+import { forget_token, keep_pasted, kept_token, take_token } from '../../src/connection/address';
 import { Backoff } from '../../src/connection/backoff';
 import { Latest } from '../../src/connection/latest';
 
 function storage(): Storage {
   const kept = new Map<string, string>();
-  return { getItem: (k: string) => kept.get(k) ?? null, setItem: (k: string, v: string) => void kept.set(k, v) } as unknown as Storage;
+  return { getItem: (k: string) => kept.get(k) ?? null, setItem: (k: string, v: string) => void kept.set(k, v), removeItem: (k: string) => void kept.delete(k) } as unknown as Storage;
 }
 
 test('the token leaves the address bar and stays with the tab', () => {
@@ -17,6 +17,24 @@ test('the token leaves the address bar and stays with the tab', () => {
   expect(take_token(at('#token=00ff00ff'), history, kept)).toBe(true);
   expect(kept_token(kept)).toBe('00ff00ff');
   expect(replaced).toEqual(['/']);
+});
+
+test('a token that lets nobody in leaves the address bar too, and the one before counts again', () => {
+  const kept = storage();
+  const replaced: string[] = [];
+  const history = { replaceState: (_: unknown, __: string, to: string) => replaced.push(to) } as unknown as History;
+  const take = (hash: string): boolean => take_token({ hash, pathname: '/', search: '' } as Location, history, kept);
+  expect(take('#token=zz')).toBe(true);
+  expect(take('#token=')).toBe(true);
+  expect(replaced).toEqual(['/', '/']);
+  expect(kept_token(kept)).toBe('');
+  forget_token(kept);
+  forget_token(kept);
+  expect(kept_token(kept)).toBe(null);
+  take('#token=00ff');
+  take('#token=zz');
+  forget_token(kept);
+  expect(kept_token(kept)).toBe('00ff');
 });
 
 test('a pasted address or token is taken, other text is not', () => {

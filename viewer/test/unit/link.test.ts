@@ -17,6 +17,7 @@ const listener: LinkListener = {
     seen.states++;
   },
   closed: () => seen.closed++,
+  failed: () => {},
 };
 
 async function until(what: () => boolean, ms = 6000): Promise<void> {

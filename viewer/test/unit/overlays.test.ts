@@ -32,6 +32,17 @@ test('the kinds of the protocol are drawn', () => {
   expect(calls.filter((call) => call === 'restore()')).toHaveLength(4);
 });
 
+test('a circle that the axis is not found to be part of is dashed', () => {
+  const dashes = (verified?: boolean): string[] => {
+    const { context, calls } = recorder();
+    draw_layers(context, [{ ...layers[2], verified }], 2);
+    return calls.filter((call) => call.startsWith('setLineDash'));
+  };
+  expect(dashes(false)).toEqual(['setLineDash(12,10)']);
+  expect(dashes(true)).toEqual([]);
+  expect(dashes(undefined)).toEqual([]);
+});
+
 test('pixel (0, 0) is the middle of the first one', () => {
   const { context, calls } = recorder();
   draw_layers(context, [layers[0]], 1);

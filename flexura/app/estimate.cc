@@ -33,14 +33,19 @@ Node vector(const Eigen::Vector3d& p) {
   return {Node::Array{number_node(p.x()), number_node(p.y()), number_node(p.z())}, {}};
 }
 
+// What is beyond has no picture of which anything could be told.
+constexpr double farthest_place = 1e6;  // m
+
 void check(const EstimateArguments& arguments) {
   if (arguments.images.size() < 2)
     throw input_error("IMAGE", "expected at least two pictures, one of each camera");
   for (const double x : arguments.base)
-    if (!std::isfinite(x)) throw input_error("--base", "expected three finite numbers x,y,z");
-  const auto is_size = [](double x) { return x > 0 && std::isfinite(x); };
+    if (!(std::abs(x) <= farthest_place))
+      throw input_error("--base", fmt::format("expected three numbers x,y,z within {:g} m", farthest_place));
+  const auto is_size = [](double x) { return x > 0 && x <= farthest_place; };
   if (arguments.length && !is_size(*arguments.length))
-    throw input_error("--length", fmt::format("{} m: expected a number above 0", *arguments.length));
+    throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
+                                              *arguments.length, farthest_place));
   if (arguments.length && !arguments.arm.empty())
     throw input_error("--length", "--arm says how long the arm is");
   constexpr std::int64_t most = 100000;
@@ -70,6 +75,10 @@ std::vector<MeasuredCamera> cameras_of(const EstimateArguments& arguments) {
     throw input_error(arguments.cameras, fmt::format("{} cameras for {} pictures: expected one for each",
                                                      cameras.size(), arguments.images.size()));
   }
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    if (!(cameras[i].pose().position.cwiseAbs().maxCoeff() <= farthest_place))
+      throw input_error(arguments.cameras,
+                        fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place));
   for (std::size_t i = 1; i < cameras.size(); ++i)
     if ((cameras[i].pose().position - cameras[0].pose().position).norm() < 1e-6)
       throw input_error(arguments.cameras,
@@ -283,7 +292,12 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
     add_shape(found, sightings, arguments, answer);
   else
     answer.push_back({"reason", {}, text_node(found.reason)});
-  if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});
+  std::vector<std::string> notes = found.notes;
+  if (found.is_found && !prior.is_base_position_known)
+    notes.emplace_back(
+        "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
+        "one; --base tells");
+  if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
   answer.push_back({"images", {}, {std::move(images), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;

@@ -24,6 +24,7 @@
 #include "flexura/sim/rig_config.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "flexura/vision/picture_file.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -201,6 +202,44 @@ TEST_F(Estimate, SaysWhyThereIsNone) {
   EXPECT_EQ(found.find("backbone"), nullptr);
 }
 
+// A hair over one picture, and a second arm, smaller, in the other.
+TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  const auto changed = [&](std::size_t i, const std::string& name, const auto& change) {
+    const std::string file = read_text_file(arguments_.images[i], most_picture_bytes);
+    Image<std::uint8_t> picture =
+        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name).bytes;
+    change(picture);
+    arguments_.images[i] = (folder_.path() / name).string();
+    write_new_file(arguments_.images[i], png(picture));
+  };
+  const auto darken = [](Image<std::uint8_t>& picture, int u, int v) {
+    for (int c = 0; c < picture.channels(); ++c)
+      picture.at(u, v, c) = std::min<std::uint8_t>(picture.at(u, v, c), 25);
+  };
+  changed(0, "hair.png", [&](Image<std::uint8_t>& picture) {
+    for (int u = 0; u < picture.width(); ++u)
+      for (int k = 0; k < 2; ++k) darken(picture, u, 200 + u / 11 + k);
+  });
+  EXPECT_LT(error(answer(exit_done)), 1e-3);
+  changed(1, "two.png", [&](Image<std::uint8_t>& picture) {
+    for (int v = 60; v < 200; ++v)
+      for (int u = 560; u < 574; ++u) darken(picture, u, v);
+  });
+  EXPECT_LT(error(answer(exit_done)), 1e-3);
+}
+
+TEST_F(Estimate, SaysThatTheBaseIsGuessed) {
+  const auto says = [&] {
+    const Node found = answer(exit_done);
+    const Node* notes = found.find("notes");
+    return notes != nullptr && write_json(*notes).find("--base tells") != std::string::npos;
+  };
+  EXPECT_TRUE(says());
+  arguments_.base = {0, 0, 0};
+  EXPECT_FALSE(says());
+}
+
 TEST_F(Estimate, DoubtsPicturesOfTheOtherCameraAndNoneElse) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const Node right = answer(exit_done);
@@ -225,6 +264,15 @@ TEST_F(Estimate, RefusesWhatItCannotUse) {
   EXPECT_THROW(estimate_command(bad, out), InputError);
   bad = arguments_;
   bad.base = {0, NAN, 0};
+  EXPECT_THROW(estimate_command(bad, out), InputError);
+  bad.base = {1e300, 0, 0};
+  EXPECT_THROW(estimate_command(bad, out), InputError);
+  bad = arguments_;
+  bad.length = 1e300;
+  EXPECT_THROW(estimate_command(bad, out), InputError);
+  bad = arguments_;
+  bad.cameras = (folder_.path() / "far.toml").string();
+  write_new_file(bad.cameras, replaced(cameras_text, "position = [", "position = [1e200, 0, 0]\n# ["));
   EXPECT_THROW(estimate_command(bad, out), InputError);
   for (const char* marker : {"x", "", "12%%", "0.3", "130%", "-1%", "nan%"}) {
     bad = arguments_;

@@ -130,8 +130,9 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
 }
 
 std::vector<std::string> pictures_in(const std::string& folder) {
-  static const std::vector<std::string> kinds = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
-                                                 ".bmp", ".pbm", ".pgm",  ".ppm", ".pnm"};
+  static const std::vector<std::string> kinds = {".png",  ".jpg",  ".jpeg", ".jp2", ".j2k", ".tif",
+                                                 ".tiff", ".webp", ".bmp",  ".dib", ".pbm", ".pgm",
+                                                 ".ppm",  ".pnm",  ".pam",  ".ras", ".sr"};
   std::error_code error;
   std::vector<std::string> files;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;

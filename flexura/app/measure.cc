@@ -11,6 +11,7 @@
 #include <ostream>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "flexura/app/commands.h"
@@ -105,6 +106,11 @@ int measure_command(const MeasureArguments& arguments, std::ostream& out) {
     if (std::filesystem::path(arguments.overlay).extension() != ".png")
       throw input_error("--overlay",
                         fmt::format("\"{}\": expected a file name that ends in .png", arguments.overlay));
+    std::error_code none;
+    if (std::filesystem::equivalent(arguments.overlay, arguments.images.front(), none))
+      throw input_error(
+          "--overlay",
+          fmt::format("\"{}\" is the picture that is measured: expected another file", arguments.overlay));
   }
   const MeasureSettings settings = settings_of(arguments);
   const auto lenses = lenses_of(arguments);

@@ -26,7 +26,8 @@ Node circle_node(const std::optional<CircleFit>& fit) {
       .add("rms", number_node(fit->rms))
       .add("sigma", number_node(std::sqrt(fit->covariance(2, 2))))
       .add("arc_deg", number_node(degrees(fit->arc)))
-      .add("verified", {fit->is_verified, {}})
+      .add("misfit_correlation", number_node(rounded(fit->misfit_correlation, 1e3)))
+      .add("verified", {fit->is_circle(), {}})
       .add("detectable_tilt_deg", number_node(degrees(fit->detectable_tilt)))
       .take();
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -15,6 +16,7 @@
 #include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "flexura/vision/picture_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -77,6 +79,66 @@ TEST(Measure, TellsTheCircleOfADisc) {
   EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 50.2, 0.05);
   EXPECT_LT(number_at(found.answer, "circle", "rms"), 0.1);
   EXPECT_LT(number_at(found.answer, "circle", "detectable_tilt_deg"), 10);
+  EXPECT_TRUE(*found.answer.find("circle")->find("verified")->as<bool>());
+}
+
+// A polygon's border leaves the circle through it by as much as noise might, but not as noise does.
+TEST(Measure, VerifiesNoPolygonForACircle) {
+  for (const int corners : {12, 16, 20}) {
+    SCOPED_TRACE(corners);
+    Image<std::uint8_t> polygon(260, 260);
+    const double step = 2 * std::numbers::pi / corners;
+    for (int v = 0; v < 260; ++v) {
+      for (int u = 0; u < 260; ++u) {
+        const double x = u - 130.2, y = v - 129.7, aside = std::remainder(std::atan2(y, x), step);
+        const double outside = std::hypot(x, y) * std::cos(aside) - 100 * std::cos(0.5 * step);
+        polygon.at(u, v) = static_cast<std::uint8_t>(std::lround(30 + 180 * share(outside)));
+      }
+    }
+    const Measurement found = measured(png(polygon), MeasureTarget::circle);
+    ASSERT_TRUE(found.is_found) << write_json(found.answer);
+    EXPECT_FALSE(*found.answer.find("circle")->find("verified")->as<bool>());
+    EXPECT_GT(number_at(found.answer, "circle", "misfit_correlation"), 0.9);
+  }
+}
+
+// With the camera and the radius the axis is the image of the backbone, and depths are known.
+TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
+  const TemporaryFolder folder;
+  const std::string picture = (folder.path() / "tube.png").string(),
+                    camera = (folder.path() / "camera.toml").string();
+  write_new_file(picture, png(tube()));
+  write_new_file(camera, "[[camera]]\nname = \"front\"\nfx = 400\nfy = 400\ncx = 160\ncy = 120\n");
+  MeasureArguments arguments;
+  arguments.images = {picture};
+  const auto answer = [&] {
+    std::ostringstream out;
+    EXPECT_EQ(measure_command(arguments, out), exit_done);
+    return parse_json(out.str(), "answer");
+  };
+  const Node middle = answer();
+  arguments.camera = camera, arguments.radius = 0.015;
+  const Node backbone = answer();
+  EXPECT_EQ(*middle.find("axis_kind")->as<std::string>(), "middle");
+  EXPECT_EQ(*backbone.find("axis_kind")->as<std::string>(), "backbone");
+  // 12 px wide at f = 400 px: 1 m away.
+  const auto& depths = *backbone.find("depth")->as<Node::Array>();
+  EXPECT_NEAR(*depths[depths.size() / 2].as<double>(), 1, 0.02);
+  EXPECT_EQ(depths.size(), backbone.find("axis")->as<Node::Array>()->size());
+}
+
+TEST(Measure, DoesNotDrawOverThePictureThatItMeasures) {
+  const TemporaryFolder folder;
+  MeasureArguments arguments;
+  arguments.images = {(folder.path() / "tube.png").string()};
+  write_new_file(arguments.images.front(), png(tube()));
+  const std::string before = read_text_file(arguments.images.front(), most_picture_bytes);
+  std::ostringstream out;
+  arguments.overlay = (folder.path() / "." / "tube.png").string();
+  EXPECT_THROW((void)measure_command(arguments, out), InputError);
+  EXPECT_EQ(read_text_file(arguments.images.front(), most_picture_bytes), before);
+  arguments.overlay = (folder.path() / "over.png").string();
+  EXPECT_EQ(measure_command(arguments, out), exit_done);
 }
 
 TEST(Measure, TellsSidesAndLinesOfTheEtalon) {
@@ -159,6 +221,29 @@ TEST(Measure, AnswersSeveralPicturesInLinesAndTellsTheWorstByItsStatus) {
   EXPECT_THAT(text, HasSubstr("\"error\":\"not a picture"));
   EXPECT_EQ(status({blank}, text), exit_missed);
   EXPECT_THROW((void)status({bad}, text), InputError);
+}
+
+TEST(Measure, ReadsARareKindOfFileAndNamesWhatItDoesNotRead) {
+  const TemporaryFolder folder;
+  const Image<std::uint8_t> image = tube();
+  std::string pam = "P7\nWIDTH " + std::to_string(image.width()) + "\nHEIGHT " +
+                    std::to_string(image.height()) + "\nDEPTH " + std::to_string(image.channels()) +
+                    "\nMAXVAL 255\nENDHDR\n";
+  for (const std::uint8_t value : image.values()) pam += static_cast<char>(value);
+  const auto line_of = [&](const std::string& name, const std::string& bytes) {
+    write_new_file(folder.path() / name, bytes);
+    MeasureArguments arguments;
+    arguments.images = {(folder.path() / name).string(), (folder.path() / name).string()};
+    std::ostringstream out;
+    (void)measure_command(arguments, out);
+    const std::string line = out.str().substr(0, out.str().find('\n'));
+    return line.substr(line.find(',') + 1);  // After the file's name.
+  };
+  EXPECT_EQ(line_of("tube.pam", pam), line_of("tube.png", png(image)));
+  EXPECT_EQ(
+      line_of("depth.pfm", "Pf\n1 1\n-1\n0000"),
+      "\"error\":\"the PFM file has floating point values: expected a kind of file with whole ones of 1 to "
+      "16 bits\"}");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "flexura/vision/backbone_image.h"
@@ -35,6 +36,14 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
   seen.view = view;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   std::vector<AxisSample> axis = arm.axis;
+  // The axis lies half-way between the borders: each is known by the root of two worse.
+  for (const AxisSample& sample : axis) {
+    const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
+    const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
+    if (!sample.is_seen) continue;
+    seen.edges[0].push_back({sample.pixel + half, sigma});
+    seen.edges[1].push_back({sample.pixel - half, sigma});
+  }
   to_backbone_image(view.lens, axis);
   for (const AxisSample& sample : axis)
     if (sample.is_seen) seen.points.push_back({sample.pixel, std::max(sample.sigma, least_sigma)});

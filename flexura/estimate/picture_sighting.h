@@ -10,8 +10,8 @@
 namespace flexura {
 
 /// What a picture by `view` shows of the backbone: the median axis where both borders are seen, corrected for
-/// the lens, and the arm's ends. Where the axis explains less than nearly all of the silhouette its ends may
-/// be a fold's, not the arm's: then there are none.
+/// the lens, these borders, and the arm's ends. Where the axis explains less than nearly all of the
+/// silhouette its ends may be a fold's, not the arm's: then there are none.
 [[nodiscard]] Sighting sighting_of(const ArmSighting& arm, const View& view);
 
 /// The same with the coloured bands around the arm in `picture`, in which it was found; bands that may be two

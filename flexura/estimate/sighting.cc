@@ -29,6 +29,8 @@ bool are_enough(std::span<const Sighting> sightings) {
 Sighting reversed(Sighting sighting) {
   std::ranges::reverse(sighting.points);
   std::swap(sighting.ends[0], sighting.ends[1]);
+  std::swap(sighting.edges[0], sighting.edges[1]);
+  for (auto& edge : sighting.edges) std::ranges::reverse(edge);
   for (SeenBand& band : sighting.bands) band.heading = -band.heading;
   return sighting;
 }
@@ -49,6 +51,7 @@ void thin(std::vector<Value>& values, std::size_t most) {
 Sighting thinned(Sighting sighting, std::size_t most) {
   thin(sighting.points, most);
   thin(sighting.borders, most);
+  for (auto& edge : sighting.edges) thin(edge, most);
   return sighting;
 }
 

@@ -73,6 +73,9 @@ struct Sighting {
   ViewDoubt doubt = {};              ///< In the view.
   /// Points of the silhouette where no axis was found, in any order: of arms of known radius.
   std::vector<SeenBorder> borders = {};
+  /// The two edges of the tube where both are seen: right of the way from base to tip as the picture shows
+  /// it, then left; as measured, not where the backbone is.
+  std::array<std::vector<CurvePoint>, 2> edges = {};
 };
 
 /// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of
@@ -83,7 +86,7 @@ struct Sighting {
 [[nodiscard]] Sighting reversed(Sighting sighting);
 
 /// The same with at most `most` points, evenly taken, the first and the last among them, and as many of the
-/// borders at most.
+/// borders and of each edge at most.
 [[nodiscard]] Sighting thinned(Sighting sighting, std::size_t most);
 
 }  // namespace flexura

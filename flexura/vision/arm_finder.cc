@@ -92,6 +92,8 @@ struct ArmFinder::Work {
   template <typename Value>
   bool follow(const Image<Value>& picture, double scale, const Component& component);
   template <typename Value>
+  void try_seeds(const Image<Value>& picture, double scale, const Component& component);
+  template <typename Value>
   bool follow_from(const Image<Value>& picture, double scale, const Component& component,
                    const TubeSeed& rough);
   void order_ends();
@@ -169,10 +171,11 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
     return false;
   }
   best.axis.clear();
-  for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
-    if (!follow_from(picture, scale, component, seeds[i])) continue;
-    if (best.axis.empty() || merit(seen) > merit(best)) best = seen;
-    if (is_whole(seen)) break;
+  try_seeds(picture, scale, component);
+  if (best.axis.empty()) {
+    // Where hairs make more of the figure than the arm does, it is the thickest.
+    std::ranges::stable_sort(seeds, std::ranges::greater{}, &TubeSeed::width);
+    try_seeds(picture, scale, component);
   }
   if (best.axis.empty()) {
     seen.axis.clear();
@@ -186,6 +189,16 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
   order_ends();
   return true;
+}
+
+// The first few: `best` is what the best of them leads to.
+template <typename Value>
+void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
+  for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
+    if (!follow_from(picture, scale, component, seeds[i])) continue;
+    if (best.axis.empty() || merit(seen) > merit(best)) best = seen;
+    if (is_whole(seen)) break;
+  }
 }
 
 // The tube near a seed, both ways.

@@ -11,41 +11,12 @@
 
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/picture_file.h"
-#include "tests/support/seen_arms.h"
+#include "tests/support/plain_arms.h"
 
 namespace flexura {
 namespace {
 
 using testing::HasSubstr;
-
-/// A planar arm in view, 400 px long: everything of it is seen.
-SeenArm plain_arm(double bend, const SeenArmOptions& options = {}) {
-  SeenArm seen;
-  BentArm bent;
-  bent.arm.kind = ArmKind::spatial;
-  seen.radius = 0.02;
-  for (int i = 0; i < 2; ++i)
-    bent.arm.sections.push_back({.length = 0.4, .radius = {seen.radius, seen.radius}});
-  bent.state = ArmState::straight(2);
-  bent.state.bends = {{0, bend}, {0, -bend}};
-  seen.scene.background = Color::Constant(0.85);
-  seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
-  seen.view =
-      pinhole_view(look_at({0, 0.4, 1.6}, {0, 0.4, 0}), options.width, options.height, 1.25 * options.width);
-  seen.picture = photograph(seen.scene, seen.view, options, 1);
-  seen.truth = true_axis(seen.scene, seen.view, 2001);
-  return seen;
-}
-
-double rms_error(const SeenArm& seen, const std::vector<AxisSample>& axis) {
-  double squares = 0, count = 0;
-  for (const AxisSample& sample : axis) {
-    if (!sample.is_seen) continue;
-    const double distance = distance_to(seen.truth, sample.pixel);
-    squares += distance * distance, ++count;
-  }
-  return std::sqrt(squares / count);
-}
 
 TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
   ArmFinder finder;
@@ -140,128 +111,6 @@ TEST(ArmFinder, GivesAReasonWhereThereIsNoArm) {
   EXPECT_THROW((void)finder.find(Image<std::uint8_t>(4, 4, 3)), std::invalid_argument);
 }
 
-TEST(ArmFinder, GoesOnUnderAHair) {
-  SeenArm seen = plain_arm(0.6);
-  for (int u = 100; u < 540; ++u)
-    for (int k = 0; k < 2; ++k) seen.picture.at(u, 220 + u / 9 + k) = 30;
-  ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
-  ASSERT_TRUE(found.is_found()) << found.reason;
-  EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 0.5);
-  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 0.5);
-  EXPECT_LT(rms_error(seen, found.axis), 0.1);
-}
-
-TEST(ArmFinder, GoesOnUnderAHairFromBorderToBorder) {
-  // Its runs are short and many: most of the figure's rows show the hair.
-  for (const double end : {100.0, 240.0, 470.0}) {
-    SeenArm seen = plain_arm(0.6);
-    for (int u = 0; u < 640; ++u) {
-      const int v = static_cast<int>(100 + (end - 100) * u / 640);
-      for (int k = 0; k < 2; ++k) seen.picture.at(u, v + k) = 30;
-    }
-    ArmFinder finder;
-    const ArmSighting& found = finder.find(seen.picture);
-    ASSERT_TRUE(found.is_found()) << end << found.reason;
-    EXPECT_LT(rms_error(seen, found.axis), 0.1) << end;
-  }
-}
-
-TEST(ArmFinder, ByBlockSeesAnArmBeforeAnUnevenScreen) {
-  ArmFinderConfig config;
-  config.threshold.method = ThresholdMethod::by_block;
-  ArmFinder by_block(config);
-  const SeenArm plain = plain_arm(0.6);
-  const auto at = [&](double u, double v) {
-    return Eigen::Vector2d(u / plain.view.width, v / plain.view.height);
-  };
-  const auto side = [&](double u, double v) { return 0.2 + 0.75 * at(u, v).x(); };
-  const auto above = [&](double u, double v) { return 0.95 - 0.7 * at(u, v).y(); };
-  const auto corners = [&](double u, double v) {
-    return 1 - 1.5 * (at(u, v) - Eigen::Vector2d(0.5, 0.5)).squaredNorm();
-  };
-  const auto expect_found = [&](const auto& light) {
-    SeenArm seen = plain;
-    for (int v = 0; v < seen.view.height; ++v)
-      for (int u = 0; u < seen.view.width; ++u)
-        // What is darkest, 30 of 255, is a third of the screen there.
-        seen.picture.at(u, v) =
-            static_cast<std::uint8_t>(std::lround((60 + 0.65 * seen.picture.at(u, v)) * light(u, v)));
-    const ArmSighting& found = by_block.find(seen.picture);
-    ASSERT_TRUE(found.is_found()) << found.reason;
-    EXPECT_EQ(found.threshold.figure, Figure::dark);
-    EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 1.5);
-    EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 1.5);
-    EXPECT_LT(rms_error(seen, found.axis), 0.15);
-  };
-  expect_found(side);
-  expect_found(above);
-  expect_found(corners);
-  // A shaded screen alone shows nothing.
-  Image<std::uint8_t> empty(640, 480);
-  for (int v = 0; v < 480; ++v)
-    for (int u = 0; u < 640; ++u) empty.at(u, v) = static_cast<std::uint8_t>(std::lround(200 * side(u, v)));
-  EXPECT_NE(by_block.find(empty).reason, "");
-}
-
-TEST(ArmFinder, MeasuresTheLargerOfTwoArmsAndSaysSo) {
-  const SeenArm one = plain_arm(0.3);
-  Image<std::uint8_t> both = one.picture;
-  // The arm again, half as long, 150 px beside it.
-  for (int v = 0; v < both.height() / 2; ++v)
-    for (int u = 0; u + 150 < both.width(); ++u)
-      both.at(u + 150, v) = std::min(both.at(u + 150, v), one.picture.at(u, v));
-  ArmFinder finder;
-  const ArmSighting& found = finder.find(both);
-  ASSERT_TRUE(found.is_found()) << found.reason;
-  EXPECT_LT(rms_error(one, found.axis), 0.1);
-  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("1 other figure of a like size")));
-}
-
-// An arm of three sections of 0.3 m from in front.
-SeenArm bent_arm_in_view(const std::vector<Eigen::Vector2d>& bends, double radius,
-                         const Eigen::Vector3d& from, const Eigen::Vector3d& to, double focal_length) {
-  SeenArm seen;
-  BentArm bent;
-  bent.arm.kind = ArmKind::spatial;
-  bent.arm.sections.resize(bends.size(), {.length = 0.3, .radius = {radius, radius}});
-  bent.state = ArmState::straight(bends.size());
-  bent.state.bends = bends;
-  seen.radius = radius;
-  seen.scene.background = Color::Constant(0.85);
-  seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
-  seen.view = pinhole_view(look_at(from, to), 640, 480, focal_length);
-  seen.picture = photograph(seen.scene, seen.view, {.noise = 1}, 3);
-  seen.truth = true_axis(seen.scene, seen.view, 2001);
-  return seen;
-}
-
-TEST(ArmFinder, FollowsAnArmAcrossItself) {
-  // A loop in the plane of the picture, the later part of it before the earlier.
-  const SeenArm seen =
-      bent_arm_in_view({{0.4, 0}, {4.6, 0.5}, {0.4, 0}}, 0.008, {-0.03, 0.35, 1.6}, {-0.03, 0.35, 0}, 800);
-  ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
-  ASSERT_TRUE(found.is_found()) << found.reason;
-  EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 2);
-  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 2);
-  EXPECT_LT(rms_error(seen, found.axis), 0.3);
-}
-
-TEST(ArmFinder, SaysWhereAnArmPointsAtTheCamera) {
-  // The last section turns towards the camera on Z.
-  const SeenArm seen = bent_arm_in_view({{0, 0}, {0, 0}, {0, 1.5}}, 0.02, {0, 0.45, 1.8}, {0, 0.45, 0}, 800);
-  ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
-  if (!found.is_found()) {
-    EXPECT_NE(found.reason, "");
-    return;
-  }
-  // What is told of the axis is right.
-  EXPECT_LT(rms_error(seen, found.axis), 1);
-  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 1);
-}
-
 TEST(BackboneImage, IsNotTheMiddleOfAThickArmThatIsNear) {
   const SeenArm seen = bent_arm_in_view({{0.5, -0.5}, {-0.5, 0.9}}, 0.03, {0.1, 0.3, 1.0}, {0, 0.3, 0}, 800);
   ArmFinder finder;
@@ -333,26 +182,6 @@ TEST(ArmFinder, KnowsHowWellItKnowsTheAxis) {
   std::ranges::nth_element(misses, place);
   EXPECT_GT(*place, misses.size() > 1000 ? 0.75 : 0.5);
   EXPECT_LT(*place, misses.size() > 1000 ? 1.4 : 2);
-}
-
-TEST(ArmFinder, CallsNoEndFreeThatIsNone) {
-  ArmFinder finder;
-  int whole = 0, count = 0;
-  for_random_cases(60, [&](TestRandom& random) {
-    SeenArmOptions options;
-    options.most_bend = 1.6;
-    const SeenArm seen = random_seen_arm(random, options);
-    const ArmSighting& found = finder.find(seen.picture);
-    if (!found.is_found() || found.covered < 0.96) return;
-    for (const AxisEnd& end : found.ends) {
-      if (end.kind != AxisEndKind::free) continue;
-      const double to_base = (end.pixel - *seen.truth.front().pixel).norm(),
-                   to_tip = (end.pixel - *seen.truth.back().pixel).norm();
-      ++count, whole += std::min(to_base, to_tip) < 1;
-    }
-  });
-  // A tip that hides behind the arm itself is not seen.
-  EXPECT_LE(count - whole, 1 + 0.03 * count);
 }
 
 TEST(BackboneImage, DepthsAreThoseOfTheBackbone) {

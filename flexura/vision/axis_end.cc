@@ -141,6 +141,23 @@ double roughness(const Reaches& reaches, const Shape& shape) {
   return std::sqrt(squares / std::max(count, 1));
 }
 
+// Whether nothing of the figure lies around the front of an end, just outside of it. A tube that turns
+// sharply, or meets another one, looks like an end along the way, but goes on beside it.
+template <typename Value>
+bool is_clear_ahead(const TubeTracker<Value>& tracker, const Way& way, const Shape& shape) {
+  constexpr int directions = 9;
+  constexpr double widest = 1.3;  // rad to either side
+  const EdgeFinder<Value>& picture = tracker.edges();
+  const Vector2d end = way.at(shape.x, 0), out = way.tangent_at(shape.x), aside(-out.y(), out.x());
+  const double distance = way.half_width_at(shape.x) + 2 * tracker.blur() + 1.5;
+  for (int i = 0; i < directions; ++i) {
+    const double angle = widest * (2.0 * i / (directions - 1) - 1);
+    const Vector2d here = end + distance * (std::cos(angle) * out + std::sin(angle) * aside);
+    if (picture.holds(here) && picture.sign() * (tracker.level() - picture.at(here)) > 0) return false;
+  }
+  return true;
+}
+
 template <typename Value>
 std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& way) {
   Reaches reaches;
@@ -154,6 +171,7 @@ std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& 
   }
   if (!fit_shape(reaches, way.half_width_at(shape.x), shape) || shape.x < 0) return std::nullopt;
   if (roughness(reaches, shape) > rough + rough_share * way.half_width) return std::nullopt;
+  if (!is_clear_ahead(tracker, way, shape)) return std::nullopt;
   return shape;
 }
 

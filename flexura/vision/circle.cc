@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "flexura/vision/conic.h"
@@ -59,17 +60,26 @@ std::optional<Vector3d> pratt(std::span<const Vector2d> points, const Normalized
   return Vector3d(center.x(), center.y(), std::sqrt(squared));
 }
 
-// The largest gap between directions from the centre is what the points leave of the circle.
-double arc_of(std::span<const Vector2d> points, const Vector2d& center) {
-  std::vector<double> angles;
-  angles.reserve(points.size());
-  for (const Vector2d& point : points)
-    angles.push_back(std::atan2(point.y() - center.y(), point.x() - center.x()));
-  std::ranges::sort(angles);
-  double gap = angles.front() + 2 * pi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+// What the points tell in the order of their directions from the centre: the largest gap is what they leave
+// of the circle; and how alike neighbours' misfits are, but for those across the first and last one's gap.
+void go_around(std::span<const Vector2d> points, CircleFit& fit) {
+  std::vector<std::pair<double, double>> misfits;  // By angle.
+  misfits.reserve(points.size());
+  double squares = 0, products = 0;
+  for (const Vector2d& point : points) {
+    const Vector2d way = point - fit.center;
+    misfits.emplace_back(std::atan2(way.y(), way.x()), way.norm() - fit.radius);
+    squares += misfits.back().second * misfits.back().second;
+  }
+  std::ranges::sort(misfits);
+  double gap = misfits.front().first + 2 * pi - misfits.back().first;
+  for (std::size_t i = 1; i < misfits.size(); ++i) {
+    gap = std::max(gap, misfits[i].first - misfits[i - 1].first);
+    products += misfits[i - 1].second * misfits[i].second;
+  }
   // A gap no wider than the points are apart is none.
-  return gap < 3 * 2 * pi / static_cast<double>(angles.size()) ? 2 * pi : 2 * pi - gap;
+  fit.arc = gap < 3 * 2 * pi / static_cast<double>(misfits.size()) ? 2 * pi : 2 * pi - gap;
+  fit.misfit_correlation = squares > 0 ? products / squares : 0;
 }
 
 // A circle tilted by tau shows as radius (1 - tau^2/4 + tau^2/4 cos 2 (phi - phi0)): what the circle's own
@@ -137,7 +147,7 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optio
   fit.rms = std::sqrt(squares / count);
   const double spread = sigma.value_or(count > 3 ? std::sqrt(squares / (count - 3)) : 0);
   fit.covariance = spread * spread * normal.inverse();
-  fit.arc = arc_of(points, fit.center);
+  go_around(points, fit);
   // Five points or fewer lie on an ellipse whatever they are.
   constexpr std::size_t decided = 6;
   fit.detectable_tilt = 0.5 * pi;

@@ -20,6 +20,16 @@ struct CircleFit {
   /// And what that is worth: the smallest tilt of the circle's plane, in the direction in which it shows
   /// least, that this test would see on these points in 9 of 10 cases, rad; pi/2 when it would see none.
   double detectable_tilt = 0;
+  /// How much what is left of neighbours (by their angle) is alike, in [-1, 1]: about 0 for points with noise
+  /// of their own, near 1 where they lie on something else than a circle, or are smoothed.
+  double misfit_correlation = 0;
+
+  /// Whether the points verify the equation and what they leave of it is no figure of its own, as a polygon
+  /// or a drop leaves: neighbours alike by more than noise is, and more than points are smoothed to.
+  [[nodiscard]] bool is_circle() const {
+    constexpr double most_alike = 0.9, smooth = 0.15;  // px
+    return is_verified && (misfit_correlation <= most_alike || rms <= smooth);
+  }
 };
 
 /// An ellipse through points: the least sum of squared distances.

@@ -28,9 +28,9 @@ inline constexpr std::size_t most_pixels = std::size_t{1} << 27;
 /// Larger files are refused, bytes.
 inline constexpr std::size_t most_picture_bytes = std::size_t{1} << 29;
 
-/// Reads PNG, JPEG, TIFF, PNM and BMP, up to 16 bits a value, as read_picture() does
-/// (flexura/picture/image_file.h); a transparent part counts as it is coloured. Throws InputError, with
-/// `name` for its source: not a picture, cut short, damaged, of another depth, too large.
+/// Reads every kind of file, up to 16 bits a value, that read_picture() does (flexura/picture/image_file.h);
+/// a transparent part counts as it is coloured. Throws InputError, with `name` for its source: not a picture,
+/// cut short, damaged, of another depth, too large.
 [[nodiscard]] Photograph decode_picture(std::span<const std::uint8_t> file, const std::string& name);
 
 /// The brightness of a picture: 0.2126 red + 0.7152 green + 0.0722 blue.

@@ -1,0 +1,242 @@
+// Arms that are hard to see: under hairs, upside down, before uneven screens, beside others, across
+// themselves, turned to the camera, through lenses that distort.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "flexura/vision/arm_finder.h"
+#include "flexura/vision/backbone_image.h"
+#include "tests/support/plain_arms.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(HardArms, GoesOnUnderAHair) {
+  SeenArm seen = plain_arm(0.6);
+  for (int u = 100; u < 540; ++u)
+    for (int k = 0; k < 2; ++k) seen.picture.at(u, 220 + u / 9 + k) = 30;
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(seen.picture);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 0.5);
+  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 0.5);
+  EXPECT_LT(rms_error(seen, found.axis), 0.1);
+}
+
+TEST(HardArms, GoesOnUnderAHairFromBorderToBorder) {
+  // Its runs are short and many: most of the figure's rows show the hair.
+  for (const double end : {100.0, 240.0, 470.0}) {
+    SeenArm seen = plain_arm(0.6);
+    for (int u = 0; u < 640; ++u) {
+      const int v = static_cast<int>(100 + (end - 100) * u / 640);
+      for (int k = 0; k < 2; ++k) seen.picture.at(u, v + k) = 30;
+    }
+    ArmFinder finder;
+    const ArmSighting& found = finder.find(seen.picture);
+    ASSERT_TRUE(found.is_found()) << end << found.reason;
+    EXPECT_LT(rms_error(seen, found.axis), 0.1) << end;
+  }
+}
+
+TEST(HardArms, GoesOnUnderTwoHairsFromBorderToBorder) {
+  SeenArm seen = plain_arm(0.6);
+  for (const double end : {180.0, 240.0}) {
+    for (int u = 0; u < 640; ++u) {
+      const int v = static_cast<int>(end - 30 + 30.0 * u / 640 + (end > 200 ? 40 : 0));
+      for (int k = 0; k < 2; ++k) seen.picture.at(u, v + k) = 30;
+    }
+  }
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(seen.picture);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  EXPECT_LT(rms_error(seen, found.axis), 0.1);
+}
+
+// Whichever way up: the same axis, turned.
+TEST(HardArms, SeesAnArmUpsideDown) {
+  const SeenArm seen = plain_arm(0.6);
+  Image<std::uint8_t> turned = seen.picture;
+  std::ranges::reverse(turned.values());
+  ArmFinder finder;
+  const auto upright = finder.find(seen.picture).axis;
+  const ArmSighting& found = finder.find(turned);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  // The base is the lower end of a picture.
+  const Eigen::Vector2d corner(seen.picture.width() - 1, seen.picture.height() - 1);
+  EXPECT_LT((corner - found.axis.front().pixel - upright.back().pixel).norm(), 0.3);
+  EXPECT_LT((corner - found.axis.back().pixel - upright.front().pixel).norm(), 0.3);
+  for (const AxisSample& sample : found.axis) {
+    if (!sample.is_seen) continue;
+    const auto nearest = std::ranges::min_element(
+        upright, {}, [&](const AxisSample& other) { return (corner - sample.pixel - other.pixel).norm(); });
+    EXPECT_LT(std::abs((corner - sample.pixel - nearest->pixel).dot(nearest->normal)), 0.1);
+  }
+}
+
+TEST(HardArms, ByBlockSeesAnArmBeforeAnUnevenScreen) {
+  ArmFinderConfig config;
+  config.threshold.method = ThresholdMethod::by_block;
+  ArmFinder by_block(config);
+  const SeenArm plain = plain_arm(0.6);
+  const auto at = [&](double u, double v) {
+    return Eigen::Vector2d(u / plain.view.width, v / plain.view.height);
+  };
+  const auto side = [&](double u, double v) { return 0.2 + 0.75 * at(u, v).x(); };
+  const auto above = [&](double u, double v) { return 0.95 - 0.7 * at(u, v).y(); };
+  const auto corners = [&](double u, double v) {
+    return 1 - 1.5 * (at(u, v) - Eigen::Vector2d(0.5, 0.5)).squaredNorm();
+  };
+  const auto expect_found = [&](const auto& light) {
+    SeenArm seen = plain;
+    for (int v = 0; v < seen.view.height; ++v)
+      for (int u = 0; u < seen.view.width; ++u)
+        // What is darkest, 30 of 255, is a third of the screen there.
+        seen.picture.at(u, v) =
+            static_cast<std::uint8_t>(std::lround((60 + 0.65 * seen.picture.at(u, v)) * light(u, v)));
+    const ArmSighting& found = by_block.find(seen.picture);
+    ASSERT_TRUE(found.is_found()) << found.reason;
+    EXPECT_EQ(found.threshold.figure, Figure::dark);
+    EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 1.5);
+    EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 1.5);
+    EXPECT_LT(rms_error(seen, found.axis), 0.15);
+  };
+  expect_found(side);
+  expect_found(above);
+  expect_found(corners);
+  // A shaded screen alone shows nothing.
+  Image<std::uint8_t> empty(640, 480);
+  for (int v = 0; v < 480; ++v)
+    for (int u = 0; u < 640; ++u) empty.at(u, v) = static_cast<std::uint8_t>(std::lround(200 * side(u, v)));
+  EXPECT_NE(by_block.find(empty).reason, "");
+}
+
+TEST(HardArms, MeasuresTheLargerOfTwoArmsAndSaysSo) {
+  const SeenArm one = plain_arm(0.3);
+  Image<std::uint8_t> both = one.picture;
+  // The arm again, half as long, 150 px beside it.
+  for (int v = 0; v < both.height() / 2; ++v)
+    for (int u = 0; u + 150 < both.width(); ++u)
+      both.at(u + 150, v) = std::min(both.at(u + 150, v), one.picture.at(u, v));
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(both);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  EXPECT_LT(rms_error(one, found.axis), 0.1);
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("1 other figure of a like size")));
+}
+
+TEST(HardArms, FollowsAnArmAcrossItself) {
+  // A loop in the plane of the picture, the later part of it before the earlier.
+  const SeenArm seen =
+      bent_arm_in_view({{0.4, 0}, {4.6, 0.5}, {0.4, 0}}, 0.008, {-0.03, 0.35, 1.6}, {-0.03, 0.35, 0}, 800);
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(seen.picture);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 2);
+  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 2);
+  EXPECT_LT(rms_error(seen, found.axis), 0.3);
+}
+
+TEST(HardArms, SaysWhereAnArmPointsAtTheCamera) {
+  // The last section turns towards the camera on Z.
+  const SeenArm seen = bent_arm_in_view({{0, 0}, {0, 0}, {0, 1.5}}, 0.02, {0, 0.45, 1.8}, {0, 0.45, 0}, 800);
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(seen.picture);
+  ASSERT_TRUE(found.is_found()) << found.reason;
+  // What is told of the axis is right, and it goes on to where the arm turns.
+  EXPECT_LT(rms_error(seen, found.axis), 1);
+  EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 1);
+  const auto turns = seen.truth.begin() + static_cast<std::ptrdiff_t>(2 * seen.truth.size() / 3);
+  EXPECT_GT((found.axis.back().pixel - found.axis.front().pixel).norm(),
+            0.8 * (*turns->pixel - *seen.truth.front().pixel).norm());
+  const AxisEnd& tip = found.ends[1];
+  if (tip.kind == AxisEndKind::lost) {
+    EXPECT_NE(std::ranges::find_if(found.notes,
+                                   [](const std::string& note) {
+                                     return note.find("points at the camera") != std::string::npos;
+                                   }),
+              found.notes.end());
+  } else {
+    EXPECT_EQ(tip.kind, AxisEndKind::free);
+    EXPECT_LT((tip.pixel - *seen.truth.back().pixel).norm(), 5 * tip.sigma + 1);
+  }
+}
+
+TEST(HardArms, CallsNoEndFreeThatIsNone) {
+  ArmFinder finder;
+  int whole = 0, count = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    SeenArmOptions options;
+    options.most_bend = 1.6;
+    const SeenArm seen = random_seen_arm(random, options);
+    const ArmSighting& found = finder.find(seen.picture);
+    if (!found.is_found() || found.covered < 0.96) return;
+    for (const AxisEnd& end : found.ends) {
+      if (end.kind != AxisEndKind::free) continue;
+      const double to_base = (end.pixel - *seen.truth.front().pixel).norm(),
+                   to_tip = (end.pixel - *seen.truth.back().pixel).norm();
+      ++count, whole += std::min(to_base, to_tip) < 1;
+    }
+  });
+  // A tip that hides behind the arm itself is not seen.
+  EXPECT_LE(count - whole, 1 + 0.03 * count);
+}
+
+// Bent so much that many a tip hides behind the arm, or turns sharply in the picture.
+TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
+  ArmFinder finder;
+  int near = 0, far = 0, count = 0;
+  for_random_cases(120, [&](TestRandom& random) {
+    SeenArmOptions options;
+    options.most_bend = 1.8;
+    options.psf = random.uniform(0.7, 2);
+    const SeenArm seen = random_seen_arm(random, options);
+    const ArmSighting& found = finder.find(seen.picture);
+    if (!found.is_found()) return;
+    for (const AxisEnd& end : found.ends) {
+      if (end.kind != AxisEndKind::free) continue;
+      const double to_base = (end.pixel - *seen.truth.front().pixel).norm(),
+                   to_tip = (end.pixel - *seen.truth.back().pixel).norm();
+      ++count, near += std::min(to_base, to_tip) < 1, far += std::min(to_base, to_tip) > 4;
+    }
+  });
+  std::printf("free ends: %d, within 1 px %d, more than 4 px off %d\n", count, near, far);
+  // Ends that turn to the camera look rounder than they are.
+  EXPECT_LE(count - near, 1 + 0.15 * count);
+  EXPECT_LE(far, 2 + 0.01 * count);
+}
+
+// As many lenses have it, and more.
+TEST(HardArms, TheAxisIsTheBackbonesThroughALensThatDistorts) {
+  ArmFinder finder;
+  std::vector<double> errors;
+  for_random_cases(24, [&](TestRandom& random) {
+    SeenArm seen = random_seen_arm(random, {});
+    Intrinsics lens = seen.view.lens.intrinsics();
+    lens.distortion = {random.uniform(-0.25, 0.15), random.uniform(-0.05, 0.05), random.uniform(-2e-3, 2e-3),
+                       random.uniform(-2e-3, 2e-3), 0};
+    seen.view.lens = Lens(lens);
+    seen.picture = photograph(seen.scene, seen.view, {}, 7);
+    seen.truth = true_axis(seen.scene, seen.view, 601);
+    const ArmSighting& found = finder.find(seen.picture);
+    ASSERT_TRUE(found.is_found()) << found.reason;
+    auto axis = found.axis;
+    to_backbone_image(seen.view.lens, axis);
+    errors.push_back(rms_error(seen, axis));
+  });
+  std::ranges::sort(errors);
+  std::printf("through lenses that distort: axis rms median %.4f px, most %.4f\n", errors[errors.size() / 2],
+              errors.back());
+  EXPECT_LT(errors[errors.size() / 2], 0.015);
+  EXPECT_LT(errors[errors.size() * 8 / 10], 0.025);
+}
+
+}  // namespace
+}  // namespace flexura

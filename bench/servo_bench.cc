@@ -107,7 +107,7 @@ void as_used(benchmark::State& state) {
   }
   state.SetLabel(names_of(&kind)[static_cast<std::size_t>(kind)]);
 }
-BENCHMARK(as_used)->DenseRange(0, 4);
+BENCHMARK(as_used)->DenseRange(0, 5);
 
 // ViSP's of as many points: the images of `places` along the arm in both cameras, as one free camera's.
 std::vector<VispPoint> visp_points(const ArmState& state, int places) {

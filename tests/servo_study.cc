@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -23,6 +22,7 @@
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/servo_bench.h"
+#include "tests/support/study_rows.h"
 
 namespace flexura {
 namespace {
@@ -47,7 +47,8 @@ const std::vector<Method>& main_methods() {
   static const std::vector<Method> methods = {{.name = "shape"},
                                               {.name = "points", .law = ServoLawKind::points},
                                               {.name = "chords", .law = ServoLawKind::chords},
-                                              {.name = "potential", .law = ServoLawKind::potential}};
+                                              {.name = "potential", .law = ServoLawKind::potential},
+                                              {.name = "silhouettes", .law = ServoLawKind::silhouettes}};
   return methods;
 }
 
@@ -77,15 +78,6 @@ std::vector<Method> methods_of_turned_arm() {
   }
   return methods;
 }
-
-// What one target's run came to; errors are the simulated truth's, shares of the length.
-struct Arrival {
-  bool is_done = false;
-  std::string reason;
-  double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0;
-  // Of those who believe their cameras, and of those who doubt them as the servo does.
-  double believing = 0, doubting = 0;
-};
 
 ArmState random_target(TestRandom& random) {
   ArmState state = ArmState::straight(3);
@@ -275,65 +267,6 @@ class StudyRig {
   RigModel believed_;
   std::string why_not_;
 };
-
-double quantile(std::vector<double> values, double share) {
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::ranges::sort(values);
-  const double place = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(place, 1.0)) - 1];
-}
-
-// "-" where there is none.
-std::string number(double value, int digits) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
-}
-
-template <class Of>
-std::vector<double> of_done(const std::vector<Arrival>& arrivals, Of of) {
-  std::vector<double> values;
-  for (const Arrival& one : arrivals)
-    if (one.is_done) values.push_back(of(one));
-  return values;
-}
-
-void print_row(const std::string& name, const std::vector<Arrival>& arrivals, bool has_floor) {
-  const std::vector<double> settled = of_done(arrivals, [](const Arrival& a) { return a.settled; }),
-                            over = of_done(arrivals,
-                                           [](const Arrival& a) { return 100 * std::max(0.0, a.overshoot); }),
-                            rms = of_done(arrivals, [](const Arrival& a) { return 100 * a.rms; }),
-                            most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
-                            tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
-                            limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
-                            believing = of_done(arrivals, [](const Arrival& a) { return 100 * a.believing; }),
-                            doubting = of_done(arrivals, [](const Arrival& a) { return 100 * a.doubting; });
-  const auto pair = [&](const std::vector<double>& values) {
-    return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
-  };
-  fmt::print("| {} | {}/{} | {} / {} | {} | {} / {} | {} | {} | {} | {} | {} |\n", name, rms.size(),
-             arrivals.size(), number(quantile(settled, 0.5), 2), number(quantile(settled, 0.95), 2),
-             number(quantile(over, 0.95), 1), number(quantile(rms, 0.5), 3), number(quantile(rms, 0.95), 3),
-             number(quantile(most, 1), 3), number(quantile(tip, 0.95), 3), number(quantile(limit, 0), 2),
-             pair(believing), pair(doubting));
-}
-
-// Its numbers left out: reasons that differ in these are one.
-std::string kind_of(const std::string& reason) {
-  std::string kind;
-  for (const char c : reason) {
-    const bool is_number = (c >= '0' && c <= '9') || c == '.';
-    if (!is_number) kind += c;
-    if (is_number && !kind.ends_with('#')) kind += '#';
-  }
-  return kind;
-}
-
-void print_reasons(const std::string& name, const std::vector<Arrival>& arrivals) {
-  std::map<std::string, int> reasons;
-  for (const Arrival& one : arrivals)
-    if (!one.is_done) ++reasons[kind_of(one.reason)];
-  for (const auto& [reason, count] : reasons) fmt::print("- {}: {} ended with \"{}\"\n", name, count, reason);
-}
 
 void study(Cameras cameras, const std::vector<Method>& methods, std::size_t targets, std::uint64_t seed,
            unsigned threads) {

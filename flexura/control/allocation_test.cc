@@ -2,9 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <atomic>
-#include <cstddef>
-#include <cstdlib>
 
 #include "flexura/control/distributed_arm.h"
 #include "flexura/control/feature_images.h"
@@ -16,18 +13,7 @@
 // Sanitizers have an allocator of their own.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-namespace {
-std::atomic<long> mallocs{0};
-}  // namespace
-
-extern "C" {
-// glibc's own. NOLINTNEXTLINE(readability-identifier-naming)
-void* __libc_malloc(std::size_t size);
-void* malloc(std::size_t size) {
-  ++mallocs;
-  return __libc_malloc(size);
-}
-}
+#include "tests/support/malloc_count.h"
 
 namespace flexura {
 namespace {

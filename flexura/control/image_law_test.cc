@@ -25,6 +25,8 @@ constexpr double dt = servo_step;
 
 TEST(ImageLaw, BringsTheArmToRandomTargets) { expect_random_targets(20); }
 
+TEST(ImageLaw, OfSilhouettesReachesWhatPointsReach) { expect_silhouettes_reach_what_points_reach(20); }
+
 TEST(ImageLaw, BringsTheArmToTargetsNearByWithMomentsAlone) { expect_moments_alone(10, 0.8); }
 
 TEST(ImageLaw, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe) {

@@ -7,6 +7,8 @@ namespace {
 
 TEST(ServoLoop, BringsTheArmToRandomTargets) { expect_random_targets(200); }
 
+TEST(ServoLoop, OfSilhouettesReachesWhatPointsReach) { expect_silhouettes_reach_what_points_reach(200); }
+
 TEST(ServoLoop, BringsTheArmToTargetsNearByWithMomentsAlone) { expect_moments_alone(100, 0.95); }
 
 TEST(ServoLoop, ReachesWhatTheSameCamerasRecordedHoweverWrongTheyAreBelievedToBe) {

@@ -52,6 +52,10 @@ TEST(BadServo, EachIsOneClearLine) {
            {"target = [{bends = [[0, 0]]}]\n", "target[0]"},
            {"law = \"potential\"\ncameras = [\"side\", \"front\"]\ntarget = [{" + bends + "}]\n",
             "task[0].law: \"potential\" reads camera side as the plane XOY"},
+           {"measure = \"flow\"\ntarget = [{" + bends + "}]\n",
+            "task[0].measure: \"flow\" carries the angles of chords"},
+           {"law = \"chords\"\nmeasure = \"flow\"\nanchor = 0\ntarget = [{" + bends + "}]\n",
+            "task[0].anchor = 0: expected a number above 0"},
            {"lost = 0.1\ntarget = [{" + bends + "}]\n", "task[0].lost: 0.1 s: expected more than blind"},
            {"targets = 3\ntarget = [{" + bends + "}]\n", "did you mean \"target\""},
        }) {

@@ -153,6 +153,7 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
     config.goals.push_back({target.time, shape.state, shape.missed});
   }
   config.law = task.law, config.jacobian = task.jacobian;
+  config.measure = task.measure, config.anchor = task.anchor;
   config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
   config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
   config.follows = task.follow;

@@ -133,9 +133,17 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field("law", &T::law,
                  {.meaning =
                       "What drives it: shape is the shape that both images tell, less the wanted one; "
-                      "points, chords and moments compare features of the images; potential is the paper's "
+                      "points, chords and moments compare features of the images, silhouettes their edges; "
+                      "potential is the paper's "
                       "artificial potential on the errors in two image planes (the first camera's XOY, the "
                       "second one's ZOY)."})
+          .field("measure", &T::measure,
+                 {.meaning = "Where chords and potential have their angles from: each picture by itself, or "
+                             "the flow from the picture before, drawn back to each picture."})
+          .field("anchor", &T::anchor,
+                 {.meaning = "Angles that flow carries are drawn back as exp(-t/anchor).",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
           .field(
               "jacobian", &T::jacobian,
               {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
@@ -146,9 +154,9 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "The wanted shapes, as `[[task.target]]`, in the order of their times.",
                   .count = {1, most_targets},
                   .required = true})
-          .field(
-              "points", &T::points,
-              {.meaning = "Of points, chords and potential: places along the arm.", .range = between(1, 200)})
+          .field("points", &T::points,
+                 {.meaning = "Of points, chords, potential and silhouettes: places along the arm.",
+                  .range = between(1, 200)})
           .field("rate", &T::rate,
                  {.meaning = "Errors fall as exp(-rate t), 1/s.", .range = above_up_to(0, 1000)})
           .field("damping", &T::damping,
@@ -302,6 +310,9 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
     reader.problem_at(path + ".lost",
                       fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
   check_planes(task, cameras, path, reader);
+  if (task.measure == ServoMeasure::flow && !has_chords(task.law))
+    reader.problem_at(path + ".measure",
+                      "\"flow\" carries the angles of chords: expected the law chords or potential");
   for (std::size_t i = 0; i < task.target.size(); ++i) {
     const std::string place = fmt::format("{}.target[{}]", path, i);
     check_target(task.target[i], arm, place, reader);

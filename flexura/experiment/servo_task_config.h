@@ -37,6 +37,8 @@ struct ServoDoubtConfig {
 struct ServoTask {
   std::string name;
   ServoLawKind law = ServoLawKind::shape;
+  ServoMeasure measure = ServoMeasure::picture;
+  double anchor = 0.1;  ///< s
   ServoJacobian jacobian = ServoJacobian::model;
   std::vector<std::string> cameras;       ///< Two names; empty: the first two.
   std::vector<ServoTargetConfig> target;  ///< At least one.

@@ -32,7 +32,8 @@ TEST_P(ServoLaws, BringTheArmToAShape) {
   EXPECT_LT(result.overshoot, 0.02);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ServoLaws, testing::Values("shape", "points", "chords", "potential"));
+INSTANTIATE_TEST_SUITE_P(All, ServoLaws,
+                         testing::Values("shape", "points", "chords", "potential", "silhouettes"));
 
 // Chords near a quarter turn of the azimuth, on the way across one, and along a camera's sight, where two
 // parallel readings say little or the opposite: targets of the servo's study.
@@ -79,7 +80,8 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
   EXPECT_LT(before, 2e-3 * first);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, IdealServo, testing::Values("shape", "points", "chords", "potential"));
+INSTANTIATE_TEST_SUITE_P(All, IdealServo,
+                         testing::Values("shape", "points", "chords", "potential", "silhouettes"));
 
 class LearningServo : public testing::TestWithParam<std::string> {};
 
@@ -305,6 +307,25 @@ TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
     std::printf("from pictures: %.4f %% of the length left\n", 100 * left.rms);
     EXPECT_LT(left.rms, 0.003);
   }
+}
+
+// What is said of a servo is the same whether its steps are kept or not.
+TEST(Servo, KeepsNoStepsWhereNoneAreAskedFor) {
+  ServoResult kept, left;
+  for (ServoResult* result : {&kept, &left}) {
+    ServoBench bench(servo_file(servo_target));
+    ServoConfig config = bench.config();
+    config.keeps_steps = result == &kept;
+    ServoNotes notes;
+    const RigModel model = bench.believed();
+    *result = servo_in_session(bench.ports(), model, config, notes);
+    ASSERT_TRUE(result->is_done) << result->reason;
+  }
+  EXPECT_GT(kept.steps.size(), 20U);
+  EXPECT_TRUE(left.steps.empty());
+  EXPECT_EQ(kept.settled, left.settled);
+  EXPECT_EQ(kept.overshoot, left.overshoot);
+  EXPECT_EQ(kept.remaining->rms, left.remaining->rms);
 }
 
 TEST(ServoTask, RunsFromAFile) {

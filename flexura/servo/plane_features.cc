@@ -8,7 +8,7 @@
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
-#include "flexura/servo/servo_eyes.h"
+#include "flexura/servo/measured_places.h"
 #include "flexura/servo/servo_features.h"
 
 namespace flexura {
@@ -44,7 +44,7 @@ bool is_told(double theta, double q) {
 }
 
 // alpha_1 and alpha_2 of each chord as both planes show it, then theta and q as the shape has them.
-class PlaneFeatures : public ServoFeatures {
+class PlaneFeatures : public ChordFeatures {
  public:
   PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)) {
     for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
@@ -58,7 +58,12 @@ class PlaneFeatures : public ServoFeatures {
       if (!measured) return false;
       pixels[i] = *measured;
     }
-    values = with_chords(plane_angles_of({seen[0].view, seen[1].view}, pixels), estimate);
+    return of_pixels(pixels, estimate, {seen[0].view, seen[1].view}, values);
+  }
+  [[nodiscard]] const std::vector<double>& shares() const override { return shares_; }
+  [[nodiscard]] bool of_pixels(const std::array<Eigen::Matrix2Xd, 2>& pixels, const ArmState& estimate,
+                               const std::array<View, 2>& views, Eigen::VectorXd& values) override {
+    values = with_chords(plane_angles_of(views, pixels), estimate);
     return true;
   }
   [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
@@ -154,7 +159,7 @@ class PlaneFeatures : public ServoFeatures {
 
 }  // namespace
 
-std::unique_ptr<ServoFeatures> plane_features(const Arm& arm, int points) {
+std::unique_ptr<ChordFeatures> plane_features(const Arm& arm, int points) {
   return std::make_unique<PlaneFeatures>(arm, points);
 }
 

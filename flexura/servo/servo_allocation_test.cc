@@ -2,9 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <atomic>
-#include <cstddef>
-#include <cstdlib>
 
 #include "flexura/servo/servo_law.h"
 #include "tests/support/servo_views.h"
@@ -12,18 +9,7 @@
 // Sanitizers have an allocator of their own.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-namespace {
-std::atomic<long> mallocs{0};
-}  // namespace
-
-extern "C" {
-// glibc's own. NOLINTNEXTLINE(readability-identifier-naming)
-void* __libc_malloc(std::size_t size);
-void* malloc(std::size_t size) {
-  ++mallocs;
-  return __libc_malloc(size);
-}
-}
+#include "tests/support/malloc_count.h"
 
 namespace flexura {
 namespace {
@@ -61,8 +47,8 @@ TEST(ServoFeatures, AllocateNothingOnceTheyHaveServed) {
   const Arm arm = servo_arm();
   const std::array<View, 2> views = servo_views();
   const ArmState state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
-  for (const ServoLawKind law :
-       {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords, ServoLawKind::moments}) {
+  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
+                                 ServoLawKind::moments, ServoLawKind::silhouettes}) {
     const auto features = servo_features(law, arm, 12);
     Eigen::VectorXd values;
     FeatureError error;

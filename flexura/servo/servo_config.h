@@ -19,11 +19,23 @@ namespace flexura {
 
 /// What drives the arm to the wanted shape (docs/servo.md).
 enum class ServoLawKind : std::uint8_t {
-  shape,      ///< The shape that both images tell, less the wanted one.
-  points,     ///< Pixels of points along the arm.
-  chords,     ///< Angles of the images of its chords.
-  moments,    ///< Length, middle and second moments of its images.
-  potential,  ///< The paper's: the errors in two image planes, an artificial potential in two angles.
+  shape,        ///< The shape that both images tell, less the wanted one.
+  points,       ///< Pixels of points along the arm.
+  chords,       ///< Angles of the images of its chords.
+  moments,      ///< Length, middle and second moments of its images.
+  potential,    ///< The paper's: the errors in two image planes, an artificial potential in two angles.
+  silhouettes,  ///< Where the two edges of its images lie across themselves.
+};
+
+/// Whether a law looks at chords' angles, which flow may carry.
+[[nodiscard]] constexpr bool has_chords(ServoLawKind law) {
+  return law == ServoLawKind::chords || law == ServoLawKind::potential;
+}
+
+/// Where the angles of chords come from.
+enum class ServoMeasure : std::uint8_t {
+  picture,  ///< Each picture by itself.
+  flow,     ///< The picture before and the optical flow since, drawn back to each picture.
 };
 
 /// How the arm follows its drives; what its shape shows is known from the cameras.
@@ -58,25 +70,29 @@ struct ServoConfig {
   std::vector<ServoGoal>
       goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
   ServoLawKind law = ServoLawKind::shape;
+  ServoMeasure measure = ServoMeasure::picture;
+  double anchor = 0.1;  ///< Angles that flow carries are drawn back as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
-  int points = 12;                   ///< Of the laws points, chords and potential: places along the arm.
-  double rate = 4;                   ///< Errors fall as exp(-rate t), 1/s.
-  double damping = 0.01;             ///< ImageLawGains::damping
-  bool predicts = true;              ///< What was sent after a picture was taken is counted as done.
-  double tolerance = 0.005;          ///< Root mean square along the arm, share of its length: there.
-  double settle = 0.5;               ///< The error has to stay below it for so long, s.
-  bool follows = false;              ///< Heads turn so that the arm stays in the middle of the pictures.
+  int points = 12;           ///< Of the laws points, chords, potential and silhouettes: places along the arm.
+  double rate = 4;           ///< Errors fall as exp(-rate t), 1/s.
+  double damping = 0.01;     ///< ImageLawGains::damping
+  bool predicts = true;      ///< What was sent after a picture was taken is counted as done.
+  double tolerance = 0.005;  ///< Root mean square along the arm, share of its length: there.
+  double settle = 0.5;       ///< The error has to stay below it for so long, s.
+  bool follows = false;      ///< Heads turn so that the arm stays in the middle of the pictures.
   std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, rising.
   /// In each camera's view: about where the base is seen, and how the arm goes on from it, tells what is
   /// wrong.
   ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
-  double step = 1.0 / 30;  ///< From one command to the next, s.
+  double step = 1.0 / 30;   ///< From one command to the next, s.
+  bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
   std::optional<Drive> drive = {};
   std::vector<Obstacle> obstacles = {};
   ServoPatience patience;
 };
 
 const std::vector<std::string>& names_of(const ServoLawKind*);
+const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
 
 }  // namespace flexura

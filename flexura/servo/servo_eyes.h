@@ -52,10 +52,4 @@ class ServoEyes {
   std::array<std::optional<Finder>, 2> finders_;
 };
 
-/// Where the points of an arm in these shares of its length are seen: on the image of the estimated shape,
-/// moved across it onto the median axis as it was measured there.
-[[nodiscard]] std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
-                                                              const Sighting& seen,
-                                                              const std::vector<double>& shares);
-
 }  // namespace flexura

@@ -3,13 +3,17 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <vector>
 
+#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/view.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
 #include "flexura/servo/servo_config.h"
 
 namespace flexura {
+
+struct ServoSight;
 
 /// How far what is seen is from what is wanted, and how that changes with the arm.
 struct FeatureError {
@@ -27,6 +31,8 @@ class ServoFeatures {
   ServoFeatures(const ServoFeatures&) = delete;
   ServoFeatures& operator=(const ServoFeatures&) = delete;
 
+  /// New pictures, before they are measured: for what goes by those before them as well.
+  virtual void look(const ServoSight& /*sight*/) {}
   /// As measured in two sightings, of which `estimate` is the shape. False where it cannot be.
   [[nodiscard]] virtual bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
                                       Eigen::VectorXd& values) = 0;
@@ -39,6 +45,21 @@ class ServoFeatures {
                                    FeatureError& result) = 0;
 };
 
+/// Features that are made of the chords between places in a row along the arm.
+class ChordFeatures : public ServoFeatures {
+ public:
+  /// The places: shares of the unstretched arm's length from 0 to 1.
+  [[nodiscard]] virtual const std::vector<double>& shares() const = 0;
+  /// As measured of an estimated shape whose places are seen at these pixels.
+  [[nodiscard]] virtual bool of_pixels(const std::array<Eigen::Matrix2Xd, 2>& pixels,
+                                       const ArmState& estimate, const std::array<View, 2>& views,
+                                       Eigen::VectorXd& values) = 0;
+};
+
+/// What a servo looks at. `believed` may go afterwards.
+[[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config,
+                                                            const RigModel& believed);
+
 /// Those of a law, along an arm that is believed to be `arm`, at `points` places.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, int points);
 
@@ -46,6 +67,14 @@ class ServoFeatures {
 /// paper's section 2; docs/control.md, eq. 14). The error is the spatial one's parts: cos q e_theta and e_q
 /// of each chord, over the root of their number. Chords that the reading says little of, near a quarter turn
 /// of theta or q or on the way across one, are read from the shape.
-[[nodiscard]] std::unique_ptr<ServoFeatures> plane_features(const Arm& arm, int points);
+[[nodiscard]] std::unique_ptr<ChordFeatures> plane_features(const Arm& arm, int points);
+
+/// The angles of the images of chords in a row.
+[[nodiscard]] std::unique_ptr<ChordFeatures> chord_features(const Arm& arm, int points);
+
+/// Those of the law `silhouettes`: the edges of both images, by their displacement across themselves, px. The
+/// values are edges' pixels and the normals of the shape's contours there, not numbers where the arm has
+/// none; the error is contour_error().
+[[nodiscard]] std::unique_ptr<ServoFeatures> silhouette_features(const Arm& arm, int points);
 
 }  // namespace flexura

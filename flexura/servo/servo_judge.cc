@@ -76,48 +76,39 @@ std::string ServoJudge::why_not() const {
   return "not settled: " + off;
 }
 
-namespace {
-
 // By how much the tip went beyond its goal, seen from where it was, share of that way.
-double overshoot_of(const Arm& arm, const ServoResult& result, double from_time) {
-  const ServoStep* first = nullptr;
-  double most = 0;
-  Eigen::Vector3d start = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
-  for (const ServoStep& step : result.steps) {
-    if (!step.is_fresh || !step.seen || *step.seen_at < from_time) continue;
-    const Eigen::Vector3d tip = Backbone(arm, *step.seen).tip().position;
-    if (first == nullptr) {
-      first = &step, start = tip, way = Backbone(arm, step.desired).tip().position - tip;
-      continue;
-    }
-    constexpr double little = 0.01;  // Of the arm's length: ways that noise would blow up.
-    if (way.norm() > little * arm.length())
-      most = std::max(most, way.dot(tip - start) / way.squaredNorm() - 1);
+void ServoTally::add_overshoot(const ServoStep& step) {
+  const Eigen::Vector3d tip = Backbone(arm_, *step.seen).tip().position;
+  if (!tip_) {
+    tip_ = tip, way_ = Backbone(arm_, step.desired).tip().position - tip;
+    return;
   }
-  return most;
+  constexpr double little = 0.01;  // Of the arm's length: ways that noise would blow up.
+  if (way_.norm() > little * arm_.length())
+    overshoot_ = std::max(overshoot_, way_.dot(tip - *tip_) / way_.squaredNorm() - 1);
 }
 
-}  // namespace
-
-void add_figures(const Arm& arm, const ServoConfig& config, double last_goal, ServoResult& result) {
+void ServoTally::add(const ServoStep& step) {
+  if (!step.is_fresh) return;
+  if (step.seen && *step.seen_at >= begun_ + last_goal_) add_overshoot(step);
+  if (!step.error) return;
   constexpr double near = 0.02;
+  const double time = *step.seen_at - begun_;
+  if (time < last_goal_ || step.error->rms > near)
+    settled_.reset();
+  else if (!settled_)
+    settled_ = time;
+  late_.push_back({*step.seen_at, *step.error});
+  while (late_.front().time < *step.seen_at - config_.settle) late_.pop_front();
+}
+
+void ServoTally::finish(ServoResult& result) const {
+  result.settled = settled_, result.overshoot = overshoot_;
+  if (late_.empty()) return;
+  const auto count = static_cast<double>(late_.size());
   ServoError sum;
-  int count = 0;
-  double latest = -1;
-  for (const ServoStep& step : result.steps)
-    if (step.is_fresh && step.error) latest = std::max(latest, *step.seen_at);
-  for (const ServoStep& step : result.steps) {
-    if (!step.is_fresh || !step.error) continue;
-    const double time = *step.seen_at - result.start;
-    if (time < last_goal || step.error->rms > near)
-      result.settled.reset();
-    else if (!result.settled)
-      result.settled = time;
-    if (*step.seen_at < latest - config.settle) continue;
-    sum.rms += step.error->rms, sum.most += step.error->most, sum.tip += step.error->tip, ++count;
-  }
-  if (count > 0) result.remaining = ServoError{sum.rms / count, sum.most / count, sum.tip / count};
-  result.overshoot = overshoot_of(arm, result, result.start + last_goal);
+  for (const auto& [time, error] : late_) sum.rms += error.rms, sum.most += error.most, sum.tip += error.tip;
+  result.remaining = ServoError{sum.rms / count, sum.most / count, sum.tip / count};
 }
 
 }  // namespace flexura

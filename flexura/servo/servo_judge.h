@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -39,7 +41,36 @@ class ServoJudge {
   bool is_singular_ = false;
 };
 
-/// Fills in what a result says of how fast and how well its steps came to their goal.
-void add_figures(const Arm& arm, const ServoConfig& config, double last_goal, ServoResult& result);
+/// How fast and how well steps come to their goal, counted as they are made: it keeps the last `settle` s of
+/// errors, however long the servo goes on.
+class ServoTally {
+ public:
+  /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there. `arm` and
+  /// `config` outlive it.
+  ServoTally(const Arm& arm, const ServoConfig& config, double begun, double last_goal)
+      : arm_(arm), config_(config), begun_(begun), last_goal_(last_goal) {}
+
+  /// A step that was made.
+  void add(const ServoStep& step);
+  /// Fills in what a result says of them.
+  void finish(ServoResult& result) const;
+
+ private:
+  void add_overshoot(const ServoStep& step);
+
+  const Arm& arm_;
+  const ServoConfig& config_;
+  double begun_, last_goal_;
+  std::optional<double> settled_;
+  struct Seen {
+    double time = 0;
+    ServoError error;
+  };
+  std::deque<Seen> late_;
+  // From where the tip started, once the last goal was wanted, and its way to there.
+  std::optional<Eigen::Vector3d> tip_;
+  Eigen::Vector3d way_ = Eigen::Vector3d::Zero();
+  double overshoot_ = 0;
+};
 
 }  // namespace flexura

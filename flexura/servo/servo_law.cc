@@ -60,6 +60,7 @@ void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& 
 
 ServoLaw::Wish ServoLaw::step(const Input& input) {
   const ArmState& estimate = input.sight.estimate.shape.state;
+  if (input.is_fresh) features_.look(input.sight);
   if (!features_.measured(estimate, input.sight.seen, seen_) || !find_error(input, input.wanted, is_))
     return {input.sent, 0, true};
   double potential = 0.5 * is_.error.squaredNorm();

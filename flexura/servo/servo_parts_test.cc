@@ -4,16 +4,18 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "flexura/model/backbone.h"
 #include "flexura/servo/drive_response.h"
+#include "flexura/servo/measured_places.h"
 #include "flexura/servo/motion_history.h"
-#include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_judge.h"
 #include "flexura/servo/view_keeper.h"
+#include "flexura/vision/curve_flow.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_views.h"
 
@@ -39,7 +41,7 @@ TEST(MotionHistory, IsStraightBetweenReadings) {
 // What the law takes for derivatives are those of what it measures, near a target.
 TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
   for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
-                                 ServoLawKind::moments, ServoLawKind::potential}) {
+                                 ServoLawKind::moments, ServoLawKind::potential, ServoLawKind::silhouettes}) {
     for_random_cases(20, [&](TestRandom& random) {
       const Arm arm = servo_arm();
       const std::array<View, 2> views = servo_views();
@@ -135,6 +137,37 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
     }
   });
   EXPECT_GT(met, 100 / one_case_of);
+}
+
+// Errors of angles that are carried by rates and drawn back to measured ones have the variance of (25): where
+// rates are much better known than angles the carried ones are better than measured, and worse otherwise.
+TEST(CarriedAngles, HaveTheErrorsOfTheirRatesAndOfTheirAnchor) {
+  for (const double rate_sigma : {1e-4, 3e-3}) {
+    constexpr double angle_sigma = 1e-3, left = 0.8;
+    constexpr int chords = 50, steps = 400;
+    double squares = 0, count = 0;
+    for_random_cases(10, [&](TestRandom& random) {
+      AngleIntegrator integrator(std::vector<double>(chords, 0.0));
+      std::vector<double> turns(chords), measured(chords);
+      double truth = 0;
+      for (int k = 0; k < steps; ++k) {
+        const double turn = random.uniform(-0.2, 0.2);
+        truth += turn;
+        for (double& one : turns) one = turn + rate_sigma * normal_number(random);
+        for (double& one : measured) one = truth + angle_sigma * normal_number(random);
+        integrator.add(turns);
+        (void)integrator.anchor(measured, 1 - left);
+        if (k < steps / 4) continue;
+        for (const double angle : integrator.angles())
+          squares += std::pow(std::remainder(angle - truth, 2 * std::numbers::pi), 2), ++count;
+      }
+    });
+    const double expected = std::sqrt(
+        (left * left * rate_sigma * rate_sigma + (1 - left) * (1 - left) * angle_sigma * angle_sigma) /
+        (1 - left * left));
+    EXPECT_NEAR(std::sqrt(squares / count), expected, 0.03 * expected);
+    EXPECT_EQ(expected < angle_sigma, rate_sigma < angle_sigma);
+  }
 }
 
 // Random ways of an arm that does not do what its model says, seen with a picture's noise.

@@ -38,6 +38,9 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
   require(ports.cameras.size() == believed.cameras.size() && config.cameras[0] != config.cameras[1] &&
               config.cameras[0] < believed.cameras.size() && config.cameras[1] < believed.cameras.size(),
           "a servo needs the ports of two cameras of the model");
+  require(config.measure == ServoMeasure::picture || has_chords(config.law),
+          "flow carries the angles of the laws chords and potential alone");
+  require(config.anchor > 0, "a servo's anchor is above 0");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step are above 0");
 }
@@ -59,7 +62,7 @@ class Session {
         watcher_(watcher),
         rig_(ports, believed, config.cameras, longest_delay, 0.6 * config.step),
         eyes_(believed, config.cameras, config.markers, config.camera_doubt),
-        features_(servo_features(config.law, believed.arm, config.points)),
+        features_(servo_features(config, believed)),
         law_(believed.arm, config, *features_),
         keeper_(believed, config.cameras) {}
 
@@ -82,7 +85,7 @@ class Session {
     if (result_.missed_steps > 0)
       watcher_.told(rig_.now(),
                     fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
-    add_figures(model_.arm, config_, goals_->last(), result_);
+    tally_->finish(result_);
     return std::move(result_);
   }
 
@@ -107,6 +110,7 @@ class Session {
       return fmt::format("the arm cannot be steered from where it is: {}", error.what());
     }
     judge_.emplace(config_, result_.start, goals_->last());
+    tally_.emplace(model_.arm, config_, result_.start, goals_->last());
     seen_since_ = result_.start;
     return std::nullopt;
   }
@@ -307,7 +311,8 @@ class Session {
     step.sent = std::move(state);
     watcher_.stepped(step);
     judge_->add(step);
-    result_.steps.push_back(std::move(step));
+    tally_->add(step);
+    if (config_.keeps_steps) result_.steps.push_back(std::move(step));
   }
 
   // Down the limiter's way to rest.
@@ -338,6 +343,7 @@ class Session {
   std::optional<ServoGoals> goals_;
   std::optional<CommandLimiter> limiter_;
   std::optional<ServoJudge> judge_;
+  std::optional<ServoTally> tally_;
   std::optional<ServoSight> last_;  // In which the arm was seen.
   std::string unseen_because_;
   double seen_since_ = 0;

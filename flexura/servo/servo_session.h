@@ -77,8 +77,8 @@ class ServoWatcher {
 /// How a servo went.
 struct ServoResult {
   bool is_done = false;
-  std::string reason;  ///< Why it is not; the arm rests.
-  std::vector<ServoStep> steps;
+  std::string reason;            ///< Why it is not; the arm rests.
+  std::vector<ServoStep> steps;  ///< None of a servo that keeps none.
   /// Steps whose time had passed before the one before them was done: nothing was sent at these.
   long missed_steps = 0;
   double start = 0;                     ///< s

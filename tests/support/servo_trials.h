@@ -10,6 +10,7 @@
 #include "flexura/control/image_law.h"
 #include "flexura/control/jacobian_estimate.h"
 #include "flexura/control/shape_features.h"
+#include "tests/support/edge_loop.h"
 #include "tests/support/servo_loop.h"
 #include "tests/support/servo_views.h"
 
@@ -31,6 +32,22 @@ inline void expect_random_targets(int cases) {
     share.print(name);
     EXPECT_EQ(share.converged, share.all) << name;
   }
+}
+
+/// Edges of the images alone bring the arm wherever points bring it.
+inline void expect_silhouettes_reach_what_points_reach(int cases) {
+  ServoShare edges, points;
+  for_random_cases(cases, [&](TestRandom& random) {
+    ServoLoop loop;
+    loop.set = FeatureSet::of_points(6);
+    const ArmState start = random_servo_state(random, loop.arm, 0.3),
+                   target = random_servo_state(random, loop.arm, 1.5);
+    points.add(servo(loop, start, target, 8));
+    edges.add(servo_by_edges(loop, start, target, 8));
+  });
+  points.print("points");
+  edges.print("silhouettes");
+  EXPECT_GE(edges.converged, points.converged);
 }
 
 /// Targets near by, of which `least` of all are reached.

@@ -1,0 +1,95 @@
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "flexura/control/contour_images.h"
+#include "flexura/servo/measured_places.h"
+#include "flexura/servo/servo_features.h"
+
+namespace flexura {
+namespace {
+
+std::vector<double> equal_shares(int count) {
+  std::vector<double> shares;
+  for (int k = 1; k <= count; ++k) shares.push_back(static_cast<double>(k) / count);
+  return shares;
+}
+
+// Two numbers a pixel, right and left of each place, and then a normal, in the first camera, then in the
+// second.
+class SilhouetteFeatures : public ServoFeatures {
+ public:
+  SilhouetteFeatures(const Arm& arm, int points) : contours_(arm, equal_shares(points)) {}
+
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+                              Eigen::VectorXd& values) override {
+    if (!see(estimate, {seen[0].view, seen[1].view}, values)) return false;
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      measured_edges(images_[i], seen[i], edges_in(values, i));
+    return true;
+  }
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
+                              Eigen::VectorXd& values) override {
+    return see(state, views, values);
+  }
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                           const ArmState& estimate, const std::array<View, 2>& views,
+                           FeatureError& result) override {
+    if (!see(estimate, views, own_)) return false;
+    const Eigen::Index rows = contours_.count();
+    result.error.resize(2 * rows), result.by_state.resize(2 * rows, contours_.columns());
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      const auto first = static_cast<Eigen::Index>(i) * rows;
+      contour_error(images_[i], edges_in(seen, i), edges_in(desired, i), normals_in(desired, i),
+                    result.error.segment(first, rows));
+      contours_.derive(views[i], images_[i], result.by_state.middleRows(first, rows));
+      // What the wanted shape shows nowhere says nothing of how to come there.
+      for (Eigen::Index k = 0; k < rows; ++k)
+        if (!edges_in(desired, i).col(k).allFinite()) result.by_state.row(first + k).setZero();
+    }
+    return true;
+  }
+
+ private:
+  using Edges = Eigen::Map<Eigen::Matrix2Xd>;
+  using ConstEdges = Eigen::Map<const Eigen::Matrix2Xd>;
+  [[nodiscard]] Eigen::Index place_of(std::size_t camera) const {
+    return 4 * contours_.count() * static_cast<Eigen::Index>(camera);
+  }
+  [[nodiscard]] Edges edges_in(Eigen::VectorXd& values, std::size_t camera) const {
+    return {values.data() + place_of(camera), 2, contours_.count()};
+  }
+  [[nodiscard]] ConstEdges edges_in(const Eigen::VectorXd& values, std::size_t camera) const {
+    return {values.data() + place_of(camera), 2, contours_.count()};
+  }
+  [[nodiscard]] ConstEdges normals_in(const Eigen::VectorXd& values, std::size_t camera) const {
+    return {values.data() + place_of(camera) + 2 * contours_.count(), 2, contours_.count()};
+  }
+
+  // The contours of a state, in images_ and as values.
+  [[nodiscard]] bool see(const ArmState& state, const std::array<View, 2>& views, Eigen::VectorXd& values) {
+    contours_.set(state);
+    values.resize(8 * contours_.count());
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      if (!contours_.see(views[i], images_[i])) return false;
+      edges_in(values, i) = images_[i].pixels;
+      values.segment(place_of(i) + 2 * contours_.count(), 2 * contours_.count()) =
+          images_[i].normals.reshaped();
+    }
+    return true;
+  }
+
+  ContourImages contours_;
+  std::array<ContourImage, 2> images_;
+  Eigen::VectorXd own_;
+};
+
+}  // namespace
+
+std::unique_ptr<ServoFeatures> silhouette_features(const Arm& arm, int points) {
+  return std::make_unique<SilhouetteFeatures>(arm, points);
+}
+
+}  // namespace flexura

@@ -11,7 +11,10 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target calibration_study paper_study
-mkdir -p docs/studies
+# Trials of other code are none of this one's.
+trials_kept=build/studies/calibration/$(git rev-parse --short HEAD)
+picture=docs/images/calibration-study.svg
+mkdir -p docs/studies "$trials_kept"
 {
   echo "# Calibrating random rigs"
   echo
@@ -36,11 +39,13 @@ mkdir -p docs/studies
   echo
   echo "Simulated rigs at their ports: pictures of 640 x 480 px with f = 800 px at ratio 1, a noise of 2 to 3 of 255, heads"
   echo "that count in steps of 0.075 degrees. Evenly within these bounds, cameras start turned by 10 degrees in pan and in"
-  echo "tilt and by 1 in roll, 0.2 m off along each axis, at a zoom of 1 to 2.5, with a principal point 1 px off (10 px for \`bundle\`); the arm's"
-  echo "sections bend by 1 % more or less and are 0.5 % longer or shorter. The cylinder (radius 0.1 m) is 1.5 m away, the"
+  echo "tilt and by 1 in roll, 0.2 m off along each axis, at a zoom of 1 to 2.5, with a principal point 1 px off (10 px for"
+  echo "\`bundle\`); the arm's sections bend by 1 % more or less and are 0.5 % longer or shorter. The cylinder (radius 0.1 m) is 1.5 m away, the"
   echo "arm 2.5 m. What remains is the simulated truth's."
   echo
-  "$build/bin/paper_study" "$drawn" "$seed" "$printed"
-} >"$page.new"
-mv "$page.new" "$page"
+  "$build/bin/paper_study" "$drawn" "$seed" "$printed" "$trials_kept" "$trials_kept/picture.svg"
+  echo "![Where the printed methods start and what comes of them; which share of the starts each method brings how near](../images/calibration-study.svg)"
+} >"$trials_kept/page.md"
+mv "$trials_kept/page.md" "$page"
+mv "$trials_kept/picture.svg" "$picture"
 echo "wrote $page"

@@ -1,6 +1,7 @@
-// Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study
-// [TRIALS] [SEED] [PRINTED]: so many trials of the methods that are meant to succeed, and PRINTED ones of the
-// paper's as printed, which take ten times as long. docs/studies/calibration.md
+// Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study TRIALS
+// SEED PRINTED FOLDER [PICTURE]: so many trials of the methods that are meant to succeed, and PRINTED ones of
+// the paper's as printed. Trials are kept in FOLDER as they end; those that are there already are not run
+// again. Draws where the printed ones fail into PICTURE. docs/studies/calibration.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,111 +10,68 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "tests/support/calibration_bench.h"
-#include "tests/support/loop_files.h"
+#include "tests/support/calibration_trials.h"
+#include "tests/support/outcome_plot.h"
 
 namespace flexura {
 namespace {
 
-struct Ending {
-  bool is_done = false;
-  std::string reason;
-  double pictures = 0;  // A camera.
-  double angle = 0, aim = 0, zoom = 0;
-};
-
-// The reason without its numbers and names, to be counted.
-std::string kind_of(const std::string& reason) {
-  static const std::vector<std::string> kinds = {"back and forth", "runs away",      "two red axes",
-                                                 "limit of",       "out of view",    "cannot have all",
-                                                 "no red axis",    "not verified",   "no circle's arc",
-                                                 "does not see",   "correlation is", "ends"};
-  for (const std::string& kind : kinds)
-    if (reason.find(kind) != std::string::npos) return kind;
-  return reason.substr(0, reason.find(';'));
-}
-
-Ending run_one(const std::string& method, std::uint64_t seed) {
-  TestRandom random(seed);
-  WrongRig wrong = wrong_rig(random);
-  // `bundle` learns the principal point; the others cannot see it.
-  constexpr double rougher = 10;
-  if (method == "bundle")
-    for (WrongStart* start : {&wrong.front, &wrong.side}) start->cx *= rougher, start->cy *= rougher;
-  const std::string task = "method = \"" + method + "\"\n";
-  const bool has_arm = !method.starts_with("etalon");
-  const LoopRig cameras = arcs_cameras({wrong.front, wrong.side}, method == "arcs-paper");
-  CalibrationBench bench(has_arm ? arcs_rig(task, cameras, wrong.longer)
-                                 : etalon_rig(task, {.wrong = {wrong.front, wrong.side}}));
-  RigPorts ports = bench.ports();
-  WrongArm arm(*ports.arm, wrong.gains);
-  if (has_arm) ports.arm = &arm;
-  Ending ending;
-  if (method == "bundle") {
-    const RigSessionResult result = bench.calibrate_bundle(ports);
-    ending.is_done = result.is_done, ending.reason = result.reason;
-    ending.pictures = 0.5 * static_cast<double>(result.pictures[0] + result.pictures[1]);
-    if (!result.is_done) return ending;
-    const RigRemainder left = bench.truth(result.target);
-    ending.angle = left.angle, ending.zoom = left.zoom_ratio - 1;
-    ending.aim = std::max(left.aim[0].norm(), left.aim[1].norm());
-    return ending;
-  }
-  const LoopResult result = bench.calibrate(ports);
-  ending.is_done = result.is_done, ending.reason = result.reason;
-  ending.pictures = 0.5 * static_cast<double>(result.pictures[0] + result.pictures[1]);
-  if (!result.is_done) return ending;
-  const RigRemainder left = bench.truth(result);
-  ending.angle = left.angle, ending.zoom = left.zoom_ratio - 1;
-  ending.aim = std::max(left.aim[0].norm(), left.aim[1].norm());
-  return ending;
-}
-
-double share_95(std::vector<double> sizes) {
-  for (double& size : sizes) size = std::abs(size);
-  std::ranges::sort(sizes);
-  return sizes[static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(sizes.size()))) - 1];
-}
-double middle_of(std::vector<double> sizes) {
-  for (double& size : sizes) size = std::abs(size);
-  std::ranges::sort(sizes);
-  return sizes[sizes.size() / 2];
-}
-
-void print_row(const std::string& method, std::size_t trials, std::uint64_t seed,
-               std::map<std::string, std::map<std::string, int>>& failures) {
-  std::vector<Ending> endings(trials);
+std::vector<CalibrationTrial> run_all(const std::string& method, std::size_t count, std::uint64_t seed,
+                                      const std::filesystem::path& folder) {
+  TrialFile file((folder / fmt::format("{}-{}.txt", method, seed)).string());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i = next++; i < trials; i = next++) endings[i] = run_one(method, seed * 1000003 + i);
+    for (std::size_t i = next++; i < count; i = next++)
+      if (!file.has(i)) file.add(run_trial(method, seed, i));
   };
   std::vector<std::thread> threads;
   for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) threads.emplace_back(work);
   for (std::thread& thread : threads) thread.join();
+  return file.first(count);
+}
+
+double share_of(std::vector<double> sizes, double share) {
+  for (double& size : sizes) size = std::abs(size);
+  std::ranges::sort(sizes);
+  const double place = std::ceil(share * static_cast<double>(sizes.size()));
+  return sizes[static_cast<std::size_t>(std::max(1.0, place)) - 1];
+}
+
+void print_row(const std::string& method, const std::vector<CalibrationTrial>& trials) {
   std::vector<double> pictures, angle, aim, zoom;
-  for (const Ending& one : endings) {
-    if (!one.is_done) {
-      ++failures[method][kind_of(one.reason)];
-      continue;
-    }
+  for (const CalibrationTrial& one : trials) {
+    if (!one.is_done) continue;
     pictures.push_back(one.pictures), angle.push_back(one.angle), aim.push_back(one.aim),
         zoom.push_back(one.zoom);
   }
-  fmt::print("| `{}` | {} of {} |", method, pictures.size(), trials);
+  fmt::print("| `{}` | {} of {} |", method, pictures.size(), trials.size());
   if (pictures.empty()) {
-    fmt::print(" - | - | - | - | - | - |\n");
+    fmt::print(" - | - | - | - | - | - | - |\n");
     return;
   }
   constexpr double in_degrees = 180 / std::numbers::pi;
-  fmt::print(" {:.1f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", middle_of(pictures),
-             middle_of(angle) * in_degrees, share_95(angle) * in_degrees, middle_of(aim) * 1e3,
-             share_95(aim) * 1e3, share_95(zoom) * 100);
+  fmt::print(" {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", share_of(pictures, 0.5),
+             share_of(angle, 0.5) * in_degrees, share_of(angle, 0.95) * in_degrees,
+             share_of(angle, 1) * in_degrees, share_of(aim, 0.5) * 1e3, share_of(aim, 0.95) * 1e3,
+             share_of(zoom, 0.95) * 100);
+}
+
+void print_failures(const std::string& method, const std::vector<CalibrationTrial>& trials) {
+  std::map<std::string, int> kinds;
+  for (const CalibrationTrial& one : trials)
+    if (!one.is_done) ++kinds[one.reason];
+  if (kinds.empty()) return;
+  fmt::print("`{}` stopped:", method);
+  const char* before = " ";
+  for (const auto& [kind, count] : kinds) fmt::print("{}{} x \"{}\"", before, count, kind), before = ", ";
+  fmt::print(".\n\n");
 }
 
 }  // namespace
@@ -121,24 +79,29 @@ void print_row(const std::string& method, std::size_t trials, std::uint64_t seed
 
 int main(int argc, char** argv) {
   using namespace flexura;
-  const auto trials = static_cast<std::size_t>(argc > 1 ? std::atoi(argv[1]) : 20);
-  const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
-  std::map<std::string, std::map<std::string, int>> failures;
+  if (argc < 5) {
+    fmt::print(stderr, "paper_study TRIALS SEED PRINTED FOLDER [PICTURE]\n");
+    return 2;
+  }
+  const auto trials = static_cast<std::size_t>(std::atoi(argv[1]));
+  const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10);
+  const auto printed = static_cast<std::size_t>(std::atoi(argv[3]));
+  const std::filesystem::path folder = argv[4];
+  std::filesystem::create_directories(folder);
   fmt::print(
-      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | aim, mm, median | 95 "
-      "% | zoom "
-      "ratio from 1, %, 95 % |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-  const auto printed = static_cast<std::size_t>(argc > 3 ? std::atoi(argv[3]) : 20);
-  for (const std::string method : {"bundle", "etalon", "arcs", "etalon-paper", "arcs-paper"}) {
-    print_row(method, method.ends_with("-paper") ? printed : trials, seed, failures);
+      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | largest | aim, mm, "
+      "median | 95 % | zoom ratio from 1, %, 95 % |\n"
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  MethodTrials all, shown;
+  for (const std::string method : {"bundle", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
+    const bool is_printed = method.ends_with("-paper");
+    all.emplace_back(method, run_all(method, is_printed ? printed : trials, seed, folder));
+    if (is_printed) shown.push_back(all.back());
+    print_row(method, all.back().second);
     std::fflush(stdout);
   }
   fmt::print("\n");
-  for (const auto& [method, kinds] : failures) {
-    fmt::print("`{}` stopped:", method);
-    const char* before = " ";
-    for (const auto& [kind, count] : kinds) fmt::print("{}{} x \"{}\"", before, count, kind), before = ", ";
-    fmt::print(".\n");
-  }
+  for (const auto& [method, ended] : all) print_failures(method, ended);
+  if (argc > 5) std::ofstream(argv[5]) << OutcomePlot::draw(shown, all);
   return 0;
 }

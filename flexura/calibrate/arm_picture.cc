@@ -51,18 +51,21 @@ std::vector<CurvePoint> independent_points(const std::vector<AxisSample>& axis,
 
 }  // namespace
 
-MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
+MarkerPicture marker_picture(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
                              const View& view, const Arm& marked) {
   const Backbone backbone(arm, state);
-  MarkerScene scene;
+  MarkerPicture picture{
+      .view = view, .markers = {}, .ends = {backbone.pose(0).position, backbone.tip().position}, .seen = {}};
   for (const KnownMarker& marker : markers) {
     const double s = arc_length_of(arm, state, material_point(marked, marker.s));
-    const auto pixel = view.project(backbone.pose(s).position);
-    auto& place = scene.markers.emplace_back();
-    if (pixel) place = MarkerScene::Place{*pixel, marker.color};
+    picture.markers.push_back({backbone.pose(s).position, marker.color});
   }
-  scene.ends = {view.project(backbone.pose(0).position), view.project(backbone.tip().position)};
-  return scene;
+  return picture;
+}
+
+MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
+                             const View& view, const Arm& marked) {
+  return expected_scene(marker_picture(arm, state, markers, view, marked), {});
 }
 
 ArmFigure ArmPicture::look(const Picture& picture) {

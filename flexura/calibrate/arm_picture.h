@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/calibrate/marker_match.h"
+#include "flexura/calibrate/marker_vote.h"
 #include "flexura/camera/view.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
@@ -44,8 +45,13 @@ struct SeenArm {
   std::string reason;              ///< Why there are no markers; "" when there are.
 };
 
-/// Where an arm's markers and ends are to be seen, if the arm and the view are as believed. The markers'
-/// places are told along `marked`: the same arm, whose sections may have been taken for longer or shorter.
+/// Where an arm's markers and ends are if the arm and the view are as believed; nothing is seen yet. The
+/// markers' places are told along `marked`: the same arm, whose sections may have been taken for longer or
+/// shorter.
+[[nodiscard]] MarkerPicture marker_picture(const Arm& arm, const ArmState& state,
+                                           const std::vector<KnownMarker>& markers, const View& view,
+                                           const Arm& marked);
+/// Where they are to be seen.
 [[nodiscard]] MarkerScene expected_markers(const Arm& arm, const ArmState& state,
                                            const std::vector<KnownMarker>& markers, const View& view,
                                            const Arm& marked);

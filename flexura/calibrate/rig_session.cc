@@ -175,7 +175,7 @@ class Session {
     }
     sights_.looks.push_back(
         {.stance = *stance_[i], .pose = sights_.poses.size() - 1, .arm = std::move(look)});
-    const MarkerMatch match = sights_.recognise(model(), doubt()).back();
+    const MarkerMatch match = sights_.recognise_last(model(), doubt());
     return sights_.seen(model(), sights_.looks.size() - 1, match);
   }
   // Of where cameras look, as they are believed just then.
@@ -267,6 +267,7 @@ class Session {
       if (round == 0 || (is_found && now.explained >= best.explained)) best = std::move(now);
       if (!is_found) break;
       std::vector<MarkerMatch> again = sights_.recognise(model, of_found);
+      // The first round leaves out looks of few markers.
       if (round > 0 && again == matches) break;
       matches = std::move(again);
     }

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "flexura/kinematics/spatial.h"
-#include "flexura/model/backbone.h"
-
 namespace flexura {
 
 std::size_t markers_of(const MarkerScene& scene) {
@@ -14,16 +11,9 @@ std::size_t markers_of(const MarkerScene& scene) {
 }
 
 MarkerPicture RigSights::picture(const RigModel& model, const Look& look) const {
-  const ArmState state = model.bent(poses[look.pose]);
-  const Backbone backbone(model.arm, state);
-  MarkerPicture picture{.view = view_of(model, stances[look.stance]),
-                        .markers = {},
-                        .ends = {backbone.pose(0).position, backbone.tip().position},
-                        .seen = look.arm.scene};
-  for (const KnownMarker& marker : config_.markers) {
-    const double s = arc_length_of(model.arm, state, material_point(marked_, marker.s));
-    picture.markers.push_back({backbone.pose(s).position, marker.color});
-  }
+  MarkerPicture picture = marker_picture(model.arm, model.bent(poses[look.pose]), config_.markers,
+                                         view_of(model, stances[look.stance]), marked_);
+  picture.seen = look.arm.scene;
   return picture;
 }
 
@@ -31,34 +21,44 @@ std::vector<MarkerMatch> RigSights::recognise(const RigModel& model, const Sight
                                               const std::array<std::size_t, 2>& rank) const {
   std::vector<MarkerMatch> matches(looks.size());
   for (std::size_t i = 0; i < looks.size(); ++i) matches[i].markers.resize(looks[i].arm.scene.markers.size());
-  for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
-    std::vector<MarkerPicture> pictures;
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      if (stances[looks[i].stance].camera != cameras_[camera]) continue;
-      pictures.push_back(picture(model, looks[i]));
-      places.push_back(i);
-    }
-    const auto errors = likely_errors(pictures, doubt, rank[camera] + 1);
-    if (errors.size() <= rank[camera]) continue;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const auto& size = looks[places[k]].arm.size;
-      // What one error for all pictures leaves: arms that bend otherwise than told, a camera that went.
-      const MatchDoubt rest{.shift = 0.04 * size[0], .turn = 0.05, .scale = 0.05};
-      const MarkerScene expected = expected_scene(pictures[k], errors[rank[camera]]);
-      MarkerMatch& match = matches[places[k]];
-      match = match_markers(expected, pictures[k].seen, size, rest);
-      // From where nothing was seen before a rig that is hardly known expects worse.
-      constexpr double more = 3;
-      if (2 * match.count >= markers_of(pictures[k].seen)) continue;
-      MarkerMatch wide =
-          match_markers(expected, pictures[k].seen, size,
-                        {.shift = more * rest.shift, .turn = more * rest.turn, .scale = more * rest.scale});
-      if (4 * wide.count >= 3 * markers_of(pictures[k].seen) && wide.count > match.count)
-        match = std::move(wide);
-    }
-  }
+  for (std::size_t i = 0; i < 2; ++i) recognise(model, doubt, cameras_[i], rank[i], matches);
   return matches;
+}
+
+MarkerMatch RigSights::recognise_last(const RigModel& model, const SightDoubt& doubt) const {
+  std::vector<MarkerMatch> matches(looks.size());
+  matches.back().markers.resize(looks.back().arm.scene.markers.size());
+  recognise(model, doubt, stances[looks.back().stance].camera, 0, matches);
+  return matches.back();
+}
+
+void RigSights::recognise(const RigModel& model, const SightDoubt& doubt, std::size_t camera,
+                          std::size_t rank, std::vector<MarkerMatch>& matches) const {
+  std::vector<MarkerPicture> pictures;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (stances[looks[i].stance].camera != camera) continue;
+    pictures.push_back(picture(model, looks[i]));
+    places.push_back(i);
+  }
+  const auto errors = likely_errors(pictures, doubt, rank + 1);
+  if (errors.size() <= rank) return;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& size = looks[places[k]].arm.size;
+    // What one error for all pictures leaves: arms that bend otherwise than told, a camera that went.
+    const MatchDoubt rest{.shift = 0.04 * size[0], .turn = 0.05, .scale = 0.05};
+    const MarkerScene expected = expected_scene(pictures[k], errors[rank]);
+    MarkerMatch& match = matches[places[k]];
+    match = match_markers(expected, pictures[k].seen, size, rest);
+    // From where nothing was seen before a rig that is hardly known expects worse.
+    constexpr double more = 3;
+    const std::size_t count = markers_of(pictures[k].seen);
+    if (2 * match.count >= count) continue;
+    MarkerMatch wide =
+        match_markers(expected, pictures[k].seen, size,
+                      {.shift = more * rest.shift, .turn = more * rest.turn, .scale = more * rest.scale});
+    if (4 * wide.count >= 3 * count && wide.count > match.count) match = std::move(wide);
+  }
 }
 
 SeenArm RigSights::seen(const RigModel& model, std::size_t look, const MarkerMatch& match) const {

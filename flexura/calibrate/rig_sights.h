@@ -36,6 +36,8 @@ class RigSights {
   /// nothing is recognised of a camera that has no so many.
   [[nodiscard]] std::vector<MarkerMatch> recognise(const RigModel& model, const SightDoubt& doubt,
                                                    const std::array<std::size_t, 2>& rank = {0, 0}) const;
+  /// Of the last look alone, by all looks of its camera and their likeliest error.
+  [[nodiscard]] MarkerMatch recognise_last(const RigModel& model, const SightDoubt& doubt) const;
   /// What the looks tell, recognised so, that have this many markers at least.
   [[nodiscard]] RigObservations observations(const RigModel& model, const std::vector<MarkerMatch>& matches,
                                              std::size_t fewest) const;
@@ -44,6 +46,9 @@ class RigSights {
 
  private:
   [[nodiscard]] MarkerPicture picture(const RigModel& model, const Look& look) const;
+  // The looks of one camera; the others' matches stay as they are.
+  void recognise(const RigModel& model, const SightDoubt& doubt, std::size_t camera, std::size_t rank,
+                 std::vector<MarkerMatch>& matches) const;
 
   const Arm& marked_;
   ArmPictureConfig config_;

@@ -8,32 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "flexura/math/so3.h"
+#include "tests/support/banded_arms.h"
 #include "tests/support/rig_trials.h"
 
 namespace flexura {
 namespace {
-
-const std::vector<Eigen::Vector3d> colors = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
-
-std::vector<KnownMarker> bands() {
-  constexpr std::size_t count = 12;
-  std::vector<KnownMarker> markers(count);
-  for (std::size_t i = 0; i < count; ++i)
-    markers[i] = {.s = (static_cast<double>(i) + 0.5) / count, .color = colors[i % colors.size()]};
-  return markers;
-}
-
-// Mild bends, and such as bend every part to every side.
-std::vector<ArmState> some_poses() {
-  std::vector<ArmState> poses(3, ArmState::straight(3));
-  poses[0].bends = {{0.5, 0}, {0.5, 0}, {0.5, 0}};
-  poses[1].bends = {{0, 0.5}, {0, 0.5}, {0, 0.5}};
-  poses[2].bends = {{-0.6, 0.3}, {0.7, 0.1}, {0.5, -0.8}};
-  return poses;
-}
-
-constexpr SightDoubt rough = {.sideways = 0.26, .roll = 0.17, .scale = 0.22};
 
 // What a camera truly sees of an arm, and which of its markers each one is: some are missed, some are
 // nobody's.
@@ -59,7 +38,7 @@ TrueSight look(const RigModel& truth, const Arm& told, const RigStance& stance, 
     if (random.uniform(0, 1) > 0.03) continue;
     sight.scene.markers.emplace_back(
         MarkerScene::Place{all.markers[i]->pixel + random.vector<2>(-30, 30),
-                           colors[static_cast<std::size_t>(random.integer(0, 2))]});
+                           band_colors[static_cast<std::size_t>(random.integer(0, 2))]});
     sight.names.emplace_back();
   }
   if (is_inside(all.ends[0]) && is_inside(all.ends[1])) sight.scene.ends = all.ends;
@@ -137,43 +116,6 @@ TEST(RigSights, OfAKnownRigAreRecognisedFromWhereNothingWasSeenBefore) {
       EXPECT_GE(static_cast<std::ptrdiff_t>(matches[i].count), named - 1) << i;
     }
   });
-}
-
-TEST(LikelyErrors, AreTheCamerasWhereItIsTurnedAndItsLensIsLonger) {
-  for_random_cases(20, [](TestRandom& random) {
-    const RigModel believed = believed_rig();
-    const SightError error{random.vector<3>(-0.1, 0.1), random.uniform(-0.1, 0.1)};
-    std::vector<MarkerPicture> pictures;
-    for (const ArmState& pose : some_poses()) {
-      const Backbone backbone(believed.arm, pose);
-      MarkerPicture& picture = pictures.emplace_back();
-      picture.view = view_of(believed, {.camera = 0});
-      picture.ends = {backbone.pose(0).position, backbone.tip().position};
-      for (const KnownMarker& marker : bands())
-        picture.markers.push_back({backbone.pose(marker.s).position, marker.color});
-      picture.seen = expected_scene(picture, error);
-    }
-    const auto found = likely_errors(pictures, rough, 3);
-    ASSERT_FALSE(found.empty());
-    // What is guessed counts a little.
-    EXPECT_LT((found.front().turn - error.turn).norm(), 6e-3);
-    EXPECT_NEAR(found.front().scale, error.scale, 6e-3);
-  });
-}
-
-TEST(LikelyErrors, AreNoneWhereThereIsNoPicture) { EXPECT_TRUE(likely_errors({}, rough, 3).empty()); }
-
-// Equal markers in a row, of which a picture shows some: shifted by one they look the same.
-TEST(MarkerMatch, TakesTheLikelierOfTwoShifts) {
-  MarkerScene expected, seen;
-  for (int i = 0; i < 12; ++i) {
-    expected.markers.emplace_back(MarkerScene::Place{{320.0, 40.0 * i + 20}});
-    if (i >= 2 && i < 9) seen.markers.emplace_back(MarkerScene::Place{{324.0, 40.0 * i + 23}});
-  }
-  const MarkerMatch match =
-      match_markers(expected, seen, {640, 480}, {.shift = 10, .turn = 0.05, .scale = 0.05});
-  EXPECT_EQ(match.count, 7U);
-  for (std::size_t i = 0; i < match.markers.size(); ++i) EXPECT_EQ(match.markers[i], i + 2);
 }
 
 }  // namespace

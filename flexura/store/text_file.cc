@@ -15,10 +15,16 @@
 
 namespace flexura {
 
+bool is_missing(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::status(path, error).type() == std::filesystem::file_type::not_found;
+}
+
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw input_error(file.string(), "no such file");
+  if (status.type() == std::filesystem::file_type::not_found)
+    throw input_error(file.string(), "no such file");
   if (std::filesystem::is_directory(status)) throw input_error(file.string(), "is a folder: expected a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
@@ -46,6 +52,7 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
   if (name.empty() || name.find('\0') != std::string::npos) fail("expected a file's name");
   std::error_code error;
   const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
+  if (error) fail(fmt::format("cannot read its folder: {}", error.message()));
   const auto target = std::filesystem::weakly_canonical(root / name, error);
   if (error) fail(fmt::format("cannot read \"{}\": {}", name, error.message()));
   const auto from_root = target.lexically_relative(root);

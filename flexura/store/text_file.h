@@ -7,6 +7,10 @@
 
 namespace flexura {
 
+/// Whether nothing is at a path. What cannot be looked at (a link to itself) is there: whoever opens it
+/// learns why not.
+[[nodiscard]] bool is_missing(const std::filesystem::path& path);
+
 /// The bytes of a file. Throws InputError when it cannot be read, is no regular file or holds more than
 /// `max_bytes`.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);

@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "flexura/base/utf8.h"
@@ -103,11 +104,18 @@ struct Including {
   std::vector<Problem>* repeated = nullptr;  // As for parse_toml.
 };
 
+// The same for every way to a file. A pipe (/dev/stdin) leads to no place in the file system: it is itself.
+std::filesystem::path place_of(const std::filesystem::path& file) {
+  std::error_code error;
+  auto place = std::filesystem::weakly_canonical(file, error);
+  return error ? file : place;
+}
+
 void lay_upon_includes(Node& document, const std::filesystem::path& file, Including& including);
 
 Node read_with_includes(const std::filesystem::path& file, Including& including) {
   Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string(), including.repeated);
-  including.open.push_back(std::filesystem::weakly_canonical(file));
+  including.open.push_back(place_of(file));
   lay_upon_includes(document, file, including);
   including.open.pop_back();
   return document;
@@ -126,7 +134,7 @@ std::filesystem::path included_file(const Node& entry, const std::filesystem::pa
 // A file that is being read already would be read without end.
 void check_is_new(const std::filesystem::path& file, const Node& entry, const Including& including) {
   const auto& open = including.open;
-  const auto found = std::ranges::find(open, std::filesystem::weakly_canonical(file));
+  const auto found = std::ranges::find(open, place_of(file));
   if (found == open.end()) return;
   std::string between;
   for (auto way = found + 1; way != open.end(); ++way)

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "flexura/base/source.h"
 #include "flexura/store/json.h"
@@ -124,6 +127,15 @@ TEST_F(TomlFile, IsLaidUponTheFilesItIncludes) {
   write("sub/rig.toml", "a = 1\n[t]\nx = 1\ny = 2\n");
   write("x.toml", "include = ['sub/rig.toml']\n[t]\ny = 3\n");
   EXPECT_EQ(write_json(read("x.toml")), R"({"a":1,"t":{"x":1,"y":3}})");
+}
+
+TEST_F(TomlFile, MayComeThroughAPipe) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  ASSERT_EQ(::write(ends[1], "a = 1", 5), 5);
+  ::close(ends[1]);
+  EXPECT_EQ(write_json(read_toml_file("/proc/self/fd/" + std::to_string(ends[0]))), R"({"a":1})");
+  ::close(ends[0]);
 }
 
 TEST_F(TomlFile, IncludesNothingOutsideItsFolder) {

@@ -1,0 +1,62 @@
+#include "flexura/store/text_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "flexura/base/source.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TextFileTest : public ::testing::Test {
+ protected:
+  // What keeps a file from being read.
+  static std::string refusal(const std::filesystem::path& file) {
+    try {
+      (void)read_text_file(file, 100);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(TextFileTest, SaysWhyAFileCannotBeRead) {
+  std::filesystem::create_symlink("loop", folder_.path() / "loop");
+  EXPECT_THAT(refusal(folder_.path() / "loop"),
+              HasSubstr("cannot be read: Too many levels of symbolic links"));
+  EXPECT_THAT(refusal(folder_.path() / "loop" / "file"), HasSubstr("cannot be read: Too many levels"));
+  EXPECT_THAT(refusal(folder_.path() / "nothing"), HasSubstr("no such file"));
+  EXPECT_THAT(refusal(folder_.path()), HasSubstr("is a folder"));
+  write_new_file(folder_.path() / "long", std::string(101, 'x'));
+  EXPECT_THAT(refusal(folder_.path() / "long"), HasSubstr("is larger"));
+}
+
+TEST_F(TextFileTest, LooksForNoFileInAFolderThatIsALinkToItself) {
+  std::filesystem::create_symlink("loop", folder_.path() / "loop");
+  try {
+    (void)file_inside(folder_.path() / "loop", "log.mcap");
+    ADD_FAILURE() << "found";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cannot read its folder: Too many levels of symbolic links"));
+  }
+}
+
+TEST_F(TextFileTest, FindsMissingOnlyWhatIsNotThere) {
+  EXPECT_TRUE(is_missing(folder_.path() / "nothing"));
+  EXPECT_FALSE(is_missing(folder_.path()));
+  std::filesystem::create_symlink("nothing", folder_.path() / "link");
+  EXPECT_TRUE(is_missing(folder_.path() / "link"));
+  std::filesystem::create_symlink("loop", folder_.path() / "loop");
+  EXPECT_FALSE(is_missing(folder_.path() / "loop"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -9,7 +9,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target endurance_study
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 status=0
 {
   echo "# A day of servoing"
@@ -37,7 +37,7 @@ status=0
   echo '```'
   echo
   "$build/bin/endurance_study" "$hours" "$seed" || status=$?
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/endurance.md
+mv build/studies/endurance.md "$page"
 echo "wrote $page"
 exit "$status"

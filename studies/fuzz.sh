@@ -85,7 +85,7 @@ words_of() {
   fi
 }
 
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 {
   echo "# Fuzzing"
   echo
@@ -106,6 +106,6 @@ mkdir -p docs/studies
   echo
   echo "The speed is of the sanitized build, with other work on the machine."
   echo "The command runs all targets; with their names behind it only those, and the other rows stay."
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/fuzz.md
+mv build/studies/fuzz.md "$page"
 echo "wrote $page"

@@ -10,7 +10,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target ik_study
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 {
   echo "# Inverse kinematics"
   echo
@@ -30,6 +30,6 @@ mkdir -p docs/studies
   echo '```'
   echo
   "$build/bin/ik_study" "$targets" "$unreachable" "$seed"
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/ik.md
+mv build/studies/ik.md "$page"
 echo "wrote $page"

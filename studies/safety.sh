@@ -10,7 +10,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target safety_study
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 {
   echo "# Checks of motions against dense samples"
   echo
@@ -38,6 +38,6 @@ mkdir -p docs/studies
   echo '```'
   echo
   "$build/bin/safety_study" "$motions" "$samples" "$seed"
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/safety.md
+mv build/studies/safety.md "$page"
 echo "wrote $page"

@@ -9,7 +9,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target seeing_study shape_study
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 parts=$(mktemp -d)
 trap 'rm -r "$parts"' EXIT
 "$build/bin/seeing_study" "$cases" "$seed" >"$parts/axes" &
@@ -42,6 +42,6 @@ wait $!
   echo "(a chi-square test), both of the trusted ones."
   echo
   cat "$parts/shapes"
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/seeing.md
+mv build/studies/seeing.md "$page"
 echo "wrote $page"

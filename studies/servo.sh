@@ -9,7 +9,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target servo_study
-mkdir -p docs/studies
+mkdir -p docs/studies build/studies
 {
   echo "# Steering to random shapes"
   echo
@@ -28,6 +28,6 @@ mkdir -p docs/studies
   echo '```'
   echo
   "$build/bin/servo_study" "$targets" "$seed" "$(nproc)"
-} >"$page.new"
-mv "$page.new" "$page"
+} >build/studies/servo.md
+mv build/studies/servo.md "$page"
 echo "wrote $page"

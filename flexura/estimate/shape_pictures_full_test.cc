@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "flexura/estimate/picture_sighting.h"
@@ -39,18 +40,22 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   EXPECT_LT(static_cast<double>(within), 0.75 * static_cast<double>(shares.size()));
 }
 
-// Of which nothing is known but two pictures that hardly fit each other: the fit shrinks it to a point.
-TEST(ShapesInPictures, OfAnArmThatTheFitShrinksToNothingAreNone) {
-  TestRandom random(3199);
-  const SeenShape one = random_seen_shape(random);
-  std::vector<Sighting> seen;
-  for (std::size_t i = 0; i < 2; ++i) {
-    ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
-    seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+// Of which not even base and length are known: what is wrong is refused or told. The last seed's fit goes far
+// astray, and did so by shrinking the arm to a point once.
+TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 82, 89, 123, 309, 3199}) {
+    SCOPED_TRACE(seed);
+    TestRandom random(seed);
+    const SeenShape one = random_seen_shape(random);
+    std::vector<Sighting> seen;
+    for (std::size_t i = 0; i < 2; ++i) {
+      ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
+      seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+    }
+    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(seen);
+    EXPECT_NE(found.is_found, !found.reason.empty());
+    EXPECT_NE(found.is_found, found.notes.empty());
   }
-  const ShapeEstimate none = ShapeEstimator(unknown_arm({}, {})).estimate(seen);
-  EXPECT_FALSE(none.is_found);
-  EXPECT_NE(none.reason, "");
 }
 
 }  // namespace

@@ -173,19 +173,6 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   return std::nullopt;
 }
 
-SightDoubt RigSessionPlan::doubt(const RigPrior& prior) const {
-  SightDoubt doubt = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};
-  for (const std::size_t i : config_.cameras) {
-    const CameraPrior& camera = prior.cameras.at(i);
-    const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
-    const double moved = camera.position / distance;
-    doubt.sideways = std::max(doubt.sideways, std::hypot(camera.rotation, moved));
-    doubt.roll = std::max(doubt.roll, camera.rotation);
-    doubt.scale = std::max(doubt.scale, std::hypot(camera.focal, moved));
-  }
-  return doubt;
-}
-
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {
   std::vector<Eigen::Vector2d> ways;
   for (const double size : {0.5, 1.0}) {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/calibrate/marker_vote.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/calibrate/rig_views.h"
 
@@ -34,8 +33,6 @@ class RigSessionPlan {
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
                                                const RigStep& step, const ArmState& home) const;
-  /// How wrong it may be where the cameras look, as they were guessed.
-  [[nodiscard]] SightDoubt doubt(const RigPrior& prior) const;
   /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
 

@@ -26,7 +26,7 @@ ArmPictureConfig picture_of(const LoopConfig& config) {
   return picture;
 }
 
-// Of an arc of the circle on which the arm lies.
+// Of the arm, unbent.
 Eigen::Vector3d middle_of(const LookLoop& loop) {
   return arm_middle(loop.believed(), ArmState::straight(loop.believed().arm.sections.size()));
 }
@@ -35,6 +35,9 @@ Eigen::Vector3d middle_of(const LookLoop& loop) {
 
 RigPrior arcs_prior(const RigModel& believed) {
   RigPrior prior = rough_prior(believed);
+  // The same factors in both arcs. Two cameras that each look from about one place would not tell how the
+  // planes of two arcs stand to each other that bend each as they like.
+  prior.arm.bend_share = prior.arm.bend = 0;
   for (CameraPrior& camera : prior.cameras) {
     camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
     camera.focal = camera.aspect = camera.zoom_row = 0;

@@ -14,9 +14,10 @@
 
 namespace flexura {
 
-/// How wrong a rig may be that is calibrated with arcs: its lenses are known but for 1 px of the principal
-/// point, its heads but for half a step; the cameras' places within a fifth of their distance from the arm's
-/// base, their turns within 10 degrees, the arm as in ArmPrior (standard deviations).
+/// How wrong a rig may be that is calibrated with arcs (standard deviations): its lenses are known but for 1
+/// px of the principal point, its heads but for half a step; the cameras' places within a fifth of their
+/// distance from the arm's base, their turns within 10 degrees; each section's length within 0.5 % and its
+/// bends within 1 %, by the same factor in every arc.
 [[nodiscard]] RigPrior arcs_prior(const RigModel& believed);
 
 /// Calibrates with arcs of the arm (section 3.4), made well posed: both cameras see both arcs, by their

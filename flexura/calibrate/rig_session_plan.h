@@ -11,6 +11,11 @@
 
 namespace flexura {
 
+/// Whether a camera would see in a candidate much the same as in a look of its own, the first of `look`'s
+/// stances: the arm bent like then within 2 degrees, from within 2 degrees and 5 cm of there, as large within
+/// a tenth. std::out_of_range: another arm's look, or a zoom outside the lens's table.
+[[nodiscard]] bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look);
+
 /// What a session decides by what it knows; it moves nothing.
 class RigSessionPlan {
  public:

@@ -2,6 +2,8 @@
 // SEED PRINTED FOLDER [PICTURE]: so many trials of the methods that are meant to succeed, and PRINTED ones of
 // the paper's as printed. Trials are kept in FOLDER as they end; those that are there already are not run
 // again. Draws where the printed ones fail into PICTURE. docs/studies/calibration.md
+// paper_study --method METHOD SEED FOLDER FIRST[-LAST]...: these trials of one method, each in a line with
+// its reason as told; then the method's row, by them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +14,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,18 +27,31 @@
 namespace flexura {
 namespace {
 
-std::vector<CalibrationTrial> run_all(const std::string& method, std::size_t count, std::uint64_t seed,
-                                      const std::filesystem::path& folder) {
-  TrialFile file((folder / fmt::format("{}-{}.txt", method, seed)).string());
+constexpr double in_degrees = 180 / std::numbers::pi;
+
+void run(const std::string& method, const std::vector<std::size_t>& indices, std::uint64_t seed,
+         TrialFile& file) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++)
-      if (!file.has(i)) file.add(run_trial(method, seed, i));
+    for (std::size_t i = next++; i < indices.size(); i = next++)
+      if (!file.has(indices[i])) file.add(run_trial(method, seed, indices[i]));
   };
   std::vector<std::thread> threads;
   for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) threads.emplace_back(work);
   for (std::thread& thread : threads) thread.join();
-  return file.first(count);
+}
+
+std::string file_of(const std::string& method, std::uint64_t seed, const std::filesystem::path& folder) {
+  return (folder / fmt::format("{}-{}.txt", method, seed)).string();
+}
+
+std::vector<CalibrationTrial> run_all(const std::string& method, std::size_t count, std::uint64_t seed,
+                                      const std::filesystem::path& folder) {
+  TrialFile file(file_of(method, seed, folder));
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  run(method, indices, seed, file);
+  return file.all(indices);
 }
 
 double share_of(std::vector<double> sizes, double share) {
@@ -56,7 +73,6 @@ void print_row(const std::string& method, const std::vector<CalibrationTrial>& t
     fmt::print(" - | - | - | - | - | - | - |\n");
     return;
   }
-  constexpr double in_degrees = 180 / std::numbers::pi;
   fmt::print(" {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", share_of(pictures, 0.5),
              share_of(angle, 0.5) * in_degrees, share_of(angle, 0.95) * in_degrees,
              share_of(angle, 1) * in_degrees, share_of(aim, 0.5) * 1e3, share_of(aim, 0.95) * 1e3,
@@ -74,13 +90,53 @@ void print_failures(const std::string& method, const std::vector<CalibrationTria
   fmt::print(".\n\n");
 }
 
+void print_head() {
+  fmt::print(
+      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | largest | aim, mm, "
+      "median | 95 % | zoom ratio from 1, %, 95 % |\n"
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+}
+
+// FIRST or FIRST-LAST.
+void add_indices(const std::string& range, std::vector<std::size_t>& indices) {
+  const std::size_t dash = range.find('-');
+  const std::size_t first = std::stoul(range.substr(0, dash));
+  const std::size_t last = dash == std::string::npos ? first : std::stoul(range.substr(dash + 1));
+  for (std::size_t i = first; i <= last; ++i) indices.push_back(i);
+}
+
+int run_chosen(const std::string& method, std::uint64_t seed, const std::filesystem::path& folder,
+               const std::vector<std::size_t>& indices) {
+  std::filesystem::create_directories(folder);
+  TrialFile file(file_of(method, seed, folder));
+  run(method, indices, seed, file);
+  const std::vector<CalibrationTrial> trials = file.all(indices);
+  for (const CalibrationTrial& one : trials)
+    fmt::print("{}: {:.1f} pictures, {:.3f} deg, {:.1f} mm, {:.2f} %, {}\n", one.index, one.pictures,
+               one.angle * in_degrees, one.aim * 1e3, one.zoom * 100, one.reason);
+  fmt::print("\n");
+  print_head();
+  print_row(method, trials);
+  fmt::print("\n");
+  print_failures(method, trials);
+  return 0;
+}
+
 }  // namespace
 }  // namespace flexura
 
 int main(int argc, char** argv) {
   using namespace flexura;
+  constexpr const char* chosen = "--method";
+  if (argc > 5 && std::string(argv[1]) == chosen) {
+    std::vector<std::size_t> indices;
+    for (int i = 5; i < argc; ++i) add_indices(argv[i], indices);
+    return run_chosen(argv[2], std::strtoull(argv[3], nullptr, 10), argv[4], indices);
+  }
   if (argc < 5) {
-    fmt::print(stderr, "paper_study TRIALS SEED PRINTED FOLDER [PICTURE]\n");
+    fmt::print(stderr,
+               "paper_study TRIALS SEED PRINTED FOLDER [PICTURE]\n"
+               "paper_study --method METHOD SEED FOLDER FIRST[-LAST]...\n");
     return 2;
   }
   const auto trials = static_cast<std::size_t>(std::atoi(argv[1]));
@@ -88,10 +144,7 @@ int main(int argc, char** argv) {
   const auto printed = static_cast<std::size_t>(std::atoi(argv[3]));
   const std::filesystem::path folder = argv[4];
   std::filesystem::create_directories(folder);
-  fmt::print(
-      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | largest | aim, mm, "
-      "median | 95 % | zoom ratio from 1, %, 95 % |\n"
-      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  print_head();
   MethodTrials all, shown;
   for (const std::string method : {"bundle", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
     const bool is_printed = method.ends_with("-paper");

@@ -10,61 +10,84 @@
 
 #include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/etalon_view.h"
+#include "flexura/calibrate/rig_aim.h"
+#include "flexura/calibrate/rig_quantities.h"
 #include "flexura/camera/mount.h"
 
 namespace flexura {
 namespace {
 
 constexpr double in_degrees = 180 / std::numbers::pi;
-constexpr std::size_t fewest_markers = 4;
+constexpr std::size_t fewest_markers = 5;
 
-// The camera in its mount's frame at stage offset 0.
-Pose in_mount(const Camera& camera, const RigStance& stance) {
-  return camera.mount().inverse() * camera.pose(stance.stage, stance.head);
+ArmPictureConfig picture_of(const LoopConfig& config) {
+  ArmPictureConfig picture = config.picture;
+  picture.white = config.white;
+  return picture;
+}
+
+// Of the arm, unbent.
+Eigen::Vector3d middle_of(const LookLoop& loop) {
+  return arm_middle(loop.believed(), ArmState::straight(loop.believed().arm.sections.size()));
 }
 
 }  // namespace
 
-ArcsLoop::ArcsLoop(LookLoop& loop) : loop_(loop) {
-  ArmPictureConfig picture = loop.config().picture;
-  picture.white = loop.config().white;
-  for (std::size_t i = 0; i < 2; ++i) eyes_.emplace_back(picture), X_WM_[i] = loop.camera(i).mount();
+RigPrior arcs_prior(const RigModel& believed) {
+  RigPrior prior = rough_prior(believed);
+  // The same factors in both arcs. Two cameras that each look from about one place would not tell how the
+  // planes of two arcs stand to each other that bend each as they like.
+  prior.arm.bend_share = prior.arm.bend = 0;
+  for (CameraPrior& camera : prior.cameras) {
+    camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
+    camera.focal = camera.aspect = camera.zoom_row = 0;
+    camera.distortion = {0, 0, 0, 0, 0};
+    camera.principal_point = 1;
+  }
+  return prior;
 }
 
-Pose ArcsLoop::pose(std::size_t i) const { return X_WM_[i] * in_mount(loop_.camera(i), loop_.stance(i)); }
-
-View ArcsLoop::expected_view(std::size_t i) const {
-  View view = plan_.ideal[i];
-  view.lens = Lens(loop_.lens(i));
-  view.X_WC = pose(i);
-  return view;
+ArcsLoop::ArcsLoop(LookLoop& loop)
+    : loop_(loop),
+      prior_(arcs_prior(loop.believed())),
+      sights_(loop.believed().arm, picture_of(loop.config()), loop.config().cameras),
+      reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop), fewest_markers) {
+  for (int i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop.config()));
 }
 
 LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
-  const Arm& arm = loop_.believed().arm;
-  ArcPicture seen{i, in_mount(loop_.camera(i), loop_.stance(i)), plan_.arcs[arc], {}};
+  std::size_t markers = 0;  // Whichever they are.
   auto trouble = loop_.look(i, [&](RigSight& sight) {
-    const View view = expected_view(i);
-    sight.seen = eyes_[i].see(*sight.frame.picture, view.lens,
-                              expected_markers(arm, plan_.arcs[arc], loop_.config().picture.markers, view));
-    // What is recognised far from where it is known to be by now is something else.
-    constexpr double far = 15;  // px
-    if (is_located_)
-      std::erase_if(sight.seen.markers, [&](const SeenMarker& marker) {
-        const auto place =
-            expected_markers(arm, plan_.arcs[arc], {KnownMarker{.s = marker.s}}, view).markers[0];
-        return !place || (place->pixel - marker.pixel).norm() > far;
-      });
-    if (sight.seen.markers.size() < fewest_markers && sight.seen.reason.empty())
-      sight.seen.reason =
-          fmt::format("{} markers are recognised, fewer than {}", sight.seen.markers.size(), fewest_markers);
+    ArmFigure figure = eyes_[i].look(*sight.frame.picture);
+    markers = markers_of(figure.scene);
+    sight.seen.reason = figure.reason;
+    if (figure.reason.empty()) keep(i, std::move(figure), sight);
+    if (markers < fewest_markers && sight.seen.reason.empty())
+      sight.seen.reason = fmt::format("{} markers are seen, fewer than {}", markers, fewest_markers);
     sight.values = {{"markers", static_cast<double>(sight.seen.markers.size())}};
-    seen.markers = sight.seen.markers;
   });
   if (trouble) return trouble;
-  if (!loop_.sight().seen.reason.empty()) return into_view(i, arc);
-  pictures_.push_back(std::move(seen));
-  return std::nullopt;
+  return markers < fewest_markers ? into_view(i, arc) : std::nullopt;
+}
+
+// Keeps a picture among all of them, and tells which of its markers is which by these.
+void ArcsLoop::keep(std::size_t i, ArmFigure figure, RigSight& sight) {
+  const auto pose =
+      std::ranges::find_if(sights_.poses, [&](const ArmState& one) { return is_same(one, sight.pose); });
+  const auto pose_number = static_cast<std::size_t>(pose - sights_.poses.begin());
+  if (pose == sights_.poses.end()) sights_.poses.push_back(sight.pose);
+  RigStance stance = sight.stance;
+  if (stance_[i]) {
+    const RigStance& last = sights_.stances[*stance_[i]];
+    if (last.head.pan == stance.head.pan && last.head.tilt == stance.head.tilt) stance.turned_as = stance_[i];
+    if (last.head != stance.head || last.stage != stance.stage) stance_[i].reset();
+  }
+  if (!stance_[i]) {
+    stance_[i] = sights_.stances.size();
+    sights_.stances.push_back(stance);
+  }
+  sights_.looks.push_back({.stance = *stance_[i], .pose = pose_number, .arm = std::move(figure)});
+  sight.seen = sights_.seen(model(), sights_.looks.size() - 1, reader_.read_last(sights_, before()));
 }
 
 // Turns towards what is dark in the picture until enough markers are seen.
@@ -79,7 +102,7 @@ LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
   next.head.tilt -= std::atan((middle->y() - lens.cy) / lens.fy);
   next = loop_.commandable_stance(i, next);
   const double off = (*middle - Eigen::Vector2d(lens.cx, lens.cy)).norm();
-  constexpr double near = 4;  // px: it is in the middle, and yet too little is recognised.
+  constexpr double near = 4;  // px: it is in the middle, and yet too little is seen.
   if (off < near || loop_.stands_there(i, next))
     return fmt::format("camera {} does not see enough of the arm: {}", loop_.name(i), sight.seen.reason);
   loop_.decide(i, "into view", off, 0, "px", "turn towards what is seen: " + sight.seen.reason);
@@ -87,22 +110,54 @@ LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
   return look(i, arc);
 }
 
-// Both arcs, seen by both cameras, and where the cameras are by that.
+// Both arcs, seen by both cameras, and where the cameras are by all that was seen.
 LookLoop::Trouble ArcsLoop::locate() {
+  foretold_.reset();
+  if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
   for (const std::size_t arc : {std::size_t{0}, std::size_t{1}}) {
     if (auto trouble = loop_.show(plan_.arcs[arc])) return trouble;
     for (std::size_t i = 0; i < 2; ++i)
       if (auto trouble = look(i, arc)) return trouble;
   }
-  fit_ = fit_arcs(loop_.believed().arm, {loop_.lens(0), loop_.lens(1)}, pictures_, X_WM_);
-  if (!fit_.reason.empty()) return fit_.reason;
-  is_located_ = true;
-  X_WM_ = fit_.X_WM;
+  RigReading reading = reader_.read(sights_, before());
+  if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
+  reading_ = std::move(reading);
+  const RigVariables& variables = reading_->problem->variables();
+  angle_ = angle({observed_stance(variables, *stance_[0]), observed_stance(variables, *stance_[1])});
   for (std::size_t i = 0; i < 2; ++i) loop_.result().roll[i] = roll_of(pose(i).rotation);
-  loop_.result().angle =
-      std::acos(std::clamp(pose(0).rotation.col(2).dot(pose(1).rotation.col(2)), -1.0, 1.0)) -
-      std::numbers::pi / 2;
+  loop_.result().angle = angle_.value - std::numbers::pi / 2;
   return std::nullopt;
+}
+
+Pose ArcsLoop::pose(std::size_t i) const { return view_of(model(), loop_.stance(i)).X_WC; }
+
+ArcsLoop::Angle ArcsLoop::angle(const std::array<AskedStance, 2>& stances) const {
+  const RigVariables& variables = reading_->problem->variables();
+  const RigQuantity asked = axes_angle(optical_axis(variables, reading_->found.x, stances[0]),
+                                       optical_axis(variables, reading_->found.x, stances[1]));
+  Angle angle{asked.value, asked.sigma(reading_->found.covariance)};
+  // What heads do with commands of which nothing was seen yet.
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!stances[i].observed)
+      angle.sigma = std::hypot(angle.sigma, prior_.cameras[loop_.config().cameras[i]].steps *
+                                                loop_.camera(i).head_axes()[0].resolution);
+  return angle;
+}
+
+// Why what was seen cannot be trusted.
+LookLoop::Trouble ArcsLoop::disagreement() const {
+  if (!reading_->is_whole())
+    return fmt::format(
+        "{:.0f} of {:.0f} things that were seen are not explained: expected a twentieth at most",
+        reading_->amiss, reading_->things);
+  if (!foretold_) return std::nullopt;
+  constexpr double farthest = 6;  // Standard deviations.
+  const double off = std::abs(angle_.value - foretold_->value);
+  if (off <= farthest * foretold_->sigma) return std::nullopt;
+  return fmt::format(
+      "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, foretold "
+      "were {:.3f} deg with a standard deviation of {:.3f} deg",
+      angle_.value * in_degrees, foretold_->value * in_degrees, foretold_->sigma * in_degrees);
 }
 
 // How far a camera's picture is from the simulator's, as the larger of turn and shift, px.
@@ -121,13 +176,14 @@ std::array<RigStance, 2> ArcsLoop::wanted() const {
   std::array<RigStance, 2> stances = {loop_.stance(0), loop_.stance(1)};
   std::array<double, 2> pans = {0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
-    const Eigen::Matrix3d& R_WM = X_WM_[i].rotation;
+    const RigCamera& camera = model().cameras[loop_.config().cameras[i]];
+    const Eigen::Matrix3d R_WM = camera.config.mount.pose().rotation;
     const Eigen::Vector3d u = R_WM.transpose() * plan_.ideal[i].X_WC.rotation.col(2);
-    stances[i].head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0));
-    pans[i] = stances[i].head.pan = std::atan2(-u.x(), u.z());
+    stances[i].head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0)) - camera.tilt_zero;
+    pans[i] = stances[i].head.pan = std::atan2(-u.x(), u.z()) - camera.pan_zero;
     stances[i] = loop_.commandable_stance(i, stances[i]);
     // Where the pupil will be by then decides how far the stage goes.
-    const Eigen::Vector3d will_be = (X_WM_[i] * in_mount(loop_.camera(i), stances[i])).position;
+    const Eigen::Vector3d will_be = view_of(model(), stances[i]).X_WC.position;
     stances[i].stage.offset += R_WM.transpose() * (plan_.ideal[i].X_WC.position - will_be);
   }
   double least = std::numeric_limits<double>::infinity();
@@ -147,11 +203,8 @@ std::array<RigStance, 2> ArcsLoop::wanted() const {
   return stances;
 }
 
-LookLoop::Trouble ArcsLoop::run() {
-  if (auto trouble = begin_with_arm(loop_)) return trouble;
-  if (auto why = plan_arcs(loop_, false, plan_)) return why;
-  loop_.result().target = plan_.target;
-  if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
+// Looks and moves until both cameras are where the simulator has them.
+LookLoop::Trouble ArcsLoop::square() {
   std::array<double, 2> last = {std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::infinity()};
   for (;;) {
@@ -169,21 +222,29 @@ LookLoop::Trouble ArcsLoop::run() {
           is_accepted ? "holds, or nothing finer can be commanded" : "holds: the pictures tell nothing finer";
       if (goes)
         decision = fmt::format(
-            "{:.2f} px are left of the markers; pan to {:.5g} rad, tilt to {:.5g} rad, "
-            "stage to {:.4g}, {:.4g}, {:.4g} m",
-            fit_.rms, next[i].head.pan, next[i].head.tilt, next[i].stage.offset.x(), next[i].stage.offset.y(),
-            next[i].stage.offset.z());
+            "residuals are {:.2f} times their noise, the angle between the axes is known within {:.3f} deg; "
+            "pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
+            reading_->found.rms, angle_.sigma * in_degrees, next[i].head.pan, next[i].head.tilt,
+            next[i].stage.offset.x(), next[i].stage.offset.y(), next[i].stage.offset.z());
       loop_.decide(i, "orientation and positioning", off, loop_.config().accepted, "px", decision);
       if (!goes) continue;
       if (auto trouble = loop_.go(i, next[i])) return trouble;
       is_moved = true;
     }
-    if (!is_moved) break;
+    if (!is_moved) return disagreement();
   }
-  loop_.result().notes.push_back(fmt::format(
-      "turned about the vertical within {:.3f} deg and {:.3f} deg (standard deviations); {:.2f} px are left "
-      "of the markers",
-      fit_.turn_sigma[0] * in_degrees, fit_.turn_sigma[1] * in_degrees, fit_.rms));
+}
+
+LookLoop::Trouble ArcsLoop::run() {
+  if (auto trouble = begin_with_arm(loop_)) return trouble;
+  if (auto why = plan_arcs(loop_, false, plan_)) return why;
+  loop_.result().target = plan_.target;
+  if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
+  if (auto trouble = square()) return trouble;
+  loop_.result().notes.push_back(
+      fmt::format("the angle between the axes is known within {:.3f} deg (standard deviation); residuals are "
+                  "{:.2f} times their noise",
+                  angle_.sigma * in_degrees, reading_->found.rms));
   return equalize_zooms(loop_, plan_);
 }
 

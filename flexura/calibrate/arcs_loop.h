@@ -5,16 +5,25 @@
 #include <optional>
 #include <vector>
 
-#include "flexura/calibrate/arc_fit.h"
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/look_loop.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "flexura/calibrate/rig_reader.h"
+#include "flexura/calibrate/rig_sights.h"
 
 namespace flexura {
 
+/// How wrong a rig may be that is calibrated with arcs (standard deviations): its lenses are known but for 1
+/// px of the principal point, its heads but for half a step; the cameras' places within a fifth of their
+/// distance from the arm's base, their turns within 10 degrees; each section's length within 0.5 % and its
+/// bends within 1 %, by the same factor in every arc.
+[[nodiscard]] RigPrior arcs_prior(const RigModel& believed);
+
 /// Calibrates with arcs of the arm (section 3.4), made well posed: both cameras see both arcs, by their
-/// markers; what moves a camera from where these pictures put it to where the simulator has it is commanded,
-/// until nothing finer can be, or pictures tell nothing finer. Then the zooms.
+/// markers and axes; what moves a camera from where all these pictures put it to where the simulator has it
+/// is commanded, until nothing finer can be, or pictures tell nothing finer. Pictures that do not agree
+/// within their standard deviations are trouble. Then the zooms.
 class ArcsLoop {
  public:
   explicit ArcsLoop(LookLoop& loop);
@@ -22,22 +31,33 @@ class ArcsLoop {
 
  private:
   using Trouble = LookLoop::Trouble;
+  struct Angle {
+    double value = 0, sigma = 0;  // Between the axes, rad.
+  };
   [[nodiscard]] Trouble look(std::size_t i, std::size_t arc);
+  void keep(std::size_t i, ArmFigure figure, RigSight& sight);
   [[nodiscard]] Trouble into_view(std::size_t i, std::size_t arc);
   [[nodiscard]] Trouble locate();
+  [[nodiscard]] Trouble disagreement() const;
+  [[nodiscard]] Trouble square();
   [[nodiscard]] std::array<RigStance, 2> wanted() const;
   [[nodiscard]] double offset(std::size_t i) const;
-  [[nodiscard]] View expected_view(std::size_t i) const;
+
+  [[nodiscard]] const RigModel* before() const { return reading_ ? &reading_->found.model : nullptr; }
+  [[nodiscard]] const RigModel& model() const { return reading_ ? *before() : loop_.believed(); }
+  [[nodiscard]] Pose pose(std::size_t i) const;  // Of a camera where it stands, as it is known.
+  [[nodiscard]] Angle angle(const std::array<AskedStance, 2>& stances) const;
 
   LookLoop& loop_;
   ArcPlan plan_;
   std::vector<ArmPicture> eyes_;
-  std::array<Pose, 2> X_WM_;                     // Of the mounts at stage offset 0, as they are known.
-  [[nodiscard]] Pose pose(std::size_t i) const;  // Of a camera where it stands, as it is known.
-
-  std::vector<ArcPicture> pictures_;  // All of them.
-  ArcFit fit_;
-  bool is_located_ = false;
+  RigPrior prior_;
+  RigSights sights_;  // All pictures.
+  RigReader reader_;
+  std::array<std::optional<std::size_t>, 2> stance_;  // Of the last picture of each camera.
+  std::optional<RigReading> reading_;                 // What the pictures tell.
+  Angle angle_;
+  std::optional<Angle> foretold_;  // Before the last pictures were taken.
 };
 
 }  // namespace flexura

@@ -120,24 +120,8 @@ LoopResult LookLoop::finish(const Trouble& trouble) {
   return std::move(result_);
 }
 
-std::array<double, 2> zoom_ends(const Camera& camera) {
-  auto [low, high] = camera.head_axes()[2].limits;
-  low = std::max(low, camera.lens().first()), high = std::min(high, camera.lens().last());
-  if (camera.lens().ratio(low) > camera.lens().ratio(high)) std::swap(low, high);
-  return {low, high};
-}
-
 double zoom_by(const Camera& camera, double from, double ratio) {
-  auto [low, high] = zoom_ends(camera);
-  const double wanted = camera.lens().ratio(from) * ratio;
-  if (!(wanted > camera.lens().ratio(low))) return low;
-  if (!(wanted < camera.lens().ratio(high))) return high;
-  constexpr int halvings = 60;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (camera.lens().ratio(middle) < wanted ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return zoom_at(camera, camera.lens().ratio(from) * ratio);
 }
 
 }  // namespace flexura

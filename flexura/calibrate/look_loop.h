@@ -74,7 +74,5 @@ class LookLoop {
 /// The lens's position at which the focal length is `ratio` times that at position `from`, or comes nearest
 /// to it within the head's limits.
 [[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
-/// Its shortest focal length, and its longest.
-[[nodiscard]] std::array<double, 2> zoom_ends(const Camera& camera);
 
 }  // namespace flexura

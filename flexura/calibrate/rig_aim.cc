@@ -233,6 +233,25 @@ Eigen::Vector3d arm_middle(const RigModel& model, const ArmState& state) {
   return backbone.pose(0.5 * backbone.length()).position;
 }
 
+std::array<double, 2> zoom_ends(const Camera& camera) {
+  auto [low, high] = camera.head_axes()[2].limits;
+  low = std::max(low, camera.lens().first()), high = std::min(high, camera.lens().last());
+  if (camera.lens().ratio(low) > camera.lens().ratio(high)) std::swap(low, high);
+  return {low, high};
+}
+
+double zoom_at(const Camera& camera, double ratio) {
+  auto [low, high] = zoom_ends(camera);
+  if (!(ratio > camera.lens().ratio(low))) return low;
+  if (!(ratio < camera.lens().ratio(high))) return high;
+  constexpr int halvings = 60;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (camera.lens().ratio(middle) < ratio ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 HeadState aimed(const RigCamera& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
   const Camera camera(model.config);
   HeadState head = with_zeros(model, stance.head, 1);

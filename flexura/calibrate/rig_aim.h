@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/calibrate/rig_model.h"
+#include "flexura/camera/camera.h"
 
 namespace flexura {
 
@@ -19,6 +20,11 @@ namespace flexura {
 
 /// The nearest position of the head that can be commanded.
 [[nodiscard]] HeadState commanded_head(const RigCamera& model, const HeadState& head);
+
+/// The lens's positions of its shortest focal length and of its longest, within the head's limits.
+[[nodiscard]] std::array<double, 2> zoom_ends(const Camera& camera);
+/// The lens's position at which its ratio is this, or comes nearest to it within the head's limits.
+[[nodiscard]] double zoom_at(const Camera& camera, double ratio);
 
 /// The configuration that section 3.4 of the paper asks for.
 struct RigWish {

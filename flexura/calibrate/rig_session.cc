@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/calibrate/rig_reader.h"
 #include "flexura/calibrate/rig_session_plan.h"
 #include "flexura/calibrate/rig_sights.h"
 #include "flexura/calibrate/rig_trip.h"
@@ -18,27 +19,19 @@ namespace {
 
 using Trouble = RigHands::Trouble;
 
-// Of a rig that is known a few markers tell more, and are hardly taken for others.
-constexpr std::size_t few = 2;
-// What may be wrong with where its cameras look.
-constexpr SightDoubt of_found = {.sideways = 0.03, .roll = 0.02, .scale = 0.05};
-
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,
           const RigSessionConfig& config, RigSessionWatcher& watcher)
-      : believed_(believed),
+      : believed_(checked(ports, believed, config)),
         prior_(prior),
         config_(config),
         watcher_(watcher),
         hands_(ports, believed, config.patience),
         trip_(hands_, watcher, config.cameras, config.move_duration),
         plan_(believed, config),
+        reader_(believed, prior, config.cameras, plan_.target(believed), config.fewest),
         sights_(believed.arm, config.picture, config.cameras) {
-    if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
-      throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
-    if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
-      throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
     for (const std::size_t camera : config.cameras) {
       ArmPictureConfig picture = config.picture;
       picture.white = (1 << believed.cameras.at(camera).config.sensor.bits) - 1;
@@ -59,6 +52,15 @@ class Session {
   }
 
  private:
+  static const RigModel& checked(const RigPorts& ports, const RigModel& believed,
+                                 const RigSessionConfig& config) {
+    if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
+      throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
+    if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
+      throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
+    return believed;
+  }
+
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
       if (auto trouble = look({pose(i), {stands_[0], stands_[1]}})) return trouble;
@@ -144,7 +146,7 @@ class Session {
               .values = {}};
     sight_.seen = recognise(i, eyes_[i].look(*frame.picture));
     ++result_.pictures[i];
-    const std::size_t fewest = found_ ? std::min(few, config_.fewest) : config_.fewest;
+    const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
     if (!is_of_use && sight_.seen.reason.empty())
       sight_.seen.reason =
@@ -175,11 +177,10 @@ class Session {
     }
     sights_.looks.push_back(
         {.stance = *stance_[i], .pose = sights_.poses.size() - 1, .arm = std::move(look)});
-    const MarkerMatch match = sights_.recognise_last(model(), doubt());
+    const MarkerMatch match = reader_.read_last(sights_, before());
     return sights_.seen(model(), sights_.looks.size() - 1, match);
   }
-  // Of where cameras look, as they are believed just then.
-  [[nodiscard]] SightDoubt doubt() const { return found_ ? of_found : plan_.doubt(prior_); }
+  [[nodiscard]] const RigModel* before() const { return found_ ? &found_->model : nullptr; }
 
   // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
   // one miss in all.
@@ -201,7 +202,9 @@ class Session {
   }
 
   Trouble calibrate() {
-    RigCalibration found = best_attempt();
+    RigReading reading = reader_.read(sights_, before());
+    problem_ = std::move(reading.problem);
+    RigCalibration& found = reading.found;
     RigStep& step = result_.steps.emplace_back();
     step.time = hands_.now(), step.looks = result_.looks;
     step.is_found = found.is_found, step.reason = found.reason, step.rms = found.rms;
@@ -218,82 +221,6 @@ class Session {
     choose(step);
     watcher_.known(step);
     return plan_.trouble_with(found_->model, wanted_, step, trip_.home());
-  }
-
-  // A rig as it was found, and by what: markers that were taken for others count against it.
-  struct Attempt {
-    std::optional<RigProblem> problem;
-    RigCalibration found;
-    // Things that were seen, less twice those that it does not explain, and less markers of nobody.
-    double explained = 0;
-    bool is_whole = false;
-  };
-
-  // By markers as the rig that was found before has them, or as the guess does, one camera's or both's taken
-  // for something else if need be.
-  RigCalibration best_attempt() {
-    std::vector<Attempt> attempts;
-    if (found_) attempts.push_back(attempt(found_->model, of_found, {0, 0}));
-    constexpr std::array<std::array<std::size_t, 2>, 6> ranks = {
-        {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}}};
-    for (const auto& rank : ranks) {
-      if (!attempts.empty() && attempts.back().is_whole) break;
-      attempts.push_back(attempt(believed_, plan_.doubt(prior_), rank));
-    }
-    const auto best = std::ranges::max_element(attempts, [](const Attempt& a, const Attempt& b) {
-      if (a.found.is_found != b.found.is_found) return b.found.is_found;
-      return a.explained < b.explained;
-    });
-    problem_ = std::move(best->problem);
-    return std::move(best->found);
-  }
-
-  // Recognised anew with each rig that is found, until nothing changes, or for so many rounds; the round that
-  // explains most.
-  Attempt attempt(const RigModel& guess, const SightDoubt& doubt,
-                  const std::array<std::size_t, 2>& rank) const {
-    Attempt best;
-    std::vector<MarkerMatch> matches = sights_.recognise(guess, doubt, rank);
-    RigModel model = guess;
-    constexpr int rounds = 4;
-    for (int round = 0; round < rounds; ++round) {
-      Attempt now;
-      now.problem.emplace(believed_, prior_,
-                          sights_.observations(model, matches, round == 0 ? config_.fewest : few));
-      now.found = calibrate_rig(*now.problem);
-      rate(matches, now);
-      const bool is_found = now.found.is_found;
-      if (is_found) model = now.found.model;
-      if (round == 0 || (is_found && now.explained >= best.explained)) best = std::move(now);
-      if (!is_found) break;
-      std::vector<MarkerMatch> again = sights_.recognise(model, of_found);
-      // The first round leaves out looks of few markers.
-      if (round > 0 && again == matches) break;
-      matches = std::move(again);
-    }
-    return best;
-  }
-  // Nothing is found by one camera alone.
-  void rate(const std::vector<MarkerMatch>& matches, Attempt& result) const {
-    double things = 0, unknown = 0;
-    std::array<std::size_t, 2> images = {0, 0};
-    for (const RigImage& image : result.problem->observations().images) {
-      things += static_cast<double>(image.markers.size() + image.points.size());
-      ++images[place_of(sights_.stances[image.stance].camera)];
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (images[i] > 0 || !result.found.is_found) continue;
-      result.found.is_found = false;
-      result.found.reason = fmt::format("the arm is recognised in no picture of camera {}", name(i));
-    }
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      unknown +=
-          static_cast<double>(markers_of(sights_.looks[i].arm.scene)) - static_cast<double>(matches[i].count);
-    }
-    const auto doubted = static_cast<double>(result.found.doubts.size());
-    constexpr double tolerated = 0.05;
-    result.explained = things - 2 * doubted - unknown;
-    result.is_whole = result.found.is_found && doubted + unknown <= tolerated * things;
   }
 
   // What to look at next, if the session goes on.
@@ -368,6 +295,7 @@ class Session {
   RigHands hands_;
   RigTrip trip_;
   RigSessionPlan plan_;
+  RigReader reader_;
   std::vector<ArmPicture> eyes_;
   RigSessionResult result_;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "flexura/calibrate/rig_aim.h"
 #include "flexura/camera/camera.h"
 #include "flexura/math/arrays.h"
 
@@ -14,29 +15,18 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-// The lens's position at which the ratio is this, or comes nearest to it; ratios rise or fall all the way.
-double position_of(const Camera& camera, double ratio) {
-  auto [low, high] = camera.head_axes()[2].limits;
-  const ZoomTable& lens = camera.lens();
-  low = std::max(low, lens.first()), high = std::min(high, lens.last());
-  if (lens.ratio(low) > lens.ratio(high)) std::swap(low, high);
-  if (!(ratio > lens.ratio(low))) return low;
-  if (!(ratio < lens.ratio(high))) return high;
-  constexpr int halvings = 60;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (lens.ratio(middle) < ratio ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
+}  // namespace
 
-// Whether a camera would see much the same as in a look of its own: the arm bent like then, from about there.
-bool is_like(const ViewCandidate& candidate, const ViewCandidate& look) {
-  constexpr double turn = 2 * degree, way = 0.05, zoom = 0.1;  // rad; m; share.
+bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look) {
+  constexpr double turn = 2 * degree, way = 0.05, larger = 0.1;  // rad; m; share.
   const auto is_near = [&](const RigStance& a, const RigStance& b) {
-    return a.camera == b.camera && std::abs(a.head.pan - b.head.pan) < turn &&
-           std::abs(a.head.tilt - b.head.tilt) < turn && (a.stage.offset - b.stage.offset).norm() < way &&
-           std::abs(a.head.zoom - b.head.zoom) <= zoom * std::abs(b.head.zoom);
+    if (a.camera != b.camera || !(std::abs(a.head.pan - b.head.pan) < turn) ||
+        !(std::abs(a.head.tilt - b.head.tilt) < turn) || !((a.stage.offset - b.stage.offset).norm() < way))
+      return false;
+    // Positions may be counts of a motor, which mean something else on every lens.
+    const CameraConfig& camera = model.cameras.at(a.camera).config;
+    const ZoomTable lens(camera.lens, camera.sensor.width, camera.sensor.height);
+    return std::abs(std::log(lens.ratio(a.head.zoom) / lens.ratio(b.head.zoom))) <= std::log1p(larger);
   };
   double bent = 0;
   for (std::size_t i = 0; i < candidate.pose.bends.size(); ++i)
@@ -45,8 +35,6 @@ bool is_like(const ViewCandidate& candidate, const ViewCandidate& look) {
                             candidate.stances,
                             [&](const RigStance& stance) { return is_near(stance, look.stances.front()); });
 }
-
-}  // namespace
 
 Eigen::Vector3d RigSessionPlan::target(const RigModel& model) const {
   return config_.target ? *config_.target : arm_middle(model, config_.poses.front());
@@ -94,8 +82,9 @@ ViewGrid RigSessionPlan::grid() const {
   grid.zooms.clear();
   const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
-    const double position = position_of(camera, start * ratio);
-    if (std::ranges::find(grid.zooms, position) == grid.zooms.end()) grid.zooms.push_back(position);
+    // As far as the lens goes.
+    const double reached = camera.lens().ratio(zoom_at(camera, start * ratio));
+    if (std::ranges::find(grid.zooms, reached) == grid.zooms.end()) grid.zooms.push_back(reached);
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
@@ -117,7 +106,8 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     });
   }
   std::erase_if(candidates, [&](const ViewCandidate& candidate) {
-    return std::ranges::any_of(missed, [&](const ViewCandidate& one) { return is_like(candidate, one); });
+    return std::ranges::any_of(missed,
+                               [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
   });
   ViewConfig view;
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
@@ -171,19 +161,6 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
                        model.cameras[wanted.stances[i].camera].config.name, why);
   }
   return std::nullopt;
-}
-
-SightDoubt RigSessionPlan::doubt(const RigPrior& prior) const {
-  SightDoubt doubt = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};
-  for (const std::size_t i : config_.cameras) {
-    const CameraPrior& camera = prior.cameras.at(i);
-    const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
-    const double moved = camera.position / distance;
-    doubt.sideways = std::max(doubt.sideways, std::hypot(camera.rotation, moved));
-    doubt.roll = std::max(doubt.roll, camera.rotation);
-    doubt.scale = std::max(doubt.scale, std::hypot(camera.focal, moved));
-  }
-  return doubt;
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/calibrate/marker_vote.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/calibrate/rig_views.h"
 
 namespace flexura {
+
+/// Whether a camera would see in a candidate much the same as in a look of its own, the first of `look`'s
+/// stances: the arm bent like then within 2 degrees, from within 2 degrees and 5 cm of there, as large within
+/// a tenth. std::out_of_range: another arm's look, or a zoom outside the lens's table.
+[[nodiscard]] bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look);
 
 /// What a session decides by what it knows; it moves nothing.
 class RigSessionPlan {
@@ -34,8 +38,6 @@ class RigSessionPlan {
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
                                                const RigStep& step, const ArmState& home) const;
-  /// How wrong it may be where the cameras look, as they were guessed.
-  [[nodiscard]] SightDoubt doubt(const RigPrior& prior) const;
   /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
 

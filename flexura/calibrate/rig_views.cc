@@ -141,11 +141,11 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
 namespace {
 
 // A stance from which the target is seen at this place of the image, in shares of half its width and height.
-RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double zoom,
+RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double ratio,
                   const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
   const RigCamera& camera = model.cameras[number];
   const Camera optics(camera.config);
-  RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom)}, {}};
+  RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom_at(optics, ratio))}, {}};
   for (Eigen::Index i = 0; i < 3; ++i)
     stance.stage.offset[i] = commandable(optics.stage_axes()[static_cast<std::size_t>(i)], slide[i]);
   stance.head = aimed(camera, stance, target);

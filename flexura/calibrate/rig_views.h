@@ -53,7 +53,7 @@ struct ViewChoice {
 /// Where to look for candidates.
 struct ViewGrid {
   std::vector<ArmState> poses;
-  std::vector<double> zooms = {1};
+  std::vector<double> zooms = {1};  ///< Ratios; each camera goes to where its own lens has them.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
   /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
   /// of half the image.

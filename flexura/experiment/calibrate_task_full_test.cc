@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "flexura/experiment/run.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
+#include "tests/support/calibration_trials.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
@@ -63,6 +65,19 @@ TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
     EXPECT_LT(std::abs(left.angle), 0.2 * degree);
     EXPECT_NEAR(left.zoom_ratio, 1, 0.005);
     for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.01);
+  }
+}
+
+// Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw
+// nothing more of the arm.
+TEST(ArcsLoopFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
+  for (const std::size_t start : {0U, 5U, 20U, 665U, 850U, 981U}) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, start);
+    const CalibrationTrial trial = run_trial("arcs", 1, start);
+    ASSERT_TRUE(trial.is_done) << trial.reason;
+    EXPECT_LT(std::abs(trial.angle), 0.3 * degree);
+    EXPECT_LT(trial.aim, 0.01);
+    EXPECT_LT(std::abs(trial.zoom), 0.02);
   }
 }
 

@@ -1,20 +1,28 @@
 #include "flexura/experiment/calibrate_task.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "flexura/base/image.h"
 #include "flexura/base/progress.h"
+#include "flexura/calibrate/rig_session_plan.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/photographer.h"
@@ -61,6 +69,95 @@ TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {
   EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));
   EXPECT_THAT(result.reason, HasSubstr("back where they began"));
   bench.expect_back();
+}
+
+// Counts pictures that looked for the arm, and keeps where cameras missed it.
+class SeenLooks : public NobodyWatches {
+ public:
+  void seen(const RigSight& sight) override {
+    if (sight.look == 0) ++searches;
+    if (sight.look > 0 && !sight.seen.reason.empty()) missed.push_back({sight.pose, {sight.stance}});
+  }
+  int searches = 0;
+  std::vector<ViewCandidate> missed;
+};
+
+RigSessionResult calibrate(CalibrationBench& bench, const RigPorts& ports, RigSessionWatcher& watcher) {
+  const auto& task = std::get<CalibrateTask>(bench.experiment().task.front());
+  const RigModel believed = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
+  return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
+                                  session_config(task, bench.experiment().arm, bench.experiment().cameras()),
+                                  watcher);
+}
+
+// A side camera that truly looks beside the arm, by m at its distance of 2.5 m.
+std::string looking_beside(double aside, const std::string& poses) {
+  return small_calibration(
+      "images = 6\n" + poses,
+      fmt::format("[[truth.camera]]\nname = \"side\"\nmount = {{ position = [-2.5, 0.5, 0], "
+                  "look_at = [0, 0.5, {}] }}\n",
+                  aside));
+}
+
+TEST(CalibrateTask, SearchesForAnArmThatItDoesNotSeeAtFirst) {
+  CalibrationBench bench(looking_beside(1.15, three_poses));
+  SeenLooks looks;
+  const RigSessionResult result = calibrate(bench, bench.ports(), looks);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_GT(looks.searches, 0);
+  EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
+}
+
+// Seen in the first pose, and bent out of view in those that follow.
+TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
+  CalibrationBench bench(looking_beside(
+      0.8,
+      "pose = [{ bends = [[0, -0.5], [0, -0.5], [0, -0.5]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
+      "{ bends = [[-0.6, 0.7], [0.7, 0.6], [0.5, 0.8]] }]\n"));
+  SeenLooks looks;
+  const RigSessionResult result = calibrate(bench, bench.ports(), looks);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_GT(looks.searches, 0);
+  EXPECT_FALSE(looks.missed.empty());
+  EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
+}
+
+// A camera whose pictures are empty where it zooms in.
+class BlindZoom : public CameraPort {
+ public:
+  BlindZoom(CameraPort& camera, HeadPort& head) : camera_(camera), head_(head) {}
+  Outcome<std::optional<Frame>> newest() override { return blinded(camera_.newest()); }
+  Outcome<std::optional<Frame>> wait(double timeout) override { return blinded(camera_.wait(timeout)); }
+
+ private:
+  Outcome<std::optional<Frame>> blinded(Outcome<std::optional<Frame>> taken) {
+    constexpr double farthest = 1.5;
+    if (taken.fault() || !taken.value() || head_.read().value().state.zoom < farthest) return taken;
+    Frame frame = *taken.value();
+    const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
+    Image<std::uint8_t> empty(seen.width(), seen.height(), seen.channels(), 200);
+    frame.picture = std::make_shared<const Picture>(std::move(empty));
+    return std::optional<Frame>(std::move(frame));
+  }
+  CameraPort& camera_;
+  HeadPort& head_;
+};
+
+TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
+  CalibrationBench bench(small_calibration("images = 9\n" + three_poses, wrong_cameras));
+  RigPorts ports = bench.ports();
+  BlindZoom blind(*ports.cameras[1].camera, *ports.cameras[1].head);
+  ports.cameras[1].camera = &blind;
+  SeenLooks looks;
+  const RigSessionResult result = calibrate(bench, ports, looks);
+  EXPECT_FALSE(looks.missed.empty());
+  const RigModel believed = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
+  for (std::size_t i = 0; i < looks.missed.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_FALSE(is_like(believed, looks.missed[i], looks.missed[j])) << i << " and " << j;
+  if (!result.is_done) {
+    EXPECT_THAT(result.reason, HasSubstr("does not see the arm in 3 pictures in a row"));
+  }
 }
 
 TEST(CalibrateTask, StopsWhereBothCamerasLookFromOneSide) {

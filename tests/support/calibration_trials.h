@@ -112,10 +112,10 @@ class TrialFile {
                          trial.reason)
           << std::flush;
   }
-  /// The first `count`, all of which there are.
-  [[nodiscard]] std::vector<CalibrationTrial> first(std::size_t count) const {
+  /// These, all of which there are.
+  [[nodiscard]] std::vector<CalibrationTrial> all(const std::vector<std::size_t>& indices) const {
     std::vector<CalibrationTrial> result;
-    for (std::size_t i = 0; i < count; ++i) result.push_back(trials_.at(i));
+    for (const std::size_t i : indices) result.push_back(trials_.at(i));
     return result;
   }
 

@@ -1,0 +1,57 @@
+#include "flexura/calibrate/arcs_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "flexura/calibrate/arc_plan.h"
+#include "flexura/calibrate/rig_calibration.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+namespace {
+
+constexpr RigTrialConfig known_lenses = {.focal = 0, .principal_point = 1, .noise = 0.2, .markers = 12};
+
+// What both cameras see of both arcs from where they start, of a rig that is wrong as arcs_prior has it.
+RigObservations arcs_seen(const RigModel& truth, TestRandom& random) {
+  RigTrial trial(truth, known_lenses, random);
+  for (const Eigen::Vector3d& towards : {Eigen::Vector3d::UnitX().eval(), (-Eigen::Vector3d::UnitZ()).eval()})
+    (void)trial.add_pose(arc_state(believed_rig().arm, 2 * std::numbers::pi / 3, towards).value());
+  for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
+    const std::size_t stance = trial.add_stance({.camera = camera});
+    for (const std::size_t pose : {std::size_t{0}, std::size_t{1}}) (void)trial.add_image(stance, pose);
+  }
+  return trial.seen();
+}
+
+TEST(ArcsPrior, MakesTwoArcsTellTheAngleBetweenTheAxesAsWellAsItSays) {
+  double squares = 0, largest = 0;
+  int count = 0;
+  for_random_cases(30, [&](TestRandom& random) {
+    const RigModel truth = true_rig(believed_rig(), known_lenses, random);
+    RigProblem problem(believed_rig(), arcs_prior(believed_rig()), arcs_seen(truth, random));
+    const RigCalibration found = calibrate_rig(problem);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    const RigVariables& variables = problem.variables();
+    const RigQuantity angle = axes_angle(optical_axis(variables, found.x, {{.camera = 0}, {}}),
+                                         optical_axis(variables, found.x, {{.camera = 1}, {}}));
+    const auto direction = [&](std::size_t camera) {
+      return view_of(truth, {.camera = camera}).X_WC.rotation.col(2).eval();
+    };
+    const double sigma = angle.sigma(found.covariance);
+    const double off = (angle.value - std::acos(direction(0).dot(direction(1)))) / sigma;
+    squares += off * off, ++count, largest = std::max(largest, sigma);
+    EXPECT_LT(std::abs(off), 5);
+  });
+  // Numbers are evenly within what is taken for a standard deviation here: smaller errors than claimed.
+  EXPECT_LT(std::sqrt(squares / count), 1.2);
+  EXPECT_GT(std::sqrt(squares / count), 0.3);
+  EXPECT_LT(largest, 0.4 * degree);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,115 @@
+#include "flexura/calibrate/rig_session_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/support/banded_arms.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+namespace {
+
+ZoomRow row(double ratio, double count) {
+  ZoomRow row;
+  row.ratio = ratio, row.count = count;
+  return row;
+}
+
+// Counts that fall from wide to long on the first camera, and rise on the second.
+RigModel rig_of_two_lenses() {
+  RigModel rig = believed_rig();
+  rig.cameras[0].config.lens.zoom = {row(1, 9000), row(4, 8000)};
+  rig.cameras[1].config.lens.zoom = {row(1, 0), row(4, 600)};
+  rig.cameras[0].config.initial.zoom = 9000, rig.cameras[1].config.initial.zoom = 0;
+  return rig;
+}
+
+ViewCandidate look_of(std::size_t camera, const HeadState& head, const Eigen::Vector3d& offset = {0, 0, 0}) {
+  return {some_poses()[0], {{.camera = camera, .head = head, .stage = {offset}}}};
+}
+
+TEST(IsLike, GoesByWhatIsSeenOfThePoseAndFromWhere) {
+  const RigModel rig = believed_rig();
+  const ViewCandidate look = look_of(0, {.pan = 0.1, .tilt = 0.05, .zoom = 2});
+  EXPECT_TRUE(is_like(rig, look, look));
+  EXPECT_TRUE(is_like(rig, look_of(0, {.pan = 0.12, .tilt = 0.04, .zoom = 2.1}, {0.03, 0, 0}), look));
+  EXPECT_FALSE(is_like(rig, look_of(1, look.stances[0].head), look));
+  EXPECT_FALSE(is_like(rig, look_of(0, {.pan = 0.15, .tilt = 0.05, .zoom = 2}), look));
+  EXPECT_FALSE(is_like(rig, look_of(0, {.pan = 0.1, .tilt = 0, .zoom = 2}), look));
+  EXPECT_FALSE(is_like(rig, look_of(0, look.stances[0].head, {0, 0, 0.06}), look));
+  ViewCandidate bent = look;
+  bent.pose = some_poses()[1];
+  EXPECT_FALSE(is_like(rig, bent, look));
+  // One of its stances is enough.
+  ViewCandidate both = look_of(1, {});
+  both.stances.push_back(look.stances[0]);
+  EXPECT_TRUE(is_like(rig, both, look));
+}
+
+// On the first lens a ninth of the count is all of the zoom; on the second no share of a count of 0 is more.
+TEST(IsLike, ComparesZoomRatiosAndNotTheMotorsCounts) {
+  const RigModel rig = rig_of_two_lenses();
+  EXPECT_FALSE(is_like(rig, look_of(0, {.zoom = 8200}), look_of(0, {.zoom = 9000})));
+  EXPECT_TRUE(is_like(rig, look_of(0, {.zoom = 8960}), look_of(0, {.zoom = 9000})));
+  EXPECT_TRUE(is_like(rig, look_of(1, {.zoom = 20}), look_of(1, {.zoom = 0})));
+  EXPECT_FALSE(is_like(rig, look_of(1, {.zoom = 60}), look_of(1, {.zoom = 0})));
+}
+
+// A session in which three pictures a camera were taken, about to choose the next.
+struct Choice {
+  explicit Choice(const RigModel& rig) : believed(rig) {
+    TestRandom random(5);
+    config.poses = some_poses(), config.picture.markers = bands();
+    RigTrialConfig wrong;
+    wrong.turn = 3 * degree, wrong.shift = 0.05;
+    RigTrial trial(true_rig(believed, wrong, random), wrong, random);
+    for (const ArmState& shown : config.poses) {
+      const std::size_t pose = trial.add_pose(shown);
+      for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
+        const HeadState start = Camera(believed.cameras[camera].config).initial_head();
+        trial.add_image(trial.add_stance({.camera = camera, .head = start}), pose);
+      }
+    }
+    problem.emplace(believed, rough_prior(believed), trial.seen());
+    found = calibrate_rig(*problem);
+  }
+  [[nodiscard]] std::optional<ViewCandidate> next(const std::vector<ViewCandidate>& missed) const {
+    const RigSessionPlan plan(believed, config);
+    const std::array<RigStance, 2> stands = {RigStance{.camera = 0}, RigStance{.camera = 1}};
+    return plan.next(*problem, found, plan.wanted(found.model, stands), missed).first;
+  }
+
+  RigModel believed;
+  RigSessionConfig config;
+  std::optional<RigProblem> problem;
+  RigCalibration found;
+};
+
+TEST(RigSessionPlan, TriesNoViewAgainThatWasMissed) {
+  const Choice choice(believed_rig());
+  ASSERT_TRUE(choice.found.is_found) << choice.found.reason;
+  std::vector<ViewCandidate> missed;
+  for (int i = 0; i < 4; ++i) {
+    const auto next = choice.next(missed);
+    ASSERT_TRUE(next);
+    for (const ViewCandidate& one : missed) EXPECT_FALSE(is_like(choice.believed, *next, one)) << i;
+    missed.push_back({next->pose, {next->stances[static_cast<std::size_t>(i % 2)]}});
+  }
+}
+
+TEST(RigSessionPlan, ZoomsEachLensByItsOwnTable) {
+  const RigModel rig = rig_of_two_lenses();
+  const Choice choice(rig);
+  ASSERT_TRUE(choice.found.is_found) << choice.found.reason;
+  const auto next = choice.next({});
+  ASSERT_TRUE(next);
+  std::array<double, 2> ratios{};
+  for (const RigStance& stance : next->stances)
+    ratios[stance.camera] = Camera(rig.cameras[stance.camera].config).lens().ratio(stance.head.zoom);
+  EXPECT_NEAR(ratios[0], ratios[1], 0.02 * ratios[0]);
+}
+
+}  // namespace
+}  // namespace flexura

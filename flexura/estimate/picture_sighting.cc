@@ -23,12 +23,12 @@ constexpr double border_sigma = 0.5;
 constexpr double band_sigma = 0.2;
 
 // Over which axes are smoothed, px.
-constexpr double smoothed = 5.2;
+constexpr double smoothed = 5.4;
 // Whole axes are off together, over more than a hundred pixels: the borders' model is not the picture's. As
 // measured against drawn arms (docs/estimation.md), px: of any tube, by its blur; of thin ones, whose borders
 // are one in the other's blur, by the square of blur over width; and of straight ones along rows or columns,
 // whose borders are at one place between two pixels all the way.
-constexpr double of_any = 0.002, of_thin = 0.37, of_locked = 0.011;
+constexpr double of_any = 0.002, of_thin = 0.4, of_locked = 0.011;
 // Over how much of the axis the last is looked for, px.
 constexpr double stretch = 60;
 

@@ -78,9 +78,11 @@ void print(const Tally& tally, int cases) {
 }
 
 int study(int cases, std::uint64_t seed) {
-  std::array<Tally, 3> tallies = {
+  std::array<Tally, 5> tallies = {
       Tally{"the arm is known", 0, 0, {}, {}, {}, {}},
       Tally{"base and length are known", 0, 0, {}, {}, {}, {}},
+      Tally{"the base is known", 0, 0, {}, {}, {}, {}},
+      Tally{"the length is known", 0, 0, {}, {}, {}, {}},
       Tally{"nothing is known", 0, 0, {}, {}, {}, {}},
   };
   const bool is_told = std::getenv("SHAPE_STUDY_TELLS") != nullptr;
@@ -89,10 +91,12 @@ int study(int cases, std::uint64_t seed) {
     const SeenShape one = random_seen_shape(random);
     const Backbone truth = one.bent.backbone();
     const Eigen::Vector3d base = truth.pose(0).position;
-    const std::array<ShapePrior, 3> priors = {
+    const std::array<ShapePrior, 5> priors = {
         ShapePrior{.arm = one.bent.arm},
         unknown_arm(base, truth.length()),
-        unknown_arm(std::nullopt, std::nullopt),
+        unknown_arm(base, {}),
+        unknown_arm({}, truth.length()),
+        unknown_arm({}, {}),
     };
     for (std::size_t k = 0; k < tallies.size(); ++k) {
       std::vector<Sighting> sightings;

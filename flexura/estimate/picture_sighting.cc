@@ -22,6 +22,28 @@ constexpr double border_sigma = 0.5;
 // Of a band's middle, px: what skin and shading do to it.
 constexpr double band_sigma = 0.2;
 
+// Over which axes are smoothed, px.
+constexpr double smoothed = 5.4;
+// Whole axes are off together, over more than a hundred pixels: the borders' model is not the picture's. As
+// measured against drawn arms (docs/estimation.md), px: of any tube, by its blur; of thin ones, whose borders
+// are one in the other's blur, by the square of blur over width; and of straight ones along rows or columns,
+// whose borders are at one place between two pixels all the way.
+constexpr double of_any = 0.002, of_thin = 0.4, of_locked = 0.011;
+// Over how much of the axis the last is looked for, px.
+constexpr double stretch = 60;
+
+double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
+  const std::vector<AxisSample>& axis = arm.axis;
+  const std::size_t before = i - std::min(i, samples / 2),
+                    after = std::min(before + samples, axis.size() - 1);
+  const Eigen::Vector2d way = axis[after].pixel - axis[before].pixel;
+  // The rows or columns that so much of it crosses, px.
+  const double crossed = way.cwiseAbs().minCoeff() * stretch / std::max(way.norm(), 1.0);
+  const double locked = of_locked / (1 + 1.3 * crossed * crossed);
+  const double thin = arm.blur / std::max(axis[i].width, 1.0);
+  return std::hypot(of_any * arm.blur + of_thin * thin * thin, locked);
+}
+
 // The way in which the axis goes on where it is nearest to a pixel.
 Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vector2d& pixel) {
   const auto nearest = std::ranges::min_element(
@@ -34,6 +56,7 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
 Sighting sighting_of(const ArmSighting& arm, const View& view) {
   Sighting seen;
   seen.view = view;
+  seen.reach.sigma = smoothed;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   std::vector<AxisSample> axis = arm.axis;
   // The axis lies half-way between the borders: each is known by the root of two worse.
@@ -45,8 +68,12 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
     seen.edges[1].push_back({sample.pixel - half, sigma});
   }
   to_backbone_image(view.lens, axis);
-  for (const AxisSample& sample : axis)
-    if (sample.is_seen) seen.points.push_back({sample.pixel, std::max(sample.sigma, least_sigma)});
+  const auto samples = static_cast<std::size_t>(
+      axis.size() < 2 ? 0.0 : stretch / std::max((axis[1].pixel - axis[0].pixel).norm(), 0.5));
+  for (std::size_t i = 0; i < axis.size(); ++i)
+    if (axis[i].is_seen)
+      seen.points.push_back(
+          {axis[i].pixel, std::max(axis[i].sigma, least_sigma), offset_at(arm, i, samples)});
   if (arm.covered < whole) return seen;
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
     if (arm.ends[end].kind == AxisEndKind::free)

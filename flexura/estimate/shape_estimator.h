@@ -19,7 +19,7 @@ struct EstimatorConfig {
   int most_iterations = 60;
   /// Estimates whose standard deviation, root mean square along the arm, is larger are marked; share of its
   /// length.
-  double uncertain = 1.2e-4;
+  double uncertain = 1.1e-4;
   /// Beyond this share the sightings tell no shape.
   double hopeless = 0.1;
   /// Shapes whose images lie farther from the points are none, unless their noise explains it; px, root mean

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "tests/support/random_cases.h"
 #include "tests/support/sightings.h"
@@ -49,6 +54,62 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
   EXPECT_GT(squares, 0.4 * count);
   EXPECT_LT(squares, 1.6 * count);
   EXPECT_LT(worst, 3e-4);
+}
+
+// A series whose values go together over `reach` of what lies between them, of standard deviation 1.
+class Together {
+ public:
+  double next(TestRandom& random, double way, double reach) {
+    const double alike = std::exp(-way / reach);
+    value_ = is_first_ ? normal_number(random)
+                       : alike * value_ + std::sqrt(1 - alike * alike) * normal_number(random);
+    is_first_ = false;
+    return value_;
+  }
+
+ private:
+  double value_ = 0;
+  bool is_first_ = true;
+};
+
+TEST(ShapeEstimator, IsWithinItsOwnSigmasWhereErrorsGoTogether) {
+  constexpr double sigma = 0.03, offset = 0.02, reach = 8;
+  double told = 0, untold = 0, count = 0;
+  for_random_cases(100, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const ArmState state = random_bends(random, prior.arm, 1.5);
+    std::vector<Sighting> seen = sightings_of(Backbone(prior.arm, state), random, 0);
+    for (Sighting& one : seen) {
+      Together near, far;
+      const std::vector<CurvePoint> exact = one.points;
+      for (std::size_t i = 0; i + 1 < exact.size(); ++i) {
+        const Eigen::Vector2d way = exact[i + 1].pixel - exact[i].pixel;
+        const Eigen::Vector2d across = Eigen::Vector2d(-way.y(), way.x()).normalized();
+        one.points[i].pixel += across * (sigma * near.next(random, way.norm(), reach) +
+                                         offset * far.next(random, way.norm(), one.reach.offset));
+        one.points[i].sigma = sigma, one.points[i].offset = offset;
+      }
+      one.points.pop_back();
+      one.reach.sigma = reach;
+    }
+    const auto square_of = [&] {
+      const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
+      Eigen::VectorXd off(6);
+      for (std::size_t i = 0; i < 3; ++i)
+        off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - state.bends[i];
+      return off.dot(found.covariance.ldlt().solve(off));
+    };
+    told += square_of(), count += 6;
+    for (Sighting& one : seen) {
+      one.reach.sigma = 0;
+      for (CurvePoint& point : one.points) point.offset = 0;
+    }
+    untold += square_of();
+  });
+  // The mean of chi^2 over its degrees of freedom, of 600: one to a sixteenth.
+  EXPECT_GT(told / count, 0.75);
+  EXPECT_LT(told / count, 1.25);
+  EXPECT_GT(untold / count, 1.5);
 }
 
 TEST(ShapeEstimator, FindsAnArmOfUnknownMake) {

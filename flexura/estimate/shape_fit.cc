@@ -40,6 +40,20 @@ double correlation_factor(std::span<const double> series) {
   return factor;
 }
 
+// The same as the sightings promise it for their points.
+double promised_factor(const ShapeProblem& problem) {
+  double sum = 0, count = 0;
+  for (const Sighting& seen : problem.sightings()) {
+    for (std::size_t i = 1; i < seen.points.size() && seen.reach.sigma > 0; ++i) {
+      const double way = (seen.points[i].pixel - seen.points[i - 1].pixel).norm();
+      sum += std::exp(-way / seen.reach.sigma);
+    }
+    count += static_cast<double>(seen.points.size());
+  }
+  const double alike = std::min(sum / std::max(count, 1.0), 0.95);
+  return (1 + alike) / (1 - alike);
+}
+
 }  // namespace
 
 double ShapeDescent::cutoff(const ShapeProblem& problem) {
@@ -158,21 +172,69 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
   for (std::size_t i = 0; i < seen_in.size(); ++i)
     fit.doubted_in.push_back(seen_in[i] > 0 ? 1 - believed_in[i] / seen_in[i] : 0.0);
   fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
-  const double correlated = correlation_factor(sizes_);
-  const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));
-  const double variance = std::max(1.0, square / freedom) * correlated;
-  // What is seen is as good as its residuals say; what was known before stays as it was.
-  weighted_.noalias() = problem.derivatives().transpose() * told.asDiagonal();
-  damped_.setZero(normal_.rows(), normal_.cols());
-  damped_.selfadjointView<Eigen::Lower>().rankUpdate(weighted_);
-  damped_ += (normal_ - damped_) / variance;
-  solver_.compute(damped_);
-  const auto identity = Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols());
+  add_scatter(problem, told);
+  solver_.compute(normal_);
   const bool is_regular = solver_.info() == Eigen::Success && solver_.rcond() > 1e-15;
-  if (is_regular) fit.covariance = solver_.solve(identity);
-  if (!is_regular)
+  if (!is_regular) {
     fit.covariance =
         Eigen::MatrixXd::Constant(normal_.rows(), normal_.cols(), std::numeric_limits<double>::infinity());
+    return;
+  }
+  // Of the residuals' squares the fit takes as many as it follows.
+  damped_ = solver_.solve(scatter_);
+  const double freedom = std::max(1.0, weight - damped_.trace());
+  // Axes are not known to be better than a floor: where they are, their residuals tell.
+  constexpr double least = 0.4;
+  const double factor = std::max(least, square / freedom) *
+                        std::max(1.0, correlation_factor(sizes_) / promised_factor(problem));
+  scatter_ *= factor;
+  scatter_ += std::max(1.0, factor) * other_scatter_;
+  // What is seen is as good as its residuals say; what was known before stays as it was.
+  weighted_.noalias() = problem.derivatives().transpose() * told.asDiagonal();
+  scatter_.noalias() += weighted_ * weighted_.transpose();
+  damped_ = solver_.solve(scatter_).transpose();
+  fit.covariance = solver_.solve(damped_);
+}
+
+// What the gradient of what is seen scatters by: the sum of its rows' products, as far as their errors go
+// together.
+void ShapeDescent::add_scatter(const ShapeProblem& problem, const Eigen::VectorXd& told) {
+  const Eigen::Index count = normal_.rows();
+  // Of each row its part of the gradient; of each point what goes together with it of those before.
+  weighted_.noalias() =
+      problem.derivatives().transpose() * (weights_.array() * (1 - told.array())).matrix().asDiagonal();
+  alike_.setZero(count, problem.rows()), offsets_.setZero(count, problem.rows());
+  near_.setZero(count), far_.setZero(count);
+  std::size_t sighting = problem.sightings().size(), point = 0;
+  const CurvePoint* before = nullptr;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    if (problem.kind(i) != RowKind::point) continue;
+    if (problem.sighting(i) != sighting) sighting = problem.sighting(i), point = 0, before = nullptr;
+    const Sighting& seen = problem.sightings()[sighting];
+    const CurvePoint& here = seen.points[point++];
+    if (before == nullptr) near_.setZero(), far_.setZero();
+    if (before != nullptr) {
+      const double way = (here.pixel - before->pixel).norm();
+      near_ *= seen.reach.sigma > 0 ? std::exp(-way / seen.reach.sigma) : 0.0;
+      far_ *= std::exp(-way / seen.reach.offset);
+    }
+    const double offset = here.offset / problem.sigma(i);
+    alike_.col(i) = near_;
+    offsets_.col(i) = offset * far_ + 0.5 * offset * offset * weighted_.col(i);
+    near_ += weighted_.col(i), far_ += offset * weighted_.col(i);
+    before = &here;
+  }
+  damped_.noalias() = weighted_ * alike_.transpose();
+  scatter_ = damped_ + damped_.transpose();
+  damped_.noalias() = weighted_ * offsets_.transpose();
+  other_scatter_ = damped_ + damped_.transpose();
+  // Each row by itself. Ends' errors have long tails: tips hide.
+  constexpr double of_ends = 2.5;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    Eigen::MatrixXd& scatter = problem.kind(i) == RowKind::point ? scatter_ : other_scatter_;
+    const double share = problem.kind(i) == RowKind::end ? of_ends : 1.0;
+    scatter.noalias() += share * weighted_.col(i) * weighted_.col(i).transpose();
+  }
 }
 
 }  // namespace flexura

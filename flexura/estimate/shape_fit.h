@@ -40,10 +40,12 @@ class ShapeDescent {
   void weigh(const ShapeProblem& problem, double cutoff);
   double step(ShapeProblem& problem, double cutoff, double before, double& damping, Shape& shape);
   void finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit);
+  void add_scatter(const ShapeProblem& problem, const Eigen::VectorXd& told);
 
   std::vector<double> sizes_;
-  Eigen::VectorXd weights_, gradient_, step_;
-  Eigen::MatrixXd weighted_, normal_, damped_;  // Of symmetric ones the lower half.
+  Eigen::VectorXd weights_, gradient_, step_, near_, far_;
+  Eigen::MatrixXd weighted_, alike_, offsets_, normal_, damped_, scatter_,
+      other_scatter_;  // Of symmetric ones the lower half.
   Eigen::LDLT<Eigen::MatrixXd> solver_;
 };
 

@@ -10,13 +10,14 @@
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "tests/support/seen_shapes.h"
+#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
 
 TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
-  constexpr int cases = 60;
-  std::vector<double> errors, shares;
+  constexpr int cases = 240;
+  std::vector<double> errors, shares, thin;
   for_random_cases(cases, [&](TestRandom& random) {
     const SeenShape one = random_seen_shape(random);
     std::vector<Sighting> seen;
@@ -28,16 +29,26 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
     if (!found.is_found || !found.notes.empty()) return;
     errors.push_back(relative_shape_error(found.shape, one.bent.backbone()));
     shares.push_back(expected_share(found, one.bent.state));
+    if (one.bent.arm.sections.size() >= 3 && one.bent.arm.sections.front().radius[0] < 0.02)
+      thin.push_back(shares.back());
   });
-  EXPECT_GE(errors.size(), 0.75 * cases);
+  EXPECT_GE(errors.size(), 0.8 * cases);
   double squares = 0;
   for (const double error : errors) squares += error * error / static_cast<double>(errors.size());
-  EXPECT_LT(std::sqrt(squares), 2e-4);
+  // All of them together, those that are farthest off too.
+  EXPECT_LT(std::sqrt(squares), 1e-4);
   EXPECT_LT(std::ranges::max(errors), 5e-4);
-  // Half of the errors lie in the region that holds half: neither much fewer, nor nearly all.
-  const auto within = std::ranges::count_if(shares, [](double share) { return share < 0.5; });
-  EXPECT_GT(static_cast<double>(within), 0.35 * static_cast<double>(shares.size()));
-  EXPECT_LT(static_cast<double>(within), 0.75 * static_cast<double>(shares.size()));
+  const auto within = [](const std::vector<double>& all, double share) {
+    const auto count = std::ranges::count_if(all, [&](double value) { return value < share; });
+    return static_cast<double>(count) / static_cast<double>(all.size());
+  };
+  // Half of the errors lie in the region that holds half, and nearly all in that which holds 95 %; those of
+  // thin arms of many sections, which show most of what axes are off by, as well.
+  EXPECT_GT(within(shares, 0.5), 0.45);
+  EXPECT_LT(within(shares, 0.5), 0.74);
+  EXPECT_GT(within(shares, 0.95), 0.91);
+  EXPECT_GE(thin.size(), 30U);
+  EXPECT_GT(within(thin, 0.95), 0.84);
 }
 
 // Of which not even base and length are known: what is wrong is refused or told. The last seed's fit goes far
@@ -56,6 +67,28 @@ TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
     EXPECT_NE(found.is_found, !found.reason.empty());
     EXPECT_NE(found.is_found, found.notes.empty());
   }
+}
+
+// Each camera sees all of it in one place, and the two places are none in space: what fits best may be an arm
+// of no length, of which no look-alikes can be made.
+TEST(ShapesOfPlaces, AreDoubtedOrRefused) {
+  double shortest = 1;
+  for (std::uint64_t seed = 1; seed < 9; ++seed) {
+    TestRandom random(seed);
+    const Arm arm = three_section_arm();
+    std::vector<Sighting> seen = sightings_of(Backbone(arm, random_bends(random, arm, 1.2)), random, 0.02);
+    for (Sighting& one : seen) {
+      const Eigen::Vector2d place = one.points[60].pixel;
+      for (CurvePoint& point : one.points) point.pixel = place + 1e-9 * (point.pixel - place);
+      one.ends = {};
+    }
+    for (CurvePoint& point : seen[1].points) point.pixel.y() += 10;
+    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(seen);
+    shortest = std::min(shortest, Backbone(found.shape.arm, found.shape.state).length());
+    EXPECT_TRUE(found.is_found ? !found.notes.empty() : !found.reason.empty());
+  }
+  // Otherwise none of them is what this is about.
+  EXPECT_LT(shortest, 1e-9);
 }
 
 }  // namespace

@@ -15,6 +15,15 @@ namespace flexura {
 struct CurvePoint {
   Eigen::Vector2d pixel = {0, 0};
   double sigma = 0.1;  ///< Standard deviation across the curve, px; > 0.
+  /// Standard deviation of what the points of a long stretch are off by together, beside that, px.
+  double offset = 0;
+};
+
+/// How far along the curve the errors of an axis's points go together: the correlation of two is
+/// exp(-distance / reach), distances in px. Of points that are measured each for itself: not at all.
+struct ErrorReach {
+  double sigma = 0;     ///< Of what CurvePoint::sigma says, px; 0: each is wrong by itself.
+  double offset = 120;  ///< Of CurvePoint::offset, px; > 0.
 };
 
 /// A marker whose place on the arm is known.
@@ -76,6 +85,7 @@ struct Sighting {
   /// The two edges of the tube where both are seen: right of the way from base to tip as the picture shows
   /// it, then left; as measured, not where the backbone is.
   std::array<std::vector<CurvePoint>, 2> edges = {};
+  ErrorReach reach = {};  ///< Of the points' errors.
 };
 
 /// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of

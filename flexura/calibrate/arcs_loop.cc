@@ -18,7 +18,10 @@ namespace flexura {
 namespace {
 
 constexpr double in_degrees = 180 / std::numbers::pi;
-constexpr std::size_t fewest_markers = 5;
+// Of an arm that has as many.
+std::size_t fewest_markers(const LoopConfig& config) {
+  return std::min<std::size_t>(5, config.picture.markers.size());
+}
 
 ArmPictureConfig picture_of(const LoopConfig& config) {
   ArmPictureConfig picture = config.picture;
@@ -51,23 +54,25 @@ ArcsLoop::ArcsLoop(LookLoop& loop)
     : loop_(loop),
       prior_(arcs_prior(loop.believed())),
       sights_(loop.believed().arm, picture_of(loop.config()), loop.config().cameras),
-      reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop), fewest_markers) {
+      reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop),
+              fewest_markers(loop.config())) {
   for (int i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop.config()));
 }
 
 LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
+  const std::size_t fewest = fewest_markers(loop_.config());
   std::size_t markers = 0;  // Whichever they are.
   auto trouble = loop_.look(i, [&](RigSight& sight) {
     ArmFigure figure = eyes_[i].look(*sight.frame.picture);
     markers = markers_of(figure.scene);
     sight.seen.reason = figure.reason;
     if (figure.reason.empty()) keep(i, std::move(figure), sight);
-    if (markers < fewest_markers && sight.seen.reason.empty())
-      sight.seen.reason = fmt::format("{} markers are seen, fewer than {}", markers, fewest_markers);
+    if (markers < fewest && sight.seen.reason.empty())
+      sight.seen.reason = fmt::format("{} markers are seen, fewer than {}", markers, fewest);
     sight.values = {{"markers", static_cast<double>(sight.seen.markers.size())}};
   });
   if (trouble) return trouble;
-  return markers < fewest_markers ? into_view(i, arc) : std::nullopt;
+  return markers < fewest ? into_view(i, arc) : std::nullopt;
 }
 
 // Keeps a picture among all of them, and tells which of its markers is which by these.
@@ -112,13 +117,13 @@ LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
 
 // Both arcs, seen by both cameras, and where the cameras are by all that was seen.
 LookLoop::Trouble ArcsLoop::locate() {
-  foretold_.reset();
-  if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
   for (const std::size_t arc : {std::size_t{0}, std::size_t{1}}) {
     if (auto trouble = loop_.show(plan_.arcs[arc])) return trouble;
     for (std::size_t i = 0; i < 2; ++i)
       if (auto trouble = look(i, arc)) return trouble;
   }
+  foretold_.reset();
+  if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
   RigReading reading = reader_.read(sights_, before());
   if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
   reading_ = std::move(reading);
@@ -170,9 +175,21 @@ double ArcsLoop::offset(std::size_t i) const {
   return loop_.lens(i).fx * std::max(turn, shift.norm() / distance);
 }
 
+// How far it may be when nothing brings it nearer: by what the pictures do not tell, and what cannot be
+// commanded, px.
+double ArcsLoop::allowed(std::size_t i) const {
+  constexpr double likely = 4;  // Standard deviations, or steps.
+  const double distance = std::abs((plan_.ideal[i].X_WC.position - plan_.centers[i]).dot(plan_.normals[i]));
+  double finest = angle_.sigma;
+  for (const auto& axis : {loop_.camera(i).head_axes()[0], loop_.camera(i).head_axes()[1]})
+    finest = std::max(finest, axis.resolution);
+  for (const auto& axis : loop_.camera(i).stage_axes()) finest = std::max(finest, axis.resolution / distance);
+  return std::max(loop_.config().accepted, likely * loop_.lens(i).fx * finest);
+}
+
 // The commands that bring both cameras to where the simulator has them; of the heads' positions around, the
 // pans whose axes are together the most nearly orthogonal.
-std::array<RigStance, 2> ArcsLoop::wanted() const {
+ArcsLoop::Wanted ArcsLoop::wanted() const {
   std::array<RigStance, 2> stances = {loop_.stance(0), loop_.stance(1)};
   std::array<double, 2> pans = {0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -181,10 +198,12 @@ std::array<RigStance, 2> ArcsLoop::wanted() const {
     const Eigen::Vector3d u = R_WM.transpose() * plan_.ideal[i].X_WC.rotation.col(2);
     stances[i].head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0)) - camera.tilt_zero;
     pans[i] = stances[i].head.pan = std::atan2(-u.x(), u.z()) - camera.pan_zero;
+    const double tilt = stances[i].head.tilt;
     stances[i] = loop_.commandable_stance(i, stances[i]);
     // Where the pupil will be by then decides how far the stage goes.
     const Eigen::Vector3d will_be = view_of(model(), stances[i]).X_WC.position;
     stances[i].stage.offset += R_WM.transpose() * (plan_.ideal[i].X_WC.position - will_be);
+    stances[i].head.tilt = tilt;
   }
   double least = std::numeric_limits<double>::infinity();
   const std::array<RigStance, 2> base = stances;
@@ -200,7 +219,20 @@ std::array<RigStance, 2> ArcsLoop::wanted() const {
       if (cost < least) least = cost, stances = tried;
     }
   }
-  return stances;
+  Wanted wanted{stances, {false, false}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto is_beyond = [&](double is, double asked, const AxisConfig& axis) {
+      return std::abs(is - asked) > 2 * axis.resolution + 1e-9;
+    };
+    const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
+    bool is_short = is_beyond(stances[i].head.pan, pans[i], pan) ||
+                    is_beyond(stances[i].head.tilt, base[i].head.tilt, tilt);
+    for (int k = 0; k < 3; ++k)
+      is_short = is_short || is_beyond(stances[i].stage.offset[k], base[i].stage.offset[k],
+                                       loop_.camera(i).stage_axes()[static_cast<std::size_t>(k)]);
+    wanted.is_short[i] = is_short;
+  }
+  return wanted;
 }
 
 // Looks and moves until both cameras are where the simulator has them.
@@ -209,13 +241,17 @@ LookLoop::Trouble ArcsLoop::square() {
                                 std::numeric_limits<double>::infinity()};
   for (;;) {
     if (auto trouble = locate()) return trouble;
-    const std::array<RigStance, 2> next = wanted();
+    const auto [next, is_short] = wanted();
     bool is_moved = false;
     for (std::size_t i = 0; i < 2; ++i) {
       const double off = offset(i);
-      const bool is_accepted = off <= loop_.config().accepted || loop_.stands_there(i, next[i]);
-      // Steps that shrink no more are what the pictures do not tell.
-      const bool is_noise = off > 0.5 * last[i];
+      const bool is_there = loop_.stands_there(i, next[i]), is_far = off > allowed(i);
+      if (is_far && (is_there || is_short[i]))
+        return fmt::format("camera {}: what can be commanded ends {:.4g} px before it holds", loop_.name(i),
+                           off);
+      const bool is_accepted = off <= loop_.config().accepted || is_there;
+      // Small steps that shrink no more are what the pictures do not tell.
+      const bool is_noise = off > 0.5 * last[i] && !is_far;
       last[i] = off;
       const bool goes = !is_accepted && !is_noise;
       std::string decision =

@@ -23,10 +23,12 @@ namespace flexura {
 /// Calibrates with arcs of the arm (section 3.4), made well posed: both cameras see both arcs, by their
 /// markers and axes; what moves a camera from where all these pictures put it to where the simulator has it
 /// is commanded, until nothing finer can be, or pictures tell nothing finer. Pictures that do not agree
-/// within their standard deviations are trouble. Then the zooms.
+/// within their standard deviations are trouble, and so is what cannot be commanded. Then the zooms.
 class ArcsLoop {
  public:
   explicit ArcsLoop(LookLoop& loop);
+  ArcsLoop(const ArcsLoop&) = delete;  // Its reader refers to its prior.
+  ArcsLoop& operator=(const ArcsLoop&) = delete;
   [[nodiscard]] LookLoop::Trouble run();
 
  private:
@@ -40,8 +42,13 @@ class ArcsLoop {
   [[nodiscard]] Trouble locate();
   [[nodiscard]] Trouble disagreement() const;
   [[nodiscard]] Trouble square();
-  [[nodiscard]] std::array<RigStance, 2> wanted() const;
+  struct Wanted {
+    std::array<RigStance, 2> stances;
+    std::array<bool, 2> is_short;  // A head or stage does not reach where it should.
+  };
+  [[nodiscard]] Wanted wanted() const;
   [[nodiscard]] double offset(std::size_t i) const;
+  [[nodiscard]] double allowed(std::size_t i) const;
 
   [[nodiscard]] const RigModel* before() const { return reading_ ? &reading_->found.model : nullptr; }
   [[nodiscard]] const RigModel& model() const { return reading_ ? *before() : loop_.believed(); }

@@ -110,6 +110,8 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
     };
     Sighting whole = seen;
     std::erase_if(whole.points, is_none), std::erase_if(whole.borders, is_none);
+    std::erase_if(whole.points, [](const CurvePoint& point) { return !(std::abs(point.offset) < 1e6); });
+    if (!(whole.reach.offset > 0)) whole.reach.offset = ErrorReach{}.offset;
     std::erase_if(whole.markers, is_none), std::erase_if(whole.bands, is_none);
     for (auto& end : whole.ends)
       if (end && is_none(*end)) end.reset();

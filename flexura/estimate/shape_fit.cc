@@ -40,20 +40,6 @@ double correlation_factor(std::span<const double> series) {
   return factor;
 }
 
-// The same as the sightings promise it for their points.
-double promised_factor(const ShapeProblem& problem) {
-  double sum = 0, count = 0;
-  for (const Sighting& seen : problem.sightings()) {
-    for (std::size_t i = 1; i < seen.points.size() && seen.reach.sigma > 0; ++i) {
-      const double way = (seen.points[i].pixel - seen.points[i - 1].pixel).norm();
-      sum += std::exp(-way / seen.reach.sigma);
-    }
-    count += static_cast<double>(seen.points.size());
-  }
-  const double alike = std::min(sum / std::max(count, 1.0), 0.95);
-  return (1 + alike) / (1 - alike);
-}
-
 }  // namespace
 
 double ShapeDescent::cutoff(const ShapeProblem& problem) {
@@ -146,16 +132,12 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
          on_axes = 0;
   sizes_.clear();
   std::vector<double> seen_in(problem.sightings().size()), believed_in(seen_in.size());
-  Eigen::VectorXd told = Eigen::VectorXd::Zero(problem.rows());  // 1: known before.
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double r = problem.residuals()[i], px = r * problem.sigma(i);
     if (problem.kind(i) == RowKind::belief) against += r * r, ++beliefs;
-    if (!problem.is_seen(i)) {
-      told[i] = 1;
-      continue;
-    }
-    square += weights_[i] * r * r, weight += weights_[i];
+    if (!problem.is_seen(i)) continue;
     const RowKind kind = problem.kind(i);
+    if (kind == RowKind::point) square += weights_[i] * r * r, weight += weights_[i];
     if (kind == RowKind::end || kind == RowKind::marker) {
       if (std::abs(r) > cutoff) ++fit.contradicted;
       continue;
@@ -172,69 +154,101 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
   for (std::size_t i = 0; i < seen_in.size(); ++i)
     fit.doubted_in.push_back(seen_in[i] > 0 ? 1 - believed_in[i] / seen_in[i] : 0.0);
   fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
-  add_scatter(problem, told);
-  solver_.compute(normal_);
-  const bool is_regular = solver_.info() == Eigen::Success && solver_.rcond() > 1e-15;
-  if (!is_regular) {
-    fit.covariance =
-        Eigen::MatrixXd::Constant(normal_.rows(), normal_.cols(), std::numeric_limits<double>::infinity());
-    return;
-  }
-  // Of the residuals' squares the fit takes as many as it follows.
-  damped_ = solver_.solve(scatter_);
-  const double freedom = std::max(1.0, weight - damped_.trace());
-  // Axes are not known to be better than a floor: where they are, their residuals tell.
-  constexpr double least = 0.4;
-  const double factor = std::max(least, square / freedom) *
-                        std::max(1.0, correlation_factor(sizes_) / promised_factor(problem));
-  scatter_ *= factor;
-  scatter_ += std::max(1.0, factor) * other_scatter_;
-  // What is seen is as good as its residuals say; what was known before stays as it was.
-  weighted_.noalias() = problem.derivatives().transpose() * told.asDiagonal();
-  scatter_.noalias() += weighted_ * weighted_.transpose();
-  damped_ = solver_.solve(scatter_).transpose();
-  fit.covariance = solver_.solve(damped_);
+  // What comes after a belief is a filter's, which weighs points as independent and counts on it.
+  fit.covariance =
+      beliefs > 0 ? filtered_covariance(problem, square, weight) : covariance(problem, square, weight);
 }
 
-// What the gradient of what is seen scatters by: the sum of its rows' products, as far as their errors go
-// together.
-void ShapeDescent::add_scatter(const ShapeProblem& problem, const Eigen::VectorXd& told) {
+// The inverse of what was known before and of what is seen, this as far as its residuals say.
+Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
-  // Of each row its part of the gradient; of each point what goes together with it of those before.
-  weighted_.noalias() =
-      problem.derivatives().transpose() * (weights_.array() * (1 - told.array())).matrix().asDiagonal();
-  alike_.setZero(count, problem.rows()), offsets_.setZero(count, problem.rows());
-  near_.setZero(count), far_.setZero(count);
-  std::size_t sighting = problem.sightings().size(), point = 0;
-  const CurvePoint* before = nullptr;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    if (problem.kind(i) != RowKind::point) continue;
-    if (problem.sighting(i) != sighting) sighting = problem.sighting(i), point = 0, before = nullptr;
-    const Sighting& seen = problem.sightings()[sighting];
-    const CurvePoint& here = seen.points[point++];
-    if (before == nullptr) near_.setZero(), far_.setZero();
-    if (before != nullptr) {
-      const double way = (here.pixel - before->pixel).norm();
-      near_ *= seen.reach.sigma > 0 ? std::exp(-way / seen.reach.sigma) : 0.0;
-      far_ *= std::exp(-way / seen.reach.offset);
-    }
-    const double offset = here.offset / problem.sigma(i);
-    alike_.col(i) = near_;
-    offsets_.col(i) = offset * far_ + 0.5 * offset * offset * weighted_.col(i);
-    near_ += weighted_.col(i), far_ += offset * weighted_.col(i);
-    before = &here;
+  const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));
+  const double variance = std::max(1.0, square / freedom) * correlation_factor(sizes_);
+  load_scatter(problem);
+  damped_.setZero(count, count);
+  damped_.selfadjointView<Eigen::Lower>().rankUpdate(told_);
+  damped_ += (normal_ - damped_) / variance;
+  solver_.compute(damped_);
+  if (solver_.info() != Eigen::Success || !(solver_.rcond() > 1e-15))
+    return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
+  return solver_.solve(Eigen::MatrixXd::Identity(count, count));
+}
+
+// N^-1 (what is told + f A + max(1, f) O) N^-1, with N the normal matrix (docs/estimation.md, How sure).
+Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double square, double weight) {
+  const Eigen::Index count = normal_.rows();
+  solver_.compute(normal_);
+  if (solver_.info() != Eigen::Success || !(solver_.rcond() > 1e-15))
+    return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
+  damped_ = solver_.solve(Eigen::MatrixXd::Identity(count, count));
+  load_scatter(problem);
+  // With A = G B^T + B G^T and so on: N^-1 G once.
+  followed_.noalias() = damped_ * parts_;
+  // Of the residuals' squares the fit takes as many as it follows.
+  const double freedom = std::max(1.0, weight - 2 * followed_.cwiseProduct(alike_).sum());
+  // Axes are not known to be better than a floor: where they are, their residuals tell.
+  constexpr double least = 0.4;
+  const double factor =
+      std::max(least, square / freedom) * std::max(1.0, correlation_factor(sizes_) / promised_);
+  alike_ = factor * alike_ + std::max(1.0, factor) * apart_;
+  scatter_.noalias() = followed_ * alike_.transpose();
+  normal_.noalias() = scatter_ * damped_;
+  Eigen::MatrixXd result = normal_ + normal_.transpose();
+  if (told_.cols() > 0) {
+    followed_.noalias() = damped_ * told_;
+    result.noalias() += followed_ * followed_.transpose();
   }
-  damped_.noalias() = weighted_ * alike_.transpose();
-  scatter_ = damped_ + damped_.transpose();
-  damped_.noalias() = weighted_ * offsets_.transpose();
-  other_scatter_ = damped_ + damped_.transpose();
-  // Each row by itself. Ends' errors have long tails: tips hide.
+  return result;
+}
+
+// Of each row that is seen its part of the gradient; what goes together with it of the points before, and
+// half of itself: as the errors of `sigma` do, and for all the others. Those that were told, as they are.
+void ShapeDescent::load_scatter(const ShapeProblem& problem) {
+  // Ends' errors have long tails: tips hide.
   constexpr double of_ends = 2.5;
+  Eigen::Index rows = 0, told = 0;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? rows : told);
+  const Eigen::Index count = normal_.rows();
+  parts_.resize(count, rows), alike_.resize(count, rows), apart_.resize(count, rows);
+  told_.resize(count, told);
+  std::size_t sighting = problem.sightings().size(), point = 0;
+  double likes = 0, pairs = 0;
+  rows = told = 0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    Eigen::MatrixXd& scatter = problem.kind(i) == RowKind::point ? scatter_ : other_scatter_;
-    const double share = problem.kind(i) == RowKind::end ? of_ends : 1.0;
-    scatter.noalias() += share * weighted_.col(i) * weighted_.col(i).transpose();
+    const auto derivative = problem.derivatives().row(i).transpose();
+    if (!problem.is_seen(i)) {
+      told_.col(told++) = derivative;
+      continue;
+    }
+    const Eigen::Index k = rows++;
+    auto part = parts_.col(k), alike = alike_.col(k), apart = apart_.col(k);
+    part = weights_[i] * derivative;
+    if (problem.kind(i) != RowKind::point) {
+      alike.setZero(), apart = (problem.kind(i) == RowKind::end ? 0.5 * of_ends : 0.5) * part;
+      continue;
+    }
+    if (problem.sighting(i) != sighting) {
+      sighting = problem.sighting(i), point = 0;
+      near_.setZero(count), far_.setZero(count);
+    }
+    const Sighting& seen = problem.sightings()[sighting];
+    const CurvePoint& here = seen.points[point];
+    if (point > 0) {
+      const double way = (here.pixel - seen.points[point - 1].pixel).norm();
+      const double like = seen.reach.sigma > 0 ? std::exp(-way / seen.reach.sigma) : 0.0;
+      near_ *= like, likes += like, ++pairs;
+      if (here.offset > 0) far_ *= std::exp(-way / seen.reach.offset);
+    }
+    ++point;
+    const double offset = here.offset / problem.sigma(i);
+    alike = near_ + 0.5 * part;
+    apart = offset * (far_ + 0.5 * offset * part);
+    near_ += part, far_ += offset * part;
   }
+  // As correlation_factor() has it.
+  constexpr double most = 0.95;
+  const double like = std::min(likes / std::max(pairs, 1.0), most);
+  promised_ = (1 + like) / (1 - like);
 }
 
 }  // namespace flexura

@@ -40,12 +40,17 @@ class ShapeDescent {
   void weigh(const ShapeProblem& problem, double cutoff);
   double step(ShapeProblem& problem, double cutoff, double before, double& damping, Shape& shape);
   void finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit);
-  void add_scatter(const ShapeProblem& problem, const Eigen::VectorXd& told);
+  // Of the unknowns; `square`: of the points' weighted residuals, `weight`: of the points.
+  [[nodiscard]] Eigen::MatrixXd covariance(const ShapeProblem& problem, double square, double weight);
+  [[nodiscard]] Eigen::MatrixXd filtered_covariance(const ShapeProblem& problem, double square,
+                                                    double weight);
+  void load_scatter(const ShapeProblem& problem);
 
   std::vector<double> sizes_;
   Eigen::VectorXd weights_, gradient_, step_, near_, far_;
-  Eigen::MatrixXd weighted_, alike_, offsets_, normal_, damped_, scatter_,
-      other_scatter_;  // Of symmetric ones the lower half.
+  Eigen::MatrixXd weighted_, normal_, damped_;                         // Of symmetric ones the lower half.
+  Eigen::MatrixXd parts_, alike_, apart_, told_, followed_, scatter_;  // Of the covariance, whole.
+  double promised_ = 1;  // How much more the points' mean varies than that of independent ones.
   Eigen::LDLT<Eigen::MatrixXd> solver_;
 };
 

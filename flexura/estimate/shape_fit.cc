@@ -206,21 +206,21 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
 void ShapeDescent::load_scatter(const ShapeProblem& problem) {
   // Ends' errors have long tails: tips hide.
   constexpr double of_ends = 2.5;
-  Eigen::Index rows = 0, told = 0;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? rows : told);
+  Eigen::Index all_seen = 0, all_told = 0;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? all_seen : all_told);
   const Eigen::Index count = normal_.rows();
-  parts_.resize(count, rows), alike_.resize(count, rows), apart_.resize(count, rows);
-  told_.resize(count, told);
+  parts_.resize(count, all_seen), alike_.resize(count, all_seen), apart_.resize(count, all_seen);
+  told_.resize(count, all_told);
   std::size_t sighting = problem.sightings().size(), point = 0;
   double likes = 0, pairs = 0;
-  rows = told = 0;
+  all_seen = all_told = 0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const auto derivative = problem.derivatives().row(i).transpose();
     if (!problem.is_seen(i)) {
-      told_.col(told++) = derivative;
+      told_.col(all_told++) = derivative;
       continue;
     }
-    const Eigen::Index k = rows++;
+    const Eigen::Index k = all_seen++;
     auto part = parts_.col(k), alike = alike_.col(k), apart = apart_.col(k);
     part = weights_[i] * derivative;
     if (problem.kind(i) != RowKind::point) {

@@ -44,7 +44,7 @@ class ArcsLoop {
   [[nodiscard]] Trouble square();
   struct Wanted {
     std::array<RigStance, 2> stances;
-    std::array<bool, 2> is_short;  // A head or stage does not reach where it should.
+    std::array<bool, 2> is_short{};  // A head or stage does not reach where it should.
   };
   [[nodiscard]] Wanted wanted() const;
   [[nodiscard]] double offset(std::size_t i) const;

@@ -19,11 +19,18 @@ namespace {
 
 using Trouble = RigHands::Trouble;
 
+void check(const RigPorts& ports, const RigModel& believed, const RigSessionConfig& config) {
+  if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
+    throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
+  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
+    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
+}
+
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,
           const RigSessionConfig& config, RigSessionWatcher& watcher)
-      : believed_(checked(ports, believed, config)),
+      : believed_(believed),
         prior_(prior),
         config_(config),
         watcher_(watcher),
@@ -52,15 +59,6 @@ class Session {
   }
 
  private:
-  static const RigModel& checked(const RigPorts& ports, const RigModel& believed,
-                                 const RigSessionConfig& config) {
-    if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
-      throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
-    if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
-      throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
-    return believed;
-  }
-
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
       if (auto trouble = look({pose(i), {stands_[0], stands_[1]}})) return trouble;
@@ -318,6 +316,7 @@ class Session {
 RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
                                           const RigPrior& prior, const RigSessionConfig& config,
                                           RigSessionWatcher& watcher) {
+  check(ports, believed, config);
   return Session(ports, believed, prior, config, watcher).run();
 }
 

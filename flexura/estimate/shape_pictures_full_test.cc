@@ -54,7 +54,7 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
 // Of which not even base and length are known: what is wrong is refused or told. The last seed's fit goes far
 // astray, and did so by shrinking the arm to a point once.
 TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 82, 89, 123, 309, 3199}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 82U, 89U, 123U, 309U, 3199U}) {
     SCOPED_TRACE(seed);
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);

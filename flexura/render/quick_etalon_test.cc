@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "flexura/math/so3.h"
 #include "flexura/render/quick_picture.h"
@@ -101,6 +102,35 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhateverItsSize) {
   });
   std::printf("etalons of all sizes: light differs by %.5f at worst\n", worst);
   EXPECT_LT(worst, 0.05);
+}
+
+// The images of such ends are ellipses of 0.5 to 10 px by 10 to 100, of which a pixel may see both sides.
+TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
+  constexpr int width = 96, height = 72;
+  double worst = 0;
+  for_random_cases(1000, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    Etalon& etalon = *scene.etalon;
+    etalon.albedo = Color::Constant(random.uniform(0, 1)), etalon.line_width = 0;
+    const Eigen::Vector3d axis = etalon.X_WE.rotation.col(1);
+    const Eigen::Vector3d end = etalon.X_WE.position + (random.integer(0, 1) - 0.5) * etalon.height * axis;
+    const double far = random.uniform(1.5, 4), f = width * random.uniform(0.6, 8);  // m, px
+    const double thickness = std::pow(10, random.uniform(-0.3, 1));                 // px
+    const double sine =
+        std::min(0.5, thickness * far / (2 * etalon.radius * f)) * (random.integer(0, 1) - 0.5);
+    const Eigen::Vector3d aside =
+        so3_exp(random.uniform(0, 2 * std::numbers::pi) * axis) * axis.unitOrthogonal();
+    const Eigen::Vector3d eye = end + far * (std::sqrt(1 - 4 * sine * sine) * aside + 2 * sine * axis);
+    const View view = pinhole_view(look_at(eye, end + 0.05 * random.vector<3>(-1, 1)), width, height, f);
+    Renderer renderer;
+    LightImage exact, quick;
+    renderer.render(scene, view, PixelKind::gray, exact, true);
+    renderer.render(scene, view, PixelKind::gray, quick);
+    for (std::size_t i = 0; i < exact.light.values().size(); ++i)
+      worst = std::max(worst, std::abs(exact.light.values()[i] - quick.light.values()[i]) + 0.0);
+  });
+  std::printf("ends from the edge: light differs by %.5f at worst\n", worst);
+  EXPECT_LT(worst, 0.04);
 }
 
 // What a calibration looks at: upright, 1.5 m away, by 640 x 480 px, zoomed in.

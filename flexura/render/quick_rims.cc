@@ -44,8 +44,8 @@ bool QuickPicture::plan_rims(const Stage& stage) {
                                         std::min(narrow, circle.radius));
     if (!region) return false;
     const EndOf end = end_of(stage, disc);
-    // Seen from its edge, both sides of it are in the same pixels.
-    constexpr double thinnest = 2;  // px
+    // The image of one seen from its edge is too thin for single precision.
+    constexpr double thinnest = 1;  // px
     const double thickness = 2 * circle.radius * std::abs(circle.normal.dot(circle.center)) /
                              (circle.center.squaredNorm() * pixel_);
     const bool is_end = end.piece >= 0 && is_near_picture(circle.center) && thickness > thinnest;

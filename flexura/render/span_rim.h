@@ -17,11 +17,12 @@ struct RimPoint {
 }
 
 // How the rim's image, a conic, lies in a pixel: how far it is from the middle along the value's gradient,
-// positive where the middle is within; the gradient's direction; how it bends, 1/px, and 1/px of half the way
-// to its other side, along the gradient.
+// positive where the middle is within; the gradient's direction; how it bends, 1/px; the value's second
+// derivatives along and across the gradient together, halved, by the pixel squared; and 1/px of about half the
+// way to its other side.
 struct RimLine {
   RimPoint at;
-  Wide distance, normal_u, normal_v, bending, flatness;
+  Wide distance, normal_u, normal_v, bending, curving, flatness;
 };
 [[gnu::always_inline]] inline RimLine rim_line(const SpanRim& rim, const Place& place) {
   RimLine line;
@@ -47,7 +48,8 @@ struct RimLine {
   const Wide there = at_least(1e-30f, square_root(at_least(0, square)));
   line.distance = -at.value / (steepness + there);
   line.bending = curving(-line.normal_v, line.normal_u) / there;
-  line.flatness = across / there;
+  line.curving = across + curving(-line.normal_v, line.normal_u);
+  line.flatness = line.curving / there;
   return line;
 }
 
@@ -62,7 +64,9 @@ struct RimLine {
   const RimLine line = rim_line(rim, place);
   const RimPoint& at = line.at;
   const WideMask is_seen = facing(rim, at) < rim.margin * square_root(at.x * at.x + at.y * at.y);
-  return (size_of(line.distance) < reach) & (at.z > 0) & (is_seen | WideMask(rim.is_front));
+  // Between two sides that are near, the gradient may point along them.
+  const WideMask is_between = size_of(at.value) < reach * reach * line.curving;
+  return ((size_of(line.distance) < reach) | is_between) & (at.z > 0) & (is_seen | WideMask(rim.is_front));
 }
 
 // Appends the columns of the row's rim pixels to row.borders.

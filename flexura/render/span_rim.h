@@ -18,8 +18,8 @@ struct RimPoint {
 
 // How the rim's image, a conic, lies in a pixel: how far it is from the middle along the value's gradient,
 // positive where the middle is within; the gradient's direction; how it bends, 1/px; the value's second
-// derivatives along and across the gradient together, halved, by the pixel squared; and 1/px of about half the
-// way to its other side.
+// derivatives along and across the gradient together, halved, by the pixel squared; and 1/px of about half
+// the way to its other side.
 struct RimLine {
   RimPoint at;
   Wide distance, normal_u, normal_v, bending, curving, flatness;

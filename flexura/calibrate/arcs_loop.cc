@@ -36,8 +36,7 @@ Eigen::Vector3d middle_of(const LookLoop& loop) {
 
 }  // namespace
 
-RigPrior arcs_prior(const RigModel& believed) {
-  RigPrior prior = rough_prior(believed);
+RigPrior arcs_prior(RigPrior prior) {
   // The same factors in both arcs. Two cameras that each look from about one place would not tell how the
   // planes of two arcs stand to each other that bend each as they like.
   prior.arm.bend_share = prior.arm.bend = 0;
@@ -52,7 +51,7 @@ RigPrior arcs_prior(const RigModel& believed) {
 
 ArcsLoop::ArcsLoop(LookLoop& loop)
     : loop_(loop),
-      prior_(arcs_prior(loop.believed())),
+      prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.believed())))),
       sights_(loop.believed().arm, picture_of(loop.config()), loop.config().cameras),
       reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop),
               fewest_markers(loop.config())) {

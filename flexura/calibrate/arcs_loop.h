@@ -14,11 +14,10 @@
 
 namespace flexura {
 
-/// How wrong a rig may be that is calibrated with arcs (standard deviations): its lenses are known but for 1
-/// px of the principal point, its heads but for half a step; the cameras' places within a fifth of their
-/// distance from the arm's base, their turns within 10 degrees; each section's length within 0.5 % and its
-/// bends within 1 %, by the same factor in every arc.
-[[nodiscard]] RigPrior arcs_prior(const RigModel& believed);
+/// How wrong a rig may be that is calibrated with arcs, by how wrong one may be beside: its lenses are known
+/// but for 1 px of the principal point, its heads but for their steps, and a section's bends are wrong by the
+/// same factor in every arc.
+[[nodiscard]] RigPrior arcs_prior(RigPrior prior);
 
 /// Calibrates with arcs of the arm (section 3.4), made well posed: both cameras see both arcs, by their
 /// markers and axes; what moves a camera from where all these pictures put it to where the simulator has it

@@ -33,7 +33,7 @@ TEST(ArcsPrior, MakesTwoArcsTellTheAngleBetweenTheAxesAsWellAsItSays) {
   int count = 0;
   for_random_cases(30, [&](TestRandom& random) {
     const RigModel truth = true_rig(believed_rig(), known_lenses, random);
-    RigProblem problem(believed_rig(), arcs_prior(believed_rig()), arcs_seen(truth, random));
+    RigProblem problem(believed_rig(), arcs_prior(rough_prior(believed_rig())), arcs_seen(truth, random));
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     const RigVariables& variables = problem.variables();

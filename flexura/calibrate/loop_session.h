@@ -38,6 +38,7 @@ struct LoopConfig {
   EtalonConfig etalon;                          ///< Where it stands, and how large it is.
   double arc = 2.0943951023931953;              ///< By which the arm is bent into an arc, rad: 120 degrees.
   ArmPictureConfig picture;                     ///< With the arm's markers.
+  std::optional<RigPrior> prior;  ///< How wrong the rig may be (`arcs`); none: as rough_prior() says.
   /// The simulator's picture of the arm in a state, gray: the ideal image.
   std::function<Image<std::uint8_t>(const View&, const ArmState&)> draw;
   int white = 255;           ///< The largest value of a picture.

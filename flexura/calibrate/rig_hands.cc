@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "flexura/camera/camera.h"
+#include "flexura/calibrate/rig_readings.h"
 #include "flexura/camera/sensor.h"
 
 namespace flexura {
@@ -22,22 +22,23 @@ bool stands(const AxisConfig& axis, double sent, double reads) {
 }  // namespace
 
 RigHands::RigHands(const RigPorts& ports, const RigModel& believed, const RigPatience& patience)
-    : ports_(ports), patience_(patience), sent_(ports.cameras.size()) {
-  for (const RigCamera& camera : believed.cameras) cameras_.push_back(camera.config);
+    : ports_(ports),
+      sections_(believed.arm.sections.size()),
+      patience_(patience),
+      sent_(ports.cameras.size()) {
+  for (const RigCamera& camera : believed.cameras) cameras_.emplace_back(camera.config);
 }
 
 std::variant<ArmState, std::string> RigHands::arm() const {
-  const auto reading = ports_.arm->read();
-  if (const auto fault = reading.fault()) return text(*fault);
-  return reading.value().state;
+  auto reading = read_arm(*ports_.arm, sections_);
+  if (auto* why = std::get_if<std::string>(&reading)) return std::move(*why);
+  return std::get<ArmReading>(std::move(reading)).state;
 }
 
 std::variant<RigStance, std::string> RigHands::stance(std::size_t camera) const {
-  const auto head = ports_.cameras[camera].head->read();
-  if (const auto fault = head.fault()) return text(*fault);
-  const auto stage = ports_.cameras[camera].stage->read();
-  if (const auto fault = stage.fault()) return text(*fault);
-  return RigStance{camera, head.value().state, stage.value().state};
+  auto reading = read_camera(ports_.cameras[camera], camera, cameras_[camera]);
+  if (auto* why = std::get_if<std::string>(&reading)) return std::move(*why);
+  return std::get<CameraReading>(reading).stance;
 }
 
 RigHands::Trouble RigHands::bend(const ArmState& state, double duration) {
@@ -55,15 +56,13 @@ RigHands::Trouble RigHands::go(const RigStance& stance) {
 }
 
 std::variant<bool, std::string> RigHands::is_moving() const {
-  const auto arm = ports_.arm->read();
-  if (const auto fault = arm.fault()) return text(*fault);
-  bool is_moving = arm.value().moving;
-  for (const CameraPorts& camera : ports_.cameras) {
-    const auto head = camera.head->read();
-    if (const auto fault = head.fault()) return text(*fault);
-    const auto stage = camera.stage->read();
-    if (const auto fault = stage.fault()) return text(*fault);
-    is_moving = is_moving || head.value().moving || stage.value().moving;
+  auto arm = read_arm(*ports_.arm, sections_);
+  if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
+  bool is_moving = std::get<ArmReading>(arm).moving;
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    auto camera = read_camera(ports_.cameras[i], i, cameras_[i]);
+    if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
+    is_moving = is_moving || std::get<CameraReading>(camera).moving;
   }
   return is_moving;
 }
@@ -104,7 +103,7 @@ RigHands::Trouble RigHands::camera_elsewhere(std::size_t camera) const {
   const auto where = stance(camera);
   if (const auto* trouble = std::get_if<std::string>(&where)) return *trouble;
   const RigStance &sent = *sent_[camera], &reads = std::get<RigStance>(where);
-  const Camera optics(cameras_[camera]);
+  const Camera& optics = cameras_[camera];
   const auto off = [&](const char* device, const char* axis_name, const AxisConfig& axis, double to,
                        double is) -> Trouble {
     if (stands(axis, to, is)) return std::nullopt;
@@ -126,7 +125,7 @@ RigHands::Trouble RigHands::camera_elsewhere(std::size_t camera) const {
 }
 
 std::variant<Frame, std::string> RigHands::frame(std::size_t camera, double time) const {
-  const SensorConfig& sensor = cameras_[camera].sensor;
+  const SensorConfig& sensor = cameras_[camera].config().sensor;
   const double until = std::max(now(), time) + patience_.frame;
   for (;;) {
     const auto outcome = ports_.cameras[camera].camera->wait(until - now());

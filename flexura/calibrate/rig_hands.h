@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/calibrate/rig_model.h"
+#include "flexura/camera/camera.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {
@@ -50,7 +51,8 @@ class RigHands {
   [[nodiscard]] const std::string& name(std::size_t camera) const { return ports_.cameras[camera].name; }
 
   RigPorts ports_;
-  std::vector<CameraConfig> cameras_;
+  std::size_t sections_;
+  std::vector<Camera> cameras_;  // As they are believed to be.
   RigPatience patience_;
   std::optional<ArmState> sent_arm_;
   std::vector<std::optional<RigStance>> sent_;  // By camera.

@@ -271,6 +271,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   config.arc = arc_bend(task);
   for (const Marker& marker : arm.look.markers(arm.arm()))
     config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  config.prior = session_prior(task, rig_model(arm.arm(), cameras));
   config.etalon = stand.etalon.value_or(EtalonConfig{});
   config.white = (1 << cameras.at(config.cameras[0]).sensor.bits) - 1;
   config.move_duration = task.move_duration;
@@ -345,8 +346,12 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   check_two_cameras(task.cameras, cameras, path, reader);
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
-  if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
-    check_markers(arm, path, reader);
+  const bool is_bundle = task.method == CalibrateMethod::bundle;
+  if (!is_bundle && task.wanted != CalibrateWantedConfig{})
+    reader.problem_at(path + ".wanted", "is what the method bundle stops by: expected no such key");
+  if (!is_bundle && task.method != CalibrateMethod::arcs && task.guess != CalibrateGuessConfig{})
+    reader.problem_at(path + ".guess", "is asked for by the methods bundle and arcs: expected no such key");
+  if (is_bundle || task.method == CalibrateMethod::arcs) check_markers(arm, path, reader);
   if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
   if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
   if (!task.save.empty() && !is_plain_file(task.save))

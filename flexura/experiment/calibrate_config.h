@@ -31,6 +31,7 @@ struct CalibrateWantedConfig {
   double angle = 0.00034906585039886592;  ///< Between the axes, rad: 0.02 degrees.
   double focal = 0.003;                   ///< Share.
   double zoom_ratio = 0.003;              ///< Share.
+  bool operator==(const CalibrateWantedConfig&) const = default;
 };
 
 /// How wrong the file's description of the cameras may be: standard deviations.
@@ -40,6 +41,7 @@ struct CalibrateGuessConfig {
   double focal = 0.1;                     ///< Share.
   double principal_point = 10;            ///< px
   bool exact_heads = false;               ///< Heads stand where they count, not within half a step of it.
+  bool operator==(const CalibrateGuessConfig&) const = default;
 };
 
 /// How the paper's methods go about it (calibrate/loop_session.h).

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
+#include "flexura/calibrate/arcs_loop.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/calibrate_task.h"
 #include "flexura/experiment/results.h"
@@ -340,6 +341,27 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
   EXPECT_THAT(
       problem_of("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
+  const LoopRig rig = small({WrongStart{}, WrongStart{}});
+  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
+            "task[0].guess: is asked for by the methods bundle and arcs: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
+            "task[0].wanted: is what the method bundle stops by: expected no such key");
+}
+
+TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
+  CalibrationBench bench(arcs_rig("method = \"arcs\"\nguess = { rotation = 0.02, exact_heads = true }\n",
+                                  arcs_cameras({WrongStart{}, WrongStart{}}, false)));
+  const Experiment& file = bench.experiment();
+  const LoopConfig config =
+      loop_config(std::get<CalibrateTask>(file.task.front()), file.arm, file.cameras(), file.stand);
+  ASSERT_TRUE(config.prior.has_value());
+  const RigPrior prior = arcs_prior(*config.prior);
+  for (const CameraPrior& camera : prior.cameras) {
+    EXPECT_EQ(camera.rotation, 0.02);
+    EXPECT_EQ(camera.steps, 0);
+    EXPECT_EQ(camera.principal_point, 1);
+    EXPECT_EQ(camera.focal, 0);
+  }
 }
 
 }  // namespace

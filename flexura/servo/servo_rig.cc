@@ -5,28 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
+#include "flexura/calibrate/rig_readings.h"
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {
-namespace {
-
-bool is_finite(const ArmState& state) {
-  return std::ranges::all_of(state.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }) &&
-         std::ranges::all_of(state.stretches, [](double stretch) { return std::isfinite(stretch); });
-}
-
-bool is_finite(const HeadState& head) {
-  return std::isfinite(head.pan) && std::isfinite(head.tilt) && std::isfinite(head.zoom);
-}
-
-}  // namespace
-
 ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
                    double span, double together)
     : ports_(ports),
       model_(believed),
       cameras_(cameras),
+      optics_{Camera(believed.cameras.at(cameras[0]).config), Camera(believed.cameras.at(cameras[1]).config)},
       together_(together),
       arm_(span, &interpolate),
       stands_{MotionHistory<Stand, StandBlend>(span, &between),
@@ -42,24 +32,15 @@ ServoRig::Stand ServoRig::between(const Stand& a, const Stand& b, double share) 
 }
 
 ServoRig::Trouble ServoRig::read() {
-  const auto arm = ports_.arm->read();
-  if (const auto fault = arm.fault()) return "the arm: " + text(*fault);
-  if (!std::isfinite(arm.value().time)) return "the arm tells of no time: a number is none";
-  if (!is_finite(arm.value().state) || arm.value().state.bends.size() != model_.arm.sections.size())
-    return "the arm's drives tell of no shape: some of their numbers are none";
-  arm_.add(arm.value().time, arm.value().state);
+  auto arm = read_arm(*ports_.arm, model_.arm.sections.size());
+  if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
+  const auto& said = std::get<ArmReading>(arm);
+  arm_.add(said.time, said.state);
   for (std::size_t i = 0; i < 2; ++i) {
-    const CameraPorts& camera = ports_.cameras[cameras_[i]];
-    const auto head = camera.head->read();
-    if (const auto fault = head.fault())
-      return fmt::format("the head of camera {}: {}", name(i), text(*fault));
-    const auto stage = camera.stage->read();
-    if (const auto fault = stage.fault())
-      return fmt::format("the stage of camera {}: {}", name(i), text(*fault));
-    if (!std::isfinite(head.value().time) || !is_finite(head.value().state) ||
-        !stage.value().state.offset.allFinite())
-      return fmt::format("camera {} does not tell how it stands: some of its numbers are none", name(i));
-    stands_[i].add(head.value().time, {head.value().state, stage.value().state});
+    auto camera = read_camera(ports_.cameras[cameras_[i]], cameras_[i], optics_[i]);
+    if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
+    const auto& stands = std::get<CameraReading>(camera);
+    stands_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
   }
   return std::nullopt;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "flexura/calibrate/rig_model.h"
+#include "flexura/camera/camera.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/servo/motion_history.h"
 
@@ -22,8 +23,7 @@ class ServoRig {
            double span, double together);
 
   using Trouble = std::optional<std::string>;
-  /// Asks arm, heads and stages where they are. What does not answer, or answers with what is no number, is
-  /// trouble.
+  /// Asks arm, heads and stages where they are; why it cannot be known is trouble (rig_readings.h).
   [[nodiscard]] Trouble read();
   /// Asks the cameras for pictures; true when there is a new pair. A camera that does not answer has none,
   /// and `silence()` says why.
@@ -58,6 +58,7 @@ class ServoRig {
   RigPorts ports_;
   const RigModel& model_;
   std::array<std::size_t, 2> cameras_;
+  std::array<Camera, 2> optics_;  // As they are believed to be.
   double together_;
   MotionHistory<ArmState, StateBlend> arm_;
   std::array<MotionHistory<Stand, StandBlend>, 2> stands_;

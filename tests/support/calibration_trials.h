@@ -32,10 +32,22 @@ struct CalibrationTrial {
 
 /// A reason without its numbers and names, to be counted.
 inline std::string kind_of(const std::string& reason) {
-  static const std::vector<std::string> kinds = {"back and forth", "runs away",      "two red axes",
-                                                 "limit of",       "out of view",    "cannot have all",
-                                                 "no red axis",    "not verified",   "no circle's arc",
-                                                 "does not see",   "correlation is", "ends"};
+  static const std::vector<std::string> kinds = {"back and forth",
+                                                 "runs away",
+                                                 "two red axes",
+                                                 "limit of",
+                                                 "out of view",
+                                                 "cannot have all",
+                                                 "no red axis",
+                                                 "not verified",
+                                                 "no circle's arc",
+                                                 "does not see",
+                                                 "correlation is",
+                                                 "what can be commanded ends",
+                                                 "ends",
+                                                 "no two cameras explain",
+                                                 "are not explained",
+                                                 "do not agree"};
   for (const std::string& kind : kinds)
     if (reason.find(kind) != std::string::npos) return kind;
   return reason.substr(0, reason.find(';'));

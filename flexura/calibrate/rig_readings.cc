@@ -1,0 +1,63 @@
+#include "flexura/calibrate/rig_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace flexura {
+namespace {
+
+bool is_finite(const ArmReading& reading) {
+  return std::ranges::all_of(reading.state.bends,
+                             [](const Eigen::Vector2d& bend) { return bend.allFinite(); }) &&
+         std::ranges::all_of(reading.state.stretches, [](double stretch) { return std::isfinite(stretch); });
+}
+
+bool is_finite(const HeadReading& head) {
+  return std::isfinite(head.time) && std::isfinite(head.state.pan) && std::isfinite(head.state.tilt) &&
+         std::isfinite(head.state.zoom);
+}
+
+}  // namespace
+
+std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections) {
+  auto outcome = arm.read();
+  if (const auto fault = outcome.fault()) return "the arm: " + text(*fault);
+  const ArmReading& reading = outcome.value();
+  if (!std::isfinite(reading.time)) return "the arm tells of no time: a number is none";
+  if (!is_finite(reading)) return "the arm's drives tell of no shape: some of their numbers are none";
+  if (reading.state.bends.size() != sections || reading.state.stretches.size() != sections)
+    return fmt::format("the arm's drives tell of {} sections and {} stretches, the arm has {}",
+                       reading.state.bends.size(), reading.state.stretches.size(), sections);
+  return reading;
+}
+
+std::variant<CameraReading, std::string> read_camera(const CameraPorts& ports, std::size_t camera,
+                                                     const Camera& optics) {
+  const auto head = ports.head->read();
+  if (const auto fault = head.fault())
+    return fmt::format("the head of camera {}: {}", ports.name, text(*fault));
+  const auto stage = ports.stage->read();
+  if (const auto fault = stage.fault())
+    return fmt::format("the stage of camera {}: {}", ports.name, text(*fault));
+  if (!is_finite(head.value()) || !std::isfinite(stage.value().time) ||
+      !stage.value().state.offset.allFinite())
+    return fmt::format("camera {} does not tell how it stands: some of its numbers are none", ports.name);
+  HeadState state = head.value().state;
+  const ZoomTable& lens = optics.lens();
+  if (lens.is_linear() && !(state.zoom > 0))
+    return fmt::format("the head of camera {} reads a zoom of {:.6g}, expected one above 0", ports.name,
+                       state.zoom);
+  const double known = std::clamp(state.zoom, lens.first(), lens.last());
+  constexpr double rounding = 1e-6;
+  if (std::abs(state.zoom - known) > optics.head_axes()[2].resolution + rounding * std::abs(known))
+    return fmt::format(
+        "the head of camera {} reads a zoom of {:.6g}, and its lens is known from {:.6g} to {:.6g}",
+        ports.name, state.zoom, lens.first(), lens.last());
+  state.zoom = known;
+  return CameraReading{
+      head.value().time, {camera, state, stage.value().state}, head.value().moving || stage.value().moving};
+}
+
+}  // namespace flexura

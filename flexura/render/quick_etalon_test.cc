@@ -1,4 +1,4 @@
-// An etalon that stands alone before a screen is drawn the quick way, but for its lines.
+// An etalon that stands alone before a screen is drawn the quick way.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -134,7 +134,7 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
 }
 
 // What a calibration looks at: upright, 1.5 m away, by 640 x 480 px, zoomed in.
-TEST(QuickEtalon, LeavesItsLinesToTheExactWay) {
+TEST(QuickEtalon, LeavesHardlyAnythingToTheExactWay) {
   constexpr double f = 2000, far = 1.53;  // px, m
   Scene scene = plain_scene();
   scene.etalon.emplace().X_WE.position = {0, 0.3, 0};
@@ -149,8 +149,9 @@ TEST(QuickEtalon, LeavesItsLinesToTheExactWay) {
     return quick.left_out().size();
   };
   const double area = 2 * f * scene.etalon->radius / far * f * scene.etalon->height / far;  // px
-  const std::size_t alone = left_out();
-  EXPECT_LT(static_cast<double>(alone), 0.15 * area);
+  const auto alone = static_cast<double>(left_out());
+  std::printf("of an etalon of %.0f pixels %.0f are left out\n", area, alone);
+  EXPECT_LT(alone, 0.01 * area);
   // Beside something else it is left.
   scene.obstacles.push_back({SphereConfig{.center = {2, 0, -1}, .radius = 0.05}, {0.4, 0.5, 0.4}});
   EXPECT_GT(static_cast<double>(left_out()), 0.9 * area);

@@ -87,7 +87,9 @@ class QuickPicture {
   [[nodiscard]] bool is_drawn_skin(const Stage& stage, const TubePiece& piece) const;
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;
   [[nodiscard]] bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
+  [[nodiscard]] bool add_lines(const Stage& stage, const TubePiece& piece, Skin& skin);
   [[nodiscard]] bool leave_lines(const Stage& stage);
+  void set_channels(const Color& color, float (&channels)[3]) const;
   void draw_pieces(SpanRow& row);
   bool leave_face(const FacePart& part);
   void leave_plane(const PlanePart& plane);

@@ -63,16 +63,9 @@ Color albedo_at(const ArmLook& arm, double s) {
 // The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
 // to a ring beyond its ends, where the arm turns sharply, and when rings finer than pixels are seen aslant.
 bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
-  const auto channel = [&](const Color& color, std::size_t c) {
-    return static_cast<float>(channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)]);
-  };
   skin.first_edge = edges_.size();
   const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
-  if (body.is_etalon) {
-    for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = channel(body.albedo, c);
-    skin.piece.edge_count = 0;
-    return leave_lines(stage);
-  }
+  if (body.is_etalon) return add_lines(stage, piece, skin);
   const ArmLook& arm = stage.scene->arm;
   const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
   const double margin = std::max(8 * pixel, steepest_aspect(piece).reach(piece.radius, pixel));
@@ -80,7 +73,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
   const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
   Color before = albedo_at(arm, begin == end ? piece.s + 0.5 * piece.length : std::nextafter(begin->s, -1e9));
-  for (std::size_t c = 0; c < channels_; ++c) skin.piece.albedo[c] = channel(before, c);
+  set_channels(before, skin.piece.albedo);
   bool is_fine = false;
   double s_before = -std::numeric_limits<double>::infinity();
   for (auto ring = begin; ring != end; ++ring) {
@@ -105,12 +98,46 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
     for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = number(normal[i]);
     edge.offset = number(circle.normal.dot(circle.center - piece.p_CP));
     edge.far = number(aspect.reach(piece.radius, pixel));
-    for (std::size_t c = 0; c < channels_; ++c) edge.change[c] = channel(after, c) - channel(before, c);
+    set_channels(after - before, edge.change);
     edges_.push_back(edge);
     before = after;
   }
   skin.piece.edge_count = edges_.size() - skin.first_edge;
   return true;
+}
+
+// The planes of the edges of the etalon's lines, and what they do to its colour: lines opposite each other
+// lie between the same two. False when the camera is too near.
+bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& skin) {
+  const Etalon& etalon = *stage.scene->etalon;
+  skin.piece.edge_count = 0;
+  set_channels(etalon.albedo, skin.piece.albedo);
+  if (!(etalon.line_width > 0)) return true;
+  const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
+  const double half_angle = 0.5 * etalon.line_width / etalon.radius;
+  // Points within a pixel do not tell lines finer than pixels apart; wide ones run into each other.
+  constexpr double finest = 1.5, widest = 0.7;  // px, rad
+  if (etalon.line_width < finest * pixel || half_angle > widest) return leave_lines(stage);
+  // d px within the contour an edge runs off by x^2 / (4 d) in x px.
+  constexpr double bent = 6;  // px
+  skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.radius, bent * pixel)));
+  for (const int axis : {0, 2}) {
+    const Eigen::Vector3d normal = piece.R_CP.transpose() * stage.X_CE.rotation.col(axis);
+    for (const double side : {-1.0, 1.0}) {
+      SpanEdge& edge = edges_.emplace_back();
+      for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = number(normal[i]);
+      edge.offset = number(side * etalon.radius * std::sin(half_angle));
+      edge.far = number(pixel + std::sqrt(2.8 * piece.radius * pixel));
+      set_channels(-side * (etalon.line_albedo - etalon.albedo), edge.change);
+    }
+  }
+  skin.piece.edge_count = edges_.size() - skin.first_edge;
+  return true;
+}
+
+void QuickPicture::set_channels(const Color& color, float (&channels)[3]) const {
+  for (std::size_t c = 0; c < channels_; ++c)
+    channels[c] = number(channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)]);
 }
 
 // The etalon's red lines, of which each has two edges; false when the camera is too near.

@@ -50,11 +50,11 @@ struct SpanRow {
   bool has_exact = false;        ///< is left to the exact way.
 };
 
-/// A plane across the tube where its colour changes: where p . normal = offset in the piece's frame.
+/// A plane where the tube's colour changes: where p . normal = offset in the piece's frame.
 struct SpanEdge {
   float normal[3], offset;
   float far;        ///< m; farther from it no pixel is divided.
-  float change[3];  ///< Of the albedo, towards larger arc lengths.
+  float change[3];  ///< Of the albedo, beyond it.
 };
 
 /// A piece of tube of one radius in its own frame (docs/renderer.md), as the pixels near (u0, v0) see it: the

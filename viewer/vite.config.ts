@@ -45,6 +45,9 @@ export default defineConfig({
         test: {
           name: 'e2e',
           include: ['test/e2e/**/*.test.ts'],
+          setupFiles: ['test/e2e/setup.ts'],
+          // The files of a worker share its browser and what they import.
+          poolOptions: { forks: { isolate: false } },
           environment: 'node',
           testTimeout: 30_000 * patience,
           hookTimeout: 60_000 * patience,

@@ -85,7 +85,7 @@ TEST(RigReadings, AnArmIsAsItsDrivesSay) {
 
 TEST(RigReadings, AnArmThatIsInNoStateIsToldInWords) {
   SaidArm arm;
-  for (double* number : {&arm.says.state.bends[1].y(), &arm.says.state.stretches[0]}) {
+  for (double* number : {&arm.says.state.bends[1].y(), &arm.says.state.stretches[1]}) {
     const double before = *number;
     *number = none;
     EXPECT_EQ(trouble_of(arm), "the arm's drives tell of no shape: some of their numbers are none");

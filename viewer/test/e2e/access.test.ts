@@ -1,19 +1,13 @@
 // What everybody needs of every page, in the smallest size that it is made for, in both themes.
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { Page } from 'playwright-core';
+import { describe, expect, test } from 'vitest';
 import { planar_rig, spatial_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist, launch, open_page, stage_at_rest, until } from './browser';
+import type { FakeServer } from '../fake/server';
+import { stage_at_rest, until } from './browser';
+import { faked, visit } from './opened';
 
 const width = 1280;
 const height = 720;
-let browser: Browser;
-
-beforeAll(async () => {
-  browser = await launch();
-});
-
-afterAll(async () => browser?.close());
 
 /** Controls that can be seen and have no name for those who cannot see them. */
 const nameless = (page: Page) => page.evaluate(() =>
@@ -90,9 +84,8 @@ const faint = (page: Page) => page.evaluate(() => {
 });
 
 test('these tests see what is wrong', async () => {
-  const server = new FakeServer(dist, spatial_rig());
-  await server.start();
-  const { page } = await open_page(browser, server.url, { width, height });
+  const server = await faked();
+  const { page } = await visit(server.url, { width, height });
   await page.waitForSelector('.badge[data-kind="live"]');
   await page.evaluate(() => {
     const button = document.querySelector<HTMLElement>('#play')!;
@@ -105,7 +98,6 @@ test('these tests see what is wrong', async () => {
   expect((await nameless(page)).join()).toContain('id="play"');
   expect((await faint(page)).join()).toContain('class="title"');
   expect((await overflowing(page)).join()).toContain('Help');
-  await page.context().close();
   await server.stop();
 });
 
@@ -134,16 +126,14 @@ async function expect_usable(page: Page, where: string): Promise<void> {
 for (const dark of [true, false]) {
   describe(dark ? 'dark' : 'light', () => {
     const opened = async (mode: 'live' | 'recording', use: (page: Page, server: FakeServer) => Promise<void>): Promise<void> => {
-      const server = new FakeServer(dist, mode === 'live' ? spatial_rig() : planar_rig(), mode);
-      await server.start();
-      const { page, complaints } = await open_page(browser, server.url, { width, height, dark });
+      const server = await faked(mode === 'live' ? spatial_rig() : planar_rig(), mode);
+      const { page, complaints } = await visit(server.url, { width, height, dark });
       try {
         await page.waitForSelector(`.badge[data-kind="${mode}"]`);
         await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
         await use(page, server);
         expect(complaints).toEqual([]);
       } finally {
-        await page.context().close();
         await server.stop();
       }
     };
@@ -168,11 +158,10 @@ for (const dark of [true, false]) {
     test('a recording', () => opened('recording', (page) => expect_usable(page, 'a recording')));
 
     test('who is not let in sees that, what to do about it, and nothing that nobody knows', async () => {
-      const server = new FakeServer(dist, spatial_rig());
-      await server.start();
       const ground = dark ? [0x13, 0x1b, 0x23] : [0xee, 0xf2, 0xf5];
       for (const [hash, why] of [['', 'came without a token'], [`#token=${'0'.repeat(32)}`, 'does not know this page’s token'], ['#token=zz', 'does not know']]) {
-        const { page, complaints } = await open_page(browser, server.url.replace(/#.*/, hash), { width, height, dark });
+        const server = await faked();
+        const { page, complaints } = await visit(server.url.replace(/#.*/, hash), { width, height, dark });
         await page.waitForSelector('.badge[data-kind="refused"]');
         expect(await page.locator('.badge').first().textContent()).toBe('NO ACCESS');
         const form = (await page.getByRole('alertdialog').textContent())!;
@@ -184,9 +173,8 @@ for (const dark of [true, false]) {
         for (let i = 0; i < 3; ++i) expect(Math.abs(shown[i] - ground[i]), `${shown.join()} of the 3D view`).toBeLessThan(6);
         await expect_usable(page, 'not let in');
         expect(complaints).toEqual([]);
-        await page.context().close();
+        await server.stop();
       }
-      await server.stop();
     });
 
     test('help, and the teaching page with an exercise', () => opened('live', async (page) => {

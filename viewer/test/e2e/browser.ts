@@ -61,31 +61,60 @@ async function show_instead(page: Page): Promise<void> {
   });
 }
 
-/** The 3D view alone: what lies upon it (a clock that runs, buttons, notes) would be in a picture of it too. */
-export async function stage_picture(page: Page): Promise<Buffer> {
+/** Hides what lies upon the 3D view (a clock that runs, buttons, notes) while a picture of it is taken. */
+async function without_what_lies_upon_it<Result>(page: Page, take: () => Promise<Result>): Promise<Result> {
   const show = (visibility: string) => page.evaluate((value) => {
     for (const above of document.querySelectorAll<HTMLElement>('.stage > :not(canvas), .notices')) above.style.visibility = value;
   }, visibility);
   await show('hidden');
   try {
-    return await page.locator('#stage').screenshot();
+    return await take();
   } finally {
     await show('');
   }
 }
 
+async function shot_of_stage(page: Page): Promise<Buffer> {
+  return page.screenshot({ clip: (await page.locator('#stage').boundingBox())! });
+}
+
+/** The 3D view alone. */
+export async function stage_picture(page: Page): Promise<Buffer> {
+  return without_what_lies_upon_it(page, () => shot_of_stage(page));
+}
+
+/** Waits until the 3D view is drawn as what rests is, more sharply than what moves (src/scene/sharpness.ts), or a graphics card draws both. */
+async function sharpened(page: Page): Promise<void> {
+  await page.evaluate(async (ms) => {
+    const canvas = document.querySelector<HTMLCanvasElement>('#stage')!;
+    const end = performance.now() + ms;
+    // What a hand has just asked for is drawn with the next frame.
+    for (let i = 0; i < 2; ++i) await new Promise(requestAnimationFrame);
+    while (canvas.width <= canvas.clientWidth && performance.now() < end) await new Promise((done) => setTimeout(done, 30));
+  }, 1000 * patience);
+}
+
+/** The 3D view once it shows what a hand has done, where nothing else moves. */
+export async function stage_sharpened(page: Page): Promise<Buffer> {
+  await sharpened(page);
+  return stage_picture(page);
+}
+
 /** The 3D view once it has come to rest: as it was a moment before. */
-export async function stage_at_rest(page: Page, ms = 8000): Promise<Buffer> {
-  let before = await stage_picture(page);
+export async function stage_at_rest(page: Page, ms = 15000): Promise<Buffer> {
   const end = Date.now() + patience * ms;
-  for (;;) {
-    // A picture of it takes longer than that, too.
-    await page.waitForTimeout(150);
-    const now = await stage_picture(page);
-    if (now.equals(before)) return now;
-    if (Date.now() > end) throw new Error('the 3D view does not come to rest');
-    before = now;
-  }
+  // A picture costs much more than to look whether there is any sense in one.
+  await sharpened(page);
+  return without_what_lies_upon_it(page, async () => {
+    let before = await shot_of_stage(page);
+    for (;;) {
+      await page.waitForTimeout(150);
+      const now = await shot_of_stage(page);
+      if (now.equals(before)) return now;
+      if (Date.now() > end) throw new Error('the 3D view does not come to rest');
+      before = now;
+    }
+  });
 }
 
 /** How many colours there are in a picture, roughly: one for each 16 levels of a channel. */

@@ -20,8 +20,8 @@ async function hold_and_move(): Promise<void> {
   await page.waitForSelector('.badge[data-kind="held"]');
   server.session.arm.command(goal, [1.05, 0.95, 1]);
   await until(() => !server.session.moving && Math.abs(server.session.arm.stretches[0] - 1.05) < 1e-6);
-  // Until the page has heard of it, and has forgotten what a hand did before.
-  await page.waitForTimeout(1000);
+  // Until the page has heard of it, which it does not show.
+  await page.waitForTimeout(400);
 }
 
 /** That a request asks for these bends, but for those of some places: as near as the steps of a slider. */

@@ -1,4 +1,4 @@
-// A page that the tests of a group share, and who serves it.
+// The page that the tests of a file share, and who serves it.
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, beforeEach, expect } from 'vitest';
 import { spatial_rig } from '../fake/rigs';
@@ -11,24 +11,49 @@ export interface Served {
   stop(): Promise<void>;
 }
 
-/** Of the tests of the group where it is called: their page is there from the first of them on, and gone after the last. */
-export function opened_before(
-  start: () => Promise<Served>, kind: 'recording' | 'live', size: { width?: number; height?: number } = { width: 1280, height: 720 },
-): Opened {
+/** Of all files that a worker runs (vite.config.ts), and ended with it. */
+let browser: Promise<Browser> | null = null;
+/** Of the file that runs. */
+let shared: Opened | null = null;
+
+/**
+ * Shows an address in the file's page. A page of its own would cost twice as much; each server has a port of its own, so
+ * nothing that the page has stored is found again at the next one.
+ */
+export async function visit(url: string, { width = 1280, height = 720, dark = true } = {}): Promise<Opened> {
+  if (!shared) {
+    browser ??= launch();
+    shared = await open_page(await browser, url, { width, height, dark });
+    return shared;
+  }
+  const { page, complaints } = shared;
+  await page.context().clearCookies();
+  await page.setViewportSize({ width, height });
+  await page.emulateMedia({ colorScheme: dark ? 'dark' : 'light' });
+  complaints.length = 0;
+  await page.goto(url);
+  return shared;
+}
+
+/** The next file gets a page that nobody has touched. */
+export async function leave(): Promise<void> {
+  await shared?.page.context().close();
+  shared = null;
+}
+
+/** Of the tests of the group where it is called: their page is there from the first of them on. */
+export function opened_before(start: () => Promise<Served>, kind: 'recording' | 'live'): Opened {
   const opened = {} as Opened;
-  let browser: Browser;
   let served: Served;
 
   beforeAll(async () => {
-    browser = await launch();
     served = await start();
-    Object.assign(opened, await open_page(browser, served.url, size));
+    Object.assign(opened, await visit(served.url));
     await opened.page.waitForSelector(`.badge[data-kind="${kind}"]`);
     await opened.page.waitForSelector('.section .slider');
   });
 
   afterAll(async () => {
-    await browser?.close();
     await served?.stop();
   });
 
@@ -40,23 +65,14 @@ export interface Fresh {
   page: Page;
 }
 
-/** Of the tests of a file: each gets a page of its own, of a fake rig of its own; the browser complains of none. */
+/** Of the tests of a file: each finds a fake rig of its own, to which the page has just come; the browser complains of none. */
 export function fresh_before_each(use: (fresh: Fresh) => void): void {
-  let browser: Browser;
   let server: FakeServer;
   let opened: Opened;
 
-  beforeAll(async () => {
-    browser = await launch();
-  });
-
-  afterAll(async () => {
-    await browser?.close();
-  });
-
   beforeEach(async () => {
     server = await faked();
-    opened = await open_page(browser, server.url, { width: 1280, height: 720 });
+    opened = await visit(server.url);
     await opened.page.waitForSelector('.badge[data-kind="live"]');
     await opened.page.waitForSelector('.section .slider');
     use({ server, page: opened.page });
@@ -64,7 +80,6 @@ export function fresh_before_each(use: (fresh: Fresh) => void): void {
 
   afterEach(async () => {
     expect(opened.complaints).toEqual([]);
-    await opened.page.context().close();
     await server.stop();
   });
 }

@@ -1,10 +1,9 @@
 // The page against the program itself.
 import { type AddressInfo, connect, createServer, type Socket } from 'node:net';
 import { fileURLToPath } from 'node:url';
-import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import type { Browser } from 'playwright-core';
-import { launch, open_page, until } from './browser';
-import { started } from './opened';
+import { afterAll, describe, expect, test } from 'vitest';
+import { until } from './browser';
+import { started, visit } from './opened';
 import { Program, program } from './program';
 import { rig_tests } from './rig_tests';
 
@@ -42,26 +41,24 @@ async function open_tunnel(): Promise<Tunnel> {
 
 describe.skipIf(!program)('the program', () => {
   describe('with its rig', () => {
-    rig_tests(() => started(rig));
+    rig_tests(() => started(rig), { page: false, server: true });
   });
 
   describe('behind a tunnel', () => {
-    let [browser, tunnel, served]: [Browser?, Tunnel?, Program?] = [];
+    let [tunnel, served]: [Tunnel?, Program?] = [];
 
     afterAll(async () => {
-      await browser?.close();
       await tunnel?.close();
       await served?.stop();
     });
 
     // As docs/command-line.md has it for `ssh -L` with another port than the program's.
     test('the page works under another port, once that is named', async () => {
-      browser = await launch();
       tunnel = await open_tunnel();
       served = new Program(['view', rig, '--name', `127.0.0.1:${tunnel.port}`]);
       await served.start();
       tunnel.to = served.port;
-      const { page, complaints } = await open_page(browser, served.url.replace(`:${served.port}`, `:${tunnel.port}`));
+      const { page, complaints } = await visit(served.url.replace(`:${served.port}`, `:${tunnel.port}`));
       await page.waitForSelector('.badge[data-kind="live"]');
       await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
       expect(new URL(page.url()).port).toBe(String(tunnel.port));
@@ -71,23 +68,15 @@ describe.skipIf(!program)('the program', () => {
 
   describe('started again', () => {
     const served = new Program(rig);
-    let browser: Browser;
 
-    beforeAll(async () => {
-      browser = await launch();
-    });
-
-    afterAll(async () => {
-      await browser?.close();
-      await served.stop();
-    });
+    afterAll(() => served.stop());
 
     test('the page comes in again by itself, and starts afresh', async () => {
       // The first start finds a free port; a token is kept for one that was asked for.
       await served.start();
       await served.end();
       await served.start(served.port);
-      const { page, complaints } = await open_page(browser, served.url);
+      const { page, complaints } = await visit(served.url);
       const badge = () => page.locator('.badge').first().getAttribute('data-kind');
       await until(async () => (await badge()) === 'live');
       await served.end();

@@ -1,7 +1,9 @@
 import type { FakeServer } from '../fake/server';
 import { faked } from './opened';
+import { program } from './program';
 import { rig_tests } from './rig_tests';
 
 let server: FakeServer | null = null;
 
-rig_tests(async () => (server = await faked()), () => server);
+// Stands in for the program where there is none.
+rig_tests(async () => (server = await faked()), { page: true, server: !program }, () => server);

@@ -4,8 +4,8 @@ import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { ask_server, type Opened, server_state, slide, tip_on_screen, until } from './browser';
 
-/** Of the arm and the cameras. */
-export function move_tests(opened: Opened, fake: () => FakeServer | null): void {
+/** The arm goes where a slider says. */
+export function slider_tests(opened: Opened, fake: () => FakeServer | null): void {
   let page: Page;
   beforeAll(() => {
     ({ page } = opened);
@@ -22,6 +22,14 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
     });
     if (fake()) await until(async () => Math.abs((await server_state(page)).bends[0] - 0.3 * max) < 0.01);
   });
+}
+
+/** Keys and the slider that has the focus. */
+export function focus_tests(opened: Opened): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
+  });
 
   test('the arrow keys move a slider that has the focus, and do not step the time', async () => {
     const slider = page.locator('.section .slider input[type="range"]').first();
@@ -31,6 +39,14 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
     await until(async () => Number(await slider.inputValue()) < before);
     expect(await page.locator('.badge[data-kind="live"]').count()).toBe(1);
     await slider.blur();
+  });
+}
+
+/** All that the sliders, keys and tasks move. */
+export function steer_tests(opened: Opened): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
   });
 
   test('a tendon’s slider stays where it was put, and takes the others along', async () => {
@@ -45,7 +61,7 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
     expect(displacements[1]).toBeCloseTo(-0.003, 3);
     expect(displacements[2]).toBeCloseTo(-0.003, 3);
     expect(Math.abs(displacements[3])).toBeGreaterThan(1e-3);
-    await page.waitForTimeout(1500);
+    await page.waitForTimeout(1000);
     expect(Number(await slider.inputValue())).toBeCloseTo(0.006, 3);
     expect(Number(await page.locator('#arm-tendons-1').inputValue())).toBeCloseTo(-0.003, 3);
     await page.getByRole('button', { name: 'Bends' }).click();
@@ -119,6 +135,14 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
     await slide(page, '[id="stage-front-x"]', 0);
     await until(async () => Math.abs((await server_state(page)).camera[10]) < 1e-3);
   });
+}
+
+/** The hand on the tip. */
+export function drag_tests(opened: Opened, fake: () => FakeServer | null): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
+  });
 
   test('the tip follows the hand by inverse kinematics', async () => {
     await page.getByRole('tab', { name: 'Arm' }).click();
@@ -156,7 +180,7 @@ export function move_tests(opened: Opened, fake: () => FakeServer | null): void 
   });
 }
 
-/** Of points of the backbone, with a mouse and without. */
+/** Points of the backbone are picked with a mouse and without. */
 export function pick_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -177,6 +201,47 @@ export function pick_tests(opened: Opened): void {
     expect(await page.locator('.picked dd').first().textContent()).not.toBe(before);
     await page.keyboard.press('Escape');
     expect(await page.locator('.picked').count()).toBe(0);
+  });
+
+  test('without a mouse: K picks the tip, the rest is Tab, Enter and arrows', async () => {
+    const tab_to = async (selector: string): Promise<void> => {
+      for (let i = 0; i < 150; ++i) {
+        await page.keyboard.press('Tab');
+        if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) ?? false, selector)) return;
+      }
+      throw new Error(`Tab does not come to ${selector}`);
+    };
+    await page.keyboard.press('k');
+    const s = page.locator('.picked dd').first();
+    const at_tip = await s.textContent();
+    expect(at_tip).toContain('section 3');
+    await tab_to('#picked-s');
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('PageDown');
+    await until(async () => (await s.textContent()) !== at_tip);
+    await tab_to('button[aria-label="Pick nothing"], .picked button');
+    await page.keyboard.press('Enter');
+    expect(await page.locator('.picked').count()).toBe(0);
+    await page.keyboard.press('k');
+    await page.keyboard.press('k');
+    expect(await page.locator('.picked').count()).toBe(0);
+    await tab_to('.view-switch button:nth-child(2)');
+    await page.keyboard.press('Enter');
+    expect(await page.locator('.view-switch button[aria-pressed="true"]').textContent()).toBe('front');
+    await page.keyboard.press('Escape');
+    await tab_to('.section .slider input[type="range"]');
+    const before = (await server_state(page)).bends[0];
+    await page.keyboard.press('ArrowRight');
+    await until(async () => (await server_state(page)).bends[0] > before + 0.01);
+    await page.evaluate(() => (document.activeElement as HTMLElement).blur());
+    await page.keyboard.press('Backspace');
+  });
+}
+
+/** What holds in a picked point. */
+export function point_tests(opened: Opened): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
   });
 
   test('what is said of a picked point is what the server says of it', async () => {
@@ -218,38 +283,5 @@ export function pick_tests(opened: Opened): void {
     await page.keyboard.press('Escape');
     await page.keyboard.press('Backspace');
     await until(async () => (await server_state(page)).bends.every((bend) => Math.abs(bend) < 1e-3), 15000);
-  });
-
-  test('without a mouse: K picks the tip, the rest is Tab, Enter and arrows', async () => {
-    const tab_to = async (selector: string): Promise<void> => {
-      for (let i = 0; i < 150; ++i) {
-        await page.keyboard.press('Tab');
-        if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) ?? false, selector)) return;
-      }
-      throw new Error(`Tab does not come to ${selector}`);
-    };
-    await page.keyboard.press('k');
-    const s = page.locator('.picked dd').first();
-    const at_tip = await s.textContent();
-    expect(at_tip).toContain('section 3');
-    await tab_to('#picked-s');
-    for (let i = 0; i < 3; ++i) await page.keyboard.press('PageDown');
-    await until(async () => (await s.textContent()) !== at_tip);
-    await tab_to('button[aria-label="Pick nothing"], .picked button');
-    await page.keyboard.press('Enter');
-    expect(await page.locator('.picked').count()).toBe(0);
-    await page.keyboard.press('k');
-    await page.keyboard.press('k');
-    expect(await page.locator('.picked').count()).toBe(0);
-    await tab_to('.view-switch button:nth-child(2)');
-    await page.keyboard.press('Enter');
-    expect(await page.locator('.view-switch button[aria-pressed="true"]').textContent()).toBe('front');
-    await page.keyboard.press('Escape');
-    await tab_to('.section .slider input[type="range"]');
-    const before = (await server_state(page)).bends[0];
-    await page.keyboard.press('ArrowRight');
-    await until(async () => (await server_state(page)).bends[0] > before + 0.01);
-    await page.evaluate(() => (document.activeElement as HTMLElement).blur());
-    await page.keyboard.press('Backspace');
   });
 }

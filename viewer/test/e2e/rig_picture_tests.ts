@@ -5,8 +5,8 @@ import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { colors_in, type Opened, server_state, until } from './browser';
 
-/** Pictures, pixels and plots. */
-export function picture_tests(opened: Opened, fake: () => FakeServer | null): void {
+/** Pictures and pixels. */
+export function picture_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
     ({ page } = opened);
@@ -55,6 +55,13 @@ export function picture_tests(opened: Opened, fake: () => FakeServer | null): vo
     expect(download.suggestedFilename()).toBe('front.png');
     const bytes = readFileSync(await download.path());
     expect([...bytes.subarray(0, 4)]).toEqual([0x89, 0x50, 0x4e, 0x47]);
+  });
+}
+
+export function plot_tests(opened: Opened, fake: () => FakeServer | null): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
   });
 
   test('a live plot’s window slides with the time', async () => {

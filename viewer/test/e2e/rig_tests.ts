@@ -3,29 +3,46 @@ import { expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { opened_before, type Served } from './opened';
 import { frustum_tests } from './rig_frustum_tests';
-import { move_tests, pick_tests } from './rig_move_tests';
+import { drag_tests, focus_tests, pick_tests, point_tests, slider_tests, steer_tests } from './rig_move_tests';
 import { page_tests } from './rig_page_tests';
-import { picture_tests, time_tests } from './rig_picture_tests';
-import { eye_tests, view_tests } from './rig_view_tests';
+import { picture_tests, plot_tests, time_tests } from './rig_picture_tests';
+import { eye_tests, orbit_tests, view_tests } from './rig_view_tests';
+
+export interface Whose {
+  /** What the page does whoever serves it: its keys, its views, its room. */
+  page: boolean;
+  /** What is the server’s doing, too: where the arm goes, what is in the pictures. */
+  server: boolean;
+}
 
 /** The tests of a live rig, one after the other in one page; `faked` gives that one, to be looked into. */
-export function rig_tests(start: () => Promise<Served>, faked?: () => FakeServer | null): void {
+export function rig_tests(start: () => Promise<Served>, whose: Whose, faked?: () => FakeServer | null): void {
   const fake = faked ?? (() => null);
-  const opened = opened_before(start, 'live', {});
+  const opened = opened_before(start, 'live');
 
   test('the token leaves the address', () => {
     expect(opened.page.url()).not.toContain('token');
   });
 
-  view_tests(opened);
-  move_tests(opened, fake);
-  pick_tests(opened);
-  picture_tests(opened, fake);
-  // Of the program's pictures, which are drawn; the page is the same.
+  orbit_tests(opened);
+  if (whose.page) view_tests(opened);
+  slider_tests(opened, fake);
+  if (whose.page) focus_tests(opened);
+  if (whose.server) steer_tests(opened);
+  drag_tests(opened, fake);
+  if (whose.page) pick_tests(opened);
+  if (whose.server) {
+    point_tests(opened);
+    picture_tests(opened);
+  }
+  // Of the program's pictures, which are drawn.
   if (!faked) frustum_tests(opened);
-  eye_tests(opened, fake);
-  time_tests(opened);
-  page_tests(opened);
+  if (whose.page) plot_tests(opened, fake);
+  eye_tests(opened, fake, whose);
+  if (whose.page) {
+    time_tests(opened);
+    page_tests(opened);
+  }
 
   test('the browser had nothing to complain of, the security policy neither', () => {
     expect(opened.complaints).toEqual([]);

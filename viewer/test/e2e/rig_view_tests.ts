@@ -3,29 +3,17 @@ import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import {
-  colors_in, type Opened, orbit_of, server_state, slide, stage_at_rest, stage_picture, tip_on_screen, until,
+  colors_in, type Opened, orbit_of, server_state, slide, stage_at_rest, stage_picture, stage_sharpened, tip_on_screen, until,
 } from './browser';
 
-/** Orbit, keys, sides, double click and wheel. */
-export function view_tests(opened: Opened): void {
+/** Orbit, pan and zoom by the mouse. */
+export function orbit_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
     ({ page } = opened);
   });
 
   const stage = () => stage_at_rest(page);
-
-  test('a picture of the 3D view shows nothing else, and stays as it is where nobody touches it', async () => {
-    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
-    const clock = () => page.locator('#clock').textContent();
-    const [first, began] = [await stage(), await clock()];
-    await until(async () => (await clock()) !== began);
-    expect((await stage()).equals(first)).toBe(true);
-    const opacity = (value: string) => page.locator('#stage').evaluate((canvas, to) => (canvas.style.opacity = to), value);
-    await opacity('0');
-    expect(await colors_in(page, await stage_picture(page))).toBeLessThanOrEqual(3);
-    await opacity('');
-  });
 
   test('the scene is not blank, and changes under orbit, pan and zoom', async () => {
     let picture = await stage();
@@ -55,6 +43,28 @@ export function view_tests(opened: Opened): void {
     await changes(['distance'], () => page.mouse.wheel(0, 400));
     expect(orbit.distance).toBeGreaterThan(first.distance);
     expect(await colors_in(page, picture)).toBeGreaterThan(20);
+  });
+}
+
+/** Keys, sides, double click and wheel. */
+export function view_tests(opened: Opened): void {
+  let page: Page;
+  beforeAll(() => {
+    ({ page } = opened);
+  });
+
+  const stage = () => stage_at_rest(page);
+
+  test('a picture of the 3D view shows nothing else, and stays as it is where nobody touches it', async () => {
+    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
+    const clock = () => page.locator('#clock').textContent();
+    const [first, began] = [await stage(), await clock()];
+    await until(async () => (await clock()) !== began);
+    expect((await stage()).equals(first)).toBe(true);
+    const opacity = (value: string) => page.locator('#stage').evaluate((canvas, to) => (canvas.style.opacity = to), value);
+    await opacity('0');
+    expect(await colors_in(page, await stage_picture(page))).toBeLessThanOrEqual(3);
+    await opacity('');
   });
 
   test('the keys 1, 3, 7 and the brackets change the view', async () => {
@@ -128,36 +138,44 @@ export function view_tests(opened: Opened): void {
   });
 }
 
-/** What the scene’s eyes hide. */
-export function eye_tests(opened: Opened, fake: () => FakeServer | null): void {
+/** What stands in the scene, and what its eyes hide. */
+export function eye_tests(opened: Opened, fake: () => FakeServer | null, whose: { page: boolean }): void {
   let page: Page;
   beforeAll(() => {
     ({ page } = opened);
   });
 
   const stage = () => stage_at_rest(page);
+  const names = async () => (await page.getByRole('button', { name: /^Show: / })
+    .evaluateAll((eyes) => eyes.map((eye) => eye.getAttribute('aria-label')!))).filter((name) => !/Ghosts/.test(name));
+
+  test('each thing that is there has an eye', async () => {
+    await page.getByRole('tab', { name: 'Scene' }).click();
+    const all = (await names()).join();
+    for (const word of ['Arm', 'Trail', 'Camera “front”', 'Screen 1', ...(fake() ? ['Calibration', 'Obstacle “ball”', 'Obstacle “ground”'] : [])]) {
+      expect(all).toContain(word);
+    }
+    await page.getByRole('tab', { name: 'Arm' }).click();
+  });
+
+  if (!whose.page) return;
 
   test('an eye hides each thing that is there', async () => {
     await page.keyboard.press('0');
-    // From farther away and aside, so that cameras and screens are in sight.
-    for (const key of ['PageDown', 'Alt+ArrowRight']) for (let i = 0; i < 6; ++i) await page.keyboard.press(key);
+    // From farther away, aside and above, so that cameras, screens and what lies on the floor are in sight.
+    for (const key of ['PageDown', 'Alt+ArrowRight', 'Alt+ArrowUp']) for (let i = 0; i < 6; ++i) await page.keyboard.press(key);
     await slide(page, '.section .slider input[type="range"]', 0.7);
     await until(async () => Math.abs((await server_state(page)).bends[0]) > 0.3);
     await page.getByRole('tab', { name: 'Scene' }).click();
     const first = await stage();
     let picture = first;
-    const eyes = page.getByRole('button', { name: /^Show: / });
-    const names = (await eyes.evaluateAll((all) => all.map((eye) => eye.getAttribute('aria-label')!))).filter((name) => !/Ghosts/.test(name));
-    for (const word of ['Arm', 'Trail', 'Camera “front”', 'Screen 1', ...(fake() ? ['Calibration', 'Obstacle “ball”', 'Obstacle “ground”'] : [])]) {
-      expect(names.join()).toContain(word);
-    }
-    // One camera and one screen stand for the others. The program shows the same page: of its things two are enough.
-    const hidden = names.filter(fake() ? (name) => !/Camera “side”|Screen 2/.test(name) : (name) => /Arm|Trail/.test(name));
+    // One camera and one screen stand for the others.
+    const hidden = (await names()).filter((name) => !/Camera “side”|Screen 2/.test(name));
     for (const name of hidden) {
       const eye = page.getByRole('button', { name, exact: true });
       await eye.click();
       expect(await eye.getAttribute('aria-pressed'), name).toBe('false');
-      const now = await stage();
+      const now = await stage_sharpened(page);
       expect(now.equals(picture), name).toBe(false);
       picture = now;
     }

@@ -1,28 +1,23 @@
 // The teaching page, which needs no rig.
-import type { Browser, Page } from 'playwright-core';
+import type { Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { planar_rig } from '../fake/rigs';
-import { FakeServer } from '../fake/server';
-import { dist, launch, legends, open_page, slide, until } from './browser';
+import type { FakeServer } from '../fake/server';
+import { legends, slide, until } from './browser';
+import { faked, visit } from './opened';
 
-let browser: Browser;
 let server: FakeServer;
 let page: Page;
 let complaints: string[];
 const degree = Math.PI / 180;
 
 beforeAll(async () => {
-  browser = await launch();
-  server = new FakeServer(dist, planar_rig());
-  await server.start();
-  ({ page, complaints } = await open_page(browser, `http://127.0.0.1:${server.port}/#/teach`, { width: 1280, height: 720, dark: false }));
+  server = await faked(planar_rig());
+  ({ page, complaints } = await visit(`http://127.0.0.1:${server.port}/#/teach`, { dark: false }));
   await page.waitForSelector('.plane');
 });
 
-afterAll(async () => {
-  await browser?.close();
-  await server?.stop();
-});
+afterAll(() => server.stop());
 
 const effector = () => page.locator('#effector').textContent();
 const open = (name: string) => page.getByRole('button', { name }).first().click();

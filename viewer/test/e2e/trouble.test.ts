@@ -132,7 +132,9 @@ test('tasks run with progress, can be cancelled, and their recording can be open
   await page.getByRole('button', { name: 'Cancel' }).click();
   await until(async () => (await page.locator('[role="alert"]').textContent())!.includes('cancelled'));
   await page.getByRole('button', { name: 'Run tasks' }).click();
-  await until(async () => Number(await page.locator('progress').getAttribute('value')) > 0.3);
+  await until(async () => Number(await page.locator('progress').getAttribute('value')) > 0.1);
+  // It takes three seconds: most of them pass at once.
+  server.session.time += 2.5;
   await page.getByRole('button', { name: 'Recording' }).click({ timeout: 20000 });
   await page.waitForSelector('.badge[data-kind="recording"]');
   await page.getByRole('button', { name: 'To the rig' }).click();

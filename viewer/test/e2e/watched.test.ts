@@ -1,8 +1,8 @@
 // A run of tasks that a terminal has started and watches: its time is its own, faster than the clock or slower.
 import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import type { Browser } from 'playwright-core';
-import { launch, open_page, server_state, until } from './browser';
+import { server_state, until } from './browser';
+import { visit } from './opened';
 import { Program, program } from './program';
 
 const rig = fileURLToPath(new URL('watched.toml', import.meta.url));
@@ -13,22 +13,17 @@ describe.skipIf(!program)('a watched run', () => {
     ['fast', ['task.0.duration=6000', 'record.cameras=true']],
     ['slow', ['task.0.duration=20', 'record.cameras=true', 'camera.0.sensor.frame_rate=10000']],
   ])('that is %s', (_, settings) => {
-    let browser: Browser;
     let served: Program;
 
     beforeAll(async () => {
-      browser = await launch();
       served = new Program(['run', rig, ...settings.flatMap((each) => ['--set', each]), '--view']);
       await served.start();
     });
 
-    afterAll(async () => {
-      await browser?.close();
-      await served?.stop();
-    });
+    afterAll(() => served.stop());
 
     test('its pictures are of the states that are shown, and none is darkened as old', async () => {
-      const { page, complaints } = await open_page(browser, served.url);
+      const { page, complaints } = await visit(served.url);
       await page.waitForSelector('.badge[data-kind="live"]');
       await until(async () => (await page.locator('.picture .none').count()) === 0, 20000, 'no picture came');
       const seconds = async (): Promise<number> => {

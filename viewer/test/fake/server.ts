@@ -19,7 +19,7 @@ interface Connected extends Client {
   socket: WebSocket;
   /** Numbers of pictures not acknowledged yet, by camera. */
   open_pictures: Map<string, number>;
-  last_picture: Map<string, number>;
+  last_picture: Map<string, { time: number; seen: string }>;
 }
 
 export class FakeServer {
@@ -32,6 +32,8 @@ export class FakeServer {
   stuck = false;
   /** Replies to requests for times come so much later. */
   delay_ms = 0;
+  /** Pictures a second of what has not changed: to decode and draw the same again is most of what a page at rest costs. */
+  resting_rate = 2;
   /** The most such requests of a client that were without a reply at once. */
   most_outstanding = 0;
   token = randomBytes(16).toString('hex');
@@ -180,11 +182,13 @@ export class FakeServer {
   }
 
   private send_pictures(client: Connected, time: number): void {
+    const seen = this.session.seen_now();
     this.rig.scene.cameras.forEach(({ name }, i) => {
-      const rate = Math.min(8, client.rates.get(name) ?? 0);
-      if (!rate || client.open_pictures.has(name) || Math.abs(time - (client.last_picture.get(name) ?? -1)) < 1 / rate) return;
+      const last = client.last_picture.get(name);
+      const rate = Math.min(last?.seen === seen ? this.resting_rate : 8, client.rates.get(name) ?? 0);
+      if (!rate || client.open_pictures.has(name) || (last && Math.abs(time - last.time) < 1 / rate)) return;
       client.open_pictures.set(name, ++this.pictures);
-      client.last_picture.set(name, time);
+      client.last_picture.set(name, { time, seen });
       const pixels = this.session.pixels(i, time);
       client.sent.set(name, { number: this.pictures, pixels, points: this.session.seen(i) });
       client.push(encode_image(i, this.pictures, time, this.session.picture(i, pixels)));

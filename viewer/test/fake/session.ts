@@ -134,6 +134,11 @@ export class FakeSession {
     });
   }
 
+  /** All that the cameras' pictures depend on. */
+  seen_now(): string {
+    return [...this.arm.bends, ...this.arm.stretches, ...this.camera_rows()].join();
+  }
+
   /** The grey values of a picture. */
   pixels(i: number, time = this.time): Uint8Array {
     if (this.mode === 'recording') this.arm.bends = this.bends_at(time);

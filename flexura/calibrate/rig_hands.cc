@@ -38,7 +38,7 @@ std::variant<ArmState, std::string> RigHands::arm() const {
 std::variant<RigStance, std::string> RigHands::stance(std::size_t camera) const {
   auto reading = read_camera(ports_.cameras[camera], camera, cameras_[camera]);
   if (auto* why = std::get_if<std::string>(&reading)) return std::move(*why);
-  return std::get<CameraReading>(reading).stance;
+  return std::get<StanceReading>(reading).stance;
 }
 
 RigHands::Trouble RigHands::bend(const ArmState& state, double duration) {
@@ -62,7 +62,7 @@ std::variant<bool, std::string> RigHands::is_moving() const {
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
     auto camera = read_camera(ports_.cameras[i], i, cameras_[i]);
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
-    is_moving = is_moving || std::get<CameraReading>(camera).moving;
+    is_moving = is_moving || std::get<StanceReading>(camera).moving;
   }
   return is_moving;
 }

@@ -33,7 +33,7 @@ std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t section
   return reading;
 }
 
-std::variant<CameraReading, std::string> read_camera(const CameraPorts& ports, std::size_t camera,
+std::variant<StanceReading, std::string> read_camera(const CameraPorts& ports, std::size_t camera,
                                                      const Camera& optics) {
   const auto head = ports.head->read();
   if (const auto fault = head.fault())
@@ -56,7 +56,7 @@ std::variant<CameraReading, std::string> read_camera(const CameraPorts& ports, s
         "the head of camera {} reads a zoom of {:.6g}, and its lens is known from {:.6g} to {:.6g}",
         ports.name, state.zoom, lens.first(), lens.last());
   state.zoom = known;
-  return CameraReading{
+  return StanceReading{
       head.value().time, {camera, state, stage.value().state}, head.value().moving || stage.value().moving};
 }
 

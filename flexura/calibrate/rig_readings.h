@@ -11,7 +11,7 @@
 namespace flexura {
 
 /// Where a camera's head and stage say that it stands.
-struct CameraReading {
+struct StanceReading {
   double time = 0;  ///< s, of the head's.
   RigStance stance;
   bool moving = false;  ///< One of them.
@@ -24,7 +24,7 @@ struct CameraReading {
 /// What the head and the stage of the rig's camera number `camera` say; or in words why that tells no view of
 /// it: a fault, a number that is none, a zoom beyond the ends of what is known of the lens. A zoom within a
 /// step of an end is that end. `optics` are of that camera as it is believed to be.
-[[nodiscard]] std::variant<CameraReading, std::string> read_camera(const CameraPorts& ports,
+[[nodiscard]] std::variant<StanceReading, std::string> read_camera(const CameraPorts& ports,
                                                                    std::size_t camera, const Camera& optics);
 
 }  // namespace flexura

@@ -60,7 +60,7 @@ struct SaidCamera {
     config.mount.look_at = {0, 0, 1};
     config.head.zoom.resolution = 0.01;
   }
-  std::variant<CameraReading, std::string> read() {
+  std::variant<StanceReading, std::string> read() {
     return read_camera({"side", nullptr, &head, &stage}, 1, Camera(config));
   }
   std::string trouble() {
@@ -103,7 +103,7 @@ TEST(RigReadings, AnArmThatIsInNoStateIsToldInWords) {
 TEST(RigReadings, ACameraStandsAsItsHeadAndStageSay) {
   SaidCamera camera;
   camera.stage.says.moving = true;
-  const auto reading = std::get<CameraReading>(camera.read());
+  const auto reading = std::get<StanceReading>(camera.read());
   EXPECT_EQ(reading.time, 2);
   EXPECT_EQ(reading.stance.camera, 1U);
   EXPECT_EQ(reading.stance.head.tilt, 0.2);
@@ -131,7 +131,7 @@ TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
   SaidCamera camera;
   for (const auto& [says, is] : {std::pair{0.995, 1.0}, {4.009, 4.0}, {3.9, 3.9}}) {
     camera.head.says.state.zoom = says;
-    const auto reading = std::get<CameraReading>(camera.read());
+    const auto reading = std::get<StanceReading>(camera.read());
     EXPECT_EQ(reading.stance.head.zoom, is);
     EXPECT_NO_THROW((void)Camera(camera.config).view(reading.stance.stage, reading.stance.head));
   }
@@ -143,7 +143,7 @@ TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
   camera.head.says.state.zoom = 0;
   EXPECT_EQ(camera.trouble(), "the head of camera side reads a zoom of 0, expected one above 0");
   camera.head.says.state.zoom = 12;
-  EXPECT_EQ(std::get<CameraReading>(camera.read()).stance.head.zoom, 12);
+  EXPECT_EQ(std::get<StanceReading>(camera.read()).stance.head.zoom, 12);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ ServoRig::Trouble ServoRig::read() {
   for (std::size_t i = 0; i < 2; ++i) {
     auto camera = read_camera(ports_.cameras[cameras_[i]], cameras_[i], optics_[i]);
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
-    const auto& stands = std::get<CameraReading>(camera);
+    const auto& stands = std::get<StanceReading>(camera);
     stands_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
   }
   return std::nullopt;

@@ -46,7 +46,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
                         "leaves the plane: expected 0 of a planar arm");
   }
-  const Eigen::Vector2d base = DirectionAngles(arm, ArmState::straight(arm.sections.size())).at(0, 0);
+  const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
   constexpr double rounding = 1e-6;
   for (const auto& [name, first, own] :
        {std::tuple("azimuths", azimuths[0], base[0]), std::tuple("elevations", elevations[0], base[1])})
@@ -76,14 +76,14 @@ void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std
   const Arm arm = config.arm();
   check_bends(arm, task.target, target, reader);
   if (reader.problems().size() > before) return;
-  const DirectionAngles straight(arm, ArmState::straight(arm.sections.size()));
+  const AnglesAlongArm straight(arm, ArmState::straight(arm.sections.size()));
   if (straight.largest_elevation() > most_elevation) {
     reader.problem_at(path,
                       "the arm's base points along Z: expected an elevation below 90 deg, where the "
                       "azimuth is none");
   } else if (task.target.azimuths) {
     check_angles(task, arm, target, reader);
-  } else if (const double q = DirectionAngles(arm, arm_state(arm, task.target)).largest_elevation();
+  } else if (const double q = AnglesAlongArm(arm, arm_state(arm, task.target)).largest_elevation();
              q > most_elevation) {
     reader.problem_at(
         target, fmt::format("leads through an elevation of {:.4g} deg: expected less than 90 deg, where "

@@ -28,6 +28,14 @@ double nearest_turn(double angle, double other) {
   return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
 }
 
+// Of the origin from the straight way between two points.
+double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const Eigen::Vector2d way = to - from;
+  const double length = way.squaredNorm();
+  const double share = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0;
+  return (from + share * way).norm();
+}
+
 // Linear between values at equal shares.
 double linear_between(const std::vector<double>& values, double share) {
   const auto spans = static_cast<double>(values.size() - 1);
@@ -68,22 +76,27 @@ DistributedArmModel model_of(const DynamicsTask& task, const Arm& arm, const Arm
 
 }  // namespace
 
-DirectionAngles::DirectionAngles(const Arm& arm, const ArmState& state) : backbone_(arm, state) {
-  constexpr double step = 0.2;  // rad of bend
-  double before = angles_of(arm.X_WB.rotation.col(2))[0];
+AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone_(arm, state) {
+  constexpr double step = 0.05;  // rad of bend
+  const Eigen::Vector3d base = arm.X_WB.rotation.col(2);
+  double before = angles_of(base)[0];
+  Eigen::Vector2d level = base.head<2>();  // cos q of its length
+  double least_level = level.norm();
   for (const Arc& arc : backbone_.arcs()) {
     const auto count = static_cast<int>(std::ceil(arc.bend.norm() / step)) + 16;
     auto& azimuths = azimuths_.emplace_back();
     for (int i = 0; i <= count; ++i) {
-      const Eigen::Vector2d angles = angles_of(arc.pose(arc.length * i / count).rotation.col(2));
-      before = nearest_turn(angles[0], before);
+      const Eigen::Vector3d direction = arc.pose(arc.length * i / count).rotation.col(2);
+      before = nearest_turn(angles_of(direction)[0], before);
       azimuths.push_back(before);
-      largest_elevation_ = std::max(largest_elevation_, std::abs(angles[1]));
+      least_level = std::min(least_level, distance_to_way(level, direction.head<2>()));
+      level = direction.head<2>();
     }
   }
+  largest_elevation_ = std::acos(std::min(least_level, 1.0));
 }
 
-Eigen::Vector2d DirectionAngles::at(std::size_t section, double share) const {
+Eigen::Vector2d AnglesAlongArm::at(std::size_t section, double share) const {
   const Arc& arc = backbone_.arcs()[section];
   const std::vector<double>& azimuths = azimuths_[section];
   Eigen::Vector2d angles = angles_of(arc.pose(share * arc.length).rotation.col(2));
@@ -101,8 +114,8 @@ DynamicsPlant::DynamicsPlant(const DynamicsTask& task, const Arm& arm, const Arm
     end += shapes.lengths[i];
     ends_.row(static_cast<Eigen::Index>(i)) = shapes.at(end);
   }
-  start_ = coordinates(from);
-  is_regular_ = DirectionAngles(arm, from).largest_elevation() <= most_elevation;
+  start_ = coordinates(from, start_off_);
+  is_regular_ = AnglesAlongArm(arm, from).largest_elevation() <= most_elevation;
   const DynamicsTargetConfig& target = task.target;
   ArmState to = from;
   if (!target.azimuths) {
@@ -111,28 +124,41 @@ DynamicsPlant::DynamicsPlant(const DynamicsTask& task, const Arm& arm, const Arm
   } else if (target.stretches) {
     to.stretches = *target.stretches;
   }
-  target_ = coordinates(to);
+  target_ = coordinates(to, target_off_);
   if (!target.azimuths) return;
   const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
-  target_.head(2 * distributed_.nodes()) = distributed_
-                                               .coordinates([&](double s) -> Eigen::Vector2d {
-                                                 return {linear_between(*target.azimuths, s / length),
-                                                         linear_between(*target.elevations, s / length)};
-                                               })
-                                               .head(2 * distributed_.nodes());
+  const Angles angles = [&](double s) -> Eigen::Vector2d {
+    return {linear_between(*target.azimuths, s / length), linear_between(*target.elevations, s / length)};
+  };
+  const Eigen::Index numbers = 2 * distributed_.nodes();
+  target_.head(numbers) = distributed_.coordinates(angles).head(numbers);
+  target_off_ = off(target_, angles);
 }
 
-Eigen::VectorXd DynamicsPlant::coordinates(const ArmState& state) const {
-  const DirectionAngles angles(arm_, state);
+Eigen::VectorXd DynamicsPlant::coordinates(const ArmState& state, double& off_by) const {
+  const AnglesAlongArm along(arm_, state);
   const std::vector<double>& lengths = distributed_.model().lengths;
-  Eigen::VectorXd x = distributed_.coordinates([&](double s) {
+  const Angles angles = [&](double s) {
     const auto [section, share] = place_on(lengths, s);
-    return angles.at(section, share);
-  });
+    return along.at(section, share);
+  };
+  Eigen::VectorXd x = distributed_.coordinates(angles);
   if (distributed_.model().has_variable_lengths)
     for (std::size_t i = 0; i < lengths.size(); ++i)
       x[2 * distributed_.nodes() + static_cast<Eigen::Index>(i)] = lengths[i] * (state.stretches[i] - 1);
+  off_by = off(x, angles);
   return x;
+}
+
+double DynamicsPlant::off(const Eigen::VectorXd& x, const Angles& angles) const {
+  DistributedArm at = distributed_;
+  at.set(x, Eigen::VectorXd::Zero(x.size()));
+  const AngleShapes& shapes = at.shapes();
+  double sum = 0;
+  for (Eigen::Index i = 0; i < shapes.s.size(); ++i)
+    sum +=
+        shapes.weights[i] * (Eigen::Vector2d(at.theta()[i], at.q()[i]) - angles(shapes.s[i])).squaredNorm();
+  return std::sqrt(sum / shapes.weights.sum());
 }
 
 Eigen::Matrix2Xd DynamicsPlant::end_angles(const Eigen::VectorXd& x) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "flexura/control/distributed_arm.h"
@@ -16,10 +17,10 @@ inline constexpr double most_elevation = 1.569;
 
 /// The two angles of an arm's direction along it, theta (azimuth) and q (elevation) as in docs/estimation.md,
 /// rad: theta goes on continuously from the base, where it is in (-pi, pi].
-class DirectionAngles {
+class AnglesAlongArm {
  public:
   /// `state` fits the arm and is finite.
-  DirectionAngles(const Arm& arm, const ArmState& state);
+  AnglesAlongArm(const Arm& arm, const ArmState& state);
 
   /// (theta, q) at a share in [0, 1] of a section.
   [[nodiscard]] Eigen::Vector2d at(std::size_t section, double share) const;
@@ -44,6 +45,10 @@ class DynamicsPlant {
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
   /// Whether |q| is below a quarter turn all along the arm at the start.
   [[nodiscard]] bool is_regular() const { return is_regular_; }
+  /// By how much the angles that the basis can have differ from those of the shapes where the task starts and
+  /// where it is to lead, root mean square along the arm, rad.
+  [[nodiscard]] double start_off() const { return start_off_; }
+  [[nodiscard]] double target_off() const { return target_off_; }
   /// p_WB, m: the distributed arm's places count from there, along W's axes.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
@@ -55,13 +60,16 @@ class DynamicsPlant {
   [[nodiscard]] Eigen::Matrix2Xd end_angles(const Eigen::VectorXd& x) const;
 
  private:
-  [[nodiscard]] Eigen::VectorXd coordinates(const ArmState& state) const;
+  using Angles = std::function<Eigen::Vector2d(double s)>;
+  [[nodiscard]] Eigen::VectorXd coordinates(const ArmState& state, double& off_by) const;
+  [[nodiscard]] double off(const Eigen::VectorXd& x, const Angles& angles) const;
 
   Arm arm_;
   std::vector<double> stretches_;  // Where they do not vary.
   DistributedArm distributed_;
   Eigen::MatrixXd ends_;  // The shape functions at the sections' ends, the clamp's last.
   Eigen::VectorXd start_, target_;
+  double start_off_ = 0, target_off_ = 0;
   bool is_regular_ = true;
 };
 

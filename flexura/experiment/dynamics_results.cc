@@ -102,7 +102,7 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
                    {"elastic", [](const DynamicsSample& at) { return at.energies.elastic; }},
                    {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
                    {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
-      charts.draw("errors", "angles less those of the target, root mean square along the arm", "deg", 1e-3,
+      charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
                   {{"theta", [&](const DynamicsSample& at) { return in_degrees(run.error(at).azimuth); }},
                    {"q", [&](const DynamicsSample& at) { return in_degrees(run.error(at).elevation); }}})};
 }
@@ -135,6 +135,13 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
       "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
       "{:.3g} mm.",
       in_degrees(run.remaining.azimuth), in_degrees(run.remaining.elevation), 1e3 * run.remaining.tip));
+  const double off = std::max(run.plant.start_off(), run.plant.target_off());
+  constexpr double shows = 1e-3;  // rad
+  if (off > shows)
+    points.push_back(fmt::format(
+        "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
+        "target as it was said, root mean square along the arm.",
+        in_degrees(run.plant.start_off()), in_degrees(run.plant.target_off())));
   points.push_back(fmt::format(
       "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "
       "{:.2g} mm from theirs.",
@@ -167,6 +174,8 @@ Node dynamics_nodes(const std::vector<DynamicsRun>& runs) {
                                     {"elevation", {}, number_node(run.remaining.elevation)},
                                     {"tip", {}, number_node(run.remaining.tip)}},
                         {}}});
+    members.push_back({"start_off", {}, number_node(run.plant.start_off())});
+    members.push_back({"target_off", {}, number_node(run.plant.target_off())});
     members.push_back({"arcs_apart", {}, number_node(run.apart)});
     list.push_back({std::move(members), {}});
   }

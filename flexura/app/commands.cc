@@ -14,13 +14,13 @@
 #include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/app/view.h"
+#include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"
 #include "flexura/experiment/export_mp4.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
-#include "flexura/experiment/schedule.h"
 #include "flexura/safety/violation_groups.h"
 #include "flexura/store/json.h"
 #include "flexura/store/schema.h"
@@ -114,7 +114,7 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
   TerminalProgress progress(err);
-  const SafetyReport report = Schedule(experiment).check(&progress);
+  const SafetyReport report = safety_with_dynamics(experiment, progress);
   progress.clear();
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';

@@ -14,9 +14,11 @@ namespace {
 
 double lyapunov_value(const LyapunovSample& sample) { return sample.kinetic + sample.potential; }
 
-// The energies that came into play: what 1 is measured by.
+// The energies that came into play: what 1 is measured by. Of an arm that stays where it is these are
+// rounding.
 double energy_scale(const std::vector<LyapunovSample>& samples) {
-  double scale = 0;
+  constexpr double rounding = 1e-12;
+  double scale = rounding * std::max(std::abs(samples.front().gravity), std::abs(samples.front().elastic));
   for (const LyapunovSample& sample : samples)
     scale =
         std::max({scale, std::abs(lyapunov_value(sample)), std::abs(sample.gravity - samples.front().gravity),
@@ -53,7 +55,8 @@ LyapunovVerdict LyapunovMonitor::verdict() const {
   const double scale = energy_scale(samples_);
   verdict.is_monotone = verdict.largest_rise <= tolerance_ * scale;
   verdict.is_balanced = verdict.imbalance <= tolerance_ * scale;
-  verdict.is_settled = std::abs(lyapunov_value(samples_.back())) <= settled_ * lyapunov_value(start);
+  verdict.is_settled =
+      std::abs(lyapunov_value(samples_.back())) <= settled_ * lyapunov_value(start) + tolerance_ * scale;
   explain(verdict, scale);
   return verdict;
 }

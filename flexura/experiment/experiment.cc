@@ -48,6 +48,8 @@ void check_task_at(const Experiment& experiment, std::size_t index, Reader& read
     check_calibration(*calibration, experiment.arm, experiment.cameras(), experiment.stand, path, reader);
   const auto* servo = std::get_if<ServoTask>(&task);
   if (servo != nullptr) check_servo(*servo, experiment.arm, experiment.cameras(), path, reader);
+  if (const auto* dynamics = std::get_if<DynamicsTask>(&task))
+    check_dynamics(*dynamics, experiment.arm, path, reader);
   if (reader.problems().size() > problems_before) return;  // Shapes fit the arm from here on.
   const Arm arm = experiment.arm.arm();
   if (const auto* move = std::get_if<MoveTask>(&task)) check_bends(arm, move->to, path + ".to", reader);

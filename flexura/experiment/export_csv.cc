@@ -70,9 +70,29 @@ std::string_view level_name(std::int64_t level) {
   return level == 3 ? "warning" : "error";
 }
 
+// The energies and errors of distributed arms; where they are along the arm is the log's to tell.
+void name_dynamics_columns(CsvText& csv) {
+  for (const char* title :
+       {"time", "kinetic_energy", "gravity_energy", "elastic_energy", "potential", "lyapunov", "taken_by_law",
+        "taken_by_medium", "azimuth_error", "elevation_error", "tip_error", "tip_x", "tip_y", "tip_z"})
+    csv.cell(std::string_view(title));
+  csv.end_row();
+}
+
+void add_row(CsvText& csv, const DynamicsSampleMessage& sample) {
+  csv.cells(std::array{sample.time, sample.kinetic_energy, sample.gravity_energy, sample.elastic_energy,
+                       sample.potential, sample.lyapunov, sample.taken_by_law, sample.taken_by_medium,
+                       sample.azimuth_error, sample.elevation_error, sample.tip_error});
+  if (sample.points.empty())
+    throw std::runtime_error(fmt::format("the log's sample of dynamics at {} s has no points", sample.time));
+  csv.cells(sample.points.back());
+  csv.end_row();
+}
+
 struct Tables {
   CsvText states;
   CsvText events;
+  std::optional<CsvText> dynamics;  // Of runs with such a task.
 };
 
 Tables tables_of(const McapReader& log, const std::string& name) {
@@ -92,6 +112,9 @@ Tables tables_of(const McapReader& log, const std::string& name) {
       check_sizes(*state, *sections, poses);
       add_row(tables.states, *state, poses);
       state.reset();
+    } else if (topic == dynamics_samples_topic) {
+      if (!tables.dynamics) name_dynamics_columns(tables.dynamics.emplace());
+      add_row(*tables.dynamics, read_as<DynamicsSampleMessage>(parse_json(message.text(), name)));
     } else if (topic == events_topic) {
       const auto event = read_as<EventMessage>(parse_json(message.text(), name));
       tables.events.cell(static_cast<double>(message.log_time) * 1e-9);
@@ -116,6 +139,7 @@ ExportResult export_csv(const std::filesystem::path& results) {
   ExportResult result{make_new_folder(results / "csv"), log.truncated()};
   write_new_file(result.folder / "states.csv", tables.states.text());
   write_new_file(result.folder / "events.csv", tables.events.text());
+  if (tables.dynamics) write_new_file(result.folder / "dynamics.csv", tables.dynamics->text());
   return result;
 }
 

@@ -198,6 +198,20 @@ struct ServoSightingMessage {
   std::optional<std::string> reason;  ///< Why the picture shows no arm.
 };
 
+/// flexura.DynamicsSample, on /dynamics/samples: the distributed arm at one time.
+struct DynamicsSampleMessage {
+  double time = 0;                                                    ///< s
+  double kinetic_energy = 0, gravity_energy = 0, elastic_energy = 0;  ///< T, V_g, V_e, J.
+  double potential = 0;                                               ///< Pi, J.
+  double lyapunov = 0;                                                ///< W = T + Pi, J.
+  double taken_by_law = 0, taken_by_medium = 0;                       ///< By damping since the start, J.
+  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad.
+  double tip_error = 0;                           ///< m
+  std::vector<double> s;                          ///< Places along the arm at rest, m,
+  std::vector<double> azimuths, elevations;       ///< and its direction there, rad.
+  std::vector<std::array<double, 3>> points;      ///< The base, these places, the tip, in W, m.
+};
+
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
 struct ImageMessage {
   TimeMessage timestamp;  ///< Middle of the exposure.
@@ -216,6 +230,7 @@ inline constexpr std::string_view calibration_sightings_topic = "/calibration/si
 inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
 inline constexpr std::string_view servo_steps_topic = "/servo/steps";
 inline constexpr std::string_view servo_sightings_topic = "/servo/sightings";
+inline constexpr std::string_view dynamics_samples_topic = "/dynamics/samples";
 
 const Table<TimeMessage>& fields_of(const TimeMessage*);
 const Table<ArmStateMessage>& fields_of(const ArmStateMessage*);
@@ -238,6 +253,7 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
 const Table<HeadCommandMessage>& fields_of(const HeadCommandMessage*);
 const Table<ServoStepMessage>& fields_of(const ServoStepMessage*);
 const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
+const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*);
 
 /// The topics of a camera's images, and of its head's and its stage's readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);

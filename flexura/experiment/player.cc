@@ -11,26 +11,27 @@
 namespace flexura {
 namespace {
 
-// What such a task does is decided on the way.
-bool is_for_rig(const TaskConfig& task) {
-  return std::holds_alternative<CalibrateTask>(task) || std::holds_alternative<ServoTask>(task);
-}
+constexpr double same_time = 1e-9;  // s
 
-// What is told of a check before the run: how far that is, in words, for nothing is played yet.
-class Checking : public Progress {
+// What is told of work between two steps of a run: how far that is, in words, for nothing is played
+// meanwhile.
+class Aside : public Progress {
  public:
-  explicit Checking(Progress& run) : run_(run) {}
+  // `played`: how far the run is, of 1.
+  Aside(Progress& run, double played, std::string_view verb) : run_(run), played_(played), verb_(verb) {}
   void update(double fraction, std::string_view what) override {
-    run_.update(0, fmt::format("checking {}, {:.0f} %", what, 100 * fraction));
+    run_.update(played_, fmt::format("{} {}, {:.0f} %", verb_, what, 100 * fraction));
   }
   [[nodiscard]] bool cancelled() const override { return run_.cancelled(); }
 
  private:
   Progress& run_;
+  double played_;
+  std::string_view verb_;
 };
 
 SafetyReport checked(const Schedule& schedule, Progress& run) {
-  Checking progress(run);
+  Aside progress(run, 0, "checking");
   return schedule.check(&progress);
 }
 
@@ -41,13 +42,20 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       witness_(witness),
       progress_(progress),
       watcher_(watcher),
-      schedule_(experiment),
+      schedule_(scheduled(0)),
       safety_(checked(schedule_, progress)),
       believed_(rig_model(experiment.arm.arm(), experiment.cameras())),
       played_{0, 0, schedule_.initial(), false, ""} {
   if (experiment.record.cameras || std::ranges::any_of(experiment.task, is_for_rig))
     filming_.emplace(experiment);
   plan(0);
+}
+
+// With what tasks of dynamics do that begin where it is known.
+Schedule Player::scheduled(double played) {
+  Aside progress(progress_, played, "simulating");
+  run_known_dynamics(experiment_, performed_, dynamics_, progress);
+  return Schedule(experiment_, performed_);
 }
 
 // What is to be told from that time on; violations and the starts of tasks at one time in this order of
@@ -59,6 +67,10 @@ void Player::plan(double from) {
     events_.push_back({leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind)});
   for (const Violation& violation : safety_.violations)
     events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
+  for (const DynamicsRun& run : dynamics_)
+    events_.push_back({schedule_.legs()[run.task].end(),
+                       run.is_done() ? Recorder::Level::info : Recorder::Level::error, run.name,
+                       run.is_done() ? "there" : run.reason()});
   std::erase_if(events_, [from](const Event& event) { return event.time < from; });
   std::ranges::stable_sort(events_, {}, &Event::time);
 }
@@ -81,6 +93,7 @@ Played Player::play() {
       continue;
     }
     tell_up_to(time);
+    if (ends_with_dynamics(time)) break;
     const ArmState state = schedule_.state_at(time);
     if (!is_possible(state)) break;
     film_to(time, state);
@@ -106,6 +119,7 @@ void Player::film_to(double time, const ArmState& state) {
 void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     witness_.state(step_, time, state);
+    tell_dynamics(time);
     if (filming_) witness_.readings(filming_->ports());
   }
   witness_.command(time, state);
@@ -113,6 +127,41 @@ void Player::step(double time, const ArmState& state) {
     watcher_->state(time, state, filming_ ? filming_->camera_readings() : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
+}
+
+// Of each run of dynamics what it began and ended with, and what it had come to.
+void Player::tell_dynamics(double time) {
+  for (; dynamics_told_ < dynamics_.size(); ++dynamics_told_, samples_told_ = 0) {
+    const DynamicsRun& run = dynamics_[dynamics_told_];
+    const auto is_past = [&](std::size_t i) {
+      return run.start + run.samples[i].energies.time <= time + same_time;
+    };
+    for (const std::size_t count = run.samples.size(); samples_told_ < count; ++samples_told_) {
+      if (!is_past(samples_told_)) return;
+      const bool is_end = samples_told_ == 0 || samples_told_ + 1 == count;
+      if (is_end || !is_past(samples_told_ + 1)) witness_.dynamics(run.message(run.samples[samples_told_]));
+    }
+  }
+}
+
+// Whether a task of dynamics that is not done is over, and the run with it.
+bool Player::ends_with_dynamics(double time) {
+  if (dynamics_.empty() || dynamics_.back().is_done()) return false;
+  const DynamicsRun& run = dynamics_.back();
+  const Leg leg = schedule_.legs()[run.task];
+  if (time < leg.end() - same_time) return false;
+  film_to(leg.end(), leg.motion->at(leg.motion->duration()));
+  stop_after(leg, fmt::format("{}: {}", run.name, run.reason()));
+  return true;
+}
+
+// The run ends here: with the state at the end, which belongs to no step.
+void Player::stop_after(const Leg& leg, const std::string& failure) {
+  played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.cancelled(), failure};
+  witness_.expect(step_);
+  witness_.state(step_, leg.end(), played_.last);
+  tell_dynamics(leg.end());
+  if (filming_) witness_.readings(filming_->ports());
 }
 
 // The task for the rig that begins at `time` or before, if it was not done yet and may be done.
@@ -146,25 +195,20 @@ bool Player::perform(std::size_t task) {
   film_to(leg.start, leg.motion->at(0));
   const RecordSteps record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
     // A step at the end is the next task's.
-    constexpr double rounding = 1e-9;
-    for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - rounding;
+    for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - same_time;
          time = experiment_.clock.step * static_cast<double>(step_))
       step(time, state_at(time));
   };
   const bool is_servo = std::holds_alternative<ServoTask>(experiment_.task[task]);
   const Performed done = is_servo ? servo(task, record_step) : calibrate(task, record_step);
   performed_[task] = done.motion;
-  schedule_ = Schedule(experiment_, performed_);
+  const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
+  schedule_ = done.failure.empty() ? scheduled(played) : Schedule(experiment_, performed_);
   safety_ = schedule_.check();
-  const double end = schedule_.legs()[task].end();
-  plan(end);
+  plan(schedule_.legs()[task].end());
   filming_->skip_to_now();
   if (done.failure.empty()) return true;
-  // The run ends here: with the state at the end, which belongs to no step.
-  played_ = {step_, end, done.motion->at(done.motion->duration()), progress_.cancelled(), done.failure};
-  witness_.expect(step_);
-  witness_.state(step_, end, played_.last);
-  witness_.readings(filming_->ports());
+  stop_after(schedule_.legs()[task], done.failure);
   return false;
 }
 

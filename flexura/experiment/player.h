@@ -9,6 +9,7 @@
 #include "flexura/base/progress.h"
 #include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/calibrate_task.h"
+#include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/record_steps.h"
 #include "flexura/experiment/run.h"
@@ -25,7 +26,7 @@ struct Played {
   double time = 0;         ///< Of the last one, s.
   ArmState last;
   bool is_cancelled = false;
-  std::string failure;  ///< Why a calibration or servo stopped and the run with it; "": none did.
+  std::string failure;  ///< Why a task stopped and the run with it; "": none did.
 };
 
 /// Plays an experiment's schedule, step by step, before the eyes of a witness.
@@ -38,9 +39,10 @@ class Player {
   [[nodiscard]] const SafetyReport& safety() const { return safety_; }
   [[nodiscard]] const std::vector<CalibrationRun>& calibrations() const { return calibrations_; }
   [[nodiscard]] const std::vector<ServoRun>& servos() const { return servos_; }
+  [[nodiscard]] const std::vector<DynamicsRun>& dynamics() const { return dynamics_; }
 
-  /// Plays every step, or those before the first state that no arm can take, or until a calibration or servo
-  /// fails or it is cancelled.
+  /// Plays every step, or those before the first state that no arm can take, or until a calibration, a servo
+  /// or a task of dynamics fails or it is cancelled.
   Played play();
 
  private:
@@ -49,10 +51,14 @@ class Player {
     Recorder::Level level;
     std::string name, text;
   };
+  [[nodiscard]] Schedule scheduled(double played);
   void plan(double from);
   void tell_up_to(double time);
   void step(double time, const ArmState& state);
   void film_to(double time, const ArmState& state);
+  void tell_dynamics(double time);
+  [[nodiscard]] bool ends_with_dynamics(double time);
+  void stop_after(const Leg& leg, const std::string& failure);
   [[nodiscard]] std::optional<std::size_t> rig_task_due(double time) const;
   [[nodiscard]] bool perform(std::size_t task);
   struct Performed {
@@ -66,15 +72,18 @@ class Player {
   Witness& witness_;
   Progress& progress_;
   RunWatcher* watcher_;
-  std::map<std::size_t, MotionPtr> performed_;  // By task: what calibrations and servos did.
+  // By task: what calibrations, servos and tasks of dynamics did.
+  std::map<std::size_t, MotionPtr> performed_;
+  std::vector<DynamicsRun> dynamics_;  // In the order of tasks; the last one may not be done.
   Schedule schedule_;
   SafetyReport safety_;
   std::optional<Filming> filming_;
   std::vector<Event> events_;  // Still to be told, in the order of time.
   std::vector<CalibrationRun> calibrations_;
   std::vector<ServoRun> servos_;
-  RigModel believed_;     // By the file, or the last calibration that found a rig.
-  std::size_t step_ = 0;  // The next one.
+  RigModel believed_;  // By the file, or the last calibration that found a rig.
+  std::size_t dynamics_told_ = 0, samples_told_ = 0;  // Runs of dynamics in the log, samples of the next.
+  std::size_t step_ = 0;                              // The next one.
   Played played_;
 };
 

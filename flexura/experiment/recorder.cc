@@ -49,6 +49,7 @@ struct Recorder::Channels {
   std::optional<std::uint16_t> arm_reading;
   std::optional<std::uint16_t> calibration_moves, calibration_sightings, calibration_decisions;
   std::optional<std::uint16_t> servo_steps, servo_sightings;
+  std::optional<std::uint16_t> dynamics_samples;
   std::map<std::string, std::uint16_t> heads;   // by camera
   std::map<std::string, std::uint16_t> stages;  // by camera
   std::map<std::string, std::uint16_t> images;  // by camera
@@ -145,6 +146,10 @@ void Recorder::servo(const ServoStepMessage& message) {
 
 void Recorder::servo(const ServoSightingMessage& message, double received) {
   channels_->write(channels_->servo_sightings, servo_sightings_topic, received, message);
+}
+
+void Recorder::dynamics(const DynamicsSampleMessage& message) {
+  channels_->write(channels_->dynamics_samples, dynamics_samples_topic, message.time, message);
 }
 
 std::string logged_image(const std::string& camera, const Frame& frame) {

@@ -53,6 +53,9 @@ class Recorder {
   void servo(const ServoStepMessage& message);
   void servo(const ServoSightingMessage& message, double received);
 
+  /// What a distributed arm does. Likewise.
+  void dynamics(const DynamicsSampleMessage& message);
+
   /// A frame; `message` is its logged_image, which takes longest and needs no log. The first one of a camera
   /// opens its channel.
   void image(const std::string& camera, const Frame& frame, std::string_view message);

@@ -11,6 +11,7 @@
 #include "flexura/base/version.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
+#include "flexura/experiment/dynamics_results.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/player.h"
 #include "flexura/experiment/recorder.h"
@@ -153,12 +154,17 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     result.summary.as<Node::Table>()->push_back({"calibrations", {}, calibration_nodes(calibrations)});
   const std::vector<ServoRun>& servos = player.servos();
   if (!servos.empty()) result.summary.as<Node::Table>()->push_back({"servos", {}, servo_nodes(servos)});
+  const std::vector<DynamicsRun>& dynamics = player.dynamics();
+  if (!dynamics.empty())
+    result.summary.as<Node::Table>()->push_back({"dynamics", {}, dynamics_nodes(dynamics)});
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
     for (std::size_t i = 0; i < calibrations.size(); ++i)
       data.chapters.push_back(calibration_chapter(calibrations[i], i));
     for (std::size_t i = 0; i < servos.size(); ++i) data.chapters.push_back(servo_chapter(servos[i], i));
+    for (std::size_t i = 0; i < dynamics.size(); ++i)
+      data.chapters.push_back(dynamics_chapter(dynamics[i], i));
     for (const ImageStudy& study : studies) data.chapters.push_back(study_chapter(study));
     write_report(folder, data);
   }

@@ -20,7 +20,7 @@ namespace flexura {
 enum class RunOutcome {
   done,
   unsafe,     ///< A task would break a limit of the arm or touch something; simulated to be looked at.
-  failed,     ///< A calibration or servo stopped, and the run with it.
+  failed,     ///< A calibration, a servo or a task of dynamics was not done, and ended the run.
   cancelled,  ///< Progress::cancelled: the log ends with the last step that was played.
 };
 

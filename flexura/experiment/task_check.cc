@@ -27,6 +27,9 @@ void check_one(const CalibrateTask&, ArmKind, std::size_t, const std::string&, R
 // Likewise (check_servo).
 void check_one(const ServoTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
 
+// On all of the arm (check_dynamics).
+void check_one(const DynamicsTask&, ArmKind, std::size_t, const std::string&, Reader&) {}
+
 void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   check_shape(task.to, kind, sections, path + ".to", reader);

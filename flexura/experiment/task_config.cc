@@ -177,6 +177,10 @@ std::optional<Eigen::Vector3d> tip_target(const TaskConfig& task) {
   return Eigen::Vector3d(p[0], p[1], p[2]);
 }
 
+bool is_for_rig(const TaskConfig& task) {
+  return std::holds_alternative<CalibrateTask>(task) || std::holds_alternative<ServoTask>(task);
+}
+
 std::string_view task_kind(const TaskConfig& task) {
   return std::visit(
       []<class T>(const T&) -> std::string_view {

@@ -10,6 +10,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_config.h"
+#include "flexura/experiment/dynamics_task_config.h"
 #include "flexura/experiment/servo_task_config.h"
 #include "flexura/experiment/study_config.h"
 #include "flexura/kinematics/motion.h"
@@ -75,7 +76,7 @@ struct ExpressionTask {
 };
 
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
-                                CalibrateTask, ServoTask>;
+                                CalibrateTask, ServoTask, DynamicsTask>;
 
 const std::vector<std::string>& names_of(const MoveLaw*);
 const std::vector<std::string>& names_of(const Interpolation*);
@@ -88,6 +89,8 @@ const Table<ExpressionTask>& fields_of(const ExpressionTask*);
 
 [[nodiscard]] std::string task_name(const TaskConfig& task);  ///< Its name, else its kind.
 [[nodiscard]] std::string_view task_kind(const TaskConfig& task);
+/// Whether it is done by the rig, so that only then is known where the arm comes to.
+[[nodiscard]] bool is_for_rig(const TaskConfig& task);
 
 /// Reports what keeps the task at `path` ("task[2]") from fitting an arm of this kind and number of sections.
 void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, const std::string& path,

@@ -7,12 +7,14 @@
 #include <optional>
 #include <utility>
 
+#include "flexura/experiment/dynamics_plant.h"
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/task_config.h"
 #include "flexura/kinematics/cord_motion.h"
 #include "flexura/kinematics/expression.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/safety/motion_check.h"
 
 namespace flexura {
 namespace {
@@ -78,6 +80,14 @@ ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& fr
   InverseOptions options;
   options.start = from;
   return solve_inverse(arm, TipTarget{.position = *tip}, options).state;
+}
+
+// What is to be expected before it is simulated: the straight way to its target.
+MotionPtr motion_of(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
+  if (!is_possible(from)) return hold_motion(from, task.duration);
+  const DynamicsPlant plant(task, arm, from);
+  return keyframe_motion({0, task.duration}, {from, plant.state(plant.target(), from)},
+                         Interpolation::linear);
 }
 
 MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {

@@ -40,6 +40,8 @@ class Witness {
   void servo(const ServoStepMessage& message);
   void servo(const ServoSightingMessage& message, double received);
   void servo_ended();
+  /// What a distributed arm does.
+  void dynamics(const DynamicsSampleMessage& message) { recorder_.dynamics(message); }
   /// Of each camera that gave any.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
   void write_commands(const Drive& drive, const std::filesystem::path& file);

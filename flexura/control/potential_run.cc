@@ -1,0 +1,99 @@
+#include "flexura/control/potential_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace flexura {
+namespace {
+
+constexpr double quarter_turn = std::numbers::pi / 2;
+constexpr double most_theta = 100;      // rad
+constexpr double least_stretch = 0.01;  // A section's length over that at rest.
+
+// Where the two angles and the lengths are coordinates of an arm.
+bool is_regular(const DistributedArm& arm) {
+  return arm.q().cwiseAbs().maxCoeff() < quarter_turn && arm.stretch().minCoeff() > least_stretch &&
+         arm.theta().cwiseAbs().maxCoeff() < most_theta;
+}
+
+}  // namespace
+
+PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
+                           const std::optional<AngleMeasurement>& measurement, const OdeTolerance& tolerance)
+    : law_(law),
+      seen_(arm),
+      motion_(
+          arm,
+          [this](double, const DistributedArm& now, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+                 Eigen::VectorXd& Q) { return force(now, x, v, Q); },
+          tolerance) {
+  if (start.size() != arm.size() || !start.allFinite())
+    throw std::invalid_argument("a run starts at finite coordinates of its arm");
+  if (measurement) measured_.emplace(*measurement, arm.nodes());
+  motion_.start(start);
+  if (!is_regular(motion_.arm())) stopped_ = reason();
+}
+
+double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+                           Eigen::VectorXd& Q) {
+  if (measured_ && measured_->seen().size() > 0) {
+    law_.force(seen_, measured_->seen(), v, Q);
+  } else {
+    law_.force(arm, x, v, Q);
+  }
+  // No step leads beyond: the last one ends right before it.
+  if (!is_regular(arm)) Q.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return law_.dissipation(v);
+}
+
+bool PotentialRun::advance(double until) {
+  while (stopped_.empty() && motion_.time() < until) {
+    double next = until;
+    if (measured_) {
+      if (motion_.time() >= measured_->next()) {
+        measured_->take(motion_.x(), motion_.v());
+        seen_.set(measured_->seen(), Eigen::VectorXd::Zero(seen_.size()));
+      }
+      next = std::min(until, measured_->next());
+    }
+    if (!motion_.advance(next)) stopped_ = reason();
+  }
+  return stopped_.empty();
+}
+
+// What is nearest to the end of the coordinates tells why a motion ended.
+std::string PotentialRun::reason() const {
+  constexpr double near = 0.99;
+  const DistributedArm& arm = motion_.arm();
+  Eigen::Index point = 0;
+  if (arm.q().cwiseAbs().maxCoeff(&point) > near * quarter_turn)
+    return fmt::format(
+        "|q| reached 90 deg at {:.3f} s, {:.3f} m along the arm: there the two angles are no coordinates of "
+        "its direction",
+        motion_.time(), arm.shapes().s[point]);
+  if (arm.stretch().minCoeff() < least_stretch / near)
+    return fmt::format("a section's length came to nothing at {:.3f} s", motion_.time());
+  if (arm.theta().cwiseAbs().maxCoeff() > near * most_theta)
+    return fmt::format("the arm runs away: it turned by {:.0f} rad until {:.3f} s", most_theta,
+                       motion_.time());
+  return fmt::format("beyond {:.3f} s the motion is too fast to be followed", motion_.time());
+}
+
+LyapunovSample PotentialRun::sample() const {
+  const DistributedArm& arm = motion_.arm();
+  const bool is_shaped = law_.gains().elasticity == ElasticityRule::shaped;
+  return {.time = motion_.time(),
+          .kinetic = arm.kinetic_energy(),
+          .potential = law_.potential(arm, motion_.x()),
+          .gravity = arm.gravity_energy(),
+          .elastic = is_shaped ? 0 : arm.elastic_energy(),
+          .taken = motion_.summed(),
+          .damped = motion_.damped()};
+}
+
+}  // namespace flexura

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "flexura/control/angle_measurement.h"
+#include "flexura/control/distributed_arm.h"
+#include "flexura/control/lyapunov_monitor.h"
+#include "flexura/control/potential_law.h"
+
+namespace flexura {
+
+/// A distributed arm under the artificial potential, from rest on (docs/control.md, eq. 6 and 9). Either the
+/// law has the arm's angles, or it has measurements of them: then the potential's force and what compensates
+/// gravity and elasticity are those of the shape as measured last, held from one measurement to the next. The
+/// damping is of the arm's own rates in both cases: it is the drives'.
+class PotentialRun {
+ public:
+  /// `start`: coordinates, at rest. std::invalid_argument: a size that does not fit, numbers that are not
+  /// finite.
+  PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
+               const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {});
+  PotentialRun(const PotentialRun&) = delete;  // The motion's force refers to it.
+  PotentialRun& operator=(const PotentialRun&) = delete;
+
+  /// Goes on to the time `until`, s. False: it could not, and stopped() says why; it then stands where it
+  /// came to, and stays there.
+  [[nodiscard]] bool advance(double until);
+  /// Why it cannot go on; empty: it can.
+  [[nodiscard]] const std::string& stopped() const { return stopped_; }
+
+  [[nodiscard]] const DistributedMotion& motion() const { return motion_; }
+  [[nodiscard]] const PotentialLaw& law() const { return law_; }
+  /// The energies now. Where elasticity is shaped V_e is part of Pi and 0 here.
+  [[nodiscard]] LyapunovSample sample() const;
+
+ private:
+  double force(const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+               Eigen::VectorXd& Q);
+  [[nodiscard]] std::string reason() const;
+
+  PotentialLaw law_;
+  std::optional<MeasuredCoordinates> measured_;
+  DistributedArm seen_;  // Set to the shape as measured last.
+  DistributedMotion motion_;
+  std::string stopped_;
+};
+
+}  // namespace flexura

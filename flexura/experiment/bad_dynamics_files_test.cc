@@ -1,0 +1,100 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/dynamics_files.h"
+#include "tests/support/experiment_files.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
+  const std::string angles = "target.azimuths = [0, 1]\ntarget.elevations = [0, 0.5]\n";
+  struct Bad {
+    std::string lines, error;
+  };
+  for (
+      const Bad& bad : {
+          Bad{"", "task[0].target: missing"},
+          Bad{"target = {}\n", "task[0].target: says nothing: expected a shape"},
+          Bad{"target = 3\n", "task[0].target = 3: expected a table"},
+          Bad{bent_target + angles, "says a shape in more than one way"},
+          Bad{"target.azimuths = [0, 1]\n", "azimuths and elevations that do not belong together"},
+          Bad{"target.azimuths = [0, 1]\ntarget.elevations = [0, 0, 0]\n", "expected as many of each"},
+          Bad{"target.azimuths = [0, 0]\ntarget.elevations = []\n", "expected an array of 2 to"},
+          Bad{"target.azimuths = [0, nan]\ntarget.elevations = [0, 0]\n", "nan: expected"},
+          Bad{"target.azimuths = [0, inf]\ntarget.elevations = [0, 0]\n", "inf: expected"},
+          Bad{"target.azimuths = [0, 1e9]\ntarget.elevations = [0, 0]\n", "from -50 rad to 50 rad"},
+          Bad{"target.azimuths_deg = [0, 10]\ntarget.elevations_deg = [0, 90]\n",
+              "task[0].target.elevations[1]: 90 deg: expected less than 90 deg, where the azimuth is none"},
+          Bad{"target.azimuths_deg = [10, 10]\ntarget.elevations_deg = [0, 0]\n",
+              "task[0].target.azimuths[0]: 10 deg: expected that of the arm's base, which is clamped, 0 deg"},
+          Bad{"target.bends = [[0, 0]]\n", "task[0].target.bends: 1 given: expected 3"},
+          Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "leads through an elevation of 90 deg"},
+          Bad{"target.bends = [[0, 2000], [0, 0], [0, 0]]\n", "expected a number from -1000 rad to 1000 rad"},
+          Bad{"target.stretches = [1, 1.1, 1]\n", "target.stretches: is for variable_lengths = true"},
+          Bad{"target.positions = [0, 0, 1]\n", "unknown key"},
+          Bad{bent_target + "density = 0\n", "expected a number from 1e-06 to"},
+          Bad{bent_target + "density = nan\n", "task[0].density = nan"},
+          Bad{bent_target + "density = \"heavy\"\n", "task[0].density = \"heavy\": expected a number"},
+          Bad{bent_target + "bending_stiffness = -1\n", "task[0].bending_stiffness = -1"},
+          Bad{bent_target + "bending_stiffness = 1e300\n", "task[0].bending_stiffness = 1e+300"},
+          Bad{bent_target + "damping = -1\n", "task[0].damping = -1"},
+          Bad{bent_target + "duration = 0\n", "task[0].duration = 0: expected a number above 0 s"},
+          Bad{bent_target + "duration = 1e9\n", "task[0].duration = 1000000000"},
+          Bad{bent_target + "gravity = [0, -9.81]\n", "expected an array of 3"},
+          Bad{bent_target + "gravity_g = [0, -1, 0]\n", "task[0].gravity_g"},
+          Bad{bent_target + "basis = \"sines\"\n", "expected one of \"polynomial\", \"sections\""},
+          Bad{bent_target + "nodes = 0\n", "task[0].nodes = 0"},
+          Bad{bent_target + "nodes = 1000\n", "task[0].nodes = 1000"},
+          Bad{bent_target + "law.damping = 4\n", "task[0].law.damping = 4: expected an array of 2"},
+          Bad{bent_target + "law.damping = [[4, 0], [0, nan]]\n", "nan: expected"},
+          Bad{bent_target + "law.stiffness = [1, 2, 3]\n", "task[0].law.stiffness"},
+          Bad{bent_target + "law.stiffness = 1e300\n", "task[0].law.stiffness"},
+          Bad{bent_target + "law.sign = 0\n", "task[0].law.sign: 0: expected 1 or -1"},
+          Bad{bent_target + "law.sign = 2\n", "task[0].law.sign = 2"},
+          Bad{bent_target + "law.elasticity = \"forgotten\"\n", "expected one of \"cancelled\", \"shaped\""},
+          Bad{bent_target + "law.gravity_compensation = false\n", "expected a number"},
+          Bad{bent_target + "law.stifness = 3\n", "did you mean \"stiffness\""},
+          Bad{bent_target + "measurement = { delay = -1 }\n", "task[0].measurement.delay = -1"},
+          Bad{bent_target + "measurement = { delay = 1e6 }\n", "from 0 s to 60 s"},
+          Bad{bent_target + "measurement = { noise = nan }\n", "task[0].measurement.noise = nan"},
+          Bad{bent_target + "measurement = { step = 0 }\n", "task[0].measurement.step = 0"},
+          Bad{bent_target + "tolerance = 0\n", "task[0].tolerance = 0"},
+      }) {
+    std::string text = dynamics_arm() + "[[task]]\nkind = \"dynamics\"\n" + bad.lines;
+    const std::string error = error_of_file(text);
+    EXPECT_THAT(error, HasSubstr(bad.error)) << bad.lines;
+    EXPECT_THAT(error, MatchesRegex("x.toml:[0-9]+:[0-9]+: .*")) << bad.lines;  // No second line.
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+  EXPECT_EQ(error_of_file(dynamics_arm() + dynamics_task(bent_target)), "no error");
+  EXPECT_EQ(error_of_file(dynamics_arm() + dynamics_task(angles)), "no error");
+}
+
+TEST(BadDynamics, TheArmHasToFitToo) {
+  const std::string straight = "target.archings = [0, 0, 0]\n";
+  EXPECT_THAT(error_of_file(dynamics_arm("planar") + dynamics_task(straight + "gravity = [0, -9, 1]\n")),
+              HasSubstr("task[0].gravity: leaves the plane of a planar arm: expected 0 along Z"));
+  EXPECT_THAT(error_of_file(dynamics_arm("planar") +
+                            dynamics_task("target.azimuths = [0, 1]\ntarget.elevations = [0, 0.1]\n")),
+              HasSubstr("task[0].target.elevations[1]: leaves the plane: expected 0 of a planar arm"));
+  EXPECT_THAT(error_of_file(replaced(dynamics_arm(), "[[arm", "base.rotation = [1, 0, 0, 0]\n[[arm") +
+                            dynamics_task(bent_target)),
+              HasSubstr("task[0]: the arm's base points along Z: expected an elevation below 90 deg"));
+  std::string many = "[arm]\n";
+  std::string zeros;
+  for (int i = 0; i < 41; ++i) many += "[[arm.section]]\nlength = 0.1\n", zeros += "0, ";
+  const std::string target = "target.archings = [" + zeros + "]\n";
+  EXPECT_THAT(
+      error_of_file(many + dynamics_task(target)),
+      HasSubstr("task[0].basis: \"sections\" with 41 sections: expected at most 40, or \"polynomial\""));
+  EXPECT_EQ(error_of_file(many + dynamics_task(target + "basis = \"polynomial\"\n")), "no error");
+}
+
+}  // namespace
+}  // namespace flexura

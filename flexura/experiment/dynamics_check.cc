@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "flexura/experiment/dynamics_plant.h"
+#include "flexura/experiment/dynamics_task_config.h"
+#include "flexura/kinematics/shape.h"
+
+namespace flexura {
+namespace {
+
+double as_degrees(double radians) { return radians * 180 / std::numbers::pi; }
+// The most sections of which each has numbers of its own: the work grows with the third power.
+constexpr std::size_t most_sections = 40;
+
+bool says_bends(const DynamicsTargetConfig& target) {
+  return target.cord_angles || target.archings || target.bends;
+}
+
+void check_ways(const DynamicsTask& task, const std::string& path, Reader& reader) {
+  const DynamicsTargetConfig& target = task.target;
+  const bool has_angles = target.azimuths || target.elevations;
+  if (says_bends(target) && has_angles)
+    reader.problem_at(path, "says a shape in more than one way: expected bends, or azimuths and elevations");
+  if (!says_bends(target) && !has_angles && !target.stretches)
+    reader.problem_at(path, "says nothing: expected a shape, as bends, or azimuths and elevations");
+  if (target.azimuths.has_value() != target.elevations.has_value() ||
+      (target.azimuths && target.azimuths->size() != target.elevations->size()))
+    reader.problem_at(path,
+                      "has azimuths and elevations that do not belong together: expected as many of each");
+  if (target.stretches && !task.variable_lengths)
+    reader.problem_at(path + ".stretches", "is for variable_lengths = true: else lengths stay as they are");
+}
+
+void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& path, Reader& reader) {
+  const std::vector<double>&azimuths = *task.target.azimuths, &elevations = *task.target.elevations;
+  for (std::size_t i = 0; i < elevations.size(); ++i) {
+    if (std::abs(elevations[i]) > most_elevation)
+      reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
+                        fmt::format("{:.6g} deg: expected less than 90 deg, where the azimuth is none",
+                                    as_degrees(elevations[i])));
+    if (arm.kind == ArmKind::planar && elevations[i] != 0)
+      reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
+                        "leaves the plane: expected 0 of a planar arm");
+  }
+  const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
+  constexpr double rounding = 1e-6;
+  for (const auto& [name, first, own] :
+       {std::tuple("azimuths", azimuths[0], base[0]), std::tuple("elevations", elevations[0], base[1])})
+    if (std::abs(first - own) > rounding)
+      reader.problem_at(
+          fmt::format("{}.{}[0]", path, name),
+          fmt::format("{:.6g} deg: expected that of the arm's base, which is clamped, {:.6g} deg",
+                      as_degrees(first), as_degrees(own)));
+}
+
+}  // namespace
+
+void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std::string& path,
+                    Reader& reader) {
+  const std::string target = path + ".target";
+  const std::size_t before = reader.problems().size();
+  check_shape(task.target, config.kind, config.section.size(), target, reader);
+  check_ways(task, target, reader);
+  if (task.law.sign == 0) reader.problem_at(path + ".law.sign", "0: expected 1 or -1");
+  if (task.basis == AngleBasis::sections && config.section.size() > most_sections)
+    reader.problem_at(path + ".basis",
+                      fmt::format("\"sections\" with {} sections: expected at most {}, or \"polynomial\"",
+                                  config.section.size(), most_sections));
+  if (config.kind == ArmKind::planar && task.gravity[2] != 0)
+    reader.problem_at(path + ".gravity", "leaves the plane of a planar arm: expected 0 along Z");
+  if (reader.problems().size() > before) return;
+  const Arm arm = config.arm();
+  check_bends(arm, task.target, target, reader);
+  if (reader.problems().size() > before) return;
+  const AnglesAlongArm straight(arm, ArmState::straight(arm.sections.size()));
+  if (straight.largest_elevation() > most_elevation) {
+    reader.problem_at(path,
+                      "the arm's base points along Z: expected an elevation below 90 deg, where the "
+                      "azimuth is none");
+  } else if (task.target.azimuths) {
+    check_angles(task, arm, target, reader);
+  } else if (const double q = AnglesAlongArm(arm, arm_state(arm, task.target)).largest_elevation();
+             q > most_elevation) {
+    reader.problem_at(
+        target, fmt::format("leads through an elevation of {:.4g} deg: expected less than 90 deg, where "
+                            "the azimuth is none",
+                            as_degrees(q)));
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,200 @@
+#include "flexura/experiment/dynamics_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "flexura/report/chart.h"
+
+namespace flexura {
+namespace {
+
+double in_degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+double lyapunov_value(const DynamicsSample& sample) {
+  return sample.energies.kinetic + sample.energies.potential;
+}
+
+Node text_nodes(const std::vector<std::string>& texts) {
+  Node::Array list;
+  for (const std::string& text : texts) list.push_back({text, {}});
+  return {std::move(list), {}};
+}
+
+// The shares and reasons are those of a law with exact angles.
+Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
+  Node::Table members{{"monotone", {}, {verdict.is_monotone, {}}},
+                      {"balanced", {}, {verdict.is_balanced, {}}},
+                      {"settled", {}, {verdict.is_settled, {}}},
+                      {"largest_rise", {}, number_node(verdict.largest_rise)},
+                      {"imbalance", {}, number_node(verdict.imbalance)}};
+  if (!is_measured) {
+    members.push_back({"gravity_share", {}, number_node(verdict.gravity_share)});
+    members.push_back({"elastic_share", {}, number_node(verdict.elastic_share)});
+    members.push_back({"potential_share", {}, number_node(verdict.potential_share)});
+    members.push_back({"reasons", {}, text_nodes(verdict.reasons)});
+  }
+  return {std::move(members), {}};
+}
+
+// No more samples than a picture shows, with the first and the last one.
+std::vector<const DynamicsSample*> shown_samples(const DynamicsRun& run) {
+  constexpr std::size_t most = 2000;
+  const std::size_t every = run.samples.size() / most + 1;
+  std::vector<const DynamicsSample*> shown;
+  for (std::size_t i = 0; i + 1 < run.samples.size(); i += every) shown.push_back(&run.samples[i]);
+  shown.push_back(&run.samples.back());
+  return shown;
+}
+
+using Value = std::function<double(const DynamicsSample&)>;
+
+class SampleCharts {
+ public:
+  SampleCharts(const DynamicsRun& run, std::size_t number) : samples_(shown_samples(run)), number_(number) {
+    for (const DynamicsSample* sample : samples_) times_.push_back(sample->energies.time);
+  }
+
+  [[nodiscard]] NamedDrawing draw(const std::string& name, const std::string& heading,
+                                  const std::string& label, double least,
+                                  const std::vector<std::pair<std::string, Value>>& lines) const {
+    LineChart chart{.name = name,
+                    .heading = heading,
+                    .value_label = label,
+                    .legend = "",
+                    .least = least,
+                    .series = {},
+                    .x_label = "time in the task (s)"};
+    for (const auto& [line, value] : lines) {
+      ChartSeries& series =
+          chart.series.emplace_back(ChartSeries{line, fmt::format("s{}", chart.series.size()), {}});
+      for (const DynamicsSample* sample : samples_) series.values.push_back(value(*sample));
+    }
+    return {fmt::format("dynamics-{}-{}", number_ + 1, name), chart_picture(chart, times_, {})};
+  }
+
+ private:
+  std::vector<const DynamicsSample*> samples_;
+  std::size_t number_;
+  std::vector<double> times_;
+};
+
+std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number) {
+  const SampleCharts charts(run, number);
+  constexpr double least_joule = 1e-9;
+  const auto power = [=](double value) { return std::log10(std::max(value, least_joule)); };
+  const Value W = lyapunov_value, T = [](const DynamicsSample& at) { return at.energies.kinetic; },
+              Pi = [](const DynamicsSample& at) { return at.energies.potential; };
+  return {
+      charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
+                  {{"W", W}, {"T", T}, {"Pi", Pi}}),
+      charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
+                  {{"W", [=](const DynamicsSample& at) { return power(W(at)); }},
+                   {"T", [=](const DynamicsSample& at) { return power(T(at)); }},
+                   {"Pi", [=](const DynamicsSample& at) { return power(Pi(at)); }}}),
+      charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
+                  {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
+                   {"elastic", [](const DynamicsSample& at) { return at.energies.elastic; }},
+                   {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
+                   {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
+      charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
+                  {{"theta", [&](const DynamicsSample& at) { return in_degrees(run.error(at).azimuth); }},
+                   {"q", [&](const DynamicsSample& at) { return in_degrees(run.error(at).elevation); }}})};
+}
+
+const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
+
+std::vector<std::string> findings_of(const DynamicsRun& run) {
+  std::vector<std::string> points;
+  for (const std::string& violation : run.violations)
+    points.push_back("A condition of the theory does not hold: " + violation + ".");
+  if (!run.stopped.empty()) points.push_back("It ended early: " + run.stopped + ".");
+  if (run.verdict) {
+    const LyapunovVerdict& verdict = *run.verdict;
+    points.push_back(fmt::format(
+        "W falls all the way: {} (its largest rise is {:.2g} J). It falls by what damping takes, and by that "
+        "alone: {} (the largest difference is {:.2g} J). It has settled in the end: {}.",
+        yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
+        verdict.imbalance, yes_or_no(verdict.is_settled)));
+    if (run.is_measured) {
+      points.emplace_back(
+          "The law had measured angles: late, noisy or held for a while. The theory's balance is that of "
+          "exact "
+          "ones, so what it finds missing here is theirs.");
+    } else {
+      for (const std::string& reason : verdict.reasons)
+        points.push_back("The energies tell: " + reason + ".");
+    }
+  }
+  points.push_back(fmt::format(
+      "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
+      "{:.3g} mm.",
+      in_degrees(run.remaining.azimuth), in_degrees(run.remaining.elevation), 1e3 * run.remaining.tip));
+  const double off = std::max(run.plant.start_off(), run.plant.target_off());
+  constexpr double shows = 1e-3;  // rad
+  if (off > shows)
+    points.push_back(fmt::format(
+        "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
+        "target as it was said, root mean square along the arm.",
+        in_degrees(run.plant.start_off()), in_degrees(run.plant.target_off())));
+  points.push_back(fmt::format(
+      "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "
+      "{:.2g} mm from theirs.",
+      1e3 * run.apart));
+  return points;
+}
+
+}  // namespace
+
+Node dynamics_nodes(const std::vector<DynamicsRun>& runs) {
+  Node::Array list;
+  for (const DynamicsRun& run : runs) {
+    const DynamicsSample& last = run.samples.back();
+    Node::Table members{
+        {"name", {}, {run.name, {}}},
+        {"done", {}, {run.is_done(), {}}},
+        {"reasons", {}, text_nodes(run.reasons)},
+        {"start", {}, number_node(run.start)},
+        {"duration", {}, number_node(last.energies.time)},
+        {"measured", {}, {run.is_measured, {}}},
+        {"violations", {}, text_nodes(run.violations)},
+        {"lyapunov",
+         {},
+         {Node::Array{number_node(lyapunov_value(run.samples.front())), number_node(lyapunov_value(last))},
+          {}}}};
+    if (run.verdict) members.push_back({"verdict", {}, verdict_node(*run.verdict, run.is_measured)});
+    members.push_back({"remaining",
+                       {},
+                       {Node::Table{{"azimuth", {}, number_node(run.remaining.azimuth)},
+                                    {"elevation", {}, number_node(run.remaining.elevation)},
+                                    {"tip", {}, number_node(run.remaining.tip)}},
+                        {}}});
+    members.push_back({"start_off", {}, number_node(run.plant.start_off())});
+    members.push_back({"target_off", {}, number_node(run.plant.target_off())});
+    members.push_back({"arcs_apart", {}, number_node(run.apart)});
+    list.push_back({std::move(members), {}});
+  }
+  return {std::move(list), {}};
+}
+
+Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
+  const double from = lyapunov_value(run.samples.front()), to = lyapunov_value(run.samples.back());
+  const std::string course = fmt::format("Lyapunov's function W went from {:.3g} J to {:.3g} J in {:.4g} s.",
+                                         from, to, run.samples.back().energies.time);
+  std::string text = fmt::format("Not as the theory has it: {}. {}", run.reason(), course);
+  if (run.is_done())
+    text = run.is_measured ? "The arm came to the target by measured angles. " + course
+                           : "The arm came to the target as the theory has it: W fell all the way, by what "
+                             "damping took. " +
+                                 course;
+  Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
+  if (run.samples.size() > 1) chapter.drawings = drawings_of(run, number);
+  return chapter;
+}
+
+}  // namespace flexura

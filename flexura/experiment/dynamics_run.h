@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/progress.h"
+#include "flexura/control/lyapunov_monitor.h"
+#include "flexura/experiment/dynamics_plant.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/safety/violation.h"
+
+namespace flexura {
+
+/// The arm at one time of a task of dynamics.
+struct DynamicsSample {
+  Eigen::VectorXd x;        ///< Coordinates of the distributed arm.
+  LyapunovSample energies;  ///< With the time since the task's start.
+};
+
+/// How far an arm is from a task's target.
+struct DynamicsError {
+  double azimuth = 0, elevation = 0;  ///< Root mean square along the arm, rad.
+  double tip = 0;                     ///< m
+};
+
+/// What a task of kind "dynamics" did.
+struct DynamicsRun {
+  std::string name;
+  std::size_t task = 0;  ///< Its number.
+  double start = 0;      ///< s
+  DynamicsPlant plant;
+  PotentialLaw law;
+  bool is_measured = false;                ///< The law had measured angles, not the arm's own.
+  std::vector<DynamicsSample> samples;     ///< At the steps of the clock, and at both ends.
+  std::vector<std::string> violations;     ///< Of the theory's conditions, known before anything moves.
+  std::string stopped;                     ///< Why it ended early; empty: it did not.
+  std::optional<LyapunovVerdict> verdict;  ///< None of a run that could not begin.
+  std::vector<std::string> reasons;  ///< Why the run is not as the theory has it; empty: it is, or it was
+                                     ///< measured and came to its target.
+  DynamicsError remaining;
+  double apart = 0;  ///< The largest distance of the arm's tip from that of the arcs it is shown by, m.
+  MotionPtr motion;  ///< By those arcs, from the task's start.
+
+  [[nodiscard]] bool is_done() const { return reasons.empty(); }
+  [[nodiscard]] std::string reason() const;  ///< All of them; "" when done.
+  [[nodiscard]] DynamicsError error(const DynamicsSample& sample) const;
+  [[nodiscard]] DynamicsSampleMessage message(const DynamicsSample& sample) const;
+};
+
+/// Follows task number `task`, of kind "dynamics", that starts in `from` at `start` s.
+[[nodiscard]] DynamicsRun run_dynamics(const Experiment& experiment, std::size_t task, const ArmState& from,
+                                       double start, Progress& progress);
+
+/// Follows every task of kind "dynamics" of which it is known where it starts: those before the first
+/// calibration or servo that is not among the `performed` tasks, or before one that is not done. Adds their
+/// motions to `performed`, and what they did to `runs`.
+void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, MotionPtr>& performed,
+                        std::vector<DynamicsRun>& runs, Progress& progress);
+
+/// What the motions of an experiment would harm (Schedule::check), with those of run_known_dynamics. Why one
+/// is not as the theory has it is a note.
+[[nodiscard]] SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress);
+
+}  // namespace flexura

@@ -1,0 +1,365 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/dynamics_run.h"
+#include "flexura/experiment/export_csv.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/results_log.h"
+#include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/dynamics_files.h"
+#include "tests/support/experiment_files.h"
+#include "tests/support/quiet.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Dynamics : public testing::Test {
+ protected:
+  RunResult run(const std::string& text, const std::vector<std::string>& sets = {}) {
+    Quiet quiet;
+    return run_experiment(parse_experiment(text, "x.toml", {sets, {}}),
+                          make_new_folder(folder_.path() / "results"), quiet);
+  }
+  static const Node& dynamics(const RunResult& result, std::size_t i = 0) {
+    return result.summary.find("dynamics")->as<Node::Array>()->at(i);
+  }
+  static double number(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
+  static bool truth(const Node& node, const char* key) { return *node.find(key)->as<bool>(); }
+  template <class M>
+  static std::vector<M> logged(const RunResult& result, std::string_view topic) {
+    std::vector<M> found;
+    const McapReader log = open_log(result.folder);
+    for (const McapMessage& message : log.messages())
+      if (message.channel->topic == topic) found.push_back(read_as<M>(parse_json(message.text(), "the log")));
+    return found;
+  }
+  static std::vector<DynamicsSampleMessage> samples(const RunResult& result) {
+    return logged<DynamicsSampleMessage>(result, dynamics_samples_topic);
+  }
+  static std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+      if (entry.is_regular_file())
+        files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
+    return files;
+  }
+  TemporaryFolder folder_;
+};
+
+// Any arm, start, target and gains for which the theory's conditions hold.
+std::string random_dynamics_file(TestRandom& random) {
+  const bool is_planar = random.integer(0, 2) == 0;
+  const int sections = random.integer(1, 3);
+  const auto bends = [&] {
+    std::string list;
+    for (int i = 0; i < sections; ++i)
+      list += fmt::format("{}[{}, {}]", i > 0 ? ", " : "", random.uniform(-0.6, 0.6),
+                          is_planar ? 0 : random.uniform(-0.3, 0.3));
+    return "bends = [" + list + "]\n";
+  };
+  std::string text =
+      fmt::format("[record]\nreport = false\n[arm]\nkind = \"{}\"\n", is_planar ? "planar" : "spatial");
+  // What a polynomial of few numbers cannot have would be a jump at the start.
+  const bool has_sections = random.integer(0, 1) == 0;
+  if (has_sections) text += "initial." + bends();
+  for (int i = 0; i < sections; ++i)
+    text +=
+        fmt::format("[[arm.section]]\nlength = {}\nstretch_limits = [0.5, 2]\n", random.uniform(0.2, 0.5));
+  const bool has_lengths = random.integer(0, 3) == 0;
+  text += fmt::format(
+      "[[task]]\nkind = \"dynamics\"\nduration = 4\ndensity = {}\ngravity = [{}, {}, {}]\n"
+      "bending_stiffness = {}\ndamping = {}\nbasis = \"{}\"\nnodes = {}\ntarget.{}",
+      random.uniform(0.3, 1.5), random.uniform(-5, 5), random.uniform(-10, 10),
+      is_planar ? 0 : random.uniform(-5, 5), random.uniform(0, 0.5), random.uniform(0, 0.3),
+      has_sections ? "sections" : "polynomial", random.integer(1, 4), bends());
+  text +=
+      fmt::format("law.stiffness = [{}, {}]\nlaw.damping = [[{}, 0.5], [0.5, {}]]\nlaw.elasticity = \"{}\"\n",
+                  random.uniform(10, 30), random.uniform(10, 30), random.uniform(2, 5), random.uniform(2, 5),
+                  random.integer(0, 1) == 0 ? "cancelled" : "shaped");
+  if (has_lengths) {
+    text += "variable_lengths = true\naxial_stiffness = 30\ntarget.stretches = [";
+    for (int i = 0; i < sections; ++i) text += fmt::format("{}, ", random.uniform(0.9, 1.1));
+    text += "]\n";
+  }
+  return text;
+}
+
+TEST_F(Dynamics, LyapunovsFunctionFallsInAllThatIsLogged) {
+  double rise = 0, imbalance = 0;
+  for_random_cases(16, [&](TestRandom& random) {
+    const std::string text = random_dynamics_file(random);
+    SCOPED_TRACE(text);
+    const RunResult result = run(text);
+    EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+    const std::vector<DynamicsSampleMessage> all = samples(result);
+    ASSERT_EQ(all.size(), 201);
+    const double first = all.front().lyapunov;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_NEAR(all[i].time, 0.02 * static_cast<double>(i), 1e-12);
+      EXPECT_EQ(all[i].lyapunov, all[i].kinetic_energy + all[i].potential);
+      if (i > 0) rise = std::max(rise, (all[i].lyapunov - all[i - 1].lyapunov) / first);
+      imbalance =
+          std::max(imbalance,
+                   std::abs(all[i].lyapunov + all[i].taken_by_law + all[i].taken_by_medium - first) / first);
+    }
+    EXPECT_LE(all.back().lyapunov, 1e-3 * first);
+    EXPECT_LE(rise, 1e-12);
+    EXPECT_LE(imbalance, 1e-6);
+    EXPECT_LE(all.back().azimuth_error, 0.05);
+    EXPECT_LE(all.back().elevation_error, 0.05);
+  });
+  std::printf("largest rise of W %.1e, largest imbalance %.1e of W at the start\n", rise, imbalance);
+}
+
+TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
+  struct Violation {
+    const char *set, *said, *shown;
+  };
+  for (const Violation& violation :
+       {Violation{"task.0.law.gravity_compensation=0", "gravity is compensated to 0 %",
+                  "gravity is not compensated: 100 % of it is left"},
+        Violation{"task.0.law.gravity_compensation=0.7", "gravity is compensated to 70 %",
+                  "gravity is not compensated: 30 % of it is left"},
+        Violation{"task.0.law.elasticity=\"ignored\"", "elasticity is neither cancelled nor part",
+                  "the arm's elasticity is not compensated: 100 % of it is left"},
+        Violation{"task.0.law.sign=-1", "has the sign -1, not +1", "it leads away from the target"},
+        Violation{"task.0.law.stiffness=[20, 0]", "a stiffness k is not above 0", "W has not settled yet"},
+        Violation{"task.0.law.stiffness=[-5, 20]", "a stiffness k is not above 0",
+                  "has no minimum at the target"},
+        Violation{"task.0.law.damping=[[0, 0], [0, 0]]", "the damping K is not positive",
+                  "nothing takes the arm's energy"},
+        Violation{"task.0.law.damping=[[4, 0], [0, -0.05]]",
+                  "the damping K is not positive: its least eigenvalue is -0.05",
+                  "it gave the arm energy"}}) {
+    SCOPED_TRACE(violation.set);
+    // Without the medium's damping, which would take for the law.
+    const RunResult result = run(dynamics_arm() + dynamics_task("duration = 0.5\n" + bent_target),
+                                 {violation.set, "task.0.damping=0", "record.report=false"});
+    EXPECT_EQ(result.outcome, RunOutcome::failed);
+    ASSERT_EQ(result.reasons.size(), 1);
+    EXPECT_THAT(result.reasons[0], StartsWith("dynamics: "));
+    EXPECT_THAT(result.reasons[0], HasSubstr(violation.said));
+    const Node& told = dynamics(result);
+    EXPECT_FALSE(truth(told, "done"));
+    EXPECT_THAT(write_json(*told.find("violations")), HasSubstr(violation.said));
+    EXPECT_THAT(write_json(*told.find("verdict")->find("reasons")), HasSubstr(violation.shown));
+  }
+}
+
+TEST_F(Dynamics, EndsWhereAnAngleIsNone) {
+  const RunResult result =
+      run(dynamics_arm() + dynamics_task("law.sign = -1\n" + bent_target) + "[[task]]\nkind = \"hold\"\n");
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  ASSERT_FALSE(result.reasons.empty());
+  EXPECT_THAT(result.reasons.back(), HasSubstr("|q| reached 90 deg at "));
+  const double end = number(dynamics(result), "duration");
+  EXPECT_LT(end, 5);
+  EXPECT_EQ(number(result.summary, "duration"), end);  // What comes after it is not done.
+  const auto events = logged<EventMessage>(result, events_topic);
+  EXPECT_EQ(events[events.size() - 2].level, 4);
+  EXPECT_THAT(events[events.size() - 2].message, HasSubstr("|q| reached 90 deg"));
+  EXPECT_EQ(events.back().message, "failed");
+  EXPECT_EQ(samples(result).back().time, end);
+  EXPECT_EQ(logged<ArmStateMessage>(result, arm_state_topic).back().time, end);
+}
+
+TEST_F(Dynamics, CannotStartWhereAnAngleIsNone) {
+  const RunResult result =
+      run("[arm]\nkind = \"spatial\"\ninitial.bends = [[0, -2]]\n[[arm.section]]\nlength = 1\n" +
+          dynamics_task("target.bends = [[0.3, 0]]\n"));
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  EXPECT_THAT(result.reasons,
+              ElementsAre("dynamics: it starts with an elevation of 90 deg, where the azimuth is none"));
+  EXPECT_EQ(number(result.summary, "duration"), 0);
+}
+
+TEST_F(Dynamics, AMotionThatIsTooShortHasNotSettled) {
+  const RunResult result = run(dynamics_arm() + dynamics_task("duration = 0.3\n" + bent_target));
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  EXPECT_THAT(result.reasons, ElementsAre("dynamics: W has not settled yet"));
+  EXPECT_EQ(run(dynamics_arm() + dynamics_task("duration = 0.3\ntolerance = 1\n" + bent_target)).outcome,
+            RunOutcome::done);
+}
+
+TEST_F(Dynamics, TellsWhatItsBasisCannotHave) {
+  const std::string text = dynamics_arm() + dynamics_task("target.bends = [[1, 0], [-1, 0], [0, 0.5]]\n");
+  const RunResult result = run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=2"});
+  EXPECT_GT(number(dynamics(result), "target_off"), 0.05);
+  EXPECT_EQ(number(dynamics(result), "start_off"), 0);
+  EXPECT_THAT(read_text_file(result.folder / report_file_name, std::size_t{1} << 26),
+              HasSubstr("deg off the target as it was said"));
+  EXPECT_LT(
+      number(dynamics(run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=10", "task.0.duration=0.1"})),
+             "target_off"),
+      0.05);
+}
+
+TEST_F(Dynamics, ReportsDelayAndNoise) {
+  const std::string text =
+      dynamics_arm() + dynamics_task("duration = 4\ntolerance = 0.01\n" + bent_target +
+                                     "measurement = { delay_ms = 60, noise_deg = 0.5 }\n");
+  const RunResult result = run(text);
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  const Node& told = dynamics(result);
+  EXPECT_TRUE(truth(told, "measured"));
+  const Node& verdict = *told.find("verdict");
+  EXPECT_FALSE(truth(verdict, "monotone"));
+  EXPECT_FALSE(truth(verdict, "balanced"));
+  EXPECT_TRUE(truth(verdict, "settled"));
+  // The largest rise from any logged time to a later one.
+  double least = HUGE_VAL, rise = 0;
+  for (const DynamicsSampleMessage& sample : samples(result)) {
+    least = std::min(least, sample.lyapunov);
+    rise = std::max(rise, sample.lyapunov - least);
+  }
+  EXPECT_EQ(number(verdict, "largest_rise"), rise);
+  EXPECT_GT(rise, 0);
+  const std::string page = read_text_file(result.folder / report_file_name, std::size_t{1} << 26);
+  EXPECT_THAT(page, HasSubstr(fmt::format("its largest rise is {:.2g} J", rise)));
+  EXPECT_THAT(page, HasSubstr("The law had measured angles"));
+  // Too late is too late.
+  const RunResult late = run(text, {"task.0.measurement.delay=0.4", "record.report=false"});
+  EXPECT_EQ(late.outcome, RunOutcome::failed);
+  EXPECT_GT(number(*dynamics(late).find("verdict"), "largest_rise"), 100 * rise);
+}
+
+TEST_F(Dynamics, IsTheSameByteForByteOfOneSeed) {
+  const std::string text =
+      "title = \"x\"\n" + dynamics_arm() +
+      dynamics_task("duration = 0.5\n" + bent_target + "measurement = { delay = 0.05, noise = 0.01 }\n");
+  const RunResult first = run(text);
+  const auto files = files_in(first.folder);
+  EXPECT_TRUE(files_in(run(text).folder) == files);
+  EXPECT_TRUE(files.contains("figures/dynamics-1-lyapunov.svg"));
+  Quiet quiet;
+  const RunResult again = run_experiment(load_experiment(first.folder / experiment_file_name),
+                                         make_new_folder(folder_.path() / "again"), quiet);
+  EXPECT_TRUE(files_in(again.folder) == files);
+  EXPECT_NE(samples(run(text, {"seed=2"})).back().lyapunov, samples(first).back().lyapunov);
+}
+
+TEST_F(Dynamics, GoesOnWhereTheTaskBeforeEndedAndTheNextGoesOnFromThere) {
+  const RunResult result =
+      run(dynamics_arm() +
+          "[[task]]\nkind = \"move\"\nduration = 0.113\nto.bends = [[0.2, 0.1], [0, 0], [0, 0]]\n" +
+          dynamics_task("name = \"law\"\nduration = 3.005\n" + bent_target) +
+          "[[task]]\nkind = \"hold\"\nduration = 0.1\n");
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  EXPECT_EQ(number(dynamics(result), "start"), 0.113);
+  const auto all = samples(result);
+  EXPECT_EQ(all[0].time, 0.113);
+  EXPECT_NEAR(all[1].time, 0.12, 1e-12);
+  EXPECT_NEAR(all.back().time, 3.118, 1e-12);
+  const auto states = logged<ArmStateMessage>(result, arm_state_topic);
+  for (std::size_t i = 1; i < states.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(std::hypot(states[i].bends[k][0] - states[i - 1].bends[k][0],
+                             states[i].bends[k][1] - states[i - 1].bends[k][1]),
+                  0, 0.1);
+  const std::vector<std::array<double, 2>> wanted = {{0.5, -0.3}, {0.4, 0.2}, {0.3, -0.2}};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(states.back().bends[k][i], wanted[k][i], 1e-3);
+  EXPECT_EQ(states.back().bends, states[states.size() - 2].bends);
+}
+
+TEST_F(Dynamics, LogsEveryNthStateAndBothEnds) {
+  const RunResult result =
+      run(dynamics_arm() + dynamics_task("duration = 3.01\n" + bent_target), {"record.every=10"});
+  const auto all = samples(result);
+  ASSERT_EQ(all.size(), 17);  // At 0, 0.2, ... 3 and 3.01 s.
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(all[i].time, 0.2 * static_cast<double>(i), 1e-9);
+  EXPECT_NEAR(all.back().time, 3.01, 1e-12);
+}
+
+TEST_F(Dynamics, IsExportedAsATable) {
+  const RunResult result =
+      run(dynamics_arm("planar") + dynamics_task("duration = 3\ntarget.archings_deg = [-20, 10, 5]\n"));
+  const ExportResult exported = export_csv(result.folder);
+  std::ifstream table(exported.folder / "dynamics.csv");
+  std::string head, line, last;
+  std::getline(table, head);
+  EXPECT_EQ(
+      head,
+      "time,kinetic_energy,gravity_energy,elastic_energy,potential,lyapunov,taken_by_law,taken_by_medium,"
+      "azimuth_error,elevation_error,tip_error,tip_x,tip_y,tip_z");
+  std::size_t rows = 0;
+  for (; std::getline(table, line); ++rows) last = line;
+  EXPECT_EQ(rows, samples(result).size());
+  EXPECT_THAT(last, StartsWith("3,"));
+  EXPECT_THAT(last, testing::EndsWith(",0"));  // A planar arm stays in its plane.
+}
+
+// The straight way to the target is free; that of an arm which its weight draws down is not.
+TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
+  const std::string text =
+      "[[obstacle]]\nkind = \"plane\"\nname = \"table\"\npoint = [0, 0.6, 0]\nignore_base = 0.65\n" +
+      replaced(dynamics_arm(), "[[arm", "initial.bends = [[0.2, 0], [0.2, 0], [0, 0]]\n[[arm") +
+      dynamics_task("target.bends = [[-0.2, 0], [0.1, 0], [0, 0]]\nlaw.stiffness = 2\n");
+  const std::vector<std::string> falls = {"task.0.law.gravity_compensation=0", "task.0.density=2"};
+  Quiet quiet;
+  const Experiment held = parse_experiment(text, "x.toml"),
+                   let_go = parse_experiment(text, "x.toml", {falls, {}});
+  EXPECT_TRUE(safety_with_dynamics(held, quiet).is_safe());
+  EXPECT_TRUE(Schedule(let_go).check().is_safe());
+  const SafetyReport report = safety_with_dynamics(let_go, quiet);
+  EXPECT_FALSE(report.is_safe());
+  EXPECT_THAT(report.violations.front().text(), HasSubstr("table"));
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("dynamics: gravity is compensated to 0 %")));
+  const RunResult result = run(text, falls);
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  EXPECT_THAT(result.reasons.front(), HasSubstr("table"));
+  EXPECT_THAT(result.reasons.back(), HasSubstr("gravity"));
+}
+
+TEST_F(Dynamics, CanBeCancelledWhileItIsSimulated) {
+  class Cancelled : public Quiet {
+   public:
+    [[nodiscard]] bool cancelled() const override { return true; }
+  } cancelled;
+  const RunResult result =
+      run_experiment(parse_experiment(dynamics_arm() + dynamics_task(bent_target), "x.toml"),
+                     make_new_folder(folder_.path() / "results"), cancelled);
+  EXPECT_EQ(result.outcome, RunOutcome::cancelled);
+  EXPECT_FALSE(open_log(result.folder).truncated());
+}
+
+TEST_F(Dynamics, AnArmThatIsThereStaysThere) {
+  const RunResult result =
+      run(replaced(dynamics_arm("planar"), "[[arm", "initial.archings = [0.3, -0.2, 0.1]\n[[arm") +
+          dynamics_task("duration = 1\ntarget.archings = [0.3, -0.2, 0.1]\n"));
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  EXPECT_LT(number(*dynamics(result).find("remaining"), "tip"), 1e-9);
+}
+
+TEST_F(Dynamics, TheExampleDoesWhatItSays) {
+  Quiet quiet;
+  const std::filesystem::path file = FLEXURA_SOURCE_DIR "/examples/07_theory/experiment.toml";
+  const RunResult result =
+      run_experiment(load_experiment(file), make_new_folder(folder_.path() / "results"), quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  EXPECT_TRUE(truth(*dynamics(result, 0).find("verdict"), "monotone"));
+  EXPECT_FALSE(truth(dynamics(result, 0), "measured"));
+  EXPECT_FALSE(truth(*dynamics(result, 1).find("verdict"), "monotone"));
+  EXPECT_TRUE(truth(dynamics(result, 1), "measured"));
+}
+
+}  // namespace
+}  // namespace flexura

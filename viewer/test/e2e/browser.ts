@@ -83,20 +83,20 @@ export async function stage_picture(page: Page): Promise<Buffer> {
   return without_what_lies_upon_it(page, () => shot_of_stage(page));
 }
 
-/** Waits until the 3D view is drawn as what rests is, more sharply than what moves (src/scene/sharpness.ts), or a graphics card draws both. */
-async function sharpened(page: Page): Promise<void> {
-  await page.evaluate(async (ms) => {
+/** Waits until the 3D view is drawn as what rests is, more sharply than what moves (src/scene/sharpness.ts); a graphics card draws both alike. */
+async function sharpened(page: Page, ms: number): Promise<void> {
+  await page.evaluate(async (most) => {
     const canvas = document.querySelector<HTMLCanvasElement>('#stage')!;
-    const end = performance.now() + ms;
+    const end = performance.now() + most;
     // What a hand has just asked for is drawn with the next frame.
     for (let i = 0; i < 2; ++i) await new Promise(requestAnimationFrame);
     while (canvas.width <= canvas.clientWidth && performance.now() < end) await new Promise((done) => setTimeout(done, 30));
-  }, 1000 * patience);
+  }, ms);
 }
 
 /** The 3D view once it shows what a hand has done, where nothing else moves. */
 export async function stage_sharpened(page: Page): Promise<Buffer> {
-  await sharpened(page);
+  await sharpened(page, 2000 * patience);
   return stage_picture(page);
 }
 
@@ -104,7 +104,7 @@ export async function stage_sharpened(page: Page): Promise<Buffer> {
 export async function stage_at_rest(page: Page, ms = 15000): Promise<Buffer> {
   const end = Date.now() + patience * ms;
   // A picture costs much more than to look whether there is any sense in one.
-  await sharpened(page);
+  await sharpened(page, 600);
   return without_what_lies_upon_it(page, async () => {
     let before = await shot_of_stage(page);
     for (;;) {

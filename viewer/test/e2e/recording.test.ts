@@ -25,15 +25,21 @@ const shown_time = () => page.evaluate(() =>
 const stage = () => stage_at_rest(page);
 
 /** Of the front camera's picture of a time, as the server gives it losslessly: the values of its first channel. */
-const served_picture = (of: Page, at: number) => of.evaluate(async (time) => {
-  const answer = await fetch(`image/front.png?time=${time}`);
-  const bitmap = await createImageBitmap(await answer.blob());
-  const { width, height } = bitmap;
-  const context = new OffscreenCanvas(width, height).getContext('2d')!;
-  context.drawImage(bitmap, 0, 0);
-  const { data } = context.getImageData(0, 0, width, height);
-  return { width, height, values: Array.from({ length: width * height }, (_, i) => data[4 * i]) };
-}, at);
+async function served_picture(of: Page, at: number): Promise<{ width: number; height: number; values: Buffer }> {
+  const { text, ...size } = await of.evaluate(async (time) => {
+    const answer = await fetch(`image/front.png?time=${time}`);
+    const bitmap = await createImageBitmap(await answer.blob());
+    const { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext('2d')!;
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    // As one text: numbers would each be packed on their own.
+    let text = '';
+    for (let i = 0; i < data.length; i += 4) text += String.fromCharCode(data[i]);
+    return { width, height, text };
+  }, at);
+  return { ...size, values: Buffer.from(text, 'latin1') };
+}
 
 /**
  * What holds of each recording of 6 s whose second task, `back`, starts at 4 s. It is shown at the times asked for, or up
@@ -102,7 +108,7 @@ function recording_tests(a_state: number, interval: number, title: string): void
     // Differs all around, too, where the pointer's place is coarser than the picture's pixels.
     const reach = Math.floor(first.width / box.width);
     const around = [-reach, 0, reach];
-    const places = first.values.map((_, i) => [i % first.width, Math.floor(i / first.width)]);
+    const places = Array.from(first.values, (_, i) => [i % first.width, Math.floor(i / first.width)]);
     const place = places.find(([u, v]) => around.every((du) => around.every((dv) => differs(u + du, v + dv))))!;
     await page.mouse.move(box.x + ((place[0] + 0.5) / first.width) * box.width, box.y + ((place[1] + 0.5) / first.height) * box.height);
     const said = page.locator('.pixel dd');
@@ -264,7 +270,7 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 
 describe.skipIf(!program)('a run that is watched', () => {
   /** Takes some seconds to be run. */
-  const watched_s = 4000;
+  const watched_s = 2000;
 
   on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
 

@@ -32,7 +32,7 @@ describe.skipIf(!program)('a watched run', () => {
         return 60 * minutes + rest;
       };
       let looks = 0;
-      const end = Date.now() + 4000;
+      const end = Date.now() + 2500;
       while (Date.now() < end && (await page.locator('.badge[data-kind="live"]').count()) === 1) {
         expect(await page.locator('.camera[data-old="true"]').count()).toBe(0);
         // Of the run's time, which the page's own clock knows nothing of.

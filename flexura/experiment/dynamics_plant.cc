@@ -179,11 +179,13 @@ ArmState DynamicsPlant::state(const Eigen::VectorXd& x, const ArmState& before) 
     const auto section = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d tangent = R_WS.transpose() * direction_of(ends.col(section));
     const double across = tangent.head<2>().norm(), turn = std::atan2(across, tangent.z());
-    // Straight on, or back: the arc turns to the side where it turned before.
     const Eigen::Vector2d old = before.bends[i];
-    const Eigen::Vector2d side = across > 0       ? Eigen::Vector2d(tangent.head<2>() / across)
-                                 : old.norm() > 0 ? Eigen::Vector2d(old.normalized())
-                                                  : Eigen::Vector2d(Eigen::Vector2d::UnitX());
+    Eigen::Vector2d side = Eigen::Vector2d::UnitX();
+    if (across > 0) {
+      side = tangent.head<2>() / across;
+    } else if (old.norm() > 0) {
+      side = old.normalized();  // Straight on, or back: the arc turns to the side where it turned before.
+    }
     // Arcs along this side that differ by whole turns have the same tangent.
     const double turns = std::round((old.dot(side) - turn) / (2 * std::numbers::pi));
     state.bends[i] = (turn + 2 * std::numbers::pi * turns) * side;

@@ -89,14 +89,14 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
   constexpr double least_joule = 1e-9;
   const auto power = [=](double value) { return std::log10(std::max(value, least_joule)); };
   const Value W = lyapunov_value, T = [](const DynamicsSample& at) { return at.energies.kinetic; },
-              Pi = [](const DynamicsSample& at) { return at.energies.potential; };
+              pi = [](const DynamicsSample& at) { return at.energies.potential; };
   return {
       charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
-                  {{"W", W}, {"T", T}, {"Pi", Pi}}),
+                  {{"W", W}, {"T", T}, {"Pi", pi}}),
       charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
                   {{"W", [=](const DynamicsSample& at) { return power(W(at)); }},
                    {"T", [=](const DynamicsSample& at) { return power(T(at)); }},
-                   {"Pi", [=](const DynamicsSample& at) { return power(Pi(at)); }}}),
+                   {"Pi", [=](const DynamicsSample& at) { return power(pi(at)); }}}),
       charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
                   {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
                    {"elastic", [](const DynamicsSample& at) { return at.energies.elastic; }},
@@ -111,6 +111,7 @@ const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
 
 std::vector<std::string> findings_of(const DynamicsRun& run) {
   std::vector<std::string> points;
+  points.reserve(run.violations.size());
   for (const std::string& violation : run.violations)
     points.push_back("A condition of the theory does not hold: " + violation + ".");
   if (!run.stopped.empty()) points.push_back("It ended early: " + run.stopped + ".");

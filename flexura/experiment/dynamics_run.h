@@ -53,8 +53,8 @@ struct DynamicsRun {
   [[nodiscard]] DynamicsSampleMessage message(const DynamicsSample& sample) const;
 };
 
-/// Follows task number `task`, of kind "dynamics", that starts in `from` at `start` s.
-[[nodiscard]] DynamicsRun run_dynamics(const Experiment& experiment, std::size_t task, const ArmState& from,
+/// Follows the task of this number, of kind "dynamics", that starts in `from` at `start` s.
+[[nodiscard]] DynamicsRun run_dynamics(const Experiment& experiment, std::size_t number, const ArmState& from,
                                        double start, Progress& progress);
 
 /// Follows every task of kind "dynamics" of which it is known where it starts: those before the first

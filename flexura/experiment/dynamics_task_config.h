@@ -67,6 +67,7 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*);
 const Table<DynamicsTask>& fields_of(const DynamicsTask*);
 
 /// Reports what keeps the task at `path` ("task[2]") from being tried with this arm.
-void check_dynamics(const DynamicsTask& task, const ArmConfig& arm, const std::string& path, Reader& reader);
+void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std::string& path,
+                    Reader& reader);
 
 }  // namespace flexura

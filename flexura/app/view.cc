@@ -101,9 +101,7 @@ std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments&
 }  // namespace
 
 struct OpenViewer::Parts {
-  std::vector<std::uint8_t> no_page = gzip(
-      "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
-      "and npm.\n");
+  std::vector<std::uint8_t> no_page = gzip(no_page_text);
   Asset no_page_asset{"/index.html", "text/plain; charset=utf-8", no_page};
   std::unique_ptr<ViewServer> server;
   std::optional<BrowserPage> page;

@@ -5,11 +5,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexura/view/view_server.h"
 
 namespace flexura {
+
+/// What is served where the program was built without the page.
+inline constexpr std::string_view no_page_text =
+    "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
+    "and "
+    "npm.\n";
 
 /// How a viewer is reached.
 struct ViewerArguments {

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/app/view.h"
+#include "flexura/store/gzip.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/program.h"
 #include "tests/support/raw_client.h"
@@ -144,6 +146,28 @@ TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_EQ(wait(child).status, 0);
 }
 
+// The port in the address that a viewer prints.
+std::string port_in(const std::string& printed) {
+  const std::size_t at = printed.find("127.0.0.1:") + 10;
+  return printed.substr(at, printed.find('/', at) - at);
+}
+
+TEST_F(ViewerProgram, ServesThePageOrSaysThatItHasNone) {
+  const pid_t child = start("view --no-browser --port 0", path("out"));
+  const std::string port = port_in(told_in(path("out")));
+  RawClient client(static_cast<std::uint16_t>(std::stoi(port)));
+  client.send("GET / HTTP/1.1\r\nHost: localhost:" + port + "\r\n\r\n");
+  const RawAnswer answer = client.read_answer();
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.fields.at("content-encoding"), "gzip");
+  const auto says_why = gzip(no_page_text);
+  const bool is_built_without = answer.body == std::string(says_why.begin(), says_why.end());
+  EXPECT_EQ(answer.fields.at("content-type"),
+            is_built_without ? "text/plain; charset=utf-8" : "text/html; charset=utf-8");
+  kill(child, SIGTERM);
+  EXPECT_EQ(wait(child).status, 0);
+}
+
 // A page as far as the program sees: it asks for both cameras' pictures and looks until the run is over.
 struct Look {
   int running_states = 0;
@@ -151,9 +175,8 @@ struct Look {
 };
 
 Look look_at_run(const std::string& printed) {
-  const std::size_t at = printed.find("127.0.0.1:") + 10;
   const std::size_t token = printed.find("#token=") + 7;
-  const std::string port = printed.substr(at, printed.find('/', at) - at);
+  const std::string port = port_in(printed);
   RawClient client(static_cast<std::uint16_t>(std::stoi(port)));
   client.send("GET /socket HTTP/1.1\r\nHost: localhost:" + port + "\r\nAuthorization: Bearer " +
               printed.substr(token, 32) +

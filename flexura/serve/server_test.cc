@@ -264,6 +264,25 @@ TEST_F(ServerTest, HasRoomForSoManyClients) {
   EXPECT_EQ(ask(upgrade(bearer())).status, 101);
 }
 
+TEST_F(ServerTest, HasRoomForSoManyWhoSayNothingYet) {
+  ServerConfig config;
+  config.handshake = milliseconds(2000);
+  Server& server = start(config);
+  RawClient client = connected();
+  ASSERT_TRUE(host_.wait_for("opened 1"));
+  constexpr int most_visits = 64;
+  std::list<RawClient> visitors;
+  for (int i = 0; i < most_visits; ++i) visitors.emplace_back(server.port());
+  EXPECT_EQ(RawClient(server.port()).read_to_end(), "");
+  // That was at once: the others' time is not over yet. Who is in loses nothing.
+  visitors.front().send(get("/"));
+  EXPECT_EQ(visitors.front().read_answer().status, 200);
+  server.send(1, "good day");
+  EXPECT_EQ(client.read_frame().payload, "good day");
+  visitors.back().read_to_end();
+  EXPECT_EQ(ask(get("/")).status, 200);
+}
+
 TEST(ServerConfig, GivesAHandshakeFiveSecondsAndSilenceTwenty) {
   EXPECT_EQ(ServerConfig{}.handshake, std::chrono::seconds(5));
   EXPECT_EQ(ServerConfig{}.idle, std::chrono::seconds(20));

@@ -11,7 +11,7 @@ import './panels/cameras.css';
 import './plots/plots.css';
 import './timeline/timeline.css';
 import './teach/teach.css';
-import { forget_token, keep_pasted, kept_token, take_token } from './connection/address';
+import { forget_token, keep_pasted, kept_token, storage_of_tab, take_token } from './connection/address';
 import { bindings_of, is_in_sight } from './keys/bindings';
 import { KeyMap } from './keys/keys';
 import { preferences, theme_now } from './state/preferences';
@@ -19,25 +19,26 @@ import { Viewer } from './state/viewer';
 import { AppContext, make_app } from './ui/app';
 import { Page } from './ui/Page';
 
-take_token(location, history, sessionStorage);
+const storage = storage_of_tab(() => sessionStorage);
+take_token(location, history, storage);
 const viewer = new Viewer({
   base: new URL('.', location.href).href,
-  token: () => kept_token(sessionStorage),
-  forget: () => forget_token(sessionStorage),
+  token: () => kept_token(storage),
+  forget: () => forget_token(storage),
 });
 const app = make_app(viewer, new KeyMap({
   enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value),
 }));
 app.keys.add(...bindings_of(app));
 app.use_token = (text) => {
-  if (!keep_pasted(text, sessionStorage)) return false;
+  if (!keep_pasted(text, storage)) return false;
   void viewer.link.open();
   return true;
 };
 addEventListener('keydown', app.keys.handle);
 const route = (): void => {
   // An address pasted into this very tab changes the hash only.
-  if (take_token(location, history, sessionStorage)) void viewer.link.open();
+  if (take_token(location, history, storage)) void viewer.link.open();
   app.route.value = location.hash === '#/teach' ? 'teach' : 'viewer';
 };
 addEventListener('hashchange', route);

@@ -1,4 +1,5 @@
 // Being let in: the token buys a cookie, and a cookie from before may still do.
+import { is_token } from './address';
 
 export interface Entry {
   /** Where the program serves, with a slash at its end. */
@@ -10,13 +11,16 @@ export interface Entry {
 
 export type EntryOutcome = { kind: 'in' } | { kind: 'unreachable' } | { kind: 'refused'; why: string };
 
-export async function enter(entry: Entry): Promise<EntryOutcome> {
+/** Each question waits so long for its answer, ms: a network that goes away without a word answers none. */
+export async function enter(entry: Entry, answer_ms: number): Promise<EntryOutcome> {
   const token = entry.token();
+  const ask = (path: string, options: RequestInit): Promise<Response> =>
+    fetch(new URL(path, entry.base), { credentials: 'same-origin', ...options, signal: AbortSignal.timeout(answer_ms) });
   try {
-    let status = token === null ? await try_cookie(entry.base) : await buy_cookie(entry.base, token);
+    let status = token === null ? await try_cookie(ask) : await buy_cookie(ask, token);
     if (status === 401 && token !== null) {
       // An address that is wrong, or another's, ends no session that is good without it.
-      status = await try_cookie(entry.base);
+      status = await try_cookie(ask);
       if (status !== 401) entry.forget?.();
     }
     if (status === 401) return { kind: 'refused', why: refusal(token !== null) };
@@ -30,20 +34,16 @@ export async function enter(entry: Entry): Promise<EntryOutcome> {
   }
 }
 
-async function buy_cookie(base: string, token: string): Promise<number> {
-  // What no token is made of need not be sent, and in a header could not.
-  if (!/^[0-9a-fA-F]+$/.test(token)) return 401;
-  const answer = await fetch(new URL('session', base), {
-    method: 'POST',
-    headers: { Authorization: `Bearer ${token}` },
-    credentials: 'same-origin',
-  });
-  return answer.status;
+type Ask = (path: string, options: RequestInit) => Promise<Response>;
+
+async function buy_cookie(ask: Ask, token: string): Promise<number> {
+  // What is no token need not be sent, and in a header could not.
+  if (!is_token(token)) return 401;
+  return (await ask('session', { method: 'POST', headers: { Authorization: `Bearer ${token}` } })).status;
 }
 
-async function try_cookie(base: string): Promise<number> {
-  const answer = await fetch(new URL('series', base), { credentials: 'same-origin', cache: 'no-store' });
-  return answer.status;
+async function try_cookie(ask: Ask): Promise<number> {
+  return (await ask('series', { cache: 'no-store' })).status;
 }
 
 function refusal(had_token: boolean): string {

@@ -28,12 +28,19 @@ interface Waiting {
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** No word for so long: ask for one. */
-const quiet_ms = 700;
-/** Not even an answer for so long: what is shown is old. */
-const stale_ms = 2000;
-/** Then the connection is taken for dead, as when the network went away without a word. */
-const dead_ms = 8000;
+/** How long the link waits, ms. */
+export interface Patience {
+  /** No word for so long: ask for one. */
+  quiet: number;
+  /** Not even an answer for so long: what is shown is old. */
+  stale: number;
+  /** Then the connection is taken for dead, as when the network went away without a word. */
+  dead: number;
+  /** To be let in, and for the socket to open: a network that swallows everything answers neither. */
+  entry: number;
+}
+
+const usual_patience: Patience = { quiet: 700, stale: 2000, dead: 8000, entry: 5000 };
 const request_ms = 15000;
 
 export class Link {
@@ -48,21 +55,24 @@ export class Link {
   private next_id = 1;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private pinging = false;
+  /** Counts the attempts: what an earlier one waited for means nothing any more. */
+  private attempt = 0;
   private readonly watcher: ReturnType<typeof setInterval>;
 
   constructor(
     private readonly listener: LinkListener,
     private readonly entry: Entry,
+    private readonly patience = usual_patience,
   ) {
     this.watcher = setInterval(() => this.watch(), 250);
   }
 
   /** Connects now, whatever it was waiting for. */
   async open(): Promise<void> {
-    clearTimeout(this.timer);
-    this.drop();
+    const attempt = this.begin_anew();
     this.status.value = { kind: 'connecting' };
-    const outcome = await enter(this.entry);
+    const outcome = await enter(this.entry, this.patience.entry);
+    if (attempt !== this.attempt) return;
     if (outcome.kind === 'refused') {
       this.status.value = { kind: 'refused', why: outcome.why };
       return;
@@ -74,8 +84,13 @@ export class Link {
   /** Ends it for good. */
   stop(): void {
     clearInterval(this.watcher);
+    this.begin_anew();
+  }
+
+  private begin_anew(): number {
     clearTimeout(this.timer);
     this.drop();
+    return ++this.attempt;
   }
 
   /** The result of what is asked; RequestError with the server's line when it refuses. */
@@ -109,8 +124,13 @@ export class Link {
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     let opened = false;
+    this.timer = setTimeout(() => {
+      this.drop();
+      this.wait('The program does not answer.');
+    }, this.patience.entry);
     socket.onopen = () => {
       opened = true;
+      clearTimeout(this.timer);
       this.heard();
       this.status.value = { kind: 'open' };
     };
@@ -153,19 +173,20 @@ export class Link {
   private watch(): void {
     if (this.status.value.kind !== 'open') return;
     const silence = performance.now() - this.last_word;
-    if (silence > dead_ms) {
+    if (silence > this.patience.dead) {
       this.drop();
       this.wait('The program has not said a word for some seconds.');
       return;
     }
-    if (silence > stale_ms) this.fresh.value = false;
-    if (silence > quiet_ms && !this.pinging) {
+    if (silence > this.patience.stale) this.fresh.value = false;
+    if (silence > this.patience.quiet && !this.pinging) {
       this.pinging = true;
       this.request('ping').catch(() => {}).finally(() => (this.pinging = false));
     }
   }
 
   private wait(why: string): void {
+    clearTimeout(this.timer);
     const delay = this.backoff.next();
     this.status.value = { kind: 'waiting', at: performance.now() + delay, why };
     this.timer = setTimeout(() => void this.open(), delay);

@@ -43,7 +43,8 @@ export interface State {
 
 export interface ImageMessage {
   camera: number;
-  type: 'image/jpeg' | 'image/png';
+  /** Of a format that this page does not know: one that nothing can decode. */
+  type: 'image/jpeg' | 'image/png' | 'application/octet-stream';
   number: number;
   time: number;
   file: Uint8Array;
@@ -51,6 +52,7 @@ export interface ImageMessage {
 
 const state_header = 24;
 const image_header = 16;
+const image_types = ['image/jpeg', 'image/png'] as const;
 
 /** The kind of a binary message, 0 for one without any byte. */
 export function kind_of(buffer: ArrayBuffer): number {
@@ -92,11 +94,9 @@ export function decode_state(buffer: ArrayBuffer): State {
 export function decode_image(buffer: ArrayBuffer): ImageMessage {
   if (buffer.byteLength < image_header) throw new Error('an image shorter than its header');
   const view = new DataView(buffer);
-  const format = view.getUint16(2, true);
-  if (format > 1) throw new Error(`an image of the unknown format ${format}`);
   return {
     camera: view.getUint8(1),
-    type: format === 1 ? 'image/png' : 'image/jpeg',
+    type: image_types[view.getUint16(2, true)] ?? 'application/octet-stream',
     number: view.getUint32(4, true),
     time: view.getFloat64(8, true),
     file: new Uint8Array(buffer, image_header),

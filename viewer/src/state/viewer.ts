@@ -4,7 +4,7 @@ import { Link, type LinkListener } from '../connection/link';
 import { Pictures, type Picture } from '../connection/images';
 import type { Entry } from '../connection/entry';
 import {
-  decode_extras, decode_image, decode_state, flag_running, kind_extras, kind_image, kind_of, kind_state, type State,
+  decode_extras, decode_image, decode_state, flag_running, type ImageMessage, kind_extras, kind_image, kind_of, kind_state, type State,
 } from '../protocol/state';
 import type { EventMessage, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
 import { Commander } from './commander';
@@ -130,7 +130,7 @@ export class Viewer implements LinkListener {
     try {
       const kind = kind_of(message);
       if (kind === kind_state) this.take_state(decode_state(message));
-      else if (kind === kind_image) void this.take_image(message);
+      else if (kind === kind_image) void this.take_image(decode_image(message));
       else if (kind === kind_extras) this.take_extras(decode_extras(message));
       // Other kinds are later versions'; this page knows nothing to draw for them.
     } catch (error) {
@@ -235,8 +235,7 @@ export class Viewer implements LinkListener {
     }, tick_ms);
   }
 
-  private async take_image(message: ArrayBuffer): Promise<void> {
-    const image = decode_image(message);
+  private async take_image(image: ImageMessage): Promise<void> {
     const camera = this.scene.value?.cameras[image.camera]?.name;
     if (camera === undefined) return;
     try {

@@ -187,8 +187,13 @@ test('layers lie upon the pictures, and ghosts stand in the view', async () => {
   server.tell_all({ type: 'overlay', camera: 'front', layers: [{ id: 'axis', kind: 'polyline', points: [[20, 20], [600, 400]], color: '#ffd43b' }] });
   await until(async () => (await yellow()) > 100);
   server.stuck = true;
+  // What comes no more is drawn pale: that is to be so in each of the pictures.
+  await until(async () => (await page.locator('.badge[data-kind="stale"]').count()) === 1, 15000);
   const before = await stage_at_rest(page);
   server.tell_all({ type: 'ghost', id: 'desired', color: '#4dabf7', poses: [[0, 0, 0, 0.7071, -0.7071, 0, 0], [0.3, 0.3, 0, 0.5, -0.5, 0.5, -0.5]] });
   await page.waitForTimeout(300);
   expect((await stage_at_rest(page)).equals(before)).toBe(false);
+  server.tell_all({ type: 'ghost', id: 'desired' });
+  await page.waitForTimeout(300);
+  expect((await stage_at_rest(page)).equals(before)).toBe(true);
 });

@@ -4,6 +4,7 @@ import { randomBytes } from 'node:crypto';
 import { createReadStream, existsSync } from 'node:fs';
 import { createServer, type IncomingMessage, type Server, type ServerResponse } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import type { Duplex } from 'node:stream';
 import { WebSocketServer, type WebSocket } from 'ws';
 import { encode_image } from './encode';
 import { answer, type Client } from './requests';
@@ -26,6 +27,9 @@ export class FakeServer {
   session: FakeSession;
   /** No word at all, as when the network is gone. */
   mute = false;
+  /** Answers nobody, and takes nobody in: a network that went away without a word. */
+  deaf = false;
+  takes_sockets = true;
   /** Refuses what moves something, with this line. */
   refuse = '';
   /** Answers, but no new states. */
@@ -43,6 +47,7 @@ export class FakeServer {
   private id = randomBytes(8).toString('hex');
   private http: Server | null = null;
   private clients = new Set<Connected>();
+  private readonly swallowed = new Set<Duplex>();
   private timer: NodeJS.Timeout | undefined;
   private pictures = 0;
   private outstanding = 0;
@@ -59,6 +64,7 @@ export class FakeServer {
     const http = createServer((request, response) => this.http_request(request, response));
     const sockets = new WebSocketServer({ noServer: true });
     http.on('upgrade', (request, socket, head) => {
+      if (this.deaf || !this.takes_sockets) return void this.swallowed.add(socket);
       if (!this.may(request)) {
         socket.end('HTTP/1.1 401 Unauthorized\r\n\r\n');
         return;
@@ -75,6 +81,8 @@ export class FakeServer {
     clearInterval(this.timer);
     for (const { socket } of this.clients) socket.terminate();
     this.clients.clear();
+    for (const socket of this.swallowed) socket.destroy();
+    this.swallowed.clear();
     this.http?.closeAllConnections();
     await new Promise<void>((resolve) => (this.http ? this.http.close(() => resolve()) : resolve()));
   }
@@ -86,6 +94,10 @@ export class FakeServer {
     if (!keep_token) this.token = randomBytes(16).toString('hex');
     this.session = new FakeSession(this.rig, this.session.mode);
     await this.start();
+  }
+
+  get client_count(): number {
+    return this.clients.size;
   }
 
   tell_all(message: Record<string, unknown>): void {
@@ -106,6 +118,7 @@ export class FakeServer {
   }
 
   private http_request(request: IncomingMessage, response: ServerResponse): void {
+    if (this.deaf) return;
     response.setHeader('Content-Security-Policy', policy);
     response.setHeader('Cache-Control', 'no-store');
     const { pathname, searchParams } = new URL(request.url ?? '/', 'http://x');

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { forget_token, keep_pasted, kept_token, take_token } from '../../src/connection/address';
+import { forget_token, is_token, keep_pasted, kept_token, storage_of_tab, take_token } from '../../src/connection/address';
 import { Backoff } from '../../src/connection/backoff';
 import { Latest } from '../../src/connection/latest';
 
@@ -45,6 +45,20 @@ test('a pasted address or token is taken, other text is not', () => {
   expect(keep_pasted(token, kept)).toBe(true);
   expect(keep_pasted('http://127.0.0.1:8421/', kept)).toBe(false);
   expect(keep_pasted('', kept)).toBe(false);
+  expect(keep_pasted(token + 'a', kept)).toBe(false);
+  expect(is_token(token)).toBe(true);
+  for (const other of ['', token.slice(1), token + 'a', 'a'.repeat(100000), 'g'.repeat(32)]) expect(is_token(other)).toBe(false);
+});
+
+test('without the tab’s storage the page remembers for itself', () => {
+  const kept = storage_of_tab(() => {
+    throw new DOMException('switched off', 'SecurityError');
+  });
+  const token = 'cd'.repeat(16);
+  expect(keep_pasted(token, kept)).toBe(true);
+  expect(kept_token(kept)).toBe(token);
+  forget_token(kept);
+  expect(kept_token(kept)).toBe(null);
 });
 
 test('attempts come less and less often, up to a limit, and soon again after success', () => {

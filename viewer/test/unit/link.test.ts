@@ -1,7 +1,7 @@
 // The link against the fake server, as in a browser: Node has fetch, and ws stands in for the browser's WebSocket.
 import { afterEach, beforeEach, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
-import { Link, RequestError, type LinkListener } from '../../src/connection/link';
+import { Link, RequestError, type LinkListener, type Patience } from '../../src/connection/link';
 import { decode_state } from '../../src/protocol/state';
 import { spatial_rig } from '../fake/rigs';
 import { FakeServer } from '../fake/server';
@@ -28,15 +28,17 @@ async function until(what: () => boolean, ms = 6000): Promise<void> {
   }
 }
 
-function connect(token: () => string): Link {
+function connect(token: () => string, patience?: Patience): Link {
   // ws takes the header that a browser's cookie would be.
   class WithToken extends WebSocket {
     constructor(address: string | URL) {
       super(address, { headers: { authorization: `Bearer ${token()}` } });
+      // A browser's socket that fails, or is closed before it is open, ends nobody's program.
+      this.on('error', () => {});
     }
   }
   Object.assign(globalThis, { WebSocket: WithToken });
-  link = new Link(listener, { base: `http://127.0.0.1:${server.port}/`, token });
+  link = new Link(listener, { base: `http://127.0.0.1:${server.port}/`, token }, patience);
   void link.open();
   return link;
 }
@@ -105,4 +107,34 @@ test('a server that says nothing makes what is shown stale, within three seconds
   await until(() => !open.fresh.value, 3000);
   server.mute = false;
   await until(() => open.fresh.value, 2000);
+});
+
+test('a network that goes away without a word ends no attempt for good', async () => {
+  const open = connect(() => server.token, { quiet: 50, stale: 100, dead: 200, entry: 150 });
+  await until(() => seen.hellos.length === 1);
+  server.mute = server.deaf = true;
+  // The connection is given up, then one attempt after the other that nobody answers.
+  await until(() => open.status.value.kind === 'waiting');
+  await until(() => open.status.value.kind === 'connecting');
+  await until(() => open.status.value.kind === 'waiting', 2000);
+  server.mute = server.deaf = false;
+  await until(() => seen.hellos.length === 2);
+  expect(open.status.value.kind).toBe('open');
+});
+
+test('a socket that nobody takes is given up, too', async () => {
+  server.takes_sockets = false;
+  const open = connect(() => server.token, { quiet: 50, stale: 100, dead: 200, entry: 150 });
+  await until(() => open.status.value.kind === 'waiting', 2000);
+  server.takes_sockets = true;
+  await until(() => seen.hellos.length === 1);
+});
+
+test('of attempts that overlap, the last one alone has a socket', async () => {
+  const open = connect(() => server.token);
+  for (let i = 0; i < 5; ++i) void open.open();
+  await until(() => seen.hellos.length === 1);
+  await new Promise((resolve) => setTimeout(resolve, 300));
+  expect(server.client_count).toBe(1);
+  expect(seen.hellos).toHaveLength(1);
 });

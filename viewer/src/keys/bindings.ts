@@ -37,15 +37,15 @@ function view(app: App): Binding[] {
     app.view.value?.orbit.look(azimuth, elevation);
     app.view.value?.invalidate();
   };
-  const orbit = (right: number, up: number) => () => {
+  const orbit = (left: number, up: number) => () => {
     app.views.free();
-    app.view.value?.orbit.turn(right, up);
+    app.view.value?.orbit.turn(left, up);
     app.view.value?.invalidate();
   };
-  const pan = (right: number, up: number) => () => {
+  const pan = (left: number, up: number) => () => {
     app.views.free();
     const shown = app.view.value;
-    shown?.orbit.pan(shown.camera, right, up);
+    shown?.orbit.pan(shown.camera, left, up);
     shown?.invalidate();
   };
   const zoom = (factor: number) => () => {
@@ -63,14 +63,14 @@ function view(app: App): Binding[] {
     { group, keys: ['k'], what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
     { group, keys: [']', 'BracketRight'], what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
     { group, keys: ['[', 'BracketLeft'], what: 'The view before', run: () => app.views.cycle(-1) },
-    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Turn the view to the left', run: orbit(-turn, 0) },
-    { group, keys: ['Alt+ArrowRight', 'Numpad6'], what: 'Turn it to the right', run: orbit(turn, 0) },
+    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Go round to the left', run: orbit(turn, 0) },
+    { group, keys: ['Alt+ArrowRight', 'Numpad6'], what: 'Round to the right', run: orbit(-turn, 0) },
     { group, keys: ['Alt+ArrowUp', 'Numpad8'], what: 'Rise', run: orbit(0, turn) },
     { group, keys: ['Alt+ArrowDown', 'Numpad2'], what: 'Sink', run: orbit(0, -turn) },
     { group, keys: ['Alt+Shift+ArrowLeft'], what: 'Move the view to the left', run: pan(0.04, 0) },
     { group, keys: ['Alt+Shift+ArrowRight'], what: 'Move it to the right', run: pan(-0.04, 0) },
-    { group, keys: ['Alt+Shift+ArrowUp'], what: 'Move it up', run: pan(0, -0.04) },
-    { group, keys: ['Alt+Shift+ArrowDown'], what: 'Move it down', run: pan(0, 0.04) },
+    { group, keys: ['Alt+Shift+ArrowUp'], what: 'Move it up', run: pan(0, 0.04) },
+    { group, keys: ['Alt+Shift+ArrowDown'], what: 'Move it down', run: pan(0, -0.04) },
     { group, keys: ['PageUp'], what: 'Nearer', run: zoom(0.9) },
     { group, keys: ['PageDown'], what: 'Farther', run: zoom(1 / 0.9) },
     { group, keys: ['t'], what: 'Trail of the tip, on or off', run: () => toggle_hidden('trail') },

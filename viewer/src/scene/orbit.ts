@@ -21,12 +21,12 @@ export class Orbit {
     this.elevation = Math.min(-least_elevation, Math.max(least_elevation, this.elevation + up));
   }
 
-  /** Moves the target in the image's plane, in parts of the view's height. */
-  pan(camera: PerspectiveCamera, right: number, up: number): void {
+  /** Moves what is seen in the image's plane, in parts of the view's height: the target the other way. */
+  pan(camera: PerspectiveCamera, right: number, down: number): void {
     const height = 2 * this.distance * Math.tan((camera.fov * Math.PI) / 360);
     this.side.setFromMatrixColumn(camera.matrix, 0);
     this.up.setFromMatrixColumn(camera.matrix, 1);
-    this.target.addScaledVector(this.side, -right * height).addScaledVector(this.up, up * height);
+    this.target.addScaledVector(this.side, -right * height).addScaledVector(this.up, down * height);
   }
 
   /** Nearer or farther, but neither into a point nor out of sight of an arm of length `span`. */

@@ -90,7 +90,7 @@ export function frustum_tests(opened: Opened): void {
     }
     // From between the two, where neither picture hides the arm.
     await page.keyboard.press('Numpad1');
-    while ((await orbit_of(page)).azimuth < 0.6) await page.keyboard.press('Numpad4');
+    while ((await orbit_of(page)).azimuth < 0.6) await page.keyboard.press('Numpad6');
     while ((await orbit_of(page)).elevation < 0.3) await page.keyboard.press('Numpad8');
     await page.keyboard.press('0');
     for (let i = 0; i < 3; ++i) await page.keyboard.press('PageDown');

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What the viewer adds to a full build, in seconds of one core's time: tools/page_build_time.sh [FOLDER]
-# Works in FOLDER (a new one in /tmp), without ccache; the repository stays as it is.
+# Works in FOLDER (a new one in /tmp), the measured steps without ccache; the repository stays as it is.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -21,10 +21,10 @@ took() {  # WHAT COMMAND...: prints what it took
 echo "| step | s |"
 echo "| --- | --- |"
 took "\`npm ci\`, packages in npm's cache" npm --prefix viewer ci
-export CCACHE_DISABLE=1
 cmake --preset release >>log.txt
 # What comes before them is not theirs.
 ninja -C build/release -j"$(nproc)" flexura_experiment >>log.txt
+export CCACHE_DISABLE=1
 took "the page: \`vite build\`, compressing, embedding" ninja -C build/release -j1 embedded
 took "compiling \`flexura/serve\`" ninja -C build/release -j1 flexura_serve
 took "compiling \`flexura/view\`" ninja -C build/release -j1 flexura_view

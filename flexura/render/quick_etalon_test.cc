@@ -133,6 +133,104 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
   EXPECT_LT(worst, 0.04);
 }
 
+// Light and depth by which the quick way differs from the exact one.
+struct EtalonDifference {
+  double light = 0, depth = 0;  // Of the depth, a share.
+  bool is_drawn_alike = true;   // Nothing but numbers, and seen where it is seen.
+};
+EtalonDifference difference(const Scene& scene, const View& view, PixelKind kind) {
+  Renderer renderer;
+  LightImage exact, quick;
+  renderer.render(scene, view, kind, exact, true);
+  renderer.render(scene, view, kind, quick);
+  EtalonDifference all;
+  for (std::size_t i = 0; i < exact.light.values().size(); ++i) {
+    const double off = std::abs(exact.light.values()[i] - quick.light.values()[i]);
+    all.is_drawn_alike &= std::isfinite(off);
+    all.light = std::max(all.light, off);
+  }
+  for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {
+    const double a = exact.depth.values()[i], b = quick.depth.values()[i];
+    all.is_drawn_alike &= std::isinf(a) == std::isinf(b);
+    if (std::isfinite(a) && std::isfinite(b)) all.depth = std::max(all.depth, std::abs(a - b) / a);
+  }
+  return all;
+}
+
+// Upright or lying, its lines towards the camera and its axis through the middles of pixels: distances do not
+// change in the image there.
+TEST(QuickEtalon, AgreesWithTheExactWayWhereTheCameraIsAlignedWithIt) {
+  double worst = 0;
+  for_random_cases(300, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    Etalon& etalon = *scene.etalon;
+    constexpr double far = 2;  // m
+    const double f = random.uniform(2, 12) * far / etalon.radius;
+    etalon.line_width = std::min(1.4 * etalon.radius, random.uniform(1.6, 8) * far / f);
+    Eigen::Matrix3d R_WE = Eigen::Matrix3d::Identity();
+    if (random.integer(0, 1) == 1) R_WE << 0, 1, 0, -1, 0, 0, 0, 0, 1;
+    etalon.X_WE = {R_WE, Eigen::Vector3d::Zero()};
+    View view;
+    view.X_WC.rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
+    view.X_WC.position = {0, 0, far};
+    view.width = 65, view.height = 49;
+    view.lens = Lens({.fx = f, .fy = f, .cx = 32, .cy = 24});
+    const EtalonDifference all =
+        difference(scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray);
+    EXPECT_TRUE(all.is_drawn_alike);
+    worst = std::max(worst, all.light);
+  });
+  std::printf("etalons that the camera is aligned with: light differs by %.5f at worst\n", worst);
+  EXPECT_LT(worst, 0.05);
+}
+
+// Flat ones, so near that their skin is seen of less than half of the rim, in pictures of the place where
+// contour and rim meet.
+TEST(QuickEtalon, AgreesWithTheExactWayWhereRimsAreNear) {
+  double worst = 0, farthest = 0;
+  for_random_cases(1000, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    Etalon& etalon = *scene.etalon;
+    etalon.albedo = Color::Constant(random.uniform(0, 1));
+    etalon.height = random.uniform(0.05, 0.35) * etalon.radius, etalon.line_width = 0;
+    const Eigen::Vector3d middle = etalon.X_WE.position, axis = etalon.X_WE.rotation.col(1);
+    const double bound = std::hypot(0.5 * etalon.height, etalon.radius);
+    const double far = bound * random.uniform(4.1, 8);
+    const double f = std::exp(random.uniform(std::log(60), std::log(600))) * far / etalon.radius;
+    const Eigen::Vector3d aside =
+        so3_exp(random.uniform(0, 2 * std::numbers::pi) * axis) * axis.unitOrthogonal();
+    const double slant = random.uniform(-0.7, 0.7);
+    const Eigen::Vector3d eye = middle + far * (std::sqrt(1 - slant * slant) * aside + slant * axis);
+    const Eigen::Vector3d aim = middle + 0.5 * etalon.height * random.uniform(-1.2, 1.2) * axis +
+                                etalon.radius * random.uniform(-1.1, 1.1) * aside.cross(axis);
+    const EtalonDifference all = difference(
+        scene, pinhole_view(look_at(eye, aim, random.vector<3>(-1, 1)), 64, 48, f), PixelKind::gray);
+    EXPECT_TRUE(all.is_drawn_alike);
+    worst = std::max(worst, all.light), farthest = std::max(farthest, all.depth);
+  });
+  std::printf("rims that are near: light differs by %.5f at worst, depth by %.2g of it\n", worst, farthest);
+  EXPECT_LT(worst, 0.04);
+  EXPECT_LT(farthest, 1e-5);
+}
+
+TEST(QuickEtalon, IsTheSameOnEveryPath) {
+  for_random_cases(40, [&](TestRandom& random) {
+    Scene scene = etalon_scene(random);
+    scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
+    const View view = view_of(random, scene, 61, 48);
+    for (int i = random.integer(0, 2); i > 0; --i) add_screen(random, scene, view);
+    const PixelKind kind = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
+    LightImage expected;
+    Renderer(SimdPath::baseline).render(scene, view, kind, expected);
+    for (const SimdPath path : available_simd_paths()) {
+      LightImage picture;
+      Renderer(path).render(scene, view, kind, picture);
+      EXPECT_EQ(picture.light, expected.light) << name_of(path);
+      EXPECT_EQ(picture.depth, expected.depth) << name_of(path);
+    }
+  });
+}
+
 // What a calibration looks at: upright, 1.5 m away, by 640 x 480 px, zoomed in.
 TEST(QuickEtalon, LeavesHardlyAnythingToTheExactWay) {
   constexpr double f = 2000, far = 1.53;  // px, m

@@ -21,10 +21,10 @@ namespace flexura {
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
 /// Draws what is plain to see: screens and their edges, the skin of the arm, its contours before one surface,
-/// the rims of its ends and the edges of its markers, and an etalon that stands alone but for its lines,
-/// many pixels at a time in single precision; and tells which pixels are not, for the exact way. What it
-/// draws agrees with the exact way to 1/500 of full scale, but where markers' edges are seen: there a part of
-/// up to 0.02 of a pixel may show the other colour. Depths agree to 2e-6 of them, nearly all to 1e-6.
+/// the rims of its ends and the edges of its markers, and an etalon that stands alone, with its lines, many
+/// pixels at a time in single precision; and tells which pixels are not, for the exact way. What it draws
+/// agrees with the exact way to 1/500 of full scale, but where edges of markers or lines are seen: there a
+/// part of up to 0.05 of a pixel may show the other colour. Depths agree to 1e-5 of them, nearly all to 1e-6.
 class QuickPicture {
  public:
   struct Pixel {
@@ -43,7 +43,7 @@ class QuickPicture {
   [[nodiscard]] const std::vector<Pixel>& left_out() const { return left_out_; }
 
  private:
-  // A piece of skin, and the pixels that its contour or a ring's bent edge may divide.
+  // A piece of skin, and the pixels that its contour, or the bent edge of a ring or line, may divide.
   struct Skin {
     SpanPiece piece{};
     ImageRegion region;

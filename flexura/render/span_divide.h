@@ -15,8 +15,9 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
 [[gnu::always_inline]] inline SquarePart part_within(const SpanPiece& piece, const RayLanes& ray,
                                                      const Place& place, const Lowest& lowest) {
   const float radius = piece.radius;
-  // Of sqrt(h^2 + y^2), which is the radius on the contour.
-  const Wide distance = square_root(at_least(1e-30f, lowest.value + radius * radius));
+  // Of sqrt(h^2 + y^2), which is the radius on the contour. On the centreline, which is in here where the
+  // tube is a few pixels wide, there is no gradient; that is far within.
+  const Wide distance = square_root(at_least(1e-6f * radius * radius, lowest.value + radius * radius));
   const Wide gap = distance - radius;
   const Vector near = along(ray.point, ray.direction, lowest.t);
   const Wide h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2), k = piece.curvature;
@@ -35,8 +36,8 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
   const Wide across = at_least(0.1f, 1 - along_ray * along_ray / dot(ray.direction, ray.direction));
   const Wide bending = -k * h / (radius * bent * steepness * across);
   const Wide normal_u = -by_u * steepness, normal_v = -by_v * steepness;
-  const Wide widest = larger(normal_u * normal_u, normal_v * normal_v);
-  return part_beyond(normal_u, normal_v, gap * steepness - bending / (24 * widest));
+  return part_beyond(normal_u, normal_v,
+                     gap * steepness - bending / (24 * larger_square(normal_u, normal_v)));
 }
 
 template <std::size_t channels>

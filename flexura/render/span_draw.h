@@ -95,8 +95,8 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     const WideMask is_there = is_inside & is_settled & is_here & is_asked;
     leave_edges(is_there, u, row);
     WideMask is_drawn = is_there & (depth < before);
-    if (deep < inside && any(is_drawn & (lowest.value > deep))) {
-      const WideMask is_bent = is_drawn & (lowest.value > deep) & is_at_edge(piece, p);
+    if (deep < inside && any(is_drawn & (lowest.value >= deep))) {
+      const WideMask is_bent = is_drawn & (lowest.value >= deep) & is_at_edge(piece, p);
       if (any(is_bent)) add_borders(is_bent, u, row);
       is_drawn &= ~is_bent;
     }

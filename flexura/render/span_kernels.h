@@ -17,7 +17,7 @@ constexpr std::size_t span_step = 32;
 enum PixelState : std::uint8_t {
   state_behind = 0,  ///< Background or screen.
   state_arm = 1,     ///< Skin of the arm or an end of it.
-  state_border = 2,  ///< The arm's contour runs through it, or close by the bent edge of a ring.
+  state_border = 2,  ///< The arm's contour runs through it, or close by the bent edge of a ring or line.
   state_exact = 4,   ///< To be drawn by the exact way.
   state_base = 8,    ///< The rim of the arm's base may be seen in it;
   state_tip = 16,    ///< that of its tip.
@@ -44,7 +44,7 @@ struct SpanRow {
   float* light = nullptr;
   std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders = nullptr;  ///< Columns that a contour or a ring's bent edge may divide, as draw() adds them:
+  int* borders = nullptr;        ///< Columns that a contour or a bent edge may divide, as draw() adds them:
   std::size_t border_count = 0;  ///< so many.
   bool has_edge = false;         ///< Whether a pixel has state_edge,
   bool has_exact = false;        ///< is left to the exact way.
@@ -66,7 +66,8 @@ struct SpanPiece {
   float curvature, radius;
   float end_sine, end_cosine, end_offset;
   float reach;         ///< m: contours this near may divide the pixel,
-  float bent_reach;    ///< and edges of rings that are this near to a contour, within, are bent; no less.
+  float bent_reach;    ///< and edges of rings and lines that are this near to a contour, within, are bent; no
+                       ///< less.
   int centering;       ///< Newton's steps to where the ray is deepest,
   float largest_move;  ///< m: and how small the last one has to be.
   int refining;        ///< Newton's steps to where it enters,
@@ -79,13 +80,14 @@ struct SpanPiece {
   std::uint8_t rims;  ///< state_base, state_tip: of the ends that it has; it leaves their pixels alone.
 };
 
-/// A flat end of the arm. Where a ray meets its plane is, in its radii from its centre, (x, y) / z; z is
-/// positive in front of the camera.
+/// A flat end of the arm or of the etalon. Where a ray meets its plane is, in its radii from its centre, (x,
+/// y) / z; z is positive in front of the camera.
 struct SpanRim {
   float u0, v0;
   Linear x, y, z;
   Linear nearness;  ///< 1/depth of the plane.
-  /// The skin at the rim is seen where (x, y) . facing < 0; `margin` times the length of (x, y) makes sure.
+  /// The skin at the rim is seen where (x, y) . facing is below minus the tube's radius (m) times the length
+  /// of (x, y); `margin` (m) times it makes sure.
   float facing[2], margin;
   float light[3];
   bool is_front;     ///< Seen itself.

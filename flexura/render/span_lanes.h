@@ -151,7 +151,8 @@ constexpr float overlap = 1e-3f;
   return {scale * (piece.curvature * p.x - 1), p.y, scale * (piece.curvature * p.z)};
 }
 
-// The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length.
+// The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length
+// (or none at all).
 struct SquarePart {
   Wide area, x, y;  // And its centroid, where the area is not 0.
 };
@@ -159,7 +160,10 @@ struct SquarePart {
                                                      const Wide& offset) {
   const Wide size_x = size_of(normal_x), size_y = size_of(normal_y);
   const WideMask is_steep = size_x < size_y;
-  const Wide a = choose(is_steep, size_y, size_x), b = at_least(1e-6f, choose(is_steep, size_x, size_y));
+  // Where nothing changes in the image there is no normal: then all lies on one side.
+  constexpr float least = 1e-6f;
+  const Wide a = at_least(least, choose(is_steep, size_y, size_x)),
+             b = at_least(least, choose(is_steep, size_x, size_y));
   // The triangle at the nearer corner; then the band, when the line crosses opposite sides.
   const Wide far = size_of(offset);
   const Wide t = at_least(0, 0.5f * (a + b) - far);
@@ -178,6 +182,11 @@ struct SquarePart {
   part.x = choose(normal_x < 0, -x, x);
   part.y = choose(normal_y < 0, -y, y);
   return part;
+}
+
+// How large the larger part of a unit normal is, squared; of none, as if it were one.
+[[gnu::always_inline]] inline Wide larger_square(const Wide& normal_x, const Wide& normal_y) {
+  return at_least(0.5f, larger(normal_x * normal_x, normal_y * normal_y));
 }
 
 // The share of the pixel beyond the edge, from the distance in space and how it changes in the image.

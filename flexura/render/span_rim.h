@@ -57,6 +57,11 @@ struct RimLine {
   return at.x * rim.facing[0] + at.y * rim.facing[1];
 }
 
+// Whether the skin of the tube faces the camera at the rim there: the camera is beyond the skin's plane.
+[[gnu::always_inline]] inline WideMask is_skin_seen(const SpanRim& rim, float radius, const RimPoint& at) {
+  return facing(rim, at) < -radius * square_root(at.x * at.x + at.y * at.y);
+}
+
 // Whether the rim may run through the pixel. Of an end that is seen from behind only the half is asked for at
 // which the skin is seen.
 [[gnu::always_inline]] inline WideMask is_rim(const SpanRim& rim, const Place& place) {

@@ -45,10 +45,10 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const Place pixel = place_of(places, i, 0, 0);
     const Place on_rim = counted_from(pixel, rim.u0, rim.v0), place = counted_from(pixel, piece.u0, piece.v0);
     const RimLine line = rim_line(rim, on_rim);
-    const Wide widest = larger(line.normal_u * line.normal_u, line.normal_v * line.normal_v);
     const SquarePart within =
-        part_beyond(-line.normal_u, -line.normal_v, line.bending / (24 * widest) - line.distance);
-    const WideMask is_skin_side = facing(rim, line.at) < 0, is_in_disc = line.at.value < 0;
+        part_beyond(-line.normal_u, -line.normal_v,
+                    line.bending / (24 * larger_square(line.normal_u, line.normal_v)) - line.distance);
+    const WideMask is_skin_side = is_skin_seen(rim, piece.radius, line.at), is_in_disc = line.at.value < 0;
     const RayLanes ray = ray_of(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
     const Entry entry = entry_of(piece, ray, lowest);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -130,6 +131,51 @@ TEST(ShapeTracker, KnowsMoreWithEverySighting) {
     }
   });
   EXPECT_LT(std::sqrt(tracked), 0.6 * std::sqrt(once));
+}
+
+// Errors that go together along an axis, from picture to picture others: an arm that stands still is known
+// better the longer it is looked at, as much better as is claimed.
+TEST(ShapeTracker, KnowsHowMuchMoreItKnows) {
+  constexpr double noise = 0.05, reach = 5.4;  // px
+  double first_sigma = 0, last_sigma = 0, first_error = 0, last_error = 0;
+  for_random_cases(30, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const ArmState state = random_bends(random, prior.arm, 1.5);
+    const Backbone truth(prior.arm, state);
+    const WrongCameras cameras = wrong_cameras(truth, random, 0);
+    ShapeTracker tracker(prior, {});
+    std::optional<ArmState> expected;
+    for (int k = 0; k < 100; ++k) {
+      std::vector<Sighting> seen = cameras.seen;
+      for (Sighting& one : seen) {
+        one.reach.sigma = reach;
+        for (auto& end : one.ends) end->pixel += 0.1 * random.vector<2>(-1.7, 1.7), end->sigma = 0.1;
+        Eigen::Vector2d off = noise * random.vector<2>(-1.7, 1.7), before = one.points[0].pixel;
+        for (CurvePoint& point : one.points) {
+          const double alike = std::exp(-(point.pixel - before).norm() / reach);
+          before = point.pixel;
+          off = alike * off + std::sqrt(1 - alike * alike) * noise * random.vector<2>(-1.7, 1.7);
+          point.pixel += off, point.sigma = noise;
+        }
+      }
+      const ShapeEstimate found = tracker.look(seen, k / 30.0, expected);
+      ASSERT_TRUE(found.is_found) << found.reason;
+      expected = found.shape.state;
+      double variance = 0;
+      for (const double sigma : found.sigma)
+        variance += sigma * sigma / static_cast<double>(found.sigma.size());
+      const double error = std::pow(shape_error(found.shape, truth), 2);
+      if (k == 0) first_sigma += variance, first_error += error;
+      if (k == 99) last_sigma += variance, last_error += error;
+    }
+  });
+  std::printf("claimed %.2g at first and %.2g after 100 pictures, wrong by %.2g and %.2g\n",
+              std::sqrt(first_sigma / 30), std::sqrt(last_sigma / 30), std::sqrt(first_error / 30),
+              std::sqrt(last_error / 30));
+  EXPECT_LT(last_sigma, 0.25 * first_sigma);
+  EXPECT_LT(last_error, 0.25 * first_error);
+  EXPECT_LT(last_error, 2 * last_sigma);
+  EXPECT_GT(last_error, 0.2 * last_sigma);
 }
 
 // An arm that is where nobody expects it is seen where it is.

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "flexura/estimate/sighting.h"
+#include "flexura/math/so3.h"
+#include "flexura/model/backbone.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/sightings.h"
+
+namespace flexura {
+
+constexpr double one_degree = std::numbers::pi / 180;
+/// In cameras that may be so wrong.
+constexpr ViewDoubt a_degree_and_two_percent = {.turn = 1 * one_degree, .focal = 0.02};
+
+struct WrongCameras {
+  std::vector<Sighting> seen;
+  std::vector<ViewError> errors;
+};
+
+/// What both cameras see, which are believed to be `most` of half a degree and 1 % otherwise.
+inline WrongCameras wrong_cameras(const Backbone& truth, TestRandom& random, double noise, double most = 1) {
+  WrongCameras cameras{sightings_of(truth, random, noise), {}};
+  for (Sighting& one : cameras.seen) {
+    for (auto& end : one.ends) end->sigma = 0.1;
+    const ViewError believed{random.vector<3>(-0.5, 0.5) * most * one_degree,
+                             random.uniform(-0.01, 0.01) * most};
+    const View is = one.view;
+    one.view = corrected(is, believed);
+    one.doubt = a_degree_and_two_percent;
+    cameras.errors.push_back(
+        {so3_log(one.view.X_WC.rotation.transpose() * is.X_WC.rotation), -believed.focal});
+  }
+  return cameras;
+}
+
+}  // namespace flexura

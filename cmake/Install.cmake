@@ -1,4 +1,4 @@
-# Installation: the libraries, their headers and find_package(flexura).
+# Installation: the libraries, their public headers and find_package(flexura).
 include(CMakePackageConfigHelpers)
 get_property(folders GLOBAL PROPERTY FLEXURA_FOLDERS)
 
@@ -11,9 +11,11 @@ target_link_libraries(flexura_all INTERFACE ${targets})
 
 install(TARGETS flexura_all ${targets} EXPORT flexuraTargets)
 install(TARGETS flexura DESTINATION ${CMAKE_INSTALL_BINDIR})
-foreach(folder ${folders})
-  install(DIRECTORY flexura/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flexura
-    FILES_MATCHING PATTERN "*.h")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS flexura/public_headers.txt)
+file(STRINGS flexura/public_headers.txt headers REGEX "^[a-z]")
+foreach(header ${headers})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES flexura/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flexura/${folder})
 endforeach()
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/flexura)
 install(EXPORT flexuraTargets NAMESPACE flexura:: DESTINATION ${config_dir})

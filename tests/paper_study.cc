@@ -70,11 +70,14 @@ void print_row(const std::string& method, const std::vector<CalibrationTrial>& t
   }
   fmt::print("| `{}` | {} of {} |", method, pictures.size(), trials.size());
   if (pictures.empty()) {
-    fmt::print(" - | - | - | - | - | - | - |\n");
+    fmt::print(" - | - | - | - | - | - | - | - |\n");
     return;
   }
-  fmt::print(" {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", share_of(pictures, 0.5),
-             share_of(angle, 0.5) * in_degrees, share_of(angle, 0.95) * in_degrees,
+  constexpr double wanted = 0.1;  // deg
+  const auto good =
+      std::ranges::count_if(angle, [](double one) { return std::abs(one) * in_degrees <= wanted; });
+  fmt::print(" {} | {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", good,
+             share_of(pictures, 0.5), share_of(angle, 0.5) * in_degrees, share_of(angle, 0.95) * in_degrees,
              share_of(angle, 1) * in_degrees, share_of(aim, 0.5) * 1e3, share_of(aim, 0.95) * 1e3,
              share_of(zoom, 0.95) * 100);
 }
@@ -92,9 +95,10 @@ void print_failures(const std::string& method, const std::vector<CalibrationTria
 
 void print_head() {
   fmt::print(
-      "| method | done | pictures a camera, median | axes from 90 deg, median | 95 % | largest | aim, mm, "
+      "| method | done | within 0.1 deg | pictures a camera, median | axes from 90 deg, median | 95 % | "
+      "largest | aim, mm, "
       "median | 95 % | zoom ratio from 1, %, 95 % |\n"
-      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
 }
 
 // FIRST or FIRST-LAST.

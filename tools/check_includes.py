@@ -6,7 +6,9 @@ usage: check_includes.py [ROOT]
 ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
 an include or a link that goes up or sideways or past the list, a folder that the list lacks, a
 folder of the list without its flexura_folder(NAME ...), and a type that two headers define: the
-compiler sees no two of them at once, and the linker joins what it should not.
+compiler sees no two of them at once, and the linker joins what it should not. Also what is wrong in
+ROOT/flexura/public_headers.txt, where there is one: a header that is not there or is listed twice,
+and one that includes a header which is not listed.
 """
 
 import re
@@ -73,6 +75,27 @@ def check_types(root):
             first.setdefault(name, header.relative_to(root))
 
 
+def check_public(root):
+    path = root / "flexura/public_headers.txt"
+    listed = {}
+    for number, line in enumerate(path.read_text().splitlines() if path.exists() else [], 1):
+        header = line.split("#")[0].strip()
+        where = f"{path.relative_to(root)}:{number}"
+        if not header:
+            continue
+        if header in listed:
+            yield f"{where}: {header} is listed twice"
+        elif not (root / "flexura" / header).exists():
+            yield f"{where}: there is no {header}"
+        else:
+            listed[header] = where
+    for header, where in listed.items():
+        for line in (root / "flexura" / header).read_text().splitlines():
+            match = INCLUDE.match(line)
+            if match and match[1].removeprefix("flexura/") not in listed:
+                yield f"{where}: {header} includes {match[1]}, which is not listed"
+
+
 def problems(root):
     """What is wrong in the tree at `root`, a line each."""
     floors = read_floors(root / "flexura/floors.txt")
@@ -85,6 +108,7 @@ def problems(root):
             if source.suffix in (".cc", ".h"):
                 yield from check_source(root, floors, folder, source)
     yield from check_types(root)
+    yield from check_public(root)
 
 
 def main():

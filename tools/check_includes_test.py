@@ -78,6 +78,17 @@ class CheckIncludes(unittest.TestCase):
         self.write("flexura/left/CMakeLists.txt", "flexura_folder(left LINKS\n flexura::base flexura::right)")
         self.assertEqual(self.problems(), ["flexura/left/CMakeLists.txt: left may not link right"])
 
+    def test_public_headers_are_there_once_with_all_that_they_include(self):
+        self.write("flexura/left/b.h", '#include "flexura/base/a.h"\n')
+        self.write("flexura/public_headers.txt", "# these\nleft/b.h\n\nbase/a.h  # carried\n")
+        self.assertEqual(self.problems(), [])
+        self.write("flexura/public_headers.txt", "left/b.h\nleft/c.h\nleft/b.h\n")
+        self.assertEqual(self.problems(), [
+            "flexura/public_headers.txt:2: there is no left/c.h",
+            "flexura/public_headers.txt:3: left/b.h is listed twice",
+            "flexura/public_headers.txt:1: left/b.h includes flexura/base/a.h, which is not listed",
+        ])
+
 
 if __name__ == "__main__":
     unittest.main()

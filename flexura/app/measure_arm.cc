@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/app/measure_job.h"
+#include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/markers.h"
 
@@ -13,9 +14,6 @@ namespace flexura {
 namespace {
 
 using Eigen::Vector2d;
-
-// Every fourth sample of an axis is as good as independent of the others.
-constexpr std::size_t independent = 4;
 
 Node end_node(const AxisEnd& end) {
   return TableMaker()
@@ -45,7 +43,8 @@ void add_axis(const Job& job, const std::vector<AxisSample>& axis, bool is_backb
   for (const AxisSample& sample : axis) {
     points.push_back(pixel_pair(sample.pixel));
     widths.push_back(number_node(px(sample.width)));
-    sigmas.push_back(number_node(rounded(sample.sigma, 1e4)));
+    // What is between samples that are seen is a guess of unknown error.
+    sigmas.push_back(sample.is_seen ? number_node(rounded(sample.sigma, 1e4)) : Node{});
     seen.push_back({sample.is_seen, {}});
   }
   job.answer.add("axis_kind", text_node(is_backbone ? "backbone" : "middle"))
@@ -106,12 +105,10 @@ bool measure_arm(const Job& job) {
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.settings.what == MeasureTarget::arm) {
     add_axis(job, axis, job.settings.lens.has_value());
-    std::vector<Vector2d> points;
-    for (std::size_t i = 0; i < axis.size(); i += independent)
-      if (axis[i].is_seen) points.push_back(axis[i].pixel);
+    const AxisPoints points = independent_points(axis);
     job.answer.add("markers", {std::move(marker_nodes), {}})
-        .add("circle", circle_node(fit_circle(points)))
-        .add("ellipse", ellipse_node(fit_ellipse(points)));
+        .add("circle", circle_node(fit_circle(points.pixels, points.sigma)))
+        .add("ellipse", ellipse_node(fit_ellipse(points.pixels)));
   } else {
     job.answer.add("markers", {std::move(marker_nodes), {}});
   }

@@ -19,6 +19,9 @@ using Eigen::Vector2d;
 // Whether most of a figure's border lies near the circle or the ellipse.
 bool is_round(const std::optional<CircleFit>& circle, const std::optional<EllipseFit>& ellipse,
               std::size_t used, const FigureBorder& figure) {
+  // Through a few points there is always one.
+  constexpr std::size_t fewest = 12;
+  if (used < fewest) return false;
   constexpr double least_share = 0.4, roughest = 0.03;
   if (static_cast<double>(used) < least_share * static_cast<double>(figure.points.size())) return false;
   // Through half a circle's height at least: what is nearly straight fits some huge one.

@@ -17,6 +17,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
+#include "tests/support/random_cases.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -66,6 +67,63 @@ TEST(Measure, TellsAxisMarkersAndTheCircleOfAnArm) {
   EXPECT_EQ(found.overlay.width(), 320);
   // A line over the picture.
   EXPECT_NE(found.overlay, tube());
+}
+
+// A dark arm before a bright ground whose middle is at v = middle(u), `thickness` px across.
+template <typename Middle>
+Image<std::uint8_t> gray_arm(const Middle& middle, double thickness, TestRandom& random) {
+  Image<std::uint8_t> picture(320, 240);
+  for (int v = 0; v < 240; ++v) {
+    for (int u = 0; u < 320; ++u) {
+      const double slope = (middle(u + 0.5) - middle(u - 0.5));
+      const double off = std::abs(v - middle(u)) / std::hypot(1.0, slope) - 0.5 * thickness;
+      const double dark = u > 20 && u < 300 ? share(off) : 0;
+      picture.at(u, v) = static_cast<std::uint8_t>(std::lround(220 - 190 * dark + random.uniform(-3, 3)));
+    }
+  }
+  return picture;
+}
+
+TEST(Measure, VerifiesNoCircleForAnAxisThatIsNoArc) {
+  TestRandom random(1);
+  for (const double amplitude : {3.0, 10.0, 40.0}) {
+    SCOPED_TRACE(amplitude);
+    const auto wave = [&](double u) { return 120 + amplitude * std::sin(u * 2 * std::numbers::pi / 280); };
+    const Measurement found = measured(png(gray_arm(wave, 12, random)));
+    ASSERT_TRUE(found.is_found) << write_json(found.answer);
+    const Node& circle = *found.answer.find("circle");
+    if (circle.find("verified") != nullptr) {
+      EXPECT_FALSE(*circle.find("verified")->as<bool>());
+    }
+  }
+  const auto arc = [](double u) { return 320 - std::sqrt(200.0 * 200 - (u - 160) * (u - 160)); };
+  const Measurement found = measured(png(gray_arm(arc, 12, random)));
+  EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 200, 0.2);
+  EXPECT_TRUE(*found.answer.find("circle")->find("verified")->as<bool>());
+  // A straight one has none.
+  const auto line = [](double u) { return 100 + 0.1 * u; };
+  EXPECT_TRUE(measured(png(gray_arm(line, 12, random))).answer.find("circle")->empty());
+}
+
+TEST(Measure, FindsNoCircleInNoise) {
+  for_random_cases(30, [](TestRandom& random) {
+    Image<std::uint8_t> picture(60, 60);
+    for (int v = 0; v < 60; ++v)
+      for (int u = 0; u < 60; ++u) picture.at(u, v) = static_cast<std::uint8_t>(random.integer(0, 255));
+    EXPECT_FALSE(measured(png(picture), MeasureTarget::circle).is_found);
+  });
+}
+
+TEST(Measure, LooksForNoMarkersOnArmsOfFewPixels) {
+  TestRandom random(2);
+  for (const double thickness : {2.0, 3.0}) {
+    for (const double slope : {0.05, 0.13, 0.21, 0.32}) {
+      const auto line = [&](double u) { return 80 + slope * u; };
+      const Measurement found = measured(png(gray_arm(line, thickness, random)));
+      ASSERT_TRUE(found.is_found) << write_json(found.answer);
+      EXPECT_TRUE(found.answer.find("markers")->as<Node::Array>()->empty());
+    }
+  }
 }
 
 TEST(Measure, TellsTheCircleOfADisc) {

@@ -47,6 +47,7 @@ struct Node {
   [[nodiscard]] std::string literal() const;
 };
 
+/// What a table has under a key, and where the key stands in the text.
 struct Node::Member {
   std::string key;
   SourcePosition where;

@@ -138,7 +138,7 @@ LookLoop::Trouble equalize_zooms(LookLoop& loop, const ArcPlan& plan) {
     for (int round = 0; round < rounds; ++round) {
       ZoomCorrelation seen;
       auto trouble = loop.look(i, [&](RigSight& sight) {
-        const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop.config().white);
+        const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop.config().white[i]);
         seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), ideal);
         sight.seen.reason = seen.reason;
         sight.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};

@@ -23,9 +23,9 @@ std::size_t fewest_markers(const LoopConfig& config) {
   return std::min<std::size_t>(5, config.picture.markers.size());
 }
 
-ArmPictureConfig picture_of(const LoopConfig& config) {
+ArmPictureConfig picture_of(const LoopConfig& config, std::size_t i) {
   ArmPictureConfig picture = config.picture;
-  picture.white = config.white;
+  picture.white = config.white[i];
   return picture;
 }
 
@@ -52,10 +52,10 @@ RigPrior arcs_prior(RigPrior prior) {
 ArcsLoop::ArcsLoop(LookLoop& loop)
     : loop_(loop),
       prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.believed())))),
-      sights_(loop.believed().arm, picture_of(loop.config()), loop.config().cameras),
+      sights_(loop.believed().arm, loop.config().picture, loop.config().cameras),
       reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop),
               fewest_markers(loop.config())) {
-  for (int i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop.config()));
+  for (std::size_t i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop.config(), i));
 }
 
 LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
@@ -98,7 +98,7 @@ void ArcsLoop::keep(std::size_t i, ArmFigure figure, RigSight& sight) {
 LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
   const RigSight& sight = loop_.sight();
   const Intrinsics lens = loop_.lens(i);
-  const auto middle = dark_centroid(eight_bits(*sight.frame.picture, loop_.config().white));
+  const auto middle = dark_centroid(eight_bits(*sight.frame.picture, loop_.config().white[i]));
   if (!middle)
     return fmt::format("the arm is out of view of camera {}: {}", loop_.name(i), sight.seen.reason);
   RigStance next = loop_.stance(i);

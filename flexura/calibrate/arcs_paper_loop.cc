@@ -15,8 +15,10 @@ constexpr double by_degrees = 180 / std::numbers::pi;
 
 ArcsPaperLoop::ArcsPaperLoop(LookLoop& loop) : loop_(loop) {
   ArmPictureConfig picture = loop.config().picture;
-  picture.white = loop.config().white;
-  for (int i = 0; i < 2; ++i) eyes_.emplace_back(picture);
+  for (const int white : loop.config().white) {
+    picture.white = white;
+    eyes_.emplace_back(picture);
+  }
 }
 
 // Steps 3 to 5: a picture, its median axis, a circle through it.

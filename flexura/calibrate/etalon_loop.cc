@@ -102,7 +102,7 @@ std::array<EtalonLoop::Offset, 4> EtalonLoop::offsets(std::size_t i) const {
 
 LoopTrouble EtalonLoop::look(std::size_t i) {
   return loop_.look(i, [this, i](RigSight& sight) {
-    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white), loop_.lens(i),
+    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]), loop_.lens(i),
                             loop_.config().etalon.radius);
     tell(views_[i], sight);
   });

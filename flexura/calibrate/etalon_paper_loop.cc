@@ -40,7 +40,7 @@ void tell_counts(const EtalonCounts& counts, RigSight& sight) {
 
 PaperTrouble EtalonPaperLoop::look(std::size_t i) {
   auto trouble = loop_.look(i, [this, i](RigSight& sight) {
-    counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.config().white));
+    counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]));
     tell_counts(counts_[i], sight);
   });
   if (trouble) return trouble;

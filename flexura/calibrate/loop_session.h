@@ -41,7 +41,8 @@ struct LoopConfig {
   std::optional<RigPrior> prior;  ///< How wrong the rig may be (`arcs`); none: as rough_prior() says.
   /// The simulator's picture of the arm in a state, gray: the ideal image.
   std::function<Image<std::uint8_t>(const View&, const ArmState&)> draw;
-  int white = 255;           ///< The largest value of a picture.
+  /// The largest value of each one's pictures.
+  std::array<int, 2> white = {255, 255};
   double move_duration = 2;  ///< Of the arm to a shape or back, s.
   RigPatience patience;
 };

@@ -44,6 +44,7 @@ struct RigRemainder {
   std::array<double, 2> roll = {0, 0};  ///< Of each camera about its axis, rad: no head can correct it.
 };
 
+/// What to command for the wanted configuration, and what remains of it for want of range or resolution.
 struct WantedRig {
   std::array<RigStance, 2> stances;  ///< To be commanded: within the limits, in steps of the resolutions.
   RigRemainder remainder;

@@ -8,6 +8,7 @@
 
 namespace flexura {
 
+/// How long a descent may take, and which residuals it believes.
 struct RigCalibrationConfig {
   int most_iterations = 60;   ///< Of each descent.
   double linear_beyond = 3;   ///< Residuals count linearly from here on, in standard deviations.

@@ -63,6 +63,7 @@ struct ArmPrior {
   double bend = 0.001;       ///< And beside that, rad.
 };
 
+/// How far a rig may be off its guess: standard deviations.
 struct RigPrior {
   ArmPrior arm;
   std::vector<CameraPrior> cameras;  ///< One a camera.

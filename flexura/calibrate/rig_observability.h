@@ -22,6 +22,7 @@ struct RigBlindness {
   std::string words;  ///< "front: pupil, z (-0.71) with front: tilt axis, z (+0.70)"
 };
 
+/// What observations tell of a rig, and what they cannot.
 struct RigObservability {
   std::vector<RigKnowledge> numbers;    ///< In the order of x.
   std::vector<RigBlindness> blindness;  ///< The blindest first; those of which over half is left.

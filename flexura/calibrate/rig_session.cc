@@ -229,7 +229,7 @@ class Session {
           result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
       return;
     }
-    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, missed_);
+    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, stands_, missed_);
     next_ = candidate, step.next = why;
   }
   [[nodiscard]] ViewCandidate next() const {

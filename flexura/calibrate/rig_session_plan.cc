@@ -92,15 +92,19 @@ ViewGrid RigSessionPlan::grid() const {
     const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
     travel = std::max(travel, std::min(config_.slide * distance, std::max(most, -least)));
   }
-  if (travel > 0) grid.slides = {{0, 0, 0}, {travel, 0, 0}, {-travel, 0, 0}};
+  if (config_.may_use_stages && travel > 0) grid.slides = {{0, 0, 0}, {travel, 0, 0}, {-travel, 0, 0}};
   return grid;
 }
 
 std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
-    const std::vector<ViewCandidate>& missed) const {
+    const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const {
   std::vector<ViewCandidate> candidates = view_candidates(found.model, grid());
   for (ViewCandidate& candidate : candidates) {
+    if (!config_.may_use_stages)
+      for (RigStance& stance : candidate.stances)
+        for (const RigStance& now : stands)
+          if (now.camera == stance.camera) stance.stage = now.stage;
     std::erase_if(candidate.stances, [&](const RigStance& stance) {
       return std::ranges::find(config_.cameras, stance.camera) == config_.cameras.end();
     });

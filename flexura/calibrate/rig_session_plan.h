@@ -29,11 +29,11 @@ class RigSessionPlan {
   /// Fills in what is known of the wanted configuration.
   void know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
             RigStep& step) const;
-  /// The next look, and what is hoped from it, in words. None that is much like one of those `missed`, each
-  /// of one camera, at which too little was seen.
+  /// The next look from where the cameras stand, and what is hoped from it, in words. None that is much like
+  /// one of those `missed`, each of one camera, at which too little was seen.
   [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(
       const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
-      const std::vector<ViewCandidate>& missed) const;
+      const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const;
   /// Why the wanted configuration is none: both cameras look from one side, or would not see the arm. Nothing
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,

@@ -78,7 +78,7 @@ struct Choice {
   [[nodiscard]] std::optional<ViewCandidate> next(const std::vector<ViewCandidate>& missed) const {
     const RigSessionPlan plan(believed, config);
     const std::array<RigStance, 2> stands = {RigStance{.camera = 0}, RigStance{.camera = 1}};
-    return plan.next(*problem, found, plan.wanted(found.model, stands), missed).first;
+    return plan.next(*problem, found, plan.wanted(found.model, stands), stands, missed).first;
   }
 
   RigModel believed;

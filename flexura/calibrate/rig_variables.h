@@ -42,6 +42,7 @@ class RigVariables {
   /// another order; std::out_of_range: of a marker beyond its end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
+  /// A number of the rig.
   struct Variable {
     std::string name;  ///< What it is, in words: "front: mount, x".
     double sigma = 0;  ///< The prior's.

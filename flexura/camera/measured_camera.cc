@@ -19,6 +19,9 @@ using Quaternion = std::array<double, 4>;
 // A rotation written with four digits is still one.
 constexpr double largest_error = 2e-3;
 
+// As of the cameras of experiments, px.
+constexpr NumberRange focal_lengths = {.min = 1e-3, .max = 1e7};
+
 Eigen::Matrix3d matrix_of(const Rows& rows) {
   Eigen::Matrix3d matrix;
   for (int i = 0; i < 3; ++i)
@@ -102,8 +105,9 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
   static const Table<C> table =
       Table<C>("camera", "A camera that stands still, as it was measured.")
           .field("name", &C::name, {.meaning = "Its name, for messages."})
-          .field("fx", &C::fx, {.meaning = "Focal length, px.", .range = above(0), .required = true})
-          .field("fy", &C::fy, {.meaning = "The same along v, px.", .range = above(0), .default_text = "fx"})
+          .field("fx", &C::fx, {.meaning = "Focal length, px.", .range = focal_lengths, .required = true})
+          .field("fy", &C::fy,
+                 {.meaning = "The same along v, px.", .range = focal_lengths, .default_text = "fx"})
           .field("cx", &C::cx,
                  {.meaning = "Principal point, px; (0, 0) is the middle of the top left pixel.",
                   .required = true})

@@ -16,8 +16,8 @@ double lyapunov_value(const LyapunovSample& sample) { return sample.kinetic + sa
 
 // The energies that came into play: what 1 is measured by. Of an arm that stays where it is these are
 // rounding.
+constexpr double rounding = 1e-12;
 double energy_scale(const std::vector<LyapunovSample>& samples) {
-  constexpr double rounding = 1e-12;
   double scale = rounding * std::max(std::abs(samples.front().gravity), std::abs(samples.front().elastic));
   for (const LyapunovSample& sample : samples)
     scale =
@@ -28,8 +28,8 @@ double energy_scale(const std::vector<LyapunovSample>& samples) {
 
 }  // namespace
 
-LyapunovMonitor::LyapunovMonitor(double tolerance, double settled)
-    : tolerance_(tolerance), settled_(settled) {}
+LyapunovMonitor::LyapunovMonitor(double tolerance, double settled, double rounding)
+    : tolerance_(tolerance), settled_(settled), rounding_(rounding) {}
 
 void LyapunovMonitor::add(const LyapunovSample& sample) {
   for (const double number : {sample.time, sample.kinetic, sample.potential, sample.gravity, sample.elastic,
@@ -52,11 +52,11 @@ LyapunovVerdict LyapunovMonitor::verdict() const {
     verdict.imbalance = std::max(verdict.imbalance, std::abs(value - lyapunov_value(start) + sample.taken -
                                                              start.taken + sample.damped - start.damped));
   }
-  const double scale = energy_scale(samples_);
+  const double scale = std::max(energy_scale(samples_), rounding_ / tolerance_);
   verdict.is_monotone = verdict.largest_rise <= tolerance_ * scale;
   verdict.is_balanced = verdict.imbalance <= tolerance_ * scale;
-  verdict.is_settled =
-      std::abs(lyapunov_value(samples_.back())) <= settled_ * lyapunov_value(start) + tolerance_ * scale;
+  verdict.is_settled = std::abs(lyapunov_value(samples_.back())) <=
+                       settled_ * lyapunov_value(start) + std::max(rounding_, rounding * scale);
   explain(verdict, scale);
   return verdict;
 }
@@ -70,7 +70,7 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
   if (least_taken < -tolerance_ * scale)
     verdict.reasons.emplace_back("the damping K is not positive: it gave the arm energy");
   else if (end.taken - start.taken + end.damped - start.damped <= tolerance_ * scale && !verdict.is_settled)
-    verdict.reasons.emplace_back("nothing takes the arm's energy: the damping K is 0");
+    verdict.reasons.emplace_back("damping took none of the arm's energy");
   if (lyapunov_value(end) < -tolerance_ * scale && end.potential < 0)
     verdict.reasons.emplace_back("the potential has no minimum at the target: it fell below its value there");
   if (!verdict.is_balanced) {

@@ -34,8 +34,9 @@ struct LyapunovVerdict {
 /// Watches W = T + Pi along a run; keeps every sample.
 class LyapunovMonitor {
  public:
-  /// `tolerance`: of W's balance, and of W at the end, share of the energies in play.
-  explicit LyapunovMonitor(double tolerance = 1e-6, double settled = 1e-3);
+  /// `tolerance`: of W's balance, share of the energies in play. `settled`: what may be left of W in the end,
+  /// share of W at the start. `rounding`: how much W is not known to whatever came into play, J.
+  explicit LyapunovMonitor(double tolerance = 1e-6, double settled = 1e-3, double rounding = 0);
 
   /// std::invalid_argument: a number that is not finite, a time not after the last one.
   void add(const LyapunovSample& sample);
@@ -45,7 +46,7 @@ class LyapunovMonitor {
  private:
   void explain(LyapunovVerdict& verdict, double scale) const;
 
-  double tolerance_, settled_;
+  double tolerance_, settled_, rounding_;
   std::vector<LyapunovSample> samples_;
 };
 

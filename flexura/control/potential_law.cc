@@ -57,9 +57,12 @@ std::vector<std::string> PotentialLaw::violations() const {
   if (gains_.stiffness.minCoeff() <= 0 || (has_lengths_ && gains_.length_stiffness <= 0))
     found.emplace_back("the potential has no minimum at the target: a stiffness k is not above 0");
   const Eigen::Matrix2d K = 0.5 * (gains_.damping + gains_.damping.transpose());
-  if (least_eigenvalue(K) <= 0 || (has_lengths_ && gains_.length_damping <= 0))
+  if (least_eigenvalue(K) <= 0)
     found.push_back(
         fmt::format("the damping K is not positive: its least eigenvalue is {:.3g}", least_eigenvalue(K)));
+  if (has_lengths_ && gains_.length_damping <= 0)
+    found.push_back(
+        fmt::format("the lengths' damping K is not positive: it is {:.3g}", gains_.length_damping));
   if (gains_.gravity_share != 1)
     found.push_back(
         fmt::format("gravity is compensated to {:.3g} %, not to 100 %", 100 * gains_.gravity_share));

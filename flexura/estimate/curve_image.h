@@ -23,6 +23,7 @@ class CurveImage {
 
   [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
 
+  /// A place of the image.
   struct Point {
     double place = 0;         ///< Counted in knots.
     Eigen::Vector2d pixel;    ///< Of the curve there.

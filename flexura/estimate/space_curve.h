@@ -15,6 +15,7 @@ namespace flexura {
 /// more.
 class SpaceCurve {
  public:
+  /// A place of the curve, and how its position depends on the unknowns.
   struct Knot {
     Eigen::Vector3d position;                           ///< p_WP, m.
     Eigen::Vector3d tangent;                            ///< Unit, W.

@@ -149,15 +149,33 @@ std::filesystem::path numbered(const std::filesystem::path& file, int number) {
   return result;
 }
 
-void save(const std::filesystem::path& file, const std::string& text) {
-  if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
-    std::filesystem::path kept;
-    for (int number = 1; kept.empty() || std::filesystem::exists(std::filesystem::symlink_status(kept));
-         ++number)
-      kept = numbered(file, number);
-    std::filesystem::rename(file, kept);
+bool is_there(const std::filesystem::path& file) {
+  return std::filesystem::exists(std::filesystem::symlink_status(file));
+}
+
+std::filesystem::path free_name(const std::filesystem::path& file) {
+  for (int number = 1;; ++number)
+    if (std::filesystem::path other = numbered(file, number); !is_there(other)) return other;
+}
+
+bool is_found_rig(const std::filesystem::path& file) {
+  constexpr std::size_t most_bytes = 1 << 24;
+  try {
+    (void)read_as<FoundRigFile>(parse_toml(read_text_file(file, most_bytes), file.string()));
+    return true;
+  } catch (const InputError&) {
+    return false;
   }
-  write_new_file(file, text);
+}
+
+// The rig of before keeps its text under another name; what is no such file keeps its name, too.
+void save(const std::filesystem::path& file, const std::string& text) {
+  if (!is_there(file)) return write_new_file(file, text);
+  const std::filesystem::path written = free_name(file);
+  write_new_file(written, text);
+  if (!is_found_rig(file)) return;
+  std::filesystem::rename(file, free_name(file));
+  std::filesystem::rename(written, file);
 }
 
 }  // namespace

@@ -1,17 +1,22 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/calibrate_results.h"
+#include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
+#include "tests/support/calibration_files.h"
 #include "tests/support/calibration_trials.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/quiet.h"
@@ -66,6 +71,56 @@ TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
     EXPECT_NEAR(left.zoom_ratio, 1, 0.005);
     for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.01);
   }
+}
+
+const std::string three_poses =
+    "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
+    "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
+
+// Where each camera's stage was sent, m.
+class StageMoves : public NobodyWatches {
+ public:
+  void camera_sent(double, const RigStance& stance) override {
+    places[stance.camera].insert(stance.stage.offset.x());
+  }
+  std::array<std::set<double>, 2> places;
+};
+
+TEST(CalibrateTaskFully, LeavesStagesAloneWhereItIsTold) {
+  for (const bool may : {false, true}) {
+    CalibrationBench bench(
+        small_calibration(fmt::format("images = 6\nstages = {}\n", may) + three_poses,
+                          "[[truth.camera]]\nname = \"side\"\nmount = { position = [-2.5, 0.5, 0], "
+                          "look_at = [0, 0.5, 0.05] }\n"));
+    StageMoves moves;
+    const RigSessionResult result = bench.calibrate_bundle(bench.ports(), moves);
+    EXPECT_TRUE(result.is_done) << result.reason;
+    for (const std::set<double>& places : moves.places) {
+      if (may) {
+        EXPECT_GT(places.size(), 1U);
+      } else {
+        EXPECT_EQ(places, std::set<double>{0});
+      }
+    }
+  }
+}
+
+TEST(CalibrateTaskFully, SavesARigBesideWhatIsNone) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wrong.toml";
+  const std::string text =
+      small_calibration("images = 4\nsave = \"wrong.toml\"\n" + three_poses, wrong_cameras);
+  write_new_file(file, text);
+  Quiet quiet;
+  for (const char* results : {"one", "two"}) {
+    const RunResult result =
+        run_experiment(load_experiment(file), make_new_folder(folder.path() / results), quiet);
+    ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+  }
+  EXPECT_EQ(read_text_file(file, 1 << 20), text) << "an experiment keeps its name";
+  const std::string rig = read_text_file(folder.path() / "one" / rig_file_name, 1 << 20);
+  EXPECT_EQ(read_text_file(folder.path() / "wrong-1.toml", 1 << 20), rig);
+  EXPECT_EQ(read_text_file(folder.path() / "wrong-2.toml", 1 << 20), rig);
 }
 
 // Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw

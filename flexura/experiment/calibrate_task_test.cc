@@ -82,14 +82,6 @@ class SeenLooks : public NobodyWatches {
   std::vector<ViewCandidate> missed;
 };
 
-RigSessionResult calibrate(CalibrationBench& bench, const RigPorts& ports, RigSessionWatcher& watcher) {
-  const auto& task = std::get<CalibrateTask>(bench.experiment().task.front());
-  const RigModel believed = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
-  return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
-                                  session_config(task, bench.experiment().arm, bench.experiment().cameras()),
-                                  watcher);
-}
-
 // A side camera that truly looks beside the arm, by m at its distance of 2.5 m.
 std::string looking_beside(double aside, const std::string& poses) {
   return small_calibration(
@@ -102,7 +94,7 @@ std::string looking_beside(double aside, const std::string& poses) {
 TEST(CalibrateTask, SearchesForAnArmThatItDoesNotSeeAtFirst) {
   CalibrationBench bench(looking_beside(1.15, three_poses));
   SeenLooks looks;
-  const RigSessionResult result = calibrate(bench, bench.ports(), looks);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports(), looks);
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_GT(looks.searches, 0);
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
@@ -115,7 +107,7 @@ TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
       "pose = [{ bends = [[0, -0.5], [0, -0.5], [0, -0.5]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
       "{ bends = [[-0.6, 0.7], [0.7, 0.6], [0.5, 0.8]] }]\n"));
   SeenLooks looks;
-  const RigSessionResult result = calibrate(bench, bench.ports(), looks);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports(), looks);
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_GT(looks.searches, 0);
   EXPECT_FALSE(looks.missed.empty());
@@ -149,7 +141,7 @@ TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   BlindZoom blind(*ports.cameras[1].camera, *ports.cameras[1].head);
   ports.cameras[1].camera = &blind;
   SeenLooks looks;
-  const RigSessionResult result = calibrate(bench, ports, looks);
+  const RigSessionResult result = bench.calibrate_bundle(ports, looks);
   EXPECT_FALSE(looks.missed.empty());
   const RigModel believed = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
   for (std::size_t i = 0; i < looks.missed.size(); ++i)

@@ -99,7 +99,7 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
                    {"Pi", [=](const DynamicsSample& at) { return power(pi(at)); }}}),
       charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
                   {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
-                   {"elastic", [](const DynamicsSample& at) { return at.energies.elastic; }},
+                   {"elastic", [&](const DynamicsSample& at) { return run.message(at).elastic_energy; }},
                    {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
                    {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
       charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "flexura/control/potential_run.h"
@@ -61,7 +62,13 @@ bool is_finite(const LyapunovSample& sample) {
 // Follows the run as long as it goes.
 void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& times, double share,
             Progress& progress) {
-  LyapunovMonitor monitor(1e-6, share);
+  // Of an arm that is at its target what is left is the integrator's: 1e-6 rad along it.
+  constexpr double least_turn = 1e-6;
+  const PotentialGains& gains = run.law.gains();
+  const std::vector<double>& lengths = plant.motion().arm().model().lengths;
+  const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  const double rounding = gains.stiffness.cwiseAbs().maxCoeff() * length * least_turn * least_turn;
+  LyapunovMonitor monitor(1e-6, share, rounding);
   const auto add = [&](const LyapunovSample& sample) {
     monitor.add(sample);
     run.samples.push_back({plant.motion().x(), sample});
@@ -211,6 +218,18 @@ void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, Moti
   }
 }
 
+void add_caveats(const std::vector<DynamicsRun>& runs, const Arm& arm, SafetyReport& report) {
+  double thickness = 0;
+  for (const Section& section : arm.sections)
+    thickness = std::max({thickness, 2 * section.radius[0], 2 * section.radius[1]});
+  for (const DynamicsRun& run : runs)
+    if (run.apart > thickness)
+      report.caveats.push_back(
+          fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend so "
+                      "far out of a plane are no arcs",
+                      run.name, run.apart));
+}
+
 SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress) {
   std::map<std::size_t, MotionPtr> performed;
   std::vector<DynamicsRun> runs;
@@ -218,6 +237,13 @@ SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progre
   SafetyReport report = Schedule(experiment, performed).check(&progress);
   for (const DynamicsRun& run : runs)
     if (!run.is_done()) report.notes.push_back(fmt::format("{}: {}", run.name, run.reason()));
+  add_caveats(runs, experiment.arm.arm(), report);
+  for (std::size_t i = 0; i < experiment.task.size(); ++i)
+    if (std::holds_alternative<DynamicsTask>(experiment.task[i]) && !performed.contains(i))
+      report.caveats.push_back(fmt::format(
+          "{}: judged by the straight way only: where it starts is known when the tasks before it "
+          "have ended",
+          task_name(experiment.task[i])));
   return report;
 }
 

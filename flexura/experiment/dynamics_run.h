@@ -63,6 +63,10 @@ struct DynamicsRun {
 void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, MotionPtr>& performed,
                         std::vector<DynamicsRun>& runs, Progress& progress);
 
+/// Says of which of these runs the check does not tell: the arcs that it judges are farther from the arm than
+/// the arm is thick.
+void add_caveats(const std::vector<DynamicsRun>& runs, const Arm& arm, SafetyReport& report);
+
 /// What the motions of an experiment would harm (Schedule::check), with those of run_known_dynamics. Why one
 /// is not as the theory has it is a note.
 [[nodiscard]] SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress);

@@ -141,11 +141,10 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
         Violation{"task.0.law.elasticity=\"ignored\"", "elasticity is neither cancelled nor part",
                   "the arm's elasticity is not compensated: 100 % of it is left"},
         Violation{"task.0.law.sign=-1", "has the sign -1, not +1", "it leads away from the target"},
-        Violation{"task.0.law.stiffness=[20, 0]", "a stiffness k is not above 0", "W has not settled yet"},
         Violation{"task.0.law.stiffness=[-5, 20]", "a stiffness k is not above 0",
                   "has no minimum at the target"},
         Violation{"task.0.law.damping=[[0, 0], [0, 0]]", "the damping K is not positive",
-                  "nothing takes the arm's energy"},
+                  "damping took none of the arm's energy"},
         Violation{"task.0.law.damping=[[4, 0], [0, -0.05]]",
                   "the damping K is not positive: its least eigenvalue is -0.05",
                   "it gave the arm energy"}}) {
@@ -162,6 +161,53 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
     EXPECT_THAT(write_json(*told.find("violations")), HasSubstr(violation.said));
     EXPECT_THAT(write_json(*told.find("verdict")->find("reasons")), HasSubstr(violation.shown));
   }
+}
+
+// W has no q in it then, so the energies tell nothing; what is not led stays where it comes to.
+TEST_F(Dynamics, LeavesAloneWhatNoStiffnessLeads) {
+  const RunResult result = run(dynamics_arm() + dynamics_task(bent_target), {"task.0.law.stiffness=[20, 0]"});
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  EXPECT_THAT(result.reasons, ElementsAre(HasSubstr("a stiffness k is not above 0")));
+  EXPECT_TRUE(dynamics(result).find("verdict")->find("reasons")->as<Node::Array>()->empty());
+  const auto all = samples(result);
+  EXPECT_LT(all.back().azimuth_error, 1e-3);
+  EXPECT_GT(all.back().elevation_error, 0.1);
+}
+
+// Nothing but rounding is left of W, whatever else comes into play.
+TEST_F(Dynamics, AnArmAtItsTargetIsThereWithoutWeightToo) {
+  for (const char* off : {"0", "1e-8", "-1e-7"}) {
+    const std::string target = fmt::format("target.bends = [[0.5, 0], [0.4, 0], [{}, 0]]\n", off);
+    const RunResult result =
+        run(dynamics_arm() + dynamics_task("target.bends = [[0.5, 0], [0.4, 0], [0, 0]]\n") +
+                dynamics_task("duration = 1\n" + target),
+            {"task.0.gravity=[0, 0, 0]", "task.1.gravity=[0, 0, 0]", "record.report=false"});
+    EXPECT_EQ(result.outcome, RunOutcome::done) << off << ": " << testing::PrintToString(result.reasons);
+  }
+}
+
+// Of weak springs in strong gravity no more may be left than of any others.
+TEST_F(Dynamics, IsDoneByItsOwnEnergyAlone) {
+  const RunResult result =
+      run(dynamics_arm() + dynamics_task("duration = 0.5\nlaw.stiffness = 0.1\n" + bent_target),
+          {"task.0.gravity=[0, -10000, 0]", "record.report=false"});
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  const auto all = samples(result);
+  EXPECT_GT(all.back().lyapunov, 1e-3 * all.front().lyapunov);
+}
+
+// By nearly half a turn and out of a plane a section is no arc.
+TEST_F(Dynamics, SaysWhereTheCheckJudgesAnotherShape) {
+  const auto caveats = [&](int degrees) {
+    const std::string file =
+        "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.02\n" +
+        dynamics_task(
+            fmt::format("target.azimuths_deg = [0, {}]\ntarget.elevations_deg = [0, 20]\n", degrees));
+    Quiet quiet;
+    return safety_with_dynamics(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
+  };
+  EXPECT_THAT(caveats(172), testing::Contains(HasSubstr("judged by arcs whose tip is up to")));
+  EXPECT_THAT(caveats(5), testing::Not(testing::Contains(HasSubstr("judged by arcs"))));
 }
 
 TEST_F(Dynamics, EndsWhereAnAngleIsNone) {

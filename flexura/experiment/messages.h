@@ -32,14 +32,17 @@ struct ArmStateMessage {
   std::optional<std::vector<double>> cord_angles;  ///< rad; planar arms.
 };
 
+/// foxglove.Vector3
 struct VectorMessage {
   double x = 0, y = 0, z = 0;
 };
 
+/// foxglove.Quaternion
 struct QuaternionMessage {
   double x = 0, y = 0, z = 0, w = 1;
 };
 
+/// foxglove.Pose
 struct PoseMessage {
   VectorMessage position;  ///< m
   QuaternionMessage orientation;
@@ -105,17 +108,20 @@ struct CalibrationMoveMessage {
   std::optional<std::array<double, 3>> stage;               ///< m
 };
 
+/// A marker as it was measured in a picture.
 struct MarkerMessage {
   double s = 0;         ///< m along the unstretched arm.
   double u = 0, v = 0;  ///< px
   double sigma = 0;     ///< px
 };
 
+/// A point of the median axis, likewise; `sigma` across it.
 struct AxisPointMessage {
   double u = 0, v = 0;  ///< px
   double sigma = 0;     ///< px
 };
 
+/// Any other number, likewise.
 struct SeenValueMessage {
   std::string name;  ///< With its unit.
   double value = 0;

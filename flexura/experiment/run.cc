@@ -136,10 +136,14 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   if (experiment.drive && is_safe)
     witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
   const Played played = player.play();
+  // What came of a task that decides on the way may lead elsewhere than what was looked at first.
+  const bool became_unsafe = is_safe && !player.safety().is_safe() && played.failure.empty();
+  if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
   if (!played.failure.empty()) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
   if (played.is_cancelled) result.outcome = RunOutcome::cancelled;
   witness.event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
   witness.close();
+  if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
   result.summary = summary_of(experiment, arm, player, played, result);
   if (experiment.record.cameras || !experiment.camera.empty()) {
     result.summary.as<Node::Table>()->push_back(

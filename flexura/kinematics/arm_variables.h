@@ -14,6 +14,7 @@ namespace flexura {
 /// value.
 class ArmVariables {
  public:
+  /// One section's.
   struct Part {
     double length;    ///< Not stretched, m.
     double max_bend;  ///< rad; may be infinite.

@@ -40,6 +40,7 @@ enum class InverseWish {
 /// Turns of 60 degrees and more are corners and mean what they say.
 [[nodiscard]] double polyline_error(const std::vector<Eigen::Vector3d>& points);
 
+/// Where the search begins, and what counts as found.
 struct InverseOptions {
   /// Where the search begins; one arc towards the target when left out.
   std::optional<ArmState> start = {};
@@ -63,6 +64,7 @@ enum class InverseOutcome {
 /// As answers call it: "converged", "not_reachable", "at_limit", "no_convergence".
 [[nodiscard]] std::string_view name_of(InverseOutcome outcome);
 
+/// What a search found, or why nothing.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
   bool is_proven = false;       ///< The target is out of reach of every state within the limits.

@@ -37,6 +37,7 @@ struct PlaneConfig {
   std::array<double, 3> normal = {0, 1, 0};
 };
 
+/// A ball.
 struct SphereConfig {
   std::string name = {};
   double ignore_base = 0;
@@ -53,13 +54,13 @@ struct CapsuleConfig {
   double radius = 0;
 };
 
+/// A box; its rotation is a quaternion (w, x, y, z) from its axes into the world's.
 struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
   std::array<double, 3> center = {0, 0, 0};
   std::array<double, 3> half_sizes = {0, 0, 0};
-  std::array<double, 4> rotation = {1, 0, 0,
-                                    0};  ///< Quaternion (w, x, y, z), the box's axes into the world's.
+  std::array<double, 4> rotation = {1, 0, 0, 0};
 };
 
 /// One `[[obstacle]]` of a file.

@@ -18,6 +18,7 @@ struct Frame {
   std::shared_ptr<const Picture> picture;  ///< Never null.
 };
 
+/// A camera that gives frames on its own.
 class CameraPort {
  public:
   virtual ~CameraPort() = default;

@@ -22,6 +22,7 @@ struct ArmReading {
   bool moving = false;                  ///< A commanded motion is under way or still to come.
 };
 
+/// An arm and its drives, simulated or real.
 class ArmPort {
  public:
   virtual ~ArmPort() = default;
@@ -45,6 +46,7 @@ struct HeadReading {
   bool moving = false;
 };
 
+/// A camera's pan/tilt head and its zoom.
 class HeadPort {
  public:
   virtual ~HeadPort() = default;
@@ -64,6 +66,7 @@ struct StageReading {
   bool moving = false;
 };
 
+/// What a camera's head is moved along by.
 class StagePort {
  public:
   virtual ~StagePort() = default;

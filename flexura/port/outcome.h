@@ -14,6 +14,7 @@ enum class FaultKind {
   refused,    ///< It answers, and does not do this: a position that is no number, a shape of another arm.
 };
 
+/// Why a device did not do or say what it was asked.
 struct PortFault {
   FaultKind kind = FaultKind::link_lost;
   std::string what;  ///< In words, with the device's name.

@@ -66,6 +66,7 @@ struct Etalon {
   Color line_albedo = {0.8, 0.04, 0.04};
 };
 
+/// An obstacle as cameras see it.
 struct VisibleObstacle {
   ObstacleConfig shape;
   Color albedo = {0.4, 0.45, 0.4};

@@ -16,6 +16,7 @@ namespace flexura {
 /// Three axes that are commanded together, and what connects them.
 class ThreeAxes {
  public:
+  /// What the motors say.
   struct Reading {
     double time;                ///< s
     Eigen::Vector3d positions;  ///< Of the motors, in steps of their resolution, within their limits.

@@ -20,6 +20,7 @@ namespace flexura {
 /// stays readable, and the writer takes nothing more.
 class McapWriter {
  public:
+  /// How the file is cut.
   struct Config {
     /// A chunk is closed once its messages take this many bytes (1 to 2^30); a bigger message is a chunk of
     /// its own.

@@ -14,6 +14,7 @@
 #include "flexura/view/answers.h"
 #include "flexura/view/pixel.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/conic.h"
 #include "flexura/vision/markers.h"
@@ -123,12 +124,9 @@ void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Nod
 
 // The circle through the axis; one so large that the picture shows a straight line is left out.
 void add_circle(const FoundArm& found, const std::vector<AxisSample>& axis, Node::Array& layers) {
-  constexpr std::size_t independent = 4;  // samples whose errors have little in common
-  constexpr double largest = 20;          // of the picture's width
-  Points points;
-  for (std::size_t i = 0; i < axis.size(); i += independent)
-    if (axis[i].is_seen) points.push_back(axis[i].pixel);
-  const std::optional<CircleFit> circle = fit_circle(points);
+  constexpr double largest = 20;  // of the picture's width
+  const AxisPoints points = independent_points(axis);
+  const std::optional<CircleFit> circle = fit_circle(points.pixels, points.sigma);
   if (!circle || circle->radius > largest * found.view.width) return;
   layers.push_back(layer("circle", "ellipse",
                          {{"center", {}, shown(circle->center)},

@@ -15,6 +15,7 @@
 
 namespace flexura {
 
+/// What is known of the picture beforehand, and how it is told what is arm.
 struct ArmFinderConfig {
   ThresholdConfig threshold;
   /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
@@ -40,6 +41,7 @@ enum class AxisEndKind {
 };
 const std::vector<std::string>& names_of(const AxisEndKind*);
 
+/// Where the median axis ends, and why there.
 struct AxisEnd {
   AxisEndKind kind = AxisEndKind::lost;
   Eigen::Vector2d pixel = {0, 0};

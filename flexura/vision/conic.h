@@ -23,12 +23,15 @@ struct CircleFit {
   /// How much what is left of neighbours (by their angle) is alike, in [-1, 1]: about 0 for points with noise
   /// of their own, near 1 where they lie on something else than a circle, or are smoothed.
   double misfit_correlation = 0;
+  double sigma = 0;  ///< The points' standard deviation, px, if it was known; else 0.
 
-  /// Whether the points verify the equation and what they leave of it is no figure of its own, as a polygon
-  /// or a drop leaves: neighbours alike by more than noise is, and more than points are smoothed to.
+  /// Whether the points verify the equation and what they leave of it is no figure of its own. Of points that
+  /// are known to `sigma`: no more than four times that. Of others a figure, as a polygon or a drop leaves,
+  /// is known by neighbours that are alike by more than noise is, and more than points are smoothed to.
   [[nodiscard]] bool is_circle() const {
     constexpr double most_alike = 0.9, smooth = 0.15;  // px
-    return is_verified && (misfit_correlation <= most_alike || rms <= smooth);
+    const bool is_noise = sigma > 0 ? rms <= 4 * sigma : misfit_correlation <= most_alike || rms <= smooth;
+    return is_verified && is_noise;
   }
 };
 
@@ -42,7 +45,8 @@ struct EllipseFit {
 };
 
 /// The circle through at least 3 points: V. Pratt's algebraic one (1987), then Gauss-Newton's method on the
-/// distances. None for points on a line, or fewer. `sigma`: the points' standard deviation, px, when it is
+/// distances. None for fewer points, or for such as lie on a line as far as they tell: their radius is not
+/// known to half of itself. `sigma`: the points' standard deviation, px, when it is
 /// known; otherwise their own rms serves.
 [[nodiscard]] std::optional<CircleFit> fit_circle(std::span<const Eigen::Vector2d> points,
                                                   std::optional<double> sigma = std::nullopt);

@@ -70,13 +70,18 @@ struct Skin {
   }
 };
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 Vector3d median_color(const std::vector<Vector3d>& colors) {
   Vector3d result;
   std::vector<double> values(colors.size());
   for (int c = 0; c < 3; ++c) {
     std::ranges::transform(colors, values.begin(), [&](const Vector3d& color) { return color[c]; });
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    result[c] = values[values.size() / 2];
+    result[c] = median(values);
   }
   return result;
 }
@@ -174,6 +179,14 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   if (arm.axis.size() < 8) return found;
   const Skin skin(picture, arm);
   if (skin.size() < 12) return found;
+  // The ground is in every pixel of a thinner arm.
+  constexpr double thinnest = 4;  // px
+  const double thickness = 2 * median(skin.half_widths);
+  if (thickness < thinnest) {
+    found.notes.push_back(fmt::format("the arm is {:.1f} px thick: no markers are looked for below {} px",
+                                      thickness, thinnest));
+    return found;
+  }
   const Vector3d own = median_color(skin.colors[middle_line]);
   const double bound = std::max(least_difference, 5 * arm.noise);
   std::size_t dropped = 0;

@@ -28,6 +28,7 @@ struct MarkerSighting {
   bool may_be_merged = false;
 };
 
+/// All that was seen of an arm's markers.
 struct MarkerSightings {
   std::vector<MarkerSighting> markers;  ///< From the base on.
   std::vector<std::string> notes;       ///< Of gaps where one may be missing, and what was left out.

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -43,8 +44,11 @@ std::vector<Eigen::Vector2d> border_of(const Image<std::uint8_t>& gray) {
   return points;
 }
 
-#define SKIP_WITHOUT(folder) \
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: " << (folder) << " is not there"
+#define SKIP_WITHOUT(folder)                                                                \
+  if (!std::filesystem::exists(folder)) {                                                   \
+    ASSERT_EQ(std::getenv("FLEXURA_REQUIRE_DATA"), nullptr) << (folder) << " is not there"; \
+    GTEST_SKIP() << "skipped: " << (folder) << " is not there";                             \
+  }
 
 TEST(RealPictures, TheEllipseIsThereToATenthOfAPixel) {
   SKIP_WITHOUT(visp);

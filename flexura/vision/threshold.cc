@@ -85,7 +85,7 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   for (const std::size_t end : {std::size_t{0}, std::size_t{255}}) {
     if (histogram[end] < 0.995 * count) continue;
     return fmt::format("the picture is {}: {:.4g} % of it is {}", end == 0 ? "black" : "saturated",
-                       100 * histogram[end] / count, end == 0 ? 0 : 255);
+                       100.0 * histogram[end] / count, end == 0 ? 0 : 255);
   }
   const double contrast = found.bright - found.dark;
   if (contrast < std::max(least_contrast, 3 * found.spread)) {

@@ -26,6 +26,7 @@ const std::vector<std::string>& names_of(const ThresholdMethod*);
 enum class Figure { dark, bright };
 const std::vector<std::string>& names_of(const Figure*);
 
+/// How figure and ground are told apart.
 struct ThresholdConfig {
   ThresholdMethod method = ThresholdMethod::otsu;
   double level = 127.5;          ///< With `fixed`, of 0 to 255.

@@ -42,11 +42,14 @@ class CalibrationBench : public RigBench {
     return calibrate_by_loop(ports, believed, config, watcher);
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports) {
+    NobodyWatches nobody;
+    return calibrate_bundle(ports, nobody);
+  }
+  RigSessionResult calibrate_bundle(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
-    NobodyWatches nobody;
     return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
-                                    session_config(task, experiment().arm, experiment().cameras()), nobody);
+                                    session_config(task, experiment().arm, experiment().cameras()), watcher);
   }
   /// What truly remains where the cameras stand.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }

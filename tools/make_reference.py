@@ -18,7 +18,6 @@ ROOT = Path(__file__).resolve().parent.parent
 
 SETTINGS = {
     "PROJECT_NAME": "Flexura",
-    "USE_MDFILE_AS_MAINPAGE": "docs/library.md",
     "STRIP_FROM_PATH": ".",
     "STRIP_FROM_INC_PATH": ".",
     "JAVADOC_AUTOBRIEF": "YES",
@@ -43,6 +42,14 @@ def version(root):
     return re.search(r"project\(flexura VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())[1]
 
 
+def front_page(root, out):
+    """docs/library.md without its links to other documents, which the reference lacks."""
+    text = (root / "docs/library.md").read_text()
+    page = out / "library.md"
+    page.write_text(re.sub(r"\[([^\]]*)\]\([\w./-]+\.md[^)]*\)", r"\1", text))
+    return str(page)
+
+
 def complaints(told):
     """What of Doxygen's words counts, with paths from the root."""
     for line in told.splitlines():
@@ -54,10 +61,12 @@ def complaints(told):
 def main():
     out = Path(sys.argv[1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
+    page = front_page(ROOT, out)
     settings = SETTINGS | {
+        "USE_MDFILE_AS_MAINPAGE": page,
         "PROJECT_NUMBER": version(ROOT),
         "OUTPUT_DIRECTORY": str(out),
-        "INPUT": " ".join(["docs/library.md", *interface(ROOT)]),
+        "INPUT": " ".join([page, *interface(ROOT)]),
     }
     text = "".join(f"{key} = {value}\n" for key, value in settings.items())
     done = subprocess.run(["doxygen", "-"], input=text, text=True, cwd=ROOT, capture_output=True, check=False)

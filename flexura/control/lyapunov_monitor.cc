@@ -16,9 +16,10 @@ double lyapunov_value(const LyapunovSample& sample) { return sample.kinetic + sa
 
 // The energies that came into play: what 1 is measured by. Of an arm that stays where it is these are
 // rounding.
-constexpr double rounding = 1e-12;
+constexpr double rounding_share = 1e-12;
 double energy_scale(const std::vector<LyapunovSample>& samples) {
-  double scale = rounding * std::max(std::abs(samples.front().gravity), std::abs(samples.front().elastic));
+  double scale =
+      rounding_share * std::max(std::abs(samples.front().gravity), std::abs(samples.front().elastic));
   for (const LyapunovSample& sample : samples)
     scale =
         std::max({scale, std::abs(lyapunov_value(sample)), std::abs(sample.gravity - samples.front().gravity),
@@ -56,7 +57,7 @@ LyapunovVerdict LyapunovMonitor::verdict() const {
   verdict.is_monotone = verdict.largest_rise <= tolerance_ * scale;
   verdict.is_balanced = verdict.imbalance <= tolerance_ * scale;
   verdict.is_settled = std::abs(lyapunov_value(samples_.back())) <=
-                       settled_ * lyapunov_value(start) + std::max(rounding_, rounding * scale);
+                       settled_ * lyapunov_value(start) + std::max(rounding_, rounding_share * scale);
   explain(verdict, scale);
   return verdict;
 }

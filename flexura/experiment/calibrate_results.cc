@@ -170,7 +170,10 @@ bool is_found_rig(const std::filesystem::path& file) {
 
 // The rig of before keeps its text under another name; what is no such file keeps its name, too.
 void save(const std::filesystem::path& file, const std::string& text) {
-  if (!is_there(file)) return write_new_file(file, text);
+  if (!is_there(file)) {
+    write_new_file(file, text);
+    return;
+  }
   const std::filesystem::path written = free_name(file);
   write_new_file(written, text);
   if (!is_found_rig(file)) return;

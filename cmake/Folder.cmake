@@ -92,7 +92,11 @@ function(flexura_test executable ctest_name label folder)
   flexura_use_pch(${executable} flexura_test_pch LINKS GTest::gmock OPTIONS ${FLEXURA_TEST_OPTIONS}
     HEADERS <gtest/gtest.h> <gmock/gmock.h> ${FLEXURA_PCH_HEADERS})
   add_test(NAME ${ctest_name} COMMAND ${executable})
-  set_tests_properties(${ctest_name} PROPERTIES LABELS ${label} TIMEOUT 600)
+  set(timeout 600)
+  if(FLEXURA_SANITIZE)
+    set(timeout 1200)
+  endif()
+  set_tests_properties(${ctest_name} PROPERTIES LABELS ${label} TIMEOUT ${timeout})
 endfunction()
 
 # A file with LLVMFuzzerTestOneInput becomes two programs' worth of use: with FLEXURA_FUZZ it is a libFuzzer

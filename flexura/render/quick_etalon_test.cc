@@ -111,7 +111,7 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
   for_random_cases(1000, [&](TestRandom& random) {
     Scene scene = etalon_scene(random);
     Etalon& etalon = *scene.etalon;
-    etalon.albedo = Color::Constant(random.uniform(0, 1)), etalon.line_width = 0;
+    etalon.albedo = Color::Constant(random.uniform(0, 1));
     const Eigen::Vector3d axis = etalon.X_WE.rotation.col(1);
     const Eigen::Vector3d end = etalon.X_WE.position + (random.integer(0, 1) - 0.5) * etalon.height * axis;
     const double far = random.uniform(1.5, 4), f = width * random.uniform(0.6, 8);  // m, px

@@ -19,7 +19,7 @@ Node pixel_pair(const Eigen::Vector2d& value) {
 }
 
 Node circle_node(const std::optional<CircleFit>& fit) {
-  if (!fit) return {};
+  if (!fit || !fit->is_curved()) return {};
   return TableMaker()
       .add("center", pixel_pair(fit->center))
       .add("radius", number_node(px(fit->radius)))

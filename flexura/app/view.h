@@ -15,8 +15,7 @@ namespace flexura {
 /// What is served where the program was built without the page.
 inline constexpr std::string_view no_page_text =
     "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
-    "and "
-    "npm.\n";
+    "and npm.\n";
 
 /// How a viewer is reached.
 struct ViewerArguments {

@@ -1,12 +1,18 @@
 #include "flexura/experiment/dynamics_plant.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "flexura/experiment/dynamics_run.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
+#include "tests/support/dynamics_files.h"
+#include "tests/support/quiet.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
@@ -90,6 +96,20 @@ TEST(AnglesAlongArm, GoOnContinuouslyFromTheBase) {
   EXPECT_LT(angles.largest_elevation(), 0.03);  // Chords of steps along it.
   arm.kind = ArmKind::spatial;
   EXPECT_NEAR(AnglesAlongArm(arm, {{{0, -1}, {0, 0}}, {1, 1}}).largest_elevation(), 1, 1e-9);
+}
+
+// By nearly half a turn and out of a plane a section is no arc.
+TEST(DynamicsPlant, IsToldOfWhereTheCheckJudgesAnotherShape) {
+  const auto caveats = [&](int degrees) {
+    const std::string file =
+        "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.02\n" +
+        dynamics_task(
+            fmt::format("target.azimuths_deg = [0, {}]\ntarget.elevations_deg = [0, 20]\n", degrees));
+    Quiet quiet;
+    return safety_with_dynamics(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
+  };
+  EXPECT_THAT(caveats(172), testing::Contains(testing::HasSubstr("judged by arcs whose tip is up to")));
+  EXPECT_THAT(caveats(5), testing::Not(testing::Contains(testing::HasSubstr("judged by arcs"))));
 }
 
 }  // namespace

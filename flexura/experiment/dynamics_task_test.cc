@@ -196,20 +196,6 @@ TEST_F(Dynamics, IsDoneByItsOwnEnergyAlone) {
   EXPECT_GT(all.back().lyapunov, 1e-3 * all.front().lyapunov);
 }
 
-// By nearly half a turn and out of a plane a section is no arc.
-TEST_F(Dynamics, SaysWhereTheCheckJudgesAnotherShape) {
-  const auto caveats = [&](int degrees) {
-    const std::string file =
-        "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.02\n" +
-        dynamics_task(
-            fmt::format("target.azimuths_deg = [0, {}]\ntarget.elevations_deg = [0, 20]\n", degrees));
-    Quiet quiet;
-    return safety_with_dynamics(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
-  };
-  EXPECT_THAT(caveats(172), testing::Contains(HasSubstr("judged by arcs whose tip is up to")));
-  EXPECT_THAT(caveats(5), testing::Not(testing::Contains(HasSubstr("judged by arcs"))));
-}
-
 TEST_F(Dynamics, EndsWhereAnAngleIsNone) {
   const RunResult result =
       run(dynamics_arm() + dynamics_task("law.sign = -1\n" + bent_target) + "[[task]]\nkind = \"hold\"\n");

@@ -54,6 +54,18 @@ TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
   });
 }
 
+TEST(EtalonLoop, ReadsEachCameraByItsOwnBitDepth) {
+  TestRandom random(1);
+  std::string text = etalon_rig("method = \"etalon\"\n", small({wrong_start(random), wrong_start(random)}));
+  const std::size_t side = text.find("sensor = {", text.find("name = \"side\""));
+  ASSERT_NE(side, std::string::npos);
+  text.insert(side + std::string("sensor = {").size(), " bits = 12,");
+  CalibrationBench bench(text);
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(std::abs(bench.truth(result).angle), 0.5 * a_degree);
+}
+
 TEST(EtalonLoop, StopsWhereTheCylinderIsOutOfView) {
   WrongStart away;
   away.pan = 1.2;

@@ -127,7 +127,7 @@ void add_circle(const FoundArm& found, const std::vector<AxisSample>& axis, Node
   constexpr double largest = 20;  // of the picture's width
   const AxisPoints points = independent_points(axis);
   const std::optional<CircleFit> circle = fit_circle(points.pixels, points.sigma);
-  if (!circle || circle->radius > largest * found.view.width) return;
+  if (!circle || !circle->is_curved() || circle->radius > largest * found.view.width) return;
   layers.push_back(layer("circle", "ellipse",
                          {{"center", {}, shown(circle->center)},
                           {"axes", {}, {Node::Array{shown(circle->radius), shown(circle->radius)}, {}}},

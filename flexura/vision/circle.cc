@@ -148,8 +148,6 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optio
   const double spread = sigma.value_or(count > 3 ? std::sqrt(squares / (count - 3)) : 0);
   fit.sigma = sigma.value_or(0);
   fit.covariance = spread * spread * normal.inverse();
-  constexpr double least_known = 0.5;
-  if (!(std::sqrt(fit.covariance(2, 2)) <= least_known * fit.radius)) return std::nullopt;
   go_around(points, fit);
   // Five points or fewer lie on an ellipse whatever they are.
   constexpr std::size_t decided = 6;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,6 +26,11 @@ struct CircleFit {
   double misfit_correlation = 0;
   double sigma = 0;  ///< The points' standard deviation, px, if it was known; else 0.
 
+  /// Whether the points tell a circle from a line: its radius is known to half of itself.
+  [[nodiscard]] bool is_curved() const {
+    constexpr double least_known = 0.5;
+    return std::sqrt(covariance(2, 2)) <= least_known * radius;
+  }
   /// Whether the points verify the equation and what they leave of it is no figure of its own. Of points that
   /// are known to `sigma`: no more than four times that. Of others a figure, as a polygon or a drop leaves,
   /// is known by neighbours that are alike by more than noise is, and more than points are smoothed to.
@@ -45,8 +51,7 @@ struct EllipseFit {
 };
 
 /// The circle through at least 3 points: V. Pratt's algebraic one (1987), then Gauss-Newton's method on the
-/// distances. None for fewer points, or for such as lie on a line as far as they tell: their radius is not
-/// known to half of itself. `sigma`: the points' standard deviation, px, when it is
+/// distances. None for points on a line, or fewer. `sigma`: the points' standard deviation, px, when it is
 /// known; otherwise their own rms serves.
 [[nodiscard]] std::optional<CircleFit> fit_circle(std::span<const Eigen::Vector2d> points,
                                                   std::optional<double> sigma = std::nullopt);

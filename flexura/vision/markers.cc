@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace flexura {
@@ -70,7 +71,8 @@ struct Skin {
   }
 };
 
-double median(std::vector<double> values) {
+// Reorders them.
+double median(std::span<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
@@ -181,7 +183,8 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   if (skin.size() < 12) return found;
   // The ground is in every pixel of a thinner arm.
   constexpr double thinnest = 4;  // px
-  const double thickness = 2 * median(skin.half_widths);
+  std::vector<double> half_widths = skin.half_widths;
+  const double thickness = 2 * median(half_widths);
   if (thickness < thinnest) {
     found.notes.push_back(fmt::format("the arm is {:.1f} px thick: no markers are looked for below {} px",
                                       thickness, thinnest));

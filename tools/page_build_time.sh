@@ -25,7 +25,7 @@ cmake --preset release >>log.txt
 # What comes before them is not theirs.
 ninja -C build/release -j"$(nproc)" flexura_experiment >>log.txt
 export CCACHE_DISABLE=1
-took "the page: \`vite build\`, compressing, embedding" ninja -C build/release -j1 embedded
+took "the page: \`vite build\`, compressing, embedding" ninja -C build/release -j1 flexura_app_page
 took "compiling \`flexura/serve\`" ninja -C build/release -j1 flexura_serve
 took "compiling \`flexura/view\`" ninja -C build/release -j1 flexura_view
 cd "$root"

@@ -173,8 +173,8 @@ class StudyRig {
     believed_ = rig_model(gray_.experiment().arm.arm(), gray_.experiment().cameras());
     if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
       // And 1 % of focal length, believed.
-      for (RigCamera& camera : believed_.cameras)
-        camera.config.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
+      for (CameraConfig& camera : believed_.cameras)
+        camera.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
       return;
     }
     const RigSessionResult result = colored_.calibrate_bundle(colored_.ports());

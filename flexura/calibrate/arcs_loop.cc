@@ -192,11 +192,10 @@ ArcsLoop::Wanted ArcsLoop::wanted() const {
   std::array<RigStance, 2> stances = {loop_.stance(0), loop_.stance(1)};
   std::array<double, 2> pans = {0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
-    const RigCamera& camera = model().cameras[loop_.config().cameras[i]];
-    const Eigen::Matrix3d R_WM = camera.config.mount.pose().rotation;
-    const Eigen::Vector3d u = R_WM.transpose() * plan_.ideal[i].X_WC.rotation.col(2);
-    stances[i].head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0)) - camera.tilt_zero;
-    pans[i] = stances[i].head.pan = std::atan2(-u.x(), u.z()) - camera.pan_zero;
+    const Camera camera(model().cameras[loop_.config().cameras[i]]);
+    const Eigen::Matrix3d& R_WM = camera.mount().rotation;
+    stances[i].head = camera.looking_along(plan_.ideal[i].X_WC.rotation.col(2), stances[i].head.zoom);
+    pans[i] = stances[i].head.pan;
     const double tilt = stances[i].head.tilt;
     stances[i] = loop_.commandable_stance(i, stances[i]);
     // Where the pupil will be by then decides how far the stage goes.

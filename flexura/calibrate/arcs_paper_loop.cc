@@ -99,7 +99,8 @@ LookLoop::Trouble ArcsPaperLoop::go_around(std::size_t i, Orbit& orbit) {
   const Eigen::Vector3d way(-std::sin(ellipse->angle), std::cos(ellipse->angle),
                             0);  // Along the shorter axis.
   RigStance next = loop_.stance(i);
-  const Eigen::Matrix3d R_MC = pan_rotation(next.head.pan) * tilt_rotation(next.head.tilt);
+  const auto angles = Camera(loop_.model(i)).angles(next.head);
+  const Eigen::Matrix3d R_MC = pan_rotation(angles[0]) * tilt_rotation(angles[1]);
   const Eigen::Vector3d slide = orbit.side * distance * std::tan(tilt) * (R_MC * way);
   next.stage.offset += Eigen::Vector3d(slide.x(), slide.y(), 0);
   // It keeps looking at the centre: what goes right turns left.

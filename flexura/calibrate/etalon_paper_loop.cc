@@ -94,7 +94,7 @@ PaperTrouble EtalonPaperLoop::turn_away(std::size_t i, bool& is_turned) {
   const auto off = [&](double u) { return std::abs(u - counts_[i].middle); };
   const double outer = off(axes.front()) > off(axes.back()) ? axes.front() : axes.back();
   const Intrinsics lens = loop_.lens(i);
-  const auto width = static_cast<double>(loop_.model(i).config.sensor.width);
+  const auto width = static_cast<double>(loop_.model(i).sensor.width);
   constexpr double margin = 8;  // px, more than half of a line's width.
   const double beyond = outer < counts_[i].middle ? -margin : width - 1 + margin;
   const double turn = std::atan((beyond - lens.cx) / lens.fx) - std::atan((outer - lens.cx) / lens.fx);

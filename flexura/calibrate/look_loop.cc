@@ -19,7 +19,7 @@ const CameraConfig& camera_of(const RigPorts& ports, const RigModel& believed, c
                               std::size_t i) {
   if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
     throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
-  return believed.cameras.at(config.cameras[i]).config;
+  return believed.cameras.at(config.cameras[i]);
 }
 
 }  // namespace

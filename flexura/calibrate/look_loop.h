@@ -49,8 +49,10 @@ class LookLoop {
   [[nodiscard]] const LoopConfig& config() const { return config_; }
   [[nodiscard]] const RigModel& believed() const { return believed_; }
   [[nodiscard]] const Camera& camera(std::size_t i) const { return cameras_[i]; }
-  [[nodiscard]] const RigCamera& model(std::size_t i) const { return believed_.cameras[config_.cameras[i]]; }
-  [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).config.name; }
+  [[nodiscard]] const CameraConfig& model(std::size_t i) const {
+    return believed_.cameras[config_.cameras[i]];
+  }
+  [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
   /// As sent.
   [[nodiscard]] const RigStance& stance(std::size_t i) const { return stands_[i]; }
   [[nodiscard]] const RigStance& start(std::size_t i) const { return result_.start[i]; }

@@ -19,22 +19,6 @@ namespace {
 
 constexpr double half_pi = 1.57079632679489661923;
 
-// The angles of a head, zeros included, whose camera looks along a direction of W.
-HeadState along(const Camera& camera, HeadState head, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d u = (camera.mount().rotation.transpose() * direction).normalized();
-  head.tilt = std::asin(std::clamp(-u.y(), -1.0, 1.0)), head.pan = std::atan2(-u.x(), u.z());
-  return head;
-}
-
-HeadState with_zeros(const RigCamera& camera, HeadState head, double sign) {
-  head.pan += sign * camera.pan_zero, head.tilt += sign * camera.tilt_zero;
-  return head;
-}
-
-Pose pose_of(const RigCamera& model, const Camera& camera, const RigStance& stance) {
-  return camera.pose(stance.stage, with_zeros(model, stance.head, 1));
-}
-
 double focal_of(const Camera& camera, double zoom) {
   const Intrinsics lens = camera.lens().at(zoom);
   return std::sqrt(lens.fx * lens.fy);
@@ -62,7 +46,7 @@ class Seeker {
       : wish_(wish),
         stances_(wish.now),
         models_{&model.cameras.at(wish.now[0].camera), &model.cameras.at(wish.now[1].camera)},
-        cameras_{Camera(models_[0]->config), Camera(models_[1]->config)} {
+        cameras_{Camera(*models_[0]), Camera(*models_[1])} {
     if (wish.now[0].camera == wish.now[1].camera)
       throw std::invalid_argument("a wanted configuration of one camera with itself");
   }
@@ -88,7 +72,7 @@ class Seeker {
  private:
   void aim(std::size_t i) { stances_[i].head = aimed(*models_[i], stances_[i], wish_.target); }
   [[nodiscard]] Eigen::Vector3d sight(std::size_t i) const {
-    return wish_.target - pose_of(*models_[i], cameras_[i], stances_[i]).position;
+    return wish_.target - cameras_[i].pose(stances_[i].stage, stances_[i].head).position;
   }
   [[nodiscard]] double depth(std::size_t i) const { return sight(i).norm(); }
 
@@ -166,7 +150,7 @@ class Seeker {
     look_along(0, so3_exp(half) * a), look_along(1, so3_exp(-half) * b);
   }
   void look_along(std::size_t i, const Eigen::Vector3d& direction) {
-    stances_[i].head = with_zeros(*models_[i], along(cameras_[i], stances_[i].head, direction), -1);
+    stances_[i].head = cameras_[i].looking_along(direction, stances_[i].head.zoom);
   }
 
   // Of the positions around the wanted one, those with the most nearly orthogonal axes, and of these the ones
@@ -204,8 +188,8 @@ class Seeker {
       for (std::size_t j = 0; j < 2; ++j) {
         const AxisConfig& axis = cameras_[i].head_axes()[j];
         if (std::abs(is[j] - should[j]) > axis.resolution * (1 + 1e-9) + 1e-12)
-          result.notes.push_back(fmt::format("{}: {} ends at {:.4f} rad, wanted {:.4f}",
-                                             models_[i]->config.name, names[j], is[j], should[j]));
+          result.notes.push_back(fmt::format("{}: {} ends at {:.4f} rad, wanted {:.4f}", models_[i]->name,
+                                             names[j], is[j], should[j]));
       }
     }
     if (is_zoom_short_) result.notes.emplace_back("no zoom that both cameras have shows the target alike");
@@ -219,7 +203,7 @@ class Seeker {
 
   const RigWish& wish_;
   std::array<RigStance, 2> stances_, wanted_;
-  std::array<const RigCamera*, 2> models_;
+  std::array<const CameraConfig*, 2> models_;
   std::array<Camera, 2> cameras_;
   std::array<double, 2> start_ = {0, 0};
   double magnification_ = 0;
@@ -252,22 +236,22 @@ double zoom_at(const Camera& camera, double ratio) {
   return 0.5 * (low + high);
 }
 
-HeadState aimed(const RigCamera& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
-  const Camera camera(model.config);
-  HeadState head = with_zeros(model, stance.head, 1);
+HeadState aimed(const CameraConfig& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
+  const Camera camera(model);
+  HeadState head = stance.head;
   // The pupil moves with the head; each round leaves a share of its lever over the distance.
   constexpr int most = 60;
   for (int round = 0; round < most; ++round) {
-    const HeadState next = along(camera, head, p_WP - camera.pose(stance.stage, head).position);
+    const HeadState next = camera.looking_along(p_WP - camera.pose(stance.stage, head).position, head.zoom);
     const bool is_same = next == head;
     head = next;
     if (is_same) break;
   }
-  return with_zeros(model, head, -1);
+  return head;
 }
 
-HeadState commanded_head(const RigCamera& model, const HeadState& head) {
-  const Camera camera(model.config);
+HeadState commanded_head(const CameraConfig& model, const HeadState& head) {
+  const Camera camera(model);
   const auto& [pan, tilt, zoom] = camera.head_axes();
   return {commandable(pan, head.pan), commandable(tilt, head.tilt), commandable(zoom, head.zoom)};
 }
@@ -278,9 +262,8 @@ RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& st
   std::array<Eigen::Vector3d, 2> axes;
   std::array<double, 2> sizes = {1, 1};
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
-    const RigCamera& camera_model = model.cameras.at(stances[i].camera);
-    const Camera camera(camera_model.config);
-    const Pose X_WC = pose_of(camera_model, camera, stances[i]);
+    const Camera camera(model.cameras.at(stances[i].camera));
+    const Pose X_WC = camera.pose(stances[i].stage, stances[i].head);
     const Eigen::Vector3d p_CT = X_WC.inverse() * target;
     axes[i] = X_WC.rotation.col(2);
     left.aim[i] = -p_CT.head<2>();

@@ -16,10 +16,11 @@ namespace flexura {
 
 /// The pan and tilt, as the head counts them, that bring a point of W onto the camera's optical axis, from
 /// where the stance's stage and zoom stand. Not drawn to the head's limits or steps.
-[[nodiscard]] HeadState aimed(const RigCamera& model, const RigStance& stance, const Eigen::Vector3d& p_WP);
+[[nodiscard]] HeadState aimed(const CameraConfig& model, const RigStance& stance,
+                              const Eigen::Vector3d& p_WP);
 
 /// The nearest position of the head that can be commanded.
-[[nodiscard]] HeadState commanded_head(const RigCamera& model, const HeadState& head);
+[[nodiscard]] HeadState commanded_head(const CameraConfig& model, const HeadState& head);
 
 /// The lens's positions of its shortest focal length and of its longest, within the head's limits.
 [[nodiscard]] std::array<double, 2> zoom_ends(const Camera& camera);

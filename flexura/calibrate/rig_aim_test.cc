@@ -18,11 +18,11 @@ constexpr double step = 0.075 * degree;
 // A rig as calibrations find them: nothing is where it was meant to be.
 RigModel found_rig(TestRandom& random) {
   RigModel model = true_rig(believed_rig(), {}, random);
-  for (RigCamera& camera : model.cameras) {
-    camera.pan_zero = random.uniform(-0.02, 0.02), camera.tilt_zero = random.uniform(-0.02, 0.02);
-    for (double& offset : camera.config.head.pupil) offset = random.uniform(-0.05, 0.05);
-    for (double& offset : camera.config.head.tilt_axis) offset = random.uniform(-0.05, 0.05);
-    camera.config.head.pupil_shift = random.uniform(-0.005, 0.005);
+  for (CameraConfig& camera : model.cameras) {
+    camera.head.pan.zero = random.uniform(-0.02, 0.02), camera.head.tilt.zero = random.uniform(-0.02, 0.02);
+    for (double& offset : camera.head.pupil) offset = random.uniform(-0.05, 0.05);
+    for (double& offset : camera.head.tilt_axis) offset = random.uniform(-0.05, 0.05);
+    camera.head.pupil_shift = random.uniform(-0.005, 0.005);
   }
   return model;
 }
@@ -40,9 +40,8 @@ TEST(Aim, BringsThePointOntoTheAxis) {
     const RigModel model = found_rig(random);
     const Eigen::Vector3d target = random.vector<3>(-0.3, 0.6);
     const RigStance stance{1, {0, 0, random.uniform(1, 3)}, {random.vector<3>(-0.3, 0.3)}};
-    HeadState head = aimed(model.cameras[1], stance, target);
-    head.pan += model.cameras[1].pan_zero, head.tilt += model.cameras[1].tilt_zero;
-    const Pose X_WC = Camera(model.cameras[1].config).pose(stance.stage, head);
+    const HeadState head = aimed(model.cameras[1], stance, target);
+    const Pose X_WC = Camera(model.cameras[1]).pose(stance.stage, head);
     EXPECT_LE((X_WC.inverse() * target).head<2>().norm(), 1e-12);
     EXPECT_GT((X_WC.inverse() * target).z(), 0);
   });
@@ -51,15 +50,14 @@ TEST(Aim, BringsThePointOntoTheAxis) {
 TEST(WantedRig, IsReachedExactlyWhereNothingHasSteps) {
   for_random_cases(50, [](TestRandom& random) {
     RigModel model = found_rig(random);
-    for (RigCamera& camera : model.cameras)
-      camera.config.head.pan.resolution = camera.config.head.tilt.resolution = 0;
+    for (CameraConfig& camera : model.cameras) camera.head.pan.resolution = camera.head.tilt.resolution = 0;
     const WantedRig wanted = wanted_rig(model, wish_for(random));
     EXPECT_TRUE(wanted.notes.empty());
     EXPECT_NEAR(wanted.remainder.angle, 0, 1e-10);
     for (const Eigen::Vector2d& aim : wanted.remainder.aim) EXPECT_LE(aim.norm(), 1e-10);
     EXPECT_NEAR(wanted.remainder.zoom_ratio, 1, 1e-4);  // The pupils' shift is followed in five rounds.
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto limits = Camera(model.cameras[i].config).stage_axes()[0].limits;
+      const auto limits = Camera(model.cameras[i]).stage_axes()[0].limits;
       EXPECT_LE(wanted.stances[i].stage.offset.cwiseAbs().maxCoeff(), limits[1]);
     }
   });
@@ -83,8 +81,7 @@ TEST(WantedRig, TurnsTheHeadsWhereTheStagesCannot) {
     RigModel model = found_rig(random);
     RigWish wish = wish_for(random);
     wish.may_use_stages = false;
-    for (RigCamera& camera : model.cameras)
-      camera.config.head.pan.resolution = camera.config.head.tilt.resolution = 0;
+    for (CameraConfig& camera : model.cameras) camera.head.pan.resolution = camera.head.tilt.resolution = 0;
     const WantedRig wanted = wanted_rig(model, wish);
     EXPECT_NEAR(wanted.remainder.angle, 0, 1e-10);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(wanted.stances[i].stage, wish.now[i].stage);
@@ -96,7 +93,7 @@ TEST(WantedRig, TurnsTheHeadsWhereTheStagesCannot) {
 TEST(WantedRig, SaysWhichAxisEndsTooEarly) {
   TestRandom random(1);
   RigModel model = found_rig(random);
-  model.cameras[0].config.head.pan.limits = {0.5, 1};
+  model.cameras[0].head.pan.limits = {0.5, 1};
   const WantedRig wanted = wanted_rig(model, wish_for(random));
   ASSERT_FALSE(wanted.notes.empty());
   EXPECT_EQ(wanted.notes[0].substr(0, 10), "front: pan") << testing::PrintToString(wanted.notes);
@@ -105,7 +102,7 @@ TEST(WantedRig, SaysWhichAxisEndsTooEarly) {
 
 TEST(WantedRig, ReportsTheRollThatNoHeadCorrects) {
   RigModel model = believed_rig();
-  model.cameras[0].config.mount.roll = 0.02;
+  model.cameras[0].mount.roll = 0.02;
   RigWish wish;
   wish.target = {0, 0.5, 0};
   wish.now = {RigStance{0, {}, {}}, RigStance{1, {}, {}}};

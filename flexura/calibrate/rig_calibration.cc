@@ -49,7 +49,7 @@ Eigen::VectorXd start_of(const RigVariables& variables, const Detour& detour) {
   const Eigen::Vector3d turn(0, detour.turn, 0);
   for (std::size_t i = 0; i < variables.guess().cameras.size(); ++i) {
     const Eigen::Vector3d& base = variables.guess().arm.X_WB.position;
-    const Eigen::Vector3d way = vector(variables.guess().cameras[i].config.mount.position) - base;
+    const Eigen::Vector3d way = vector(variables.guess().cameras[i].mount.position) - base;
     const Eigen::Vector3d move = detour.nearer * (so3_exp(turn) * way) - way;
     for (Eigen::Index j = 0; j < 3; ++j) {
       const auto set = [&](Eigen::Index slot, double value) {

@@ -77,7 +77,7 @@ TEST(RigCalibration, SolvesMinimalCasesExactly) {
     for (const std::size_t markers : {std::size_t{3}, std::size_t{4}}) {
       RigTrialConfig config;
       config.are_heads_exact = true, config.noise = 0, config.markers = markers, config.points = 0;
-      config.focal = config.principal_point = config.bend = config.length = 0;
+      config.focal = config.principal_point = config.bend = config.length = config.zero = 0;
       config.turn = 3 * degree, config.shift = 0.1;
       RigModel believed = believed_rig();
       believed.cameras.resize(1);
@@ -92,8 +92,7 @@ TEST(RigCalibration, SolvesMinimalCasesExactly) {
       ASSERT_TRUE(found.is_found) << found.reason;
       EXPECT_LE(found.rms, 1e-6);
       if (markers == 3) continue;
-      const Pose is = found.model.cameras[0].config.mount.pose(),
-                 should = trial.truth().cameras[0].config.mount.pose();
+      const Pose is = found.model.cameras[0].mount.pose(), should = trial.truth().cameras[0].mount.pose();
       EXPECT_LE((is.position - should.position).norm(), 1e-7);
       EXPECT_LE((is.rotation - should.rotation).norm(), 1e-7);
     }
@@ -110,7 +109,7 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
     RigPrior prior = all_held(believed_rig());
     prior.arm.bend_gain = unknown;
     for (CameraPrior& camera : prior.cameras)
-      camera.position = camera.rotation = camera.focal = camera.principal_point = unknown;
+      camera.position = camera.rotation = camera.tilt_zero = camera.focal = camera.principal_point = unknown;
     RigProblem problem(believed_rig(), prior, trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
@@ -167,12 +166,12 @@ TEST(RigCalibration, IsTheSameWhereverTheWorldIsCountedFrom) {
     const Pose X_VW{so3_exp({0.3, -1.0, 0.4}), {3, -2, 5}};
     RigModel there = here;
     there.arm.X_WB = X_VW * here.arm.X_WB;
-    for (RigCamera& camera : there.cameras) {
-      const Pose X_VM = X_VW * camera.config.mount.pose();
+    for (CameraConfig& camera : there.cameras) {
+      const Pose X_VM = X_VW * camera.mount.pose();
       const Eigen::Vector4d q = quaternion_wxyz(X_VM.rotation);
       for (std::size_t i = 0; i < 3; ++i)
-        camera.config.mount.position[i] = X_VM.position[static_cast<Eigen::Index>(i)];
-      camera.config.mount.look_at.reset(), camera.config.mount.rotation = {q[0], q[1], q[2], q[3]};
+        camera.mount.position[i] = X_VM.position[static_cast<Eigen::Index>(i)];
+      camera.mount.look_at.reset(), camera.mount.rotation = {q[0], q[1], q[2], q[3]};
     }
     RigProblem problem(here, rough_prior(here), trial.seen()), moved(there, rough_prior(there), trial.seen());
     const RigCalibration a = calibrate_rig(problem), b = calibrate_rig(moved);
@@ -250,7 +249,7 @@ TEST(RigProblem, IsNoneWhereALensIsNone) {
   const RigTrial trial = planned_trial({}, random, 1);
   RigModel believed = believed_rig();
   for (const double ratio : {1.0, 1.05, 3.0})
-    believed.cameras[0].config.lens.zoom.push_back(
+    believed.cameras[0].lens.zoom.push_back(
         {.ratio = ratio, .count = {}, .fx = {}, .fy = {}, .cx = {}, .cy = {}, .distortion = {}});
   RigProblem problem(believed, rough_prior(believed), trial.seen());
   const RigVariables& variables = problem.variables();

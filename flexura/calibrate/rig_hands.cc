@@ -26,7 +26,7 @@ RigHands::RigHands(const RigPorts& ports, const RigModel& believed, const RigPat
       sections_(believed.arm.sections.size()),
       patience_(patience),
       sent_(ports.cameras.size()) {
-  for (const RigCamera& camera : believed.cameras) cameras_.emplace_back(camera.config);
+  for (const CameraConfig& camera : believed.cameras) cameras_.emplace_back(camera);
 }
 
 std::variant<ArmState, std::string> RigHands::arm() const {

@@ -15,22 +15,21 @@ RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras) {
   RigModel model;
   model.arm = arm;
   model.bend_gains.assign(arm.sections.size(), 1.0);
-  for (const CameraConfig& camera : cameras) model.cameras.push_back({.config = camera});
+  model.cameras = cameras;
   return model;
 }
 
 View view_of(const RigModel& model, const RigStance& stance) {
-  const RigCamera& camera = model.cameras.at(stance.camera);
-  HeadState head = stance.head;
-  head.pan += camera.pan_zero, head.tilt += camera.tilt_zero;
-  return Camera(camera.config).view(stance.stage, head);
+  return Camera(model.cameras.at(stance.camera)).view(stance.stage, stance.head);
 }
 
 RigPrior rough_prior(const RigModel& model, double share) {
   RigPrior prior;
-  for (const RigCamera& camera : model.cameras) {
-    const Eigen::Vector3d way = vector(camera.config.mount.position) - model.arm.X_WB.position;
-    prior.cameras.emplace_back().position = share * way.norm();
+  for (const CameraConfig& camera : model.cameras) {
+    const Eigen::Vector3d way = vector(camera.mount.position) - model.arm.X_WB.position;
+    CameraPrior& rough = prior.cameras.emplace_back();
+    rough.position = share * way.norm();
+    if (camera.mount.stage.can_move()) rough.pan_zero = rough.tilt_zero;
   }
   return prior;
 }

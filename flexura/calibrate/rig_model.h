@@ -15,18 +15,12 @@
 
 namespace flexura {
 
-/// A camera of a rig, and where its head's zeros lie.
-struct RigCamera {
-  CameraConfig config;
-  double pan_zero = 0, tilt_zero = 0;  ///< What is added to what the head says, rad.
-};
-
 /// An arm and the cameras that look at it: as they are believed to be, or as they were found. The arm's base
 /// is where the world is counted from (docs/calibration.md, "Gauge").
 struct RigModel {
   Arm arm;
   std::vector<double> bend_gains;  ///< Factor on each section's commanded bend; empty: all 1.
-  std::vector<RigCamera> cameras;
+  std::vector<CameraConfig> cameras;
 
   /// How the arm stands when it is commanded to `state`, as far as the model knows.
   [[nodiscard]] ArmState bent(const ArmState& state) const;
@@ -40,8 +34,8 @@ struct RigModel {
 struct CameraPrior {
   double position = 0.7;        ///< Of the mount, in each direction, m.
   double rotation = 0.1745;     ///< Of the mount, about each axis, rad: 10 degrees.
-  double pan_zero = 0;          ///< rad; held, for a turned mount does the same unless the stage moves.
-  double tilt_zero = 0.01;      ///< rad
+  double pan_zero = 0;          ///< rad; a turned mount does the same as long as the stage does not move.
+  double tilt_zero = 0.035;     ///< rad: 2 degrees.
   double tilt_axis = 0.003;     ///< m, in each direction.
   double pupil = 0.003;         ///< m, in each direction.
   double pupil_shift = 0.001;   ///< m for each 1 of zoom ratio.
@@ -70,7 +64,8 @@ struct RigPrior {
 };
 
 /// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from the arm's
-/// base, 10 % of its focal length, its principal point 10 px off.
+/// base, 10 % of its focal length, its principal point 10 px off, the zeros of its tilt axis, and of its pan
+/// axis where its stage can move, 2 degrees.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2);
 
 /// A way in which one camera stood, as its head and stage say.

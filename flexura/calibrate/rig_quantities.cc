@@ -43,13 +43,13 @@ class AxisMotion3 {
 };
 
 // How the logarithm of sqrt(fx fy) changes.
-void add_focal(const RigCamera& model, const ZoomTable& lens, double zoom, std::size_t camera_slots,
+void add_focal(const CameraConfig& model, const ZoomTable& lens, double zoom, std::size_t camera_slots,
                AxisMotion3& motion) {
   const Intrinsics now = lens.at(zoom);
   motion.focal(camera_slots + focal_slot, 1);
   motion.focal(camera_slots + aspect_slot, 0.5);
-  for (std::size_t i = 0; i < model.config.lens.zoom.size(); ++i) {
-    const ZoomRow& row = model.config.lens.zoom[i];
+  for (std::size_t i = 0; i < model.lens.zoom.size(); ++i) {
+    const ZoomRow& row = model.lens.zoom[i];
     const auto by_row = lens.by_row(zoom, i);
     motion.focal(camera_slots + zoom_row_slot + i,
                  0.5 * (by_row[0] * *row.fx / now.fx + by_row[1] * *row.fy / now.fy));
@@ -68,9 +68,8 @@ AskedStance observed_stance(const RigVariables& variables, std::size_t stance) {
 
 OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x, const AskedStance& stance) {
   RigStance where = stance.observed ? variables.stance(x, *stance.observed) : stance.where;
-  const RigCamera model = variables.model(x).cameras.at(where.camera);
-  where.head.pan += model.pan_zero, where.head.tilt += model.tilt_zero;
-  const Camera camera(model.config);
+  const CameraConfig model = variables.model(x).cameras.at(where.camera);
+  const Camera camera(model);
   const Pose X_WC = camera.pose(where.stage, where.head);
   const Intrinsics lens = camera.lens().at(where.head.zoom);
   OpticalAxis axis{
@@ -80,8 +79,8 @@ OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x
   const std::size_t first = variables.camera_slots(where.camera);
   const Pose& X_WM = camera.mount();
   const Eigen::Vector3d foot = X_WM * where.stage.offset;  // On the pan axis.
-  const Eigen::Matrix3d R_WP = X_WM.rotation * pan_rotation(where.head.pan);
-  const Eigen::Vector3d tilt_axis = foot + R_WP * vector(model.config.head.tilt_axis);
+  const Eigen::Matrix3d R_WP = X_WM.rotation * pan_rotation(camera.angles(where.head)[0]);
+  const Eigen::Vector3d tilt_axis = foot + R_WP * vector(model.head.tilt_axis);
   const Eigen::Matrix3d turns = so3_left_jacobian(variables.value3(x, first + mount_rotation_slot));
   motion.shift3(first + mount_position_slot, Eigen::Matrix3d::Identity());
   for (std::size_t i = 0; i < 3; ++i)
@@ -96,8 +95,7 @@ OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x
   const std::size_t own = variables.stance_slots_of(*stance.observed);
   motion.turn(own, -X_WM.rotation.col(1), foot);
   motion.turn(own + 1, R_WP.col(0), tilt_axis);
-  motion.shift(own + 2,
-               model.config.head.pupil_shift * camera.lens().ratio_slope(where.head.zoom) * axis.direction);
+  motion.shift(own + 2, model.head.pupil_shift * camera.lens().ratio_slope(where.head.zoom) * axis.direction);
   const auto slope = camera.lens().slope(where.head.zoom);
   motion.focal(own + 2, 0.5 * (slope[0] / lens.fx + slope[1] / lens.fy));
   motion.shift3(own + 3, X_WM.rotation);

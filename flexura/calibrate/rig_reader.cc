@@ -16,7 +16,7 @@ RigReader::RigReader(const RigModel& guess, const RigPrior& prior, const std::ar
     : guess_(guess), prior_(prior), doubt_{.sideways = 0.01, .roll = 0.01, .scale = 0.01}, fewest_(fewest) {
   for (const std::size_t i : cameras) {
     const CameraPrior& camera = prior.cameras.at(i);
-    const double distance = (vector(guess.cameras.at(i).config.mount.position) - target).norm();
+    const double distance = (vector(guess.cameras.at(i).mount.position) - target).norm();
     const double moved = camera.position / distance;
     doubt_.sideways = std::max(doubt_.sideways, std::hypot(camera.rotation, moved));
     doubt_.roll = std::max(doubt_.roll, camera.rotation);
@@ -82,7 +82,7 @@ void RigReader::rate(const RigSights& sights, const std::vector<MarkerMatch>& ma
     if (images[camera] > 0 || !reading.found.is_found) continue;
     reading.found.is_found = false;
     reading.found.reason =
-        fmt::format("the arm is recognised in no picture of camera {}", guess_.cameras[camera].config.name);
+        fmt::format("the arm is recognised in no picture of camera {}", guess_.cameras[camera].name);
   }
   for (std::size_t i = 0; i < matches.size(); ++i)
     unknown +=

@@ -30,11 +30,9 @@ Eigen::Vector2d heading(const std::vector<CurvePoint>& points, std::size_t i) {
 RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd& x)
     : variables_(&variables), x_(x), curve_(ShapeVariables(known_arm(variables.guess().arm)), intervals) {
   RigModel model = variables.model(x);
-  for (const RigCamera& camera : model.cameras) cameras_.emplace_back(camera.config);
+  for (const CameraConfig& camera : model.cameras) cameras_.emplace_back(camera);
   for (std::size_t i = 0; i < variables.read().size(); ++i) {
-    RigStance& stance = stances_.emplace_back(variables.stance(x, i));
-    stance.head.pan += model.cameras[stance.camera].pan_zero;
-    stance.head.tilt += model.cameras[stance.camera].tilt_zero;
+    stances_.push_back(variables.stance(x, i));
   }
   for (std::size_t i = 0; i < variables.commanded().size(); ++i) {
     const Shape& shape = shapes_.emplace_back(Shape{model.arm, variables.pose(x, i)});
@@ -77,7 +75,7 @@ void RigProjector::add_camera_slots(const CameraProjection& projection, std::siz
   const RigStance& where = stances_[stance];
   const ZoomTable& lens = cameras_[where.camera].lens();
   const Intrinsics now = lens.at(where.head.zoom);
-  const std::vector<ZoomRow>& rows = models_[where.camera].config.lens.zoom;
+  const std::vector<ZoomRow>& rows = models_[where.camera].lens.zoom;
   const Eigen::Vector3d turn = variables_->value3(
       x_, variables_->camera_slots(where.camera) + static_cast<std::size_t>(mount_rotation_slot));
   const Eigen::Vector2d by_fx = projection.by_intrinsics.col(0), by_fy = projection.by_intrinsics.col(1);

@@ -52,7 +52,7 @@ class RigProjector {
 
   const RigVariables* variables_;
   Eigen::VectorXd x_;
-  std::vector<RigCamera> models_;
+  std::vector<CameraConfig> models_;
   std::vector<Camera> cameras_;
   std::vector<RigStance> stances_;  // in truth, zeros added
   std::vector<Shape> shapes_;

@@ -41,7 +41,7 @@ class Session {
         sights_(believed.arm, config.picture, config.cameras) {
     for (const std::size_t camera : config.cameras) {
       ArmPictureConfig picture = config.picture;
-      picture.white = (1 << believed.cameras.at(camera).config.sensor.bits) - 1;
+      picture.white = (1 << believed.cameras.at(camera).sensor.bits) - 1;
       eyes_.emplace_back(std::move(picture));
     }
   }
@@ -126,7 +126,7 @@ class Session {
     return camera == config_.cameras[0] ? 0 : 1;
   }
   [[nodiscard]] const std::string& name(std::size_t i) const {
-    return believed_.cameras[config_.cameras[i]].config.name;
+    return believed_.cameras[config_.cameras[i]].name;
   }
 
   // Takes a picture and measures it; what is of use becomes an image of the observations.
@@ -252,6 +252,15 @@ class Session {
         return fmt::format("the arm is not seen by camera {} after the move: {}", name(i),
                            result_.after[i]->seen.reason);
       result_.verified[i] = off_foretold(*result_.after[i]);
+      constexpr double likely = 6, noise = 1;  // Standard deviations; of the markers' centres, px.
+      const double explained = likely * plan_.foretold_sigma(*problem_, *found_, wanted_, i) + noise;
+      if (result_.verified[i] > explained)
+        return fmt::format(
+            "camera {} sees the arm {:.1f} px from where it was foretold after the move, and no more than "
+            "{:.1f} "
+            "px are explained: a head with play, one that was pushed, or an arm that bends otherwise each "
+            "time",
+            name(i), result_.verified[i], explained);
     }
     return std::nullopt;
   }

@@ -24,7 +24,7 @@ bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCa
         !(std::abs(a.head.tilt - b.head.tilt) < turn) || !((a.stage.offset - b.stage.offset).norm() < way))
       return false;
     // Positions may be counts of a motor, which mean something else on every lens.
-    const CameraConfig& camera = model.cameras.at(a.camera).config;
+    const CameraConfig& camera = model.cameras.at(a.camera);
     const ZoomTable lens(camera.lens, camera.sensor.width, camera.sensor.height);
     return std::abs(std::log(lens.ratio(a.head.zoom) / lens.ratio(b.head.zoom))) <= std::log1p(larger);
   };
@@ -45,7 +45,7 @@ WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStan
   wish.target = target(model), wish.now = stands, wish.may_use_stages = config_.may_use_stages;
   for (RigStance& stance : wish.now) {
     // From the stages' and the zooms' beginnings: looks in between went elsewhere.
-    const Camera camera(believed_.cameras[stance.camera].config);
+    const Camera camera(believed_.cameras[stance.camera]);
     stance.stage = camera.initial_stage(), stance.head.zoom = camera.initial_head().zoom;
   }
   return wanted_rig(model, wish);
@@ -69,7 +69,7 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
   const auto sigma = [&](std::size_t i) { return known[i].quantity.sigma(found.covariance); };
   step.sigmas = {sigma(0), {sigma(1), sigma(2)}, sigma(3)};
   for (std::size_t i = 0; i < 2; ++i) {
-    const LensConfig& lens = found.model.cameras[config_.cameras[i]].config.lens;
+    const LensConfig& lens = found.model.cameras[config_.cameras[i]].lens;
     step.focal[i] = std::sqrt(lens.fx * lens.fy.value_or(lens.fx));
   }
 }
@@ -77,8 +77,8 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
 ViewGrid RigSessionPlan::grid() const {
   ViewGrid grid;
   grid.poses = config_.poses, grid.spread = 0.6;
-  const RigCamera& first = believed_.cameras[config_.cameras[0]];
-  const Camera camera(first.config);
+  const CameraConfig& first = believed_.cameras[config_.cameras[0]];
+  const Camera camera(first);
   grid.zooms.clear();
   const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
@@ -88,8 +88,8 @@ ViewGrid RigSessionPlan::grid() const {
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
-    const auto& [least, most] = believed_.cameras[i].config.mount.stage.x.limits;
-    const double distance = (vector(believed_.cameras[i].config.mount.position) - target(believed_)).norm();
+    const auto& [least, most] = believed_.cameras[i].mount.stage.x.limits;
+    const double distance = (vector(believed_.cameras[i].mount.position) - target(believed_)).norm();
     travel = std::max(travel, std::min(config_.slide * distance, std::max(most, -least)));
   }
   if (config_.may_use_stages && travel > 0) grid.slides = {{0, 0, 0}, {travel, 0, 0}, {-travel, 0, 0}};
@@ -137,10 +137,7 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   std::array<std::size_t, 2> inside = {0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
     const RigStance& stance = wanted.stances[i];
-    const RigCamera& camera = model.cameras[stance.camera];
-    const View view = Camera(camera.config)
-                          .view(stance.stage, {stance.head.pan + camera.pan_zero,
-                                               stance.head.tilt + camera.tilt_zero, stance.head.zoom});
+    const View view = view_of(model, stance);
     sights[i] = (target(model) - view.X_WC.position).normalized();
     const ArmState& shown = config_.poses.empty() ? home : config_.poses.front();
     for (const auto& marker :
@@ -157,14 +154,40 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
         "alone "
         "cannot make orthogonal axes of that",
         angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
+  std::string why;
+  for (const std::string& note : wanted.notes) why += "; " + note;
+  constexpr double far_off = 0.5 * degree, likely = 4;  // Standard deviations.
+  const double left = std::abs(wanted.remainder.angle);
+  if (left > far_off + likely * step.sigmas.angle)
+    return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
+                       left / degree, why);
   for (std::size_t i = 0; i < 2; ++i) {
     if (inside[i] >= config_.fewest) continue;
-    std::string why;
-    for (const std::string& note : wanted.notes) why += "; " + note;
     return fmt::format("camera {} would not see the arm in the wanted configuration{}",
-                       model.cameras[wanted.stances[i].camera].config.name, why);
+                       model.cameras[wanted.stances[i].camera].name, why);
   }
   return std::nullopt;
+}
+
+double RigSessionPlan::foretold_sigma(const RigProblem& problem, const RigCalibration& found,
+                                      const WantedRig& wanted, std::size_t i) const {
+  const OpticalAxis axis = optical_axis(problem.variables(), found.x, {wanted.stances[i], {}});
+  const auto off = aim_errors(axis, target(found.model));
+  // What the pose adds to the bends as they are known; the tip has all of it.
+  const ArmPrior& prior = problem.prior().arm;
+  const ArmState& pose = config_.poses.front();
+  double beyond = 0, squares = 0;
+  for (std::size_t section = pose.bends.size(); section-- > 0;) {
+    beyond += found.model.arm.sections[section].length * pose.stretches[section];
+    squares += std::pow(beyond * std::hypot(prior.bend, prior.bend_share * pose.bends[section].norm()), 2);
+  }
+  for (const RigQuantity& quantity : off) squares += std::pow(quantity.sigma(found.covariance), 2);
+  const RigStance& stance = wanted.stances[i];
+  const Camera camera(found.model.cameras[stance.camera]);
+  const auto& [pan, tilt, zoom] = camera.head_axes();
+  const double depth = axis.direction.dot(target(found.model) - axis.pupil);
+  const double steps = problem.prior().cameras[stance.camera].steps;
+  return axis.focal * std::hypot(std::sqrt(squares) / depth, steps * pan.resolution, steps * tilt.resolution);
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

@@ -38,6 +38,10 @@ class RigSessionPlan {
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
                                                const RigStep& step, const ArmState& home) const;
+  /// How far from where they are foretold an arm's markers may be seen by camera `i` (of two) where it is
+  /// sent, by all that is not known of rig, head and arm: a standard deviation, px.
+  [[nodiscard]] double foretold_sigma(const RigProblem& problem, const RigCalibration& found,
+                                      const WantedRig& wanted, std::size_t i) const;
   /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
 

@@ -20,9 +20,9 @@ ZoomRow row(double ratio, double count) {
 // Counts that fall from wide to long on the first camera, and rise on the second.
 RigModel rig_of_two_lenses() {
   RigModel rig = believed_rig();
-  rig.cameras[0].config.lens.zoom = {row(1, 9000), row(4, 8000)};
-  rig.cameras[1].config.lens.zoom = {row(1, 0), row(4, 600)};
-  rig.cameras[0].config.initial.zoom = 9000, rig.cameras[1].config.initial.zoom = 0;
+  rig.cameras[0].lens.zoom = {row(1, 9000), row(4, 8000)};
+  rig.cameras[1].lens.zoom = {row(1, 0), row(4, 600)};
+  rig.cameras[0].initial.zoom = 9000, rig.cameras[1].initial.zoom = 0;
   return rig;
 }
 
@@ -68,7 +68,7 @@ struct Choice {
     for (const ArmState& shown : config.poses) {
       const std::size_t pose = trial.add_pose(shown);
       for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
-        const HeadState start = Camera(believed.cameras[camera].config).initial_head();
+        const HeadState start = Camera(believed.cameras[camera]).initial_head();
         trial.add_image(trial.add_stance({.camera = camera, .head = start}), pose);
       }
     }
@@ -107,7 +107,7 @@ TEST(RigSessionPlan, ZoomsEachLensByItsOwnTable) {
   ASSERT_TRUE(next);
   std::array<double, 2> ratios{};
   for (const RigStance& stance : next->stances)
-    ratios[stance.camera] = Camera(rig.cameras[stance.camera].config).lens().ratio(stance.head.zoom);
+    ratios[stance.camera] = Camera(rig.cameras[stance.camera]).lens().ratio(stance.head.zoom);
   EXPECT_NEAR(ratios[0], ratios[1], 0.02 * ratios[0]);
 }
 

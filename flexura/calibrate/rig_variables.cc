@@ -67,7 +67,7 @@ RigVariables::RigVariables(const RigModel& guess, const RigPrior& prior, const R
   guess_.bend_gains.resize(guess_.arm.sections.size(), 1.0);
   check(prior);
   check_observations(guess_, seen);
-  for (RigCamera& camera : guess_.cameras) camera.config.lens = spelled_out(camera.config);
+  for (CameraConfig& camera : guess_.cameras) camera.lens = spelled_out(camera);
   for (std::size_t i = 0; i < guess_.cameras.size(); ++i) add_camera(guess_.cameras[i], prior.cameras[i]);
   add_arm(prior.arm);
   globals_ = count_;
@@ -104,9 +104,9 @@ void RigVariables::add3(const std::string& name, double sigma, double scale) {
   for (const char* direction : directions) add(fmt::format("{}, {}", name, direction), sigma, scale);
 }
 
-void RigVariables::add_camera(const RigCamera& camera, const CameraPrior& prior) {
+void RigVariables::add_camera(const CameraConfig& camera, const CameraPrior& prior) {
   const CameraPrior usual;  // Sizes for what nothing is known of.
-  const std::string name = camera.config.name + ": ";
+  const std::string name = camera.name + ": ";
   cameras_.push_back(slots_.size());
   add3(name + "mount's place", prior.position, usual.position);
   add3(name + "mount's turn", prior.rotation, usual.rotation);
@@ -122,7 +122,7 @@ void RigVariables::add_camera(const RigCamera& camera, const CameraPrior& prior)
   constexpr std::array<const char*, 5> coefficients = {"k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < coefficients.size(); ++i)
     add(name + coefficients[i], prior.distortion[i], usual.distortion[0]);
-  for (std::size_t i = 0; i < camera.config.lens.zoom.size(); ++i)
+  for (std::size_t i = 0; i < camera.lens.zoom.size(); ++i)
     add(fmt::format("{}focal length of zoom row {}", name, i), prior.zoom_row, usual.zoom_row);
 }
 
@@ -151,7 +151,7 @@ void RigVariables::add_pose(std::size_t number, const ArmState& pose, const ArmP
 
 void RigVariables::add_stance(std::size_t number, const RigStance& stance, const CameraPrior& prior) {
   stances_.push_back(slots_.size());
-  const Camera camera(guess_.cameras[stance.camera].config);
+  const Camera camera(guess_.cameras[stance.camera]);
   const auto add_axis = [&](const char* what, const AxisConfig& axis) {
     add(fmt::format("stance {}: {}", number, what), prior.steps * axis.resolution, axis.resolution);
   };
@@ -169,16 +169,16 @@ void RigVariables::add_stance(std::size_t number, const RigStance& stance, const
 }
 
 Eigen::Index RigVariables::slots_a_camera(std::size_t camera) const {
-  return zoom_row_slot + static_cast<Eigen::Index>(guess_.cameras.at(camera).config.lens.zoom.size());
+  return zoom_row_slot + static_cast<Eigen::Index>(guess_.cameras.at(camera).lens.zoom.size());
 }
 
 bool RigVariables::is_rig(const Eigen::VectorXd& x) const {
   constexpr double far = 1000;
   for (Eigen::Index i = 0; i < count_; ++i)
     if (!(std::abs(x[i]) <= far * variable(i).scale)) return false;
-  const std::vector<RigCamera> cameras = model(x).cameras;
+  const std::vector<CameraConfig> cameras = model(x).cameras;
   return std::ranges::none_of(
-      cameras, [](const RigCamera& camera) { return ZoomTable::fault(camera.config.lens).has_value(); });
+      cameras, [](const CameraConfig& camera) { return ZoomTable::fault(camera.lens).has_value(); });
 }
 
 RigModel RigVariables::model(const Eigen::VectorXd& x) const {
@@ -192,10 +192,9 @@ RigModel RigVariables::model(const Eigen::VectorXd& x) const {
   return model;
 }
 
-RigCamera RigVariables::camera(const Eigen::VectorXd& x, std::size_t number) const {
-  RigCamera camera = guess_.cameras[number];
+CameraConfig RigVariables::camera(const Eigen::VectorXd& x, std::size_t number) const {
+  CameraConfig config = guess_.cameras[number];
   const std::size_t first = cameras_[number];
-  CameraConfig& config = camera.config;
   const auto move3 = [&](std::array<double, 3>& place, std::size_t slot) {
     for (std::size_t i = 0; i < 3; ++i) place[i] += value(x, first + slot + i);
   };
@@ -204,8 +203,8 @@ RigCamera RigVariables::camera(const Eigen::VectorXd& x, std::size_t number) con
   move3(config.mount.position, mount_position_slot);
   config.mount.look_at.reset(), config.mount.roll = 0;
   config.mount.rotation = {quaternion[0], quaternion[1], quaternion[2], quaternion[3]};
-  camera.pan_zero += value(x, first + pan_zero_slot);
-  camera.tilt_zero += value(x, first + tilt_zero_slot);
+  config.head.pan.zero += value(x, first + pan_zero_slot);
+  config.head.tilt.zero += value(x, first + tilt_zero_slot);
   move3(config.head.tilt_axis, tilt_axis_slot);
   move3(config.head.pupil, pupil_slot);
   config.head.pupil_shift += value(x, first + pupil_shift_slot);
@@ -225,7 +224,7 @@ RigCamera RigVariables::camera(const Eigen::VectorXd& x, std::size_t number) con
     *row.fx *= fx * own, *row.fy *= fy * own, *row.cx += cx, *row.cy += cy;
     distort(*row.distortion);
   }
-  return camera;
+  return config;
 }
 
 ArmState RigVariables::pose(const Eigen::VectorXd& x, std::size_t pose) const {

@@ -88,11 +88,11 @@ class RigVariables {
   void check(const RigPrior& prior) const;
   void add(std::string name, double sigma, double scale);
   void add3(const std::string& name, double sigma, double scale);
-  void add_camera(const RigCamera& camera, const CameraPrior& prior);
+  void add_camera(const CameraConfig& camera, const CameraPrior& prior);
   void add_arm(const ArmPrior& prior);
   void add_pose(std::size_t number, const ArmState& pose, const ArmPrior& prior);
   void add_stance(std::size_t number, const RigStance& stance, const CameraPrior& prior);
-  [[nodiscard]] RigCamera camera(const Eigen::VectorXd& x, std::size_t number) const;
+  [[nodiscard]] CameraConfig camera(const Eigen::VectorXd& x, std::size_t number) const;
 
   RigModel guess_;
   std::vector<ArmState> commanded_;

@@ -43,7 +43,7 @@ class Forecast {
                                                 std::size_t stance) const {
     RigProjector projector(bare, x);
     const RigStance& where = bare.read()[stance];
-    const ZoomTable lens = Camera(bare.guess().cameras[where.camera].config).lens();
+    const ZoomTable lens = Camera(bare.guess().cameras[where.camera]).lens();
     if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
     const View view = projector.view(stance);
     RigImage image{.stance = stance};
@@ -143,16 +143,16 @@ namespace {
 // A stance from which the target is seen at this place of the image, in shares of half its width and height.
 RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double ratio,
                   const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
-  const RigCamera& camera = model.cameras[number];
-  const Camera optics(camera.config);
+  const CameraConfig& camera = model.cameras[number];
+  const Camera optics(camera);
   RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom_at(optics, ratio))}, {}};
   for (Eigen::Index i = 0; i < 3; ++i)
     stance.stage.offset[i] = commandable(optics.stage_axes()[static_cast<std::size_t>(i)], slide[i]);
   stance.head = aimed(camera, stance, target);
   // What lies to the right and below of the middle is brought there by turning left and up.
   const Intrinsics lens = optics.lens().at(stance.head.zoom);
-  stance.head.pan += std::atan(0.5 * place.x() * static_cast<double>(camera.config.sensor.width) / lens.fx);
-  stance.head.tilt += std::atan(0.5 * place.y() * static_cast<double>(camera.config.sensor.height) / lens.fy);
+  stance.head.pan += std::atan(0.5 * place.x() * static_cast<double>(camera.sensor.width) / lens.fx);
+  stance.head.tilt += std::atan(0.5 * place.y() * static_cast<double>(camera.sensor.height) / lens.fy);
   stance.head = commanded_head(camera, stance.head);
   return stance;
 }

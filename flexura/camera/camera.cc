@@ -1,5 +1,8 @@
 #include "flexura/camera/camera.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 
@@ -24,9 +27,19 @@ HeadGeometry Camera::geometry(double zoom) const {
   return {vector(config_.head.tilt_axis), vector(config_.head.pupil) + Eigen::Vector3d(0, 0, forward)};
 }
 
+std::array<double, 2> Camera::angles(const HeadState& head) const {
+  return {head.pan + config_.head.pan.zero, head.tilt + config_.head.tilt.zero};
+}
+
 Pose Camera::pose(const StageState& stage, const HeadState& head) const {
-  return X_WM_ * Pose{Eigen::Matrix3d::Identity(), stage.offset} *
-         head_pose(geometry(head.zoom), head.pan, head.tilt);
+  const auto [pan, tilt] = angles(head);
+  return X_WM_ * Pose{Eigen::Matrix3d::Identity(), stage.offset} * head_pose(geometry(head.zoom), pan, tilt);
+}
+
+HeadState Camera::looking_along(const Eigen::Vector3d& direction, double zoom) const {
+  const Eigen::Vector3d u = (X_WM_.rotation.transpose() * direction).normalized();
+  return {std::atan2(-u.x(), u.z()) - config_.head.pan.zero,
+          std::asin(std::clamp(-u.y(), -1.0, 1.0)) - config_.head.tilt.zero, zoom};
 }
 
 View Camera::view(const StageState& stage, const HeadState& head) const {
@@ -37,8 +50,9 @@ View Camera::view(const StageState& stage, const HeadState& head) const {
 std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP, const StageState& stage,
                                                 const HeadState& head) const {
   const HeadGeometry axes = geometry(head.zoom);
-  const Eigen::Matrix3d R_PM = pan_rotation(head.pan).transpose();  // P: the panned frame
-  const Eigen::Matrix3d R_CP = tilt_rotation(head.tilt).transpose();
+  const auto [pan, tilt] = angles(head);
+  const Eigen::Matrix3d R_PM = pan_rotation(pan).transpose();  // P: the panned frame
+  const Eigen::Matrix3d R_CP = tilt_rotation(tilt).transpose();
   const Eigen::Matrix3d R_CM = R_CP * R_PM, R_CW = R_CM * X_WM_.rotation.transpose();
   const Eigen::Vector3d from_mount = p_WP - X_WM_.position;
   const Eigen::Vector3d panned = R_PM * (X_WM_.rotation.transpose() * from_mount - stage.offset);

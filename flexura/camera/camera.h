@@ -51,6 +51,11 @@ class Camera {
   [[nodiscard]] HeadState initial_head() const;
   [[nodiscard]] StageState initial_stage() const;
 
+  /// The angles of its pan and its tilt axis, zeros included, rad.
+  [[nodiscard]] std::array<double, 2> angles(const HeadState& head) const;
+  /// The head that looks along a direction of W, with this zoom. Not drawn to limits or steps.
+  [[nodiscard]] HeadState looking_along(const Eigen::Vector3d& direction, double zoom) const;
+
   /// X_WC: the entrance pupil's position, and the camera's axes. std::out_of_range: a zoom outside the lens's
   /// table (these and the following).
   [[nodiscard]] Pose pose(const StageState& stage, const HeadState& head) const;

@@ -11,6 +11,16 @@ constexpr NumberRange offset_range = {.min = -1e3, .max = 1e3};
 constexpr AxisUnits turn_units = {Unit::radian, Unit::radian_per_second, Unit::radian_per_second_squared};
 constexpr AxisUnits zoom_units = {Unit::none, Unit::none, Unit::none};
 
+template <class Turn>
+Table<Turn> turn_table(const char* name, const char* meaning) {
+  Table<Turn> table = axis_table<Turn>(name, meaning, turn_units, turn_range);
+  table.field("zero", &Turn::zero,
+              {.meaning = "Where the axis stands when the head says 0: its angle is what it says and this.",
+               .unit = Unit::radian,
+               .range = turn_range});
+  return table;
+}
+
 }  // namespace
 
 // Limits and rates: the paper's heads (sections 1 and 2). It gives no accelerations.
@@ -36,15 +46,14 @@ AxisConfig ZoomConfig::axis(const ZoomTable& lens) const {
 }
 
 const Table<PanConfig>& fields_of(const PanConfig*) {
-  static const auto table = axis_table<PanConfig>(
-      "pan", "The pan axis, vertical at the head's foot; positive to the camera's left.", turn_units,
-      turn_range);
+  static const auto table = turn_table<PanConfig>(
+      "pan", "The pan axis, vertical at the head's foot; positive to the camera's left.");
   return table;
 }
 
 const Table<TiltConfig>& fields_of(const TiltConfig*) {
-  static const auto table = axis_table<TiltConfig>(
-      "tilt", "The tilt axis, across the camera; positive upwards.", turn_units, turn_range);
+  static const auto table =
+      turn_table<TiltConfig>("tilt", "The tilt axis, across the camera; positive upwards.");
   return table;
 }
 

@@ -15,11 +15,15 @@ namespace flexura {
 /// The pan axis of a head: rad, positive to the camera's left.
 struct PanConfig : AxisConfig {
   PanConfig();
+
+  double zero = 0;  ///< Where the axis stands when the head says 0.
 };
 
 /// The tilt axis of a head: rad, positive upwards.
 struct TiltConfig : AxisConfig {
   TiltConfig();
+
+  double zero = 0;  ///< Where the axis stands when the head says 0.
 };
 
 /// The zoom of a head, in positions of the lens's table: ratios, or motor counts.
@@ -45,9 +49,9 @@ struct HeadConfig {
   double pupil_shift = 0;                   ///< How far a ratio greater by 1 moves the pupil forward, m.
 };
 
-/// Where a head stands.
+/// Where a head stands, as it says itself.
 struct HeadState {
-  double pan = 0, tilt = 0;  ///< rad
+  double pan = 0, tilt = 0;  ///< From the axes' zeros, rad.
   double zoom = 1;           ///< A position of the lens's table.
 
   bool operator==(const HeadState&) const = default;
@@ -71,6 +75,7 @@ struct HeadGeometry {
 
 /// X_MC = pan about M's vertical axis, the way to the tilt axis, tilt, the way to the pupil:
 /// R_MC = R_pan R_tilt, p_MC = R_pan (tilt_axis + R_tilt pupil).
+/// The angles are those between the parts: what the head says and its zeros.
 [[nodiscard]] Pose head_pose(const HeadGeometry& geometry, double pan, double tilt);
 
 }  // namespace flexura

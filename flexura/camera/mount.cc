@@ -1,6 +1,8 @@
 #include "flexura/camera/mount.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -40,6 +42,11 @@ Fault orientation_fault(const MountConfig& mount) {
 }  // namespace
 
 SlideConfig::SlideConfig() : AxisConfig{.max_rate = 0.1, .max_acceleration = 0.5} {}
+
+bool StageConfig::can_move() const {
+  return std::ranges::any_of(std::array{x, y, z},
+                             [](const SlideConfig& axis) { return axis.limits[0] < axis.limits[1]; });
+}
 
 const Table<SlideConfig>& fields_of(const SlideConfig*) {
   static const auto table = axis_table<SlideConfig>(

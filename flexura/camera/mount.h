@@ -19,6 +19,9 @@ struct SlideConfig : AxisConfig {
 struct StageConfig {
   SlideConfig x, y, z;  ///< Right, down, forward.
   double delay = 0;     ///< s from a command to the start of its motion.
+
+  /// Whether it travels along any axis.
+  [[nodiscard]] bool can_move() const;
 };
 
 /// Where a stage stands: the mount's offset along its own axes (right, down, forward), m.

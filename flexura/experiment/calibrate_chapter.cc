@@ -93,7 +93,7 @@ ImageOutline::Line cross(const Eigen::Vector2d& at, double size) {
 // A picture with what was seen in it, and the optical axis as it was found.
 NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_after, std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
-  const CameraConfig& believed = run.believed.cameras[sight.stance.camera].config;
+  const CameraConfig& believed = run.believed.cameras[sight.stance.camera];
   const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << believed.sensor.bits) - 1);
   ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"),
                  .legend = "",
@@ -109,7 +109,7 @@ NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_a
   plot.outlines = {backbone, markers};
   if (run.result.is_done) {
     const Intrinsics lens =
-        Camera(run.result.found.model.cameras[sight.stance.camera].config).lens().at(sight.stance.head.zoom);
+        Camera(run.result.found.model.cameras[sight.stance.camera]).lens().at(sight.stance.head.zoom);
     axis.lines.push_back(cross({lens.cx, lens.cy}, 3 * size));
     plot.outlines.push_back(axis);
   }

@@ -92,6 +92,11 @@ const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
                  {.meaning = "Of the focal length, a share.", .range = between(0, 1)})
           .field("principal_point", &CalibrateGuessConfig::principal_point,
                  {.meaning = "Of the principal point, in each direction, px.", .range = between(0, 1000)})
+          .field(
+              "zero", &CalibrateGuessConfig::zero,
+              {.meaning = "Of where a head's axes stand when it says 0; a pan's counts where a stage moves.",
+               .unit = Unit::radian,
+               .range = between(0, 1)})
           .field("exact_heads", &CalibrateGuessConfig::exact_heads,
                  {.meaning = "Heads stand where they count, not somewhere within half a step of it."});
   return table;
@@ -282,6 +287,8 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
 RigPrior session_prior(const CalibrateTask& task, const RigModel& believed) {
   RigPrior prior = rough_prior(believed, task.guess.distance);
   for (CameraPrior& camera : prior.cameras) {
+    if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.guess.zero : 0;
+    camera.tilt_zero = task.guess.zero;
     camera.rotation = task.guess.rotation, camera.focal = task.guess.focal;
     camera.principal_point = task.guess.principal_point;
     if (task.guess.exact_heads) camera.steps = 0;

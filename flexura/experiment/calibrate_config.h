@@ -40,6 +40,7 @@ struct CalibrateGuessConfig {
   double distance = 0.2;                  ///< Of a mount's place, in each direction, of its distance.
   double focal = 0.1;                     ///< Share.
   double principal_point = 10;            ///< px
+  double zero = 0.035;                    ///< Of a head's axes, rad: 2 degrees.
   bool exact_heads = false;               ///< Heads stand where they count, not within half a step of it.
   bool operator==(const CalibrateGuessConfig&) const = default;
 };

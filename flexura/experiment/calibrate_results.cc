@@ -73,7 +73,7 @@ Node decision_nodes(const LoopResult& result, const CalibrationRun& run) {
   for (const LoopDecision& step : result.steps)
     list.push_back({Node::Table{{"time", {}, number_node(step.time)},
                                 {"looks", {}, whole(step.looks)},
-                                {"camera", {}, {run.believed.cameras[step.camera].config.name, {}}},
+                                {"camera", {}, {run.believed.cameras[step.camera].name, {}}},
                                 {"step", {}, {step.step, {}}},
                                 {"offset", {}, number_node(step.offset)},
                                 {"accepted", {}, number_node(step.accepted)},
@@ -235,7 +235,7 @@ std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& r
   for (Disk& disk : file.arm.look.disk) disk.at = moved(disk.at);
   for (std::size_t i = 0; i < file.arm.section.size(); ++i)
     file.arm.section[i].length = found.arm.sections[i].length;
-  for (const RigCamera& camera : found.cameras) file.camera.push_back(camera.config);
+  for (const CameraConfig& camera : found.cameras) file.camera.push_back(camera);
   start_at(run.result.wanted.stances, file);
   const RigSigmas& sigmas = run.result.steps.back().sigmas;
   return fmt::format(

@@ -97,7 +97,7 @@ class LoggedSession : public RigSessionWatcher {
 
  private:
   [[nodiscard]] const std::string& name_of(std::size_t camera) const {
-    return believed_.cameras.at(camera).config.name;
+    return believed_.cameras.at(camera).name;
   }
   bool keeps_images_;
   std::string name_;

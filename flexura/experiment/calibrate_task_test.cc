@@ -54,9 +54,49 @@ TEST(CalibrateTask, FindsARigThatIsWrongInEveryWayAndSquaresItsAxes) {
   EXPECT_EQ(result.looks, 6U);
   EXPECT_LT(std::abs(result.remainder.angle), 0.005);
   EXPECT_NEAR(result.remainder.zoom_ratio, 1, 0.01);
-  EXPECT_NEAR(result.found.model.cameras[0].config.lens.fx, 424, 8);
-  EXPECT_NEAR(result.found.model.cameras[1].config.lens.fx, 380, 8);
+  EXPECT_NEAR(result.found.model.cameras[0].lens.fx, 424, 8);
+  EXPECT_NEAR(result.found.model.cameras[1].lens.fx, 380, 8);
   EXPECT_LT(result.steps.back().sigmas.angle, result.steps.front().sigmas.angle);
+}
+
+// How the cameras of small_calibration truly are but for what `head` says of both.
+std::string both_heads(const std::string& head) {
+  return fmt::format(
+      "[[truth.camera]]\nname = \"front\"\nhead = {0}\n[[truth.camera]]\nname = \"side\"\nhead = {0}\n",
+      head);
+}
+
+TEST(CalibrateTask, FindsZerosOfHeadsThatStagesTellFromTurnedMounts) {
+  CalibrationBench bench(small_calibration(
+      "images = 8\n" + three_poses, both_heads("{ pan = { zero_deg = 2.5 }, tilt = { zero_deg = -2 } }")));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  ASSERT_TRUE(result.is_done) << result.reason;
+  const double sigma = result.steps.back().sigmas.angle;
+  EXPECT_LT(sigma, 0.005);
+  EXPECT_LT(std::abs(bench.truth(result.target).angle), 4 * sigma);
+}
+
+TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanItWasForetold) {
+  CalibrationBench bench(small_calibration(
+      "images = 8\n" + three_poses, both_heads("{ pan = { backlash_deg = 3 }, tilt = { zero_deg = 0 } }")));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("from where it was foretold after the move"));
+  bench.expect_back();
+}
+
+TEST(CalibrateTask, StopsWhereAHeadEndsBeforeTheAxesAreOrthogonal) {
+  std::string file = small_calibration("images = 8\nstages = false\n" + three_poses,
+                                       "[[truth.camera]]\nname = \"front\"\nmount = { position = [0.25, 0.5, "
+                                       "2.5], look_at = [0.6, 0.5, 0] }\n");
+  const std::string wide = "limits_deg = [-90, 90]";
+  for (std::size_t at = file.find(wide); at != std::string::npos; at = file.find(wide, at + 1))
+    file.replace(at, wide.size(), "limits_deg = [-1.5, 1.5]");
+  CalibrationBench bench(file);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("where heads and stages end the axes would be"));
+  EXPECT_THAT(result.reason, HasSubstr("pan ends at"));
 }
 
 TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {

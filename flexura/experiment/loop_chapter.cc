@@ -32,7 +32,7 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
   std::vector<const LoopDecision*> steps;
   std::vector<double> looks;
   for (const LoopDecision& step : run.loop->steps) {
-    if (run.cameras[i] != run.believed.cameras[step.camera].config.name || step.looks == 0) continue;
+    if (run.cameras[i] != run.believed.cameras[step.camera].name || step.looks == 0) continue;
     steps.push_back(&step);
     const auto at = static_cast<double>(step.looks);
     if (looks.empty() || looks.back() < at) looks.push_back(at);
@@ -61,7 +61,7 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
 NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
   const RigSight& sight = is_after ? *run.loop->after[i] : *run.loop->before[i];
   const char* when = is_after ? "after" : "before";
-  const std::int64_t bits = run.believed.cameras[sight.stance.camera].config.sensor.bits;
+  const std::int64_t bits = run.believed.cameras[sight.stance.camera].sensor.bits;
   const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << bits) - 1);
   ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
                  .legend = "",
@@ -119,7 +119,7 @@ Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
   }
   for (std::size_t i = 0; i < 2; ++i) {
     const bool has_steps = std::ranges::any_of(result.steps, [&](const LoopDecision& step) {
-      return step.looks > 0 && run.believed.cameras[step.camera].config.name == run.cameras[i];
+      return step.looks > 0 && run.believed.cameras[step.camera].name == run.cameras[i];
     });
     if (has_steps) chapter.drawings.push_back(falling_offsets(run, i, number));
   }

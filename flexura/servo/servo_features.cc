@@ -132,7 +132,7 @@ std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const R
                                                    : plane_features(believed.arm, config.points);
   std::array<int, 2> whites{};
   for (std::size_t i = 0; i < 2; ++i)
-    whites[i] = (1 << believed.cameras.at(config.cameras[i]).config.sensor.bits) - 1;
+    whites[i] = (1 << believed.cameras.at(config.cameras[i]).sensor.bits) - 1;
   return std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites);
 }
 

@@ -16,7 +16,7 @@ ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::a
     : ports_(ports),
       model_(believed),
       cameras_(cameras),
-      optics_{Camera(believed.cameras.at(cameras[0]).config), Camera(believed.cameras.at(cameras[1]).config)},
+      optics_{Camera(believed.cameras.at(cameras[0])), Camera(believed.cameras.at(cameras[1]))},
       together_(together),
       arm_(span, &interpolate),
       stands_{MotionHistory<Stand, StandBlend>(span, &between),

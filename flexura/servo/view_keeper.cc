@@ -31,7 +31,7 @@ std::optional<Eigen::AlignedBox2d> seen_box(const Arm& arm, const ArmState& stat
 
 ViewKeeper::ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2>& cameras)
     : arm_(believed.arm) {
-  for (const std::size_t camera : cameras) cameras_.emplace_back(believed.cameras.at(camera).config);
+  for (const std::size_t camera : cameras) cameras_.emplace_back(believed.cameras.at(camera));
 }
 
 std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const RigStance& stands,

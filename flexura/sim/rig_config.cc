@@ -67,6 +67,14 @@ bool lay_entries(Node& under, Node& over, const std::string& path) {
   return true;
 }
 
+// A mount says how it is turned in one of two ways (camera/mount.h); what lies above chooses it.
+void drop_other_ways(Node::Table& below, std::string_view key) {
+  std::erase_if(below, [&](const Node::Member& member) {
+    if (key == "look_at") return member.key == "rotation";
+    return key == "rotation" && (member.key == "look_at" || without_unit(member.key) == "roll");
+  });
+}
+
 void lay(Node& under, Node over, std::string_view path) {
   auto* below = under.as<Node::Table>();
   auto* above = over.as<Node::Table>();
@@ -74,6 +82,7 @@ void lay(Node& under, Node over, std::string_view path) {
     if (!lay_entries(under, over, std::string(path))) under = std::move(over);
     return;
   }
+  for (const Node::Member& member : *above) drop_other_ways(*below, member.key);
   for (Node::Member& member : *above) {
     const auto same = std::ranges::find_if(*below, [&](const Node::Member& candidate) {
       return without_unit(candidate.key) == without_unit(member.key);

@@ -66,6 +66,31 @@ TEST(Truth, ReplacesNumbersAndArraysOfAnotherLength) {
   EXPECT_EQ(node.find("zoom")->as<Node::Array>()->size(), 1);
 }
 
+TEST(Truth, ChoosesHowAMountSaysItsTurn) {
+  const auto mount_of = [](Node::Table below, Node::Table above) {
+    const Node node = truth_of(table({
+        entries("camera", {table({member("name", "front"), member("mount", std::move(below))})}),
+        member("truth", Node::Table{entries("camera", {table({member("name", "front"),
+                                                              member("mount", std::move(above))})})}),
+    }));
+    return *node.find("camera")->as<Node::Array>()->at(0).find("mount");
+  };
+  const Node turned = mount_of({member("look_at", 1.0), member("roll_deg", 2.0), member("position", 3.0)},
+                               {member("rotation", 4.0)});
+  EXPECT_EQ(turned.find("look_at"), nullptr);
+  EXPECT_EQ(turned.find("roll_deg"), nullptr);
+  EXPECT_EQ(number(turned.find("rotation")), 4.0);
+  EXPECT_EQ(number(turned.find("position")), 3.0);
+  const Node looking = mount_of({member("rotation", 4.0)}, {member("look_at", 1.0), member("roll", 0.1)});
+  EXPECT_EQ(looking.find("rotation"), nullptr);
+  EXPECT_EQ(number(looking.find("look_at")), 1.0);
+  EXPECT_EQ(number(looking.find("roll")), 0.1);
+  // Both from above are both kept, so that the reader can tell.
+  const Node both = mount_of({}, {member("rotation", 4.0), member("look_at", 1.0)});
+  EXPECT_NE(both.find("rotation"), nullptr);
+  EXPECT_NE(both.find("look_at"), nullptr);
+}
+
 TEST(Truth, RefusesTwoEntriesOfAName) {
   const Node front = table({member("name", "front")});
   try {

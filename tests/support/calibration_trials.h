@@ -57,10 +57,14 @@ inline std::string kind_of(const std::string& reason) {
 inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed, std::size_t index) {
   TestRandom random(seed * 1000003 + index);
   WrongRig wrong = wrong_rig(random);
-  // `bundle` learns the principal point; the others cannot see it.
-  constexpr double rougher = 10;
-  if (method == "bundle")
-    for (WrongStart* start : {&wrong.front, &wrong.side}) start->cx *= rougher, start->cy *= rougher;
+  // `bundle` learns the principal point and the zeros of the heads; the others cannot see them.
+  constexpr double rougher = 10, zero = std::numbers::pi / 180;
+  if (method == "bundle") {
+    for (WrongStart* start : {&wrong.front, &wrong.side}) {
+      start->cx *= rougher, start->cy *= rougher;
+      start->pan_zero = random.uniform(-zero, zero), start->tilt_zero = random.uniform(-zero, zero);
+    }
+  }
   const std::string task = "method = \"" + method + "\"\n";
   const bool has_arm = !method.starts_with("etalon");
   const LoopRig cameras = arcs_cameras({wrong.front, wrong.side}, method == "arcs-paper");

@@ -24,6 +24,7 @@ inline constexpr double degree = std::numbers::pi / 180;
 struct RigTrialConfig {
   double turn = 10 * std::numbers::pi / 180;  ///< Of the mounts, in pan and in tilt.
   double roll = std::numbers::pi / 180;
+  double zero = std::numbers::pi / 180;  ///< Of the heads' axes.
   double shift = 0.2;           ///< Of the mounts, along each axis, m.
   double focal = 0.1;           ///< Share.
   double principal_point = 10;  ///< px
@@ -52,8 +53,8 @@ inline RigModel true_rig(const RigModel& believed, const RigTrialConfig& config,
     rig.arm.sections[i].length *= 1 + config.length * random.uniform(-1, 1);
     rig.bend_gains[i] += config.bend * random.uniform(-1, 1);
   }
-  for (RigCamera& camera : rig.cameras) {
-    MountConfig& mount = camera.config.mount;
+  for (CameraConfig& camera : rig.cameras) {
+    MountConfig& mount = camera.mount;
     const Eigen::Matrix3d R_WM = mount.pose().rotation *
                                  pan_rotation(random.uniform(-config.turn, config.turn)) *
                                  tilt_rotation(random.uniform(-config.turn, config.turn)) *
@@ -61,7 +62,9 @@ inline RigModel true_rig(const RigModel& believed, const RigTrialConfig& config,
     const Eigen::Vector4d q = quaternion_wxyz(R_WM);
     for (double& place : mount.position) place += random.uniform(-config.shift, config.shift);
     mount.look_at.reset(), mount.roll = 0, mount.rotation = {q[0], q[1], q[2], q[3]};
-    LensConfig& lens = camera.config.lens;
+    camera.head.pan.zero += random.uniform(-config.zero, config.zero);
+    camera.head.tilt.zero += random.uniform(-config.zero, config.zero);
+    LensConfig& lens = camera.lens;
     lens.fx *= 1 + config.focal * random.uniform(-1, 1);
     lens.cx = 319.5 + random.uniform(-config.principal_point, config.principal_point);
     lens.cy = 239.5 + random.uniform(-config.principal_point, config.principal_point);
@@ -88,7 +91,7 @@ class RigTrial {
 
   /// Positions that are between those that can be commanded are drawn to one.
   std::size_t add_stance(RigStance stance) {
-    const CameraConfig& camera = truth_.cameras[stance.camera].config;
+    const CameraConfig& camera = truth_.cameras[stance.camera];
     stance.head.pan = commandable(camera.head.pan, stance.head.pan);
     stance.head.tilt = commandable(camera.head.tilt, stance.head.tilt);
     seen_.stances.push_back(stance);
@@ -107,7 +110,7 @@ class RigTrial {
   /// What is inside the picture of the arm. Returns how many markers are.
   std::size_t add_image(std::size_t stance, std::size_t pose) {
     const RigStance& where = stances_[stance];
-    const View view = Camera(truth_.cameras[where.camera].config).view(where.stage, where.head);
+    const View view = Camera(truth_.cameras[where.camera]).view(where.stage, where.head);
     const Backbone backbone(truth_.arm, this->pose(pose));
     const double sigma = std::max(config_.noise, 1e-3);
     RigImage image{.stance = stance, .pose = pose};

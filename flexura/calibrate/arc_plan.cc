@@ -72,8 +72,7 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
   plan.normals = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()};
   // Towards the side from which each camera is believed to look; the arcs bend away from the other camera.
   for (std::size_t i = 0; i < 2; ++i)
-    if (vector(loop.model(i).mount.position).dot(plan.normals[i]) <
-        arm.X_WB.position.dot(plan.normals[i]))
+    if (vector(loop.model(i).mount.position).dot(plan.normals[i]) < arm.X_WB.position.dot(plan.normals[i]))
       plan.normals[i] = -plan.normals[i];
   const std::array<Eigen::Vector3d, 2> towards = {-plan.normals[1], -plan.normals[0]};
   std::array<Eigen::Vector3d, 2> middles;

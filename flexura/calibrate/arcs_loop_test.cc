@@ -14,7 +14,8 @@
 namespace flexura {
 namespace {
 
-constexpr RigTrialConfig known_lenses = {.zero = 0, .focal = 0, .principal_point = 1, .noise = 0.2, .markers = 12};
+constexpr RigTrialConfig known_lenses = {
+    .zero = 0, .focal = 0, .principal_point = 1, .noise = 0.2, .markers = 12};
 
 // What both cameras see of both arcs from where they start, of a rig that is wrong as arcs_prior has it.
 RigObservations arcs_seen(const RigModel& truth, TestRandom& random) {

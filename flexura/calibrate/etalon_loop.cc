@@ -47,15 +47,9 @@ void tell(const EtalonView& view, RigSight& sight) {
 
 }  // namespace
 
-Eigen::Vector3d etalon_middle(const EtalonConfig& etalon) {
-  const auto& [w, x, y, z] = etalon.rotation;
-  return vector(etalon.position) +
-         0.5 * etalon.height * (Eigen::Quaterniond(w, x, y, z).normalized() * Eigen::Vector3d::UnitY());
-}
-
 LoopTrouble begin_with_etalon(LookLoop& loop) {
   if (auto trouble = loop.begin()) return trouble;
-  loop.result().target = etalon_middle(loop.config().etalon);
+  loop.result().target = EtalonFigure(loop.config().etalon).middle();
   // Red lines are every 90 degrees: which one a camera sees is told by what is believed of the cameras.
   if (auto trouble = loop.look_from_one_side()) return trouble;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -15,9 +15,6 @@ namespace flexura {
 /// can set them up. Refuses cameras that look from one side, zooms to x1, and knows where the target is.
 [[nodiscard]] LookLoop::Trouble begin_with_etalon(LookLoop& loop);
 
-/// The middle of the cylinder, in W, m.
-[[nodiscard]] Eigen::Vector3d etalon_middle(const EtalonConfig& etalon);
-
 /// Calibrates with the calibration cylinder (section 3.4): of both cameras horizontal orientation and
 /// positioning, then vertical, until all four hold in one picture; zoom; then, of the heads' positions
 /// around, those whose axes are the most nearly orthogonal. Steps are in proportion to what is missing, and

@@ -17,12 +17,12 @@
 namespace flexura {
 namespace {
 
-// The same observations by their markers alone, which say themselves where on the arm they belong; all of
-// them where there are none.
+// The same observations without axis points: the others say themselves where they belong. All of them where
+// there are no others.
 RigObservations marked(const RigObservations& seen) {
   RigObservations marked = seen;
   std::size_t count = 0;
-  for (RigImage& image : marked.images) count += image.markers.size(), image.points.clear();
+  for (RigImage& image : marked.images) image.points.clear(), count += image.things();
   return count > 0 ? marked : seen;
 }
 

@@ -7,14 +7,13 @@ namespace flexura {
 
 RigProblem::RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen)
     : prior_(prior), variables_(guess, prior, seen), seen_(std::move(seen)), rows_(seen_.images.size()) {
-  for (const RigImage& image : seen_.images)
-    is_doubted_.emplace_back(image.markers.size() + image.points.size(), false);
+  for (const RigImage& image : seen_.images) is_doubted_.emplace_back(image.things(), false);
 }
 
 bool RigProblem::linearise(const Eigen::VectorXd& x) {
   if (!variables_.is_rig(x)) return false;
   x_ = x;
-  RigProjector projector(variables_, x);
+  RigProjector projector(variables_, x, seen_.etalon);
   for (std::size_t i = 0; i < rows_.size(); ++i)
     if (!projector.rows(seen_.images[i], rows_[i]) || !rows_[i].derivatives.allFinite()) return false;
   return true;

@@ -13,7 +13,7 @@ namespace flexura {
 /// A thing that was seen, and that the rig does not explain.
 struct RigDoubt {
   std::size_t image = 0;
-  std::size_t thing = 0;  ///< Of the image's markers, and then of its axis points.
+  std::size_t thing = 0;  ///< Of the image's markers, then of its axis points, then of its etalon's points.
 
   bool operator==(const RigDoubt&) const = default;
 };

@@ -75,7 +75,7 @@ void RigReader::rate(const RigSights& sights, const std::vector<MarkerMatch>& ma
   double unknown = 0;
   std::vector<std::size_t> images(guess_.cameras.size(), 0);
   for (const RigImage& image : reading.problem->observations().images) {
-    reading.things += static_cast<double>(image.markers.size() + image.points.size());
+    reading.things += static_cast<double>(image.things());
     ++images[sights.stances[image.stance].camera];
   }
   for (const std::size_t camera : sights.cameras()) {

@@ -27,7 +27,8 @@ Eigen::Vector2d heading(const std::vector<CurvePoint>& points, std::size_t i) {
 
 }  // namespace
 
-RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd& x)
+RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd& x,
+                           const std::optional<EtalonConfig>& etalon)
     : variables_(&variables), x_(x), curve_(ShapeVariables(known_arm(variables.guess().arm)), intervals) {
   RigModel model = variables.model(x);
   for (const CameraConfig& camera : model.cameras) cameras_.emplace_back(camera);
@@ -38,6 +39,7 @@ RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd&
     const Shape& shape = shapes_.emplace_back(Shape{model.arm, variables.pose(x, i)});
     jacobians_.emplace_back(shape.arm, shape.state);
   }
+  if (etalon) etalon_.emplace(*etalon);
   jacobian_.resize(6, 3 * static_cast<Eigen::Index>(model.arm.sections.size()));
   models_ = std::move(model.cameras);
 }
@@ -136,10 +138,10 @@ bool RigProjector::rows(const RigImage& image, RigRows& rows) {
       picked_.push_back(local);
     }
   }
-  const std::size_t count = 2 * image.markers.size() + image.points.size();
+  const std::size_t count = image.things() + image.markers.size();
   rows.residuals.resize(static_cast<Eigen::Index>(count));
   rows.derivatives.resize(rows.residuals.size(), static_cast<Eigen::Index>(picked_.size()));
-  return add_markers(image, rows) && add_points(image, rows);
+  return add_markers(image, rows) && add_points(image, rows) && add_etalon(image, rows);
 }
 
 void RigProjector::set_row(Eigen::Index row, const Shown& shown, const Eigen::Vector2d& way,
@@ -182,6 +184,33 @@ bool RigProjector::add_points(const RigImage& image, RigRows& rows) {
     const auto shown = show(image.pose, image.stance, {section, fraction});
     if (!shown) return false;
     set_row(row++, *shown, {-near.tangent.y(), near.tangent.x()}, point.pixel, point.sigma, rows);
+    rows.sizes.push_back(1);
+  }
+  return true;
+}
+
+// Compared across the part's image where it is nearest, for the same reason. The cylinder stands where it
+// stands: neither the arm nor its pose has a part in this.
+bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
+  if (image.etalon.empty()) return true;
+  if (!etalon_) return false;
+  const RigStance& where = stances_[image.stance];
+  const View view = this->view(image.stance);
+  auto row = rows.residuals.size() - static_cast<Eigen::Index>(image.etalon.size());
+  Shown shown;
+  shown.by_slots.setZero(2, variables_->slots_a_camera(where.camera) +
+                                4 * static_cast<Eigen::Index>(shapes_[image.pose].arm.sections.size()) +
+                                stance_slots);
+  for (const EtalonPoint& seen : image.etalon) {
+    const auto point = etalon_->nearest(seen, view);
+    if (!point) return false;
+    const auto projection = cameras_[where.camera].project(*point, where.stage, where.head);
+    if (!projection) return false;
+    shown.pixel = projection->pixel;
+    add_camera_slots(*projection, image.stance, shown);
+    const auto line = etalon_->line(seen.part, seen.number, view.X_WC.position);
+    const Eigen::Vector2d along = (projection->by_point * line->direction).normalized();
+    set_row(row++, shown, {-along.y(), along.x()}, seen.pixel, seen.sigma, rows);
     rows.sizes.push_back(1);
   }
   return true;

@@ -19,14 +19,16 @@ struct RigRows {
   std::vector<Eigen::Index> columns;  ///< Of x.
   Eigen::VectorXd residuals;          ///< (shown - seen)/sigma.
   Eigen::MatrixXd derivatives;        ///< A row a residual, a column for each of `columns`.
-  std::vector<int> sizes;  ///< Rows of each thing that was seen: 2 of a marker, then 1 of an axis point.
+  /// Rows of each thing that was seen: 2 of a marker, then 1 of an axis point, then 1 of an etalon's point.
+  std::vector<int> sizes;
 };
 
 /// A rig as x says it is, and how its images would be.
 class RigProjector {
  public:
   /// `variables` outlives it.
-  RigProjector(const RigVariables& variables, const Eigen::VectorXd& x);
+  RigProjector(const RigVariables& variables, const Eigen::VectorXd& x,
+               const std::optional<EtalonConfig>& etalon = {});
 
   /// False where the rig would not show all that was seen: behind a camera, or outside what its lens maps.
   [[nodiscard]] bool rows(const RigImage& image, RigRows& rows);
@@ -47,6 +49,7 @@ class RigProjector {
   [[nodiscard]] bool is_in_range(std::size_t stance) const;
   [[nodiscard]] bool add_markers(const RigImage& image, RigRows& rows);
   [[nodiscard]] bool add_points(const RigImage& image, RigRows& rows);
+  [[nodiscard]] bool add_etalon(const RigImage& image, RigRows& rows);
   void set_row(Eigen::Index row, const Shown& shown, const Eigen::Vector2d& way, const Eigen::Vector2d& seen,
                double sigma, RigRows& rows) const;
 
@@ -60,6 +63,7 @@ class RigProjector {
   Jacobian jacobian_;
   SpaceCurve curve_;
   CurveImage image_;
+  std::optional<EtalonFigure> etalon_;
   std::vector<Eigen::Index> picked_;  // local slots that have columns
 };
 

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
 
-#include "flexura/calibrate/rig_reader.h"
+#include "flexura/calibrate/rig_eyes.h"
 #include "flexura/calibrate/rig_session_plan.h"
-#include "flexura/calibrate/rig_sights.h"
 #include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
@@ -20,7 +20,8 @@ namespace {
 using Trouble = RigHands::Trouble;
 
 void check(const RigPorts& ports, const RigModel& believed, const RigSessionConfig& config) {
-  if (config.poses.empty() || config.picture.markers.empty() || config.images < 3 || config.first < 1)
+  const bool sees_nothing = config.picture.markers.empty() && !config.etalon;
+  if (config.poses.empty() || sees_nothing || config.images < 3 || config.first < 1)
     throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
   if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
     throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
@@ -31,20 +32,12 @@ class Session {
   Session(const RigPorts& ports, const RigModel& believed, const RigPrior& prior,
           const RigSessionConfig& config, RigSessionWatcher& watcher)
       : believed_(believed),
-        prior_(prior),
         config_(config),
         watcher_(watcher),
         hands_(ports, believed, config.patience),
         trip_(hands_, watcher, config.cameras, config.move_duration),
         plan_(believed, config),
-        reader_(believed, prior, config.cameras, plan_.target(believed), config.fewest),
-        sights_(believed.arm, config.picture, config.cameras) {
-    for (const std::size_t camera : config.cameras) {
-      ArmPictureConfig picture = config.picture;
-      picture.white = (1 << believed.cameras.at(camera).sensor.bits) - 1;
-      eyes_.emplace_back(std::move(picture));
-    }
-  }
+        eyes_(session_eyes(believed, prior, config, plan_.target(believed))) {}
 
   RigSessionResult run() {
     Trouble trouble = trip_.begin();
@@ -61,7 +54,7 @@ class Session {
  private:
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
-      if (auto trouble = look({pose(i), {stands_[0], stands_[1]}})) return trouble;
+      if (auto trouble = look({pose(i), {plan_.first(stands_[0]), plan_.first(stands_[1])}})) return trouble;
     while (result_.looks + 1 < config_.images) {
       if (auto trouble = calibrate()) return trouble;
       if (found_ && is_enough()) break;
@@ -92,21 +85,21 @@ class Session {
     ++result_.looks;
     const auto arm = hands_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    if (sights_.poses.empty() || !is_same(sights_.poses.back(), std::get<ArmState>(arm)))
-      sights_.poses.push_back(std::get<ArmState>(arm));
+    if (eyes_->poses().empty() || !is_same(eyes_->poses().back(), std::get<ArmState>(arm)))
+      eyes_->poses().push_back(std::get<ArmState>(arm));
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;
       // As long as nothing is known, the arm may have bent out of view.
       if (!found_ && misses_[i] > 0) {
         if (auto trouble = search(i)) return trouble;
         if (misses_[i] > 0 && result_.looks == 1)
-          return fmt::format("the arm is out of view of camera {}, also {:.3g} rad to all sides: {}", name(i),
-                             config_.search, sight_.seen.reason);
+          return fmt::format("the {} is out of view of camera {}, also {:.3g} rad to all sides: {}", what_,
+                             name(i), config_.search, sight_.seen.reason);
       }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
-        return fmt::format("camera {} does not see the arm in {} pictures in a row: {}", name(i), patience,
-                           sight_.seen.reason);
+        return fmt::format("camera {} does not see the {} in {} pictures in a row: {}", name(i), what_,
+                           patience, sight_.seen.reason);
     }
     return std::nullopt;
   }
@@ -138,11 +131,11 @@ class Session {
     if (const auto* why = std::get_if<std::string>(&stance)) return *why;
     sight_ = {.look = is_search ? 0 : result_.looks,
               .stance = std::get<RigStance>(stance),
-              .pose = sights_.poses.back(),
+              .pose = eyes_->poses().back(),
               .frame = frame,
               .seen = {},
               .values = {}};
-    sight_.seen = recognise(i, eyes_[i].look(*frame.picture));
+    sight_.seen = measure(i, *frame.picture);
     ++result_.pictures[i];
     const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
@@ -157,34 +150,45 @@ class Session {
     return std::nullopt;
   }
 
-  // Keeps a look, and tells which of its markers is which by all that are kept.
-  SeenArm recognise(std::size_t i, ArmFigure look) {
-    // One marker alone may be any.
-    constexpr std::size_t fewest = 2;
-    if (markers_of(look.scene) < fewest) {
-      MarkerMatch none;
-      none.markers.resize(look.markers.size());
-      return recognised(look, none, view_of(model(), sight_.stance).lens, config_.picture);
-    }
+  // Keeps what a picture tells, if anything, and says what it is by all that is kept.
+  SeenArm measure(std::size_t i, const Picture& picture) {
+    if (!eyes_->look(i, picture)) return eyes_->unkept(view_of(model(), sight_.stance));
     if (!stance_[i]) {
       RigStance stance = sight_.stance;
       if (!is_turned_[i]) stance.turned_as = last_stance_[i];
-      sights_.stances.push_back(stance);
-      stance_[i] = last_stance_[i] = sights_.stances.size() - 1;
+      eyes_->stances().push_back(stance);
+      stance_[i] = last_stance_[i] = eyes_->stances().size() - 1;
       is_turned_[i] = false;
     }
-    sights_.looks.push_back(
-        {.stance = *stance_[i], .pose = sights_.poses.size() - 1, .arm = std::move(look)});
-    const MarkerMatch match = reader_.read_last(sights_, before());
-    return sights_.seen(model(), sights_.looks.size() - 1, match);
+    return eyes_->keep(*stance_[i], eyes_->poses().size() - 1, before());
   }
   [[nodiscard]] const RigModel* before() const { return found_ ? &found_->model : nullptr; }
+
+  // Towards what is seen of it, as long as all of it is not.
+  Trouble approach(std::size_t i) {
+    constexpr int most = 4;
+    for (int turn = 0; turn < most && misses_[i] > 0; ++turn) {
+      const auto seen = eyes_->whereabouts();
+      if (!seen) return std::nullopt;
+      const Intrinsics lens = view_of(model(), stands_[i]).lens.intrinsics();
+      RigStance stance = stands_[i];
+      stance.head.pan -= std::atan((seen->x() - lens.cx) / lens.fx);
+      stance.head.tilt -= std::atan((seen->y() - lens.cy) / lens.fy);
+      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
+      if (auto trouble = send(stance)) return trouble;
+      if (auto trouble = hands_.settle()) return trouble;
+      if (auto trouble = picture(i, true)) return trouble;
+    }
+    return std::nullopt;
+  }
 
   // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
   // one miss in all.
   Trouble search(std::size_t i) {
     const RigStance middle = stands_[i];
     const int misses = misses_[i];
+    if (auto trouble = approach(i)) return trouble;
+    if (misses_[i] == 0) return std::nullopt;
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
       RigStance stance = middle;
       stance.head.pan += way.x(), stance.head.tilt += way.y();
@@ -200,7 +204,7 @@ class Session {
   }
 
   Trouble calibrate() {
-    RigReading reading = reader_.read(sights_, before());
+    RigReading reading = eyes_->read(before());
     problem_ = std::move(reading.problem);
     RigCalibration& found = reading.found;
     RigStep& step = result_.steps.emplace_back();
@@ -249,37 +253,26 @@ class Session {
     if (auto trouble = look({pose(0), {wanted_.stances[0], wanted_.stances[1]}})) return trouble;
     for (std::size_t i = 0; i < 2; ++i) {
       if (misses_[i] > 0)
-        return fmt::format("the arm is not seen by camera {} after the move: {}", name(i),
+        return fmt::format("the {} is not seen by camera {} after the move: {}", what_, name(i),
                            result_.after[i]->seen.reason);
-      result_.verified[i] = off_foretold(*result_.after[i]);
+      result_.verified[i] = eyes_->off_foretold(model(), *result_.after[i]);
       constexpr double likely = 6, noise = 1;  // Standard deviations; of the markers' centres, px.
       const double explained = likely * plan_.foretold_sigma(*problem_, *found_, wanted_, i) + noise;
       if (result_.verified[i] > explained)
         return fmt::format(
-            "camera {} sees the arm {:.1f} px from where it was foretold after the move, and no more than "
-            "{:.1f} "
-            "px are explained: a head with play, one that was pushed, or an arm that bends otherwise each "
-            "time",
-            name(i), result_.verified[i], explained);
+            "camera {} sees the {} {:.1f} px from where it was foretold after the move, and no more than "
+            "{:.1f} px are explained: a head with play, one that was pushed, or an arm that bends otherwise "
+            "each time",
+            name(i), what_, result_.verified[i], explained);
     }
     return std::nullopt;
-  }
-
-  [[nodiscard]] double off_foretold(const RigSight& sight) const {
-    const View view = view_of(model(), sight.stance);
-    double squares = 0;
-    for (const SeenMarker& marker : sight.seen.markers) {
-      const MarkerScene foretold = expected_markers(model().arm, model().bent(sight.pose),
-                                                    {KnownMarker{.s = marker.s}}, view, believed_.arm);
-      if (foretold.markers[0]) squares += (foretold.markers[0]->pixel - marker.pixel).squaredNorm();
-    }
-    return std::sqrt(squares / static_cast<double>(sight.seen.markers.size()));
   }
 
   void finish() {
     if (!found_ || !problem_) return;
     for (const RigImage& image : problem_->observations().images)
-      result_.markers += image.markers.size(), result_.points += image.points.size();
+      result_.markers += image.markers.size(), result_.points += image.points.size(),
+          result_.etalon_points += image.etalon.size();
     result_.observability = observability(problem_->variables(), found_->covariance);
     const Eigen::Vector3d target = plan_.target(found_->model);
     result_.target = target, result_.start = trip_.start();
@@ -296,14 +289,13 @@ class Session {
   }
 
   const RigModel& believed_;
-  const RigPrior& prior_;
   const RigSessionConfig& config_;
   RigSessionWatcher& watcher_;
   RigHands hands_;
   RigTrip trip_;
   RigSessionPlan plan_;
-  RigReader reader_;
-  std::vector<ArmPicture> eyes_;
+  std::unique_ptr<RigEyes> eyes_;
+  const char* what_ = config_.etalon ? "cylinder" : "arm";
   RigSessionResult result_;
 
   std::array<RigStance, 2> stands_;  // As they were last sent.
@@ -313,7 +305,6 @@ class Session {
   std::array<int, 2> misses_ = {0, 0};
   std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was seen.
   RigSight sight_;                     // The last one.
-  RigSights sights_;
   std::optional<RigProblem> problem_;
   std::optional<RigCalibration> found_;
   WantedRig wanted_;

@@ -12,6 +12,7 @@
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_hands.h"
 #include "flexura/calibrate/rig_observability.h"
+#include "flexura/model/stand.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {
@@ -33,6 +34,10 @@ struct RigSessionConfig {
   std::size_t fewest = 5;   ///< Markers that make a picture of use.
   RigSigmas wanted;         ///< When they are reached, no more looks are needed.
   std::optional<Eigen::Vector3d> target;  ///< What the cameras shall look at, m; the arm's middle.
+  /// Look at the calibration cylinder, which stands there alone, and not at the arm: no markers are needed
+  /// then, the one pose is the arm's own, the target is the cylinder's middle unless there is another, and
+  /// looks begin with the shortest focal length.
+  std::optional<EtalonConfig> etalon;
   bool may_use_stages = true;
   std::vector<double> zooms = {1, 2.5};  ///< Ratios of focal length to that at the start, to look with.
   double slide = 0.15;       ///< To both sides, of the camera's distance, as far as the stage travels.
@@ -110,7 +115,7 @@ struct RigSessionResult {
   std::size_t looks = 0;
   std::array<std::size_t, 2> pictures = {0, 0};  ///< By camera, those that looked for the arm among them.
   RigCalibration found;                          ///< By all pictures.
-  std::size_t markers = 0, points = 0;           ///< In all pictures.
+  std::size_t markers = 0, points = 0, etalon_points = 0;  ///< In all pictures.
   RigObservability observability;
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What the cameras look at, m.
   std::array<RigStance, 2> start;                    ///< How they stood at first.
@@ -118,21 +123,21 @@ struct RigSessionResult {
   std::optional<RigRemainder> believed_remainder, start_remainder;
   WantedRig wanted;        ///< As commanded.
   RigRemainder remainder;  ///< As found afterwards.
-  /// How far from where they were foretold the markers of the last look were seen, root mean square, px: its
+  /// How far from where they were foretold the things of the last look were seen, root mean square, px: its
   /// pictures have no part in the foretelling.
   std::array<double, 2> verified = {0, 0};
   std::array<std::optional<RigSight>, 2> before, after;  ///< Of each camera.
 };
 
 /// Calibrates two cameras of a rig and drives them to the wanted configuration (section 3.4 of the paper;
-/// docs/calibration.md): the arm is shown in some poses, each camera looks; the rig that explains everything
-/// is found; what tells most is looked at next, within the limits of heads, stages and lenses; when enough is
-/// known, heads and stages are sent to where both cameras look at the arm along orthogonal axes with equal
-/// zoom, in one move, and a last look verifies it. The arm goes from pose to pose by way of the shape in
-/// which it began. What goes wrong ends the session: heads, stages and arm are sent back to where they began,
-/// and the result says why. Everything happens through the ports. The same rig, readings and pictures give
-/// the same result. std::invalid_argument: no poses, no markers, fewer than 3 images or ports for other
-/// cameras than the model's.
+/// docs/calibration.md): the arm is shown in some poses (or the calibration cylinder stands), each camera
+/// looks; the rig that explains everything is found; what tells most is looked at next, within the limits of
+/// heads, stages and lenses; when enough is known, heads and stages are sent to where both cameras look at
+/// the arm along orthogonal axes with equal zoom, in one move, and a last look verifies it. The arm goes from
+/// pose to pose by way of the shape in which it began. What goes wrong ends the session: heads, stages and
+/// arm are sent back to where they began, and the result says why. Everything happens through the ports. The
+/// same rig, readings and pictures give the same result. std::invalid_argument: no poses, no markers, fewer
+/// than 3 images or ports for other cameras than the model's.
 [[nodiscard]] RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
                                                         const RigPrior& prior, const RigSessionConfig& config,
                                                         RigSessionWatcher& watcher);

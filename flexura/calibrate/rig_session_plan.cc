@@ -37,7 +37,14 @@ bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCa
 }
 
 Eigen::Vector3d RigSessionPlan::target(const RigModel& model) const {
-  return config_.target ? *config_.target : arm_middle(model, config_.poses.front());
+  if (config_.target) return *config_.target;
+  return config_.etalon ? EtalonFigure(*config_.etalon).middle() : arm_middle(model, config_.poses.front());
+}
+
+RigStance RigSessionPlan::first(const RigStance& begins) const {
+  RigStance stance = begins;
+  if (config_.etalon) stance.head.zoom = zoom_ends(Camera(believed_.cameras[begins.camera]))[0];
+  return stance;
 }
 
 WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const {
@@ -47,6 +54,7 @@ WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStan
     // From the stages' and the zooms' beginnings: looks in between went elsewhere.
     const Camera camera(believed_.cameras[stance.camera]);
     stance.stage = camera.initial_stage(), stance.head.zoom = camera.initial_head().zoom;
+    stance = first(stance);
   }
   return wanted_rig(model, wish);
 }
@@ -74,17 +82,39 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
   }
 }
 
+double RigSessionPlan::etalon_zoom(const RigStance& begins, double start) const {
+  constexpr double longer = 1.05, most = 20, margin = 20;
+  const CameraConfig& camera = believed_.cameras[begins.camera];
+  const EtalonFigure etalon(*config_.etalon);
+  double fits = start;
+  for (double ratio = start * longer; ratio < most * start; ratio *= longer) {
+    RigStance stance = begins;
+    stance.head.zoom = zoom_at(Camera(camera), ratio);
+    stance.head = aimed(camera, stance, etalon.middle());
+    const double reached = Camera(camera).lens().ratio(stance.head.zoom);
+    if (reached <= fits || !etalon.expected(view_of(believed_, stance), margin)) break;
+    fits = reached;
+  }
+  return fits;
+}
+
 ViewGrid RigSessionPlan::grid() const {
   ViewGrid grid;
   grid.poses = config_.poses, grid.spread = 0.6;
-  const CameraConfig& first = believed_.cameras[config_.cameras[0]];
-  const Camera camera(first);
+  if (config_.etalon) grid.target = EtalonFigure(*config_.etalon).middle();
+  const Camera camera(believed_.cameras[config_.cameras[0]]);
   grid.zooms.clear();
-  const double start = camera.lens().ratio(camera.initial_head().zoom);
+  const RigStance begins{.camera = config_.cameras[0], .head = camera.initial_head(), .stage = {}};
+  const double start = camera.lens().ratio(first(begins).head.zoom);
   for (const double ratio : config_.zooms) {
     // As far as the lens goes.
     const double reached = camera.lens().ratio(zoom_at(camera, start * ratio));
     if (std::ranges::find(grid.zooms, reached) == grid.zooms.end()) grid.zooms.push_back(reached);
+  }
+  if (config_.etalon) {
+    // All of the cylinder has to be inside: as much longer as it fits, and halfway there.
+    const double fits = etalon_zoom(begins, start);
+    grid.zooms = {start, std::sqrt(start * fits), fits};
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
@@ -114,6 +144,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
                                [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
   });
   ViewConfig view;
+  if (config_.etalon) view.sigma = 0.05;
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
       next_best_view(problem, found, candidates, goals(problem.variables(), found, wanted), view);
@@ -134,19 +165,8 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   constexpr double known = 3 * degree, steepest = 50 * degree;
   if (step.sigmas.angle > known) return std::nullopt;
   std::array<Eigen::Vector3d, 2> sights;
-  std::array<std::size_t, 2> inside = {0, 0};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const RigStance& stance = wanted.stances[i];
-    const View view = view_of(model, stance);
-    sights[i] = (target(model) - view.X_WC.position).normalized();
-    const ArmState& shown = config_.poses.empty() ? home : config_.poses.front();
-    for (const auto& marker :
-         expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm).markers)
-      inside[i] += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
-                           marker->pixel.y() <= view.height - 1
-                       ? 1
-                       : 0;
-  }
+  for (std::size_t i = 0; i < 2; ++i)
+    sights[i] = (target(model) - view_of(model, wanted.stances[i]).X_WC.position).normalized();
   const double angle = std::acos(std::clamp(sights[0].dot(sights[1]), -1.0, 1.0));
   if (std::min(angle, std::numbers::pi - angle) < steepest)
     return fmt::format(
@@ -161,12 +181,24 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   if (left > far_off + likely * step.sigmas.angle)
     return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
                        left / degree, why);
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (inside[i] >= config_.fewest) continue;
-    return fmt::format("camera {} would not see the arm in the wanted configuration{}",
-                       model.cameras[wanted.stances[i].camera].name, why);
-  }
+  for (const RigStance& stance : wanted.stances)
+    if (!is_in_view(model, stance, config_.poses.empty() ? home : config_.poses.front()))
+      return fmt::format("camera {} would not see the {} in the wanted configuration{}",
+                         model.cameras[stance.camera].name, config_.etalon ? "cylinder" : "arm", why);
   return std::nullopt;
+}
+
+bool RigSessionPlan::is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const {
+  const View view = view_of(model, stance);
+  if (config_.etalon) return EtalonFigure(*config_.etalon).expected(view, 0).has_value();
+  std::size_t inside = 0;
+  for (const auto& marker :
+       expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm).markers)
+    inside += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
+                      marker->pixel.y() <= view.height - 1
+                  ? 1
+                  : 0;
+  return inside >= config_.fewest;
 }
 
 double RigSessionPlan::foretold_sigma(const RigProblem& problem, const RigCalibration& found,
@@ -177,7 +209,7 @@ double RigSessionPlan::foretold_sigma(const RigProblem& problem, const RigCalibr
   const ArmPrior& prior = problem.prior().arm;
   const ArmState& pose = config_.poses.front();
   double beyond = 0, squares = 0;
-  for (std::size_t section = pose.bends.size(); section-- > 0;) {
+  for (std::size_t section = config_.etalon ? 0 : pose.bends.size(); section-- > 0;) {
     beyond += found.model.arm.sections[section].length * pose.stretches[section];
     squares += std::pow(beyond * std::hypot(prior.bend, prior.bend_share * pose.bends[section].norm()), 2);
   }

@@ -22,7 +22,10 @@ class RigSessionPlan {
   RigSessionPlan(const RigModel& believed, const RigSessionConfig& config)
       : believed_(believed), config_(config) {}
 
-  /// What the cameras shall look at: the middle of the first pose, if nothing else was asked for. In W, m.
+  /// From where a camera that begins there looks first: at an etalon with the shortest focal length.
+  [[nodiscard]] RigStance first(const RigStance& begins) const;
+  /// What the cameras shall look at: the etalon's middle, or that of the first pose, if nothing else was
+  /// asked for. In W, m.
   [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
   /// Where to send the cameras from where they stand.
   [[nodiscard]] WantedRig wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const;
@@ -49,6 +52,9 @@ class RigSessionPlan {
   [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
                                             const WantedRig& wanted) const;
   [[nodiscard]] ViewGrid grid() const;
+  /// The largest ratio of focal length at which all of the cylinder is in the picture of a camera.
+  [[nodiscard]] double etalon_zoom(const RigStance& begins, double start) const;
+  [[nodiscard]] bool is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const;
 
   const RigModel& believed_;
   const RigSessionConfig& config_;

@@ -24,12 +24,13 @@ class Forecast {
                                                            const ViewCandidate& candidate) const {
     RigObservations next;
     next.poses = {candidate.pose}, next.stances = candidate.stances;
+    next.etalon = problem_.observations().etalon;
     const RigModel& guess = problem_.variables().guess();
     const RigVariables bare(guess, problem_.prior(), next);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(bare.count());
     x.head(bare.globals()) = found_.x.head(bare.globals());
     for (std::size_t i = 0; i < next.stances.size(); ++i) {
-      const auto image = picture(bare, x, i);
+      const auto image = next.etalon ? etalon_picture(bare, x, i) : picture(bare, x, i);
       if (!image) return std::nullopt;
       next.images.push_back(*image);
     }
@@ -39,6 +40,17 @@ class Forecast {
   }
 
  private:
+  [[nodiscard]] std::optional<RigImage> etalon_picture(const RigVariables& bare, const Eigen::VectorXd& x,
+                                                       std::size_t stance) const {
+    const RigStance& where = bare.read()[stance];
+    const ZoomTable lens = Camera(bare.guess().cameras[where.camera]).lens();
+    if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
+    auto points = EtalonFigure(*problem_.observations().etalon)
+                      .expected(RigProjector(bare, x).view(stance), config_.margin);
+    if (!points) return std::nullopt;
+    for (EtalonPoint& point : *points) point.sigma = config_.sigma;
+    return RigImage{.stance = stance, .etalon = std::move(*points)};
+  }
   [[nodiscard]] std::optional<RigImage> picture(const RigVariables& bare, const Eigen::VectorXd& x,
                                                 std::size_t stance) const {
     RigProjector projector(bare, x);
@@ -165,7 +177,7 @@ std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid
       {{0, 0}, {-far, -far}, {far, -far}, {-far, far}, {far, far}}};
   std::vector<ViewCandidate> candidates;
   for (const ArmState& pose : grid.poses) {
-    const Eigen::Vector3d middle = arm_middle(model, pose);
+    const Eigen::Vector3d middle = grid.target ? *grid.target : arm_middle(model, pose);
     for (const double zoom : grid.zooms) {
       for (const Eigen::Vector3d& slide : grid.slides) {
         for (const Eigen::Vector2d& place : places) {

@@ -18,7 +18,7 @@ struct ViewCandidate {
   std::vector<RigStance> stances;
 };
 
-/// What a picture shows of an arm that is in view.
+/// What a picture shows of an arm that is in view, or of the problem's etalon.
 struct ViewConfig {
   std::size_t markers = 9;  ///< Evenly along the arm, from base to tip.
   std::size_t points = 20;  ///< Of the axis, between them.
@@ -55,7 +55,8 @@ struct ViewGrid {
   std::vector<ArmState> poses;
   std::vector<double> zooms = {1};  ///< Ratios; each camera goes to where its own lens has them.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
-  /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
+  std::optional<Eigen::Vector3d> target = {};  ///< In W, m; the arm's middle in each pose when left out.
+  /// It is brought to the image's middle, and so far from there towards its four corners; share
   /// of half the image.
   double spread = 0.4;
 };

@@ -120,18 +120,19 @@ NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_a
 std::string text_of(const CalibrationRun& run) {
   const RigSessionResult& result = run.result;
   if (!result.is_done)
-    return fmt::format("Not calibrated: {}. ({} looks at the arm, {} pictures.)", result.reason, result.looks,
+    return fmt::format("Not calibrated: {}. ({} looks, {} pictures.)", result.reason, result.looks,
                        result.pictures[0] + result.pictures[1]);
+  const bool is_arm = result.etalon_points == 0;
+  const std::string measured =
+      is_arm ? fmt::format("{} markers and {} points of the median axis", result.markers, result.points)
+             : fmt::format("{} points of its borders and red lines", result.etalon_points);
   return fmt::format(
-      "{} looks of both cameras at the arm, {} pictures, in which {} markers and {} points of the median "
-      "axis were "
-      "measured. The rig that explains them best leaves {:.2f} standard deviations root mean square. Heads, "
-      "stages "
-      "and zooms were then sent to where both cameras look at the arm along orthogonal axes with equal zoom, "
-      "in one "
-      "move. In fresh pictures after it, markers were {:.2f} px and {:.2f} px from where they were foretold.",
-      result.looks, result.pictures[0] + result.pictures[1], result.markers, result.points, result.found.rms,
-      result.verified[0], result.verified[1]);
+      "{} looks of both cameras at the {}, {} pictures, in which {} were measured. The rig that explains "
+      "them best leaves {:.2f} standard deviations root mean square. Heads, stages and zooms were then sent "
+      "to where both cameras look at it along orthogonal axes with equal zoom, in one move. In fresh "
+      "pictures after it, what was measured was {:.2f} px and {:.2f} px from where it was foretold.",
+      result.looks, is_arm ? "arm" : "cylinder", result.pictures[0] + result.pictures[1], measured,
+      result.found.rms, result.verified[0], result.verified[1]);
 }
 
 std::vector<std::string> points_of(const CalibrationRun& run) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "flexura/calibrate/arc_plan.h"
-#include "flexura/calibrate/etalon_loop.h"
+#include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
@@ -56,7 +56,8 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
 }  // namespace
 
 const std::vector<std::string>& names_of(const CalibrateMethod*) {
-  static const std::vector<std::string> names = {"bundle", "etalon", "etalon-paper", "arcs", "arcs-paper"};
+  static const std::vector<std::string> names = {"bundle",       "bundle-etalon", "etalon",
+                                                 "etalon-paper", "arcs",          "arcs-paper"};
   return names;
 }
 
@@ -144,7 +145,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
           .field(
               "method", &CalibrateTask::method,
               {.meaning =
-                   "How: bundle is by least squares over everything at once, from pictures of the arm; "
+                   "How: bundle is by least squares over everything at once, from pictures of the arm, "
+                   "bundle-etalon from pictures of the calibration cylinder; "
                    "etalon is the paper's loop before the calibration cylinder, corrected, and etalon-paper "
                    "the same as printed; arcs is the paper's loop with arcs of the arm in two planes, "
                    "corrected, "
@@ -158,10 +160,11 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                    "middle of the first one.",
                .count = {1, 100},
                .default_text = "six, that bend every part of the arm to every side"})
-          .field("images", &CalibrateTask::images,
-                 {.meaning = "Pictures a camera, at most; with bundle the last one verifies.",
-                  .range = between(3, image_limit),
-                  .default_text = "12 with bundle, 60 with etalon and arcs, 400 as printed"})
+          .field(
+              "images", &CalibrateTask::images,
+              {.meaning = "Pictures a camera, at most; with bundle and bundle-etalon the last one verifies.",
+               .range = between(3, image_limit),
+               .default_text = "12 with both bundles, 60 with etalon and arcs, 400 as printed"})
           .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
           .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
           .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})
@@ -195,14 +198,17 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   return table;
 }
 
-bool is_loop(const CalibrateTask& task) { return task.method != CalibrateMethod::bundle; }
+bool is_loop(const CalibrateTask& task) {
+  return task.method != CalibrateMethod::bundle && task.method != CalibrateMethod::bundle_etalon;
+}
 
 bool is_as_printed(const CalibrateTask& task) {
   return task.method == CalibrateMethod::etalon_paper || task.method == CalibrateMethod::arcs_paper;
 }
 
 bool is_before_etalon(const CalibrateTask& task) {
-  return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper;
+  return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper ||
+         task.method == CalibrateMethod::bundle_etalon;
 }
 
 // Beyond a quarter of a circle an arm seen from within its plane lies before itself.
@@ -240,7 +246,7 @@ std::array<std::size_t, 2> calibrated_cameras(const CalibrateTask& task,
 }
 
 RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
-                                const std::vector<CameraConfig>& cameras) {
+                                const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
   RigSessionConfig config;
   config.cameras = calibrated_cameras(task, cameras);
   config.poses = calibration_poses(task, arm.arm());
@@ -249,6 +255,12 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   config.images = most_images(task);
   config.first = std::min<std::size_t>(3, config.images - 1);
   config.fewest = std::min<std::size_t>(5, config.picture.markers.size());
+  if (task.method == CalibrateMethod::bundle_etalon) {
+    config.etalon = stand.etalon.value_or(EtalonConfig{});
+    config.poses = {arm_state(arm.arm(), arm.initial)};
+    // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
+    config.first = 1, config.fewest = 2;
+  }
   config.wanted = {task.wanted.angle, {task.wanted.focal, task.wanted.focal}, task.wanted.zoom_ratio};
   if (task.target) config.target = vector(*task.target);
   config.may_use_stages = task.stages;
@@ -260,9 +272,9 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
 
 LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
                        const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
-  constexpr std::array<LoopMethod, 5> methods = {LoopMethod::etalon, LoopMethod::etalon,
-                                                 LoopMethod::etalon_paper, LoopMethod::arcs,
-                                                 LoopMethod::arcs_paper};
+  constexpr std::array<LoopMethod, 6> methods = {LoopMethod::etalon, LoopMethod::etalon,
+                                                 LoopMethod::etalon, LoopMethod::etalon_paper,
+                                                 LoopMethod::arcs,   LoopMethod::arcs_paper};
   LoopConfig config;
   config.method = methods.at(static_cast<std::size_t>(task.method));
   config.cameras = calibrated_cameras(task, cameras);
@@ -326,11 +338,14 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
   constexpr double upright = 0.01;  // m, of half a height of 1 m.
   EtalonConfig unit = *stand.etalon;
   unit.position = {0, 0, 0}, unit.height = 2;
-  if ((etalon_middle(unit) - Eigen::Vector3d::UnitY()).norm() > upright)
+  if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
     reader.problem_at(path, "needs a cylinder that stands upright: expected a stand.etalon.rotation about Y");
-  if (!task.pose.empty() || task.target || !task.stages)
+  if (!is_loop(task)) {
+    if (!task.pose.empty()) reader.problem_at(path, "has no pose with this method: expected no such key");
+  } else if (!task.pose.empty() || task.target || !task.stages) {
     reader.problem_at(
         path, "has no pose, no target and moves stages with this method: expected none of these keys");
+  }
 }
 
 void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
@@ -353,12 +368,15 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   check_two_cameras(task.cameras, cameras, path, reader);
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
-  const bool is_bundle = task.method == CalibrateMethod::bundle;
+  const bool is_bundle = !is_loop(task);
   if (!is_bundle && task.wanted != CalibrateWantedConfig{})
-    reader.problem_at(path + ".wanted", "is what the method bundle stops by: expected no such key");
+    reader.problem_at(path + ".wanted",
+                      "is what the methods bundle and bundle-etalon stop by: expected no such key");
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.guess != CalibrateGuessConfig{})
-    reader.problem_at(path + ".guess", "is asked for by the methods bundle and arcs: expected no such key");
-  if (is_bundle || task.method == CalibrateMethod::arcs) check_markers(arm, path, reader);
+    reader.problem_at(path + ".guess",
+                      "is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+  if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
+    check_markers(arm, path, reader);
   if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
   if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
   if (!task.save.empty() && !is_plain_file(task.save))

@@ -18,12 +18,13 @@ namespace flexura {
 
 /// How a task calibrates.
 enum class CalibrateMethod {
-  bundle,        ///< All poses, lenses and the arm's own errors at once, by least squares
-                 ///< (calibrate/rig_session.h).
-  etalon,        ///< The paper's, with the cylinder, as corrected (calibrate/loop_session.h).
-  etalon_paper,  ///< The same as printed.
-  arcs,          ///< The paper's, with the simulator, as corrected.
-  arcs_paper,    ///< The same as printed.
+  bundle,         ///< All poses, lenses and the arm's own errors at once, by least squares
+                  ///< (calibrate/rig_session.h).
+  bundle_etalon,  ///< The same before the calibration cylinder.
+  etalon,         ///< The paper's, with the cylinder, as corrected (calibrate/loop_session.h).
+  etalon_paper,   ///< The same as printed.
+  arcs,           ///< The paper's, with the simulator, as corrected.
+  arcs_paper,     ///< The same as printed.
 };
 
 /// How well the rig shall be known: standard deviations.
@@ -82,7 +83,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// Whether a task's method is one of the paper's loops.
 [[nodiscard]] bool is_loop(const CalibrateTask& task);
-/// Whether it is one of those as printed, or one that looks at the calibration cylinder.
+/// Whether its method is one of those as printed, or one that looks at the calibration cylinder.
 [[nodiscard]] bool is_as_printed(const CalibrateTask& task);
 [[nodiscard]] bool is_before_etalon(const CalibrateTask& task);
 /// By how much the arm is bent into an arc, rad.
@@ -99,7 +100,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// What the task asks of a session, and how wrong the rig may be.
 [[nodiscard]] RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
-                                              const std::vector<CameraConfig>& cameras);
+                                              const std::vector<CameraConfig>& cameras,
+                                              const StandConfig& stand);
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed);
 
 /// What a task by one of the paper's methods asks of its loop; the simulator's pictures are left out.

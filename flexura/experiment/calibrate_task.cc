@@ -114,7 +114,7 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
                                Witness& witness, Progress& progress, const RecordSteps& record_steps) {
   const auto& config = std::get<CalibrateTask>(experiment.task.at(task));
   const std::vector<CameraConfig> cameras = experiment.cameras();
-  const RigSessionConfig session = session_config(config, experiment.arm, cameras);
+  const RigSessionConfig session = session_config(config, experiment.arm, cameras, experiment.stand);
   CalibrationRun run;
   run.name = task_name(experiment.task[task]), run.task = task;
   run.believed = rig_model(experiment.arm.arm(), cameras);

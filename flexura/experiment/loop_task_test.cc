@@ -355,9 +355,9 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = small({WrongStart{}, WrongStart{}});
   EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-            "task[0].guess: is asked for by the methods bundle and arcs: expected no such key");
+            "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
-            "task[0].wanted: is what the method bundle stops by: expected no such key");
+            "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
 }
 
 TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {

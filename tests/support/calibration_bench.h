@@ -48,8 +48,9 @@ class CalibrationBench : public RigBench {
   RigSessionResult calibrate_bundle(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
-    return calibrate_rig_in_session(ports, believed, session_prior(task, believed),
-                                    session_config(task, experiment().arm, experiment().cameras()), watcher);
+    return calibrate_rig_in_session(
+        ports, believed, session_prior(task, believed),
+        session_config(task, experiment().arm, experiment().cameras(), experiment().stand), watcher);
   }
   /// What truly remains where the cameras stand.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }

@@ -57,16 +57,17 @@ inline std::string kind_of(const std::string& reason) {
 inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed, std::size_t index) {
   TestRandom random(seed * 1000003 + index);
   WrongRig wrong = wrong_rig(random);
-  // `bundle` learns the principal point and the zeros of the heads; the others cannot see them.
+  // Both bundles learn the principal point and the zeros of the heads; the others cannot see them.
   constexpr double rougher = 10, zero = std::numbers::pi / 180;
-  if (method == "bundle") {
+  const bool is_bundle = method.starts_with("bundle");
+  if (is_bundle) {
     for (WrongStart* start : {&wrong.front, &wrong.side}) {
       start->cx *= rougher, start->cy *= rougher;
       start->pan_zero = random.uniform(-zero, zero), start->tilt_zero = random.uniform(-zero, zero);
     }
   }
   const std::string task = "method = \"" + method + "\"\n";
-  const bool has_arm = !method.starts_with("etalon");
+  const bool has_arm = method.find("etalon") == std::string::npos;
   const LoopRig cameras = arcs_cameras({wrong.front, wrong.side}, method == "arcs-paper");
   CalibrationBench bench(has_arm ? arcs_rig(task, cameras, wrong.longer)
                                  : etalon_rig(task, {.wrong = {wrong.front, wrong.side}}));
@@ -89,7 +90,7 @@ inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed,
     trial.angle = left.angle, trial.zoom = left.zoom_ratio - 1;
     trial.aim = std::max(left.aim[0].norm(), left.aim[1].norm());
   };
-  if (method == "bundle")
+  if (is_bundle)
     end(bench.calibrate_bundle(ports));
   else
     end(bench.calibrate(ports));

@@ -1,0 +1,143 @@
+#include "flexura/calibrate/etalon_eyes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "flexura/calibrate/eight_bits.h"
+
+namespace flexura {
+namespace {
+
+// No border is known better than this, px; nor is the middle of a red line, which is wide, or a rim.
+constexpr double least_sigma = 0.02, least_red_sigma = 0.05;
+// Where lines are looked at, in shares of the silhouette's height from its middle row.
+constexpr std::array<double, 2> places = {-0.25, 0.25};
+
+Eigen::Vector2d at(const UprightLine& line, const EtalonSighting& seen, double share) {
+  const double v = share * (seen.bottom - seen.top);
+  return {line.at + line.slope * v, seen.middle_row + v};
+}
+
+void add(EtalonPart part, std::size_t number, const UprightLine& line, const EtalonSighting& seen,
+         std::vector<EtalonPoint>& points) {
+  // A line through n points is known to this at either place.
+  const double of_fit = 1.4 * line.rms / std::sqrt(std::max(1, line.count));
+  const double least = part == EtalonPart::red_line ? least_red_sigma : least_sigma;
+  for (const double share : places)
+    points.push_back({part, number, at(line, seen, share), std::max(least, of_fit)});
+}
+
+// The angle by which a line on the cylinder lies to the right of where the camera stands around it, by how
+// far it is from the silhouette's middle; that needs no view.
+double bearing_of(const UprightLine& line, const EtalonSighting& seen) {
+  const double half = 0.5 * (seen.right.at - seen.left.at);
+  return std::asin(std::clamp((line.at - seen.middle(seen.middle_row)) / half, -1.0, 1.0));
+}
+
+}  // namespace
+
+std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
+                                       const View& view) {
+  std::vector<EtalonPoint> points;
+  add(EtalonPart::left_side, 0, seen.left, seen, points);
+  add(EtalonPart::right_side, 0, seen.right, seen, points);
+  const auto add_rim = [&](EtalonPart part, const std::optional<double>& v) {
+    if (v) points.push_back({part, 0, {seen.middle(*v), *v}, least_red_sigma});
+  };
+  add_rim(EtalonPart::upper_rim, seen.upper_edge);
+  add_rim(EtalonPart::lower_rim, seen.lower_edge);
+  // Beyond `facing` a line's middle is not the middle of what is seen of it; lines are 90 degrees apart.
+  constexpr double facing = std::numbers::pi / 3, known = 40 * std::numbers::pi / 180;
+  constexpr std::size_t lines = 4;
+  for (const UprightLine& line : seen.lines) {
+    const double bearing = bearing_of(line, seen);
+    if (std::abs(bearing) > facing) continue;
+    for (std::size_t i = 0; i < lines; ++i)
+      if (std::abs(etalon.bearing(i, view.X_WC.position) - bearing) < known)
+        add(EtalonPart::red_line, i, line, seen, points);
+  }
+  return points;
+}
+
+EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config)
+    : believed_(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
+
+bool EtalonEyes::look(std::size_t i, const Picture& picture) {
+  const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
+  last_ = view_etalon(eight_bits(picture, (1 << camera.sensor.bits) - 1),
+                      Camera(camera).lens().at(Camera(camera).initial_head().zoom), config_.etalon->radius);
+  return last_.reason.empty();
+}
+
+SeenArm EtalonEyes::told(const EtalonSighting& seen, const View& view) const {
+  SeenArm told;
+  for (const EtalonPoint& point : etalon_points(seen, etalon_, view)) {
+    if (point.part != EtalonPart::red_line) continue;
+    const auto place = etalon_.nearest(point, view);
+    const double up = place ? (*place - etalon_.middle()).y() + 0.5 * config_.etalon->height : 0;
+    told.markers.push_back({point.pixel, up, point.sigma});
+  }
+  if (told.markers.empty()) told.reason = "no red line is seen that can be told from the others";
+  for (const auto& [line, share] :
+       {std::pair{&seen.left, -0.5}, {&seen.left, 0.5}, {&seen.right, 0.5}, {&seen.right, -0.5}})
+    told.points.push_back({at(*line, seen, share), least_sigma});
+  return told;
+}
+
+SeenArm EtalonEyes::unkept(const View& /*view*/) const {
+  SeenArm nothing;
+  nothing.reason = last_.reason;
+  return nothing;
+}
+
+SeenArm EtalonEyes::keep(std::size_t stance, std::size_t pose, const RigModel* found) {
+  looks_.push_back({stance, pose, last_.sighting});
+  return told(last_.sighting, view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
+}
+
+RigObservations EtalonEyes::observations(const RigModel& model) const {
+  RigObservations result{.poses = poses_, .stances = stances_, .images = {}, .etalon = config_.etalon};
+  for (const Look& look : looks_)
+    result.images.push_back(
+        {.stance = look.stance,
+         .pose = look.pose,
+         .etalon = etalon_points(look.seen, etalon_, view_of(model, stances_[look.stance]))});
+  return result;
+}
+
+// Which red line is which is told by the guess, and told again by the rig that is found.
+RigReading EtalonEyes::read(const RigModel* found) const {
+  RigReading reading;
+  RigModel model = found != nullptr ? *found : believed_;
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    reading.problem.emplace(believed_, prior_, observations(model));
+    reading.found = calibrate_rig(*reading.problem);
+    if (!reading.found.is_found) break;
+    model = reading.found.model;
+  }
+  for (const RigImage& image : reading.problem->observations().images)
+    reading.things += static_cast<double>(image.things());
+  reading.amiss = static_cast<double>(reading.found.doubts.size());
+  reading.explained = reading.things - 2 * reading.amiss;
+  return reading;
+}
+
+double EtalonEyes::off_foretold(const RigModel& model, const RigSight& sight) const {
+  const View view = view_of(model, sight.stance);
+  const auto last = std::ranges::find_if(looks_.rbegin(), looks_.rend(), [&](const Look& look) {
+    return stances_[look.stance].camera == sight.stance.camera;
+  });
+  double squares = 0, count = 0;
+  if (last == looks_.rend()) return 0;
+  for (const EtalonPoint& point : etalon_points(last->seen, etalon_, view)) {
+    const auto place = etalon_.nearest(point, view);
+    const auto pixel = place ? view.project(*place) : std::nullopt;
+    if (pixel) squares += (*pixel - point.pixel).squaredNorm(), count += 1;
+  }
+  return std::sqrt(squares / count);
+}
+
+}  // namespace flexura

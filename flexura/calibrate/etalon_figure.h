@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "flexura/camera/view.h"
+#include "flexura/math/pose.h"
+#include "flexura/model/stand.h"
+
+namespace flexura {
+
+/// What a picture shows of the calibration cylinder that is known in space.
+enum class EtalonPart {
+  left_side,   ///< Where the silhouette ends on the left: a line along the cylinder that sight grazes.
+  right_side,  ///< Likewise on the right.
+  upper_rim,   ///< Where it ends at the top, near its middle.
+  lower_rim,
+  red_line,
+};
+
+/// A point of a picture at which a part of the cylinder is seen. It lies on the part's image, nobody knows
+/// where along it.
+struct EtalonPoint {
+  EtalonPart part = EtalonPart::left_side;
+  std::size_t number = 0;  ///< Of a red line: 0 lies towards E's +Z, 1 towards +X, and so on.
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double sigma = 0;  ///< Across the part's image, px.
+};
+
+/// A line of W that a camera sees where it sees a part.
+struct EtalonLine {
+  Eigen::Vector3d point, direction;  ///< Direction: unit.
+};
+
+/// The calibration cylinder as cameras see it.
+class EtalonFigure {
+ public:
+  explicit EtalonFigure(const EtalonConfig& etalon);
+
+  /// The line that a camera at p_WC sees of a part. As the camera moves, sides and rims wander along the
+  /// cylinder's surface, which sight grazes there: to first order that moves nothing in the picture, so that
+  /// the line may be taken to rest. None for a camera within the cylinder's radius.
+  [[nodiscard]] std::optional<EtalonLine> line(EtalonPart part, std::size_t number,
+                                               const Eigen::Vector3d& p_WC) const;
+  /// The point of that line (of a rim: of its tangent) nearest to the ray of sight through the pixel. None
+  /// likewise, or where the lens sees nothing there.
+  [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const EtalonPoint& seen, const View& view) const;
+
+  /// What a picture is expected to show, sigma left 0: two points of each side and of each red line that the
+  /// camera faces within 60 degrees, one of each rim. None where it does not show all of the cylinder,
+  /// `margin` px from its border at least.
+  [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
+  /// The angle by which a red line lies to the right of where the camera stands around the cylinder, rad.
+  [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
+
+  /// Halfway up its axis, in W, m.
+  [[nodiscard]] Eigen::Vector3d middle() const;
+
+ private:
+  Pose X_WE_;
+  double radius_, height_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,171 @@
+#include "flexura/calibrate/etalon_figure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "flexura/calibrate/rig_calibration.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "flexura/math/derivative_check.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/rig_trials.h"
+
+namespace flexura {
+namespace {
+
+// Between the two cameras of believed_rig, turned about its axis.
+EtalonConfig random_etalon(TestRandom& random) {
+  const double half = random.uniform(-0.2, 0.2);
+  EtalonConfig etalon;
+  etalon.position = {0, 0.3, 0}, etalon.rotation = {std::cos(half), 0, std::sin(half), 0};
+  return etalon;
+}
+
+View seen_by(const RigModel& model, std::size_t camera, const HeadState& head = {}) {
+  return view_of(model, {.camera = camera, .head = head});
+}
+
+// What is leftmost, rightmost, highest and lowest of a great many points of the surface.
+TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEnds) {
+  for_random_cases(20, [](TestRandom& random) {
+    EtalonConfig etalon = random_etalon(random);
+    etalon.position[1] = random.uniform(-0.8, 1.2);  // Also from above and below.
+    const EtalonFigure figure(etalon);
+    const View view = seen_by(true_rig(believed_rig(), {.turn = 0.02, .roll = 0}, random), 0);
+    const auto expected = figure.expected(view, -1e4);
+    ASSERT_TRUE(expected);
+    double top = 1e9, bottom = -1e9;
+    double least = 1e9, most = -1e9;  // Across the image of the left side, and of the right side.
+    const auto across = [&](const EtalonPoint& a, const EtalonPoint& b, const Eigen::Vector2d& pixel) {
+      const Eigen::Vector2d way = (b.pixel - a.pixel).normalized();
+      return Eigen::Vector2d(way.y(), -way.x()).dot(pixel - a.pixel);
+    };
+    const EtalonPoint &left0 = (*expected)[0], &left1 = (*expected)[1], &right0 = (*expected)[2],
+                      &right1 = (*expected)[3];
+    ASSERT_EQ(left0.part, EtalonPart::left_side);
+    ASSERT_EQ(right0.part, EtalonPart::right_side);
+    EXPECT_LT(left0.pixel.x(), right0.pixel.x());
+    const double sign = left1.pixel.y() < left0.pixel.y() ? -1 : 1;  // To the right is positive.
+    constexpr int around = 2000, up = 40;
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      for (int j = 0; j <= up; ++j) {
+        const Eigen::Vector3d p_WP = figure.middle() + Eigen::Vector3d(etalon.radius * std::sin(angle),
+                                                                       etalon.height * (1.0 * j / up - 0.5),
+                                                                       etalon.radius * std::cos(angle));
+        const Eigen::Vector2d pixel = *view.project(p_WP);
+        least = std::min(least, sign * across(left0, left1, pixel));
+        most = std::max(most, sign * across(right0, right1, pixel));
+        top = std::min(top, pixel.y()), bottom = std::max(bottom, pixel.y());
+      }
+    }
+    EXPECT_NEAR(least, 0, 2e-3);
+    EXPECT_NEAR(most, 0, 2e-3);
+    // A camera that looks past it to a side sees a rim's highest point a little beside the near one.
+    EXPECT_NEAR((*expected)[4].pixel.y(), top, 0.5);
+    EXPECT_NEAR((*expected)[5].pixel.y(), bottom, 0.5);
+  });
+}
+
+TEST(EtalonFigure, FindsThePointThatAPixelShows) {
+  for_random_cases(50, [](TestRandom& random) {
+    const EtalonFigure figure(random_etalon(random));
+    const View view = seen_by(true_rig(believed_rig(), {}, random), 1);
+    const auto expected = figure.expected(view, -1e4);
+    ASSERT_TRUE(expected);
+    for (const EtalonPoint& point : *expected) {
+      const auto place = figure.nearest(point, view);
+      ASSERT_TRUE(place);
+      EXPECT_LE((*view.project(*place) - point.pixel).norm(), 1e-9);
+    }
+  });
+  EtalonConfig around_camera;
+  around_camera.position = {0, 0, 2.5}, around_camera.height = 1;
+  EXPECT_FALSE(EtalonFigure(around_camera).nearest({}, seen_by(believed_rig(), 0)));
+}
+
+// The pictures of an etalon by a rig that is wrong, from several stances.
+RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, double noise,
+                            TestRandom& random) {
+  RigObservations seen;
+  seen.poses = {ArmState::straight(3)};
+  seen.etalon = etalon;
+  for (const double aside : {0.0, -0.3, 0.3}) {
+    for (const double turn : {0.0, -0.06, 0.06}) {
+      for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
+        RigStance stance{.camera = camera, .stage = {{aside, 0.3 * aside, turn > 0 ? 0.2 : 0}}};
+        // Towards the cylinder, so that all of it is seen; positions can be commanded.
+        const View there = view_of(truth, stance);
+        const Eigen::Vector3d p_CE = there.X_WC.inverse() * EtalonFigure(etalon).middle();
+        stance.head = {std::atan2(-p_CE.x(), p_CE.z()) + turn, std::atan2(-p_CE.y(), p_CE.z()) - turn, 1};
+        seen.stances.push_back(stance);
+        RigImage& image = seen.images.emplace_back();
+        image.stance = seen.stances.size() - 1;
+        image.etalon = EtalonFigure(etalon).expected(view_of(truth, stance), 0).value();
+        for (EtalonPoint& point : image.etalon) {
+          point.sigma = std::max(noise, 1e-3);
+          point.pixel += noise * Eigen::Vector2d(normal_number(random), normal_number(random));
+        }
+      }
+    }
+  }
+  return seen;
+}
+
+TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {
+  for_random_cases(4, [](TestRandom& random) {
+    const RigModel model = true_rig(believed_rig(), {}, random);
+    RigProblem problem(model, rough_prior(model), seen_etalon(model, random_etalon(random), 0, random));
+    const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.variables().count());
+    ASSERT_TRUE(problem.linearise(x));
+    const RigRows rows = problem.rows()[3];
+    EXPECT_LE(rows.residuals.norm(), 1e-4);
+    const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
+      Eigen::VectorXd there = x;
+      for (std::size_t i = 0; i < rows.columns.size(); ++i)
+        there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
+      EXPECT_TRUE(problem.linearise(there));
+      return problem.rows()[3].residuals;
+    };
+    const auto numerical =
+        numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 1e-5);
+    for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j)
+      EXPECT_LE((numerical.value.col(j) - rows.derivatives.col(j)).norm(),
+                1e-5 * std::max(1.0, rows.derivatives.col(j).norm()))
+          << problem.variables().variable(rows.columns[static_cast<std::size_t>(j)]).name;
+  });
+}
+
+TEST(EtalonFigure, TellsARigFromRoughGuessesAndHowWell) {
+  double squares = 0;
+  int count = 0;
+  for_random_cases(8, [&](TestRandom& random) {
+    RigTrialConfig wrong;
+    wrong.turn = 5 * degree, wrong.shift = 0.1, wrong.are_heads_exact = true;
+    const RigModel truth = true_rig(believed_rig(), wrong, random);
+    RigPrior prior = rough_prior(believed_rig());
+    for (CameraPrior& camera : prior.cameras) camera.steps = 0;
+    RigProblem problem(believed_rig(), prior, seen_etalon(truth, random_etalon(random), 0.05, random));
+    const RigCalibration found = calibrate_rig(problem);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LE(found.rms, 1.05);
+    const OpticalAxis a = optical_axis(problem.variables(), found.x, {{.camera = 0}, {}}),
+                      b = optical_axis(problem.variables(), found.x, {{.camera = 1}, {}});
+    const RigQuantity angle = axes_angle(a, b);
+    const auto direction = [&](std::size_t i) -> Eigen::Vector3d {
+      return view_of(truth, {.camera = i}).X_WC.rotation.col(2);
+    };
+    const double should = std::atan2(direction(0).cross(direction(1)).norm(), direction(0).dot(direction(1)));
+    const double sigma = angle.sigma(found.covariance);
+    EXPECT_LE(sigma, 0.3 * degree);
+    EXPECT_LE(std::abs(angle.value - should), 4 * sigma);
+    squares += std::pow((angle.value - should) / sigma, 2), ++count;
+  });
+  EXPECT_LT(squares, (1 + 4 * std::sqrt(2.0 / count)) * count);
+}
+
+}  // namespace
+}  // namespace flexura

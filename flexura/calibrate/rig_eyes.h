@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "flexura/calibrate/rig_reader.h"
+#include "flexura/calibrate/rig_session.h"
+
+namespace flexura {
+
+/// What a session looks at, the arm or the calibration cylinder: measures it in pictures, keeps what was
+/// seen, and finds the rig that explains all of it.
+class RigEyes {
+ public:
+  virtual ~RigEyes() = default;
+  RigEyes() = default;
+  RigEyes(const RigEyes&) = delete;
+  RigEyes& operator=(const RigEyes&) = delete;
+
+  /// The commanded poses and the stances, as read, of what is kept.
+  [[nodiscard]] virtual std::vector<ArmState>& poses() = 0;
+  [[nodiscard]] virtual std::vector<RigStance>& stances() = 0;
+
+  /// Measures a picture of the session's camera `i`. Whether it tells anything.
+  [[nodiscard]] virtual bool look(std::size_t i, const Picture& picture) = 0;
+  /// What was measured last, as far as it says what it is without being kept. `view`: as far as it is known.
+  [[nodiscard]] virtual SeenArm unkept(const View& view) const = 0;
+  /// Keeps what was measured last, seen from this stance in this pose. What it is, by the rig that was found
+  /// before, if there is one.
+  [[nodiscard]] virtual SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) = 0;
+  /// Where in the picture something of it was measured last, px, if anything was.
+  [[nodiscard]] virtual std::optional<Eigen::Vector2d> whereabouts() const { return std::nullopt; }
+
+  /// The rig that explains all that was kept; `found`: the one before.
+  [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
+  /// How far what a picture shows is from where the rig has it, root mean square, px.
+  [[nodiscard]] virtual double off_foretold(const RigModel& model, const RigSight& sight) const = 0;
+};
+
+/// Those of a session with this configuration, which outlives them as the others do. `target`: what the
+/// cameras are believed to look at, in W, m.
+[[nodiscard]] std::unique_ptr<RigEyes> session_eyes(const RigModel& believed, const RigPrior& prior,
+                                                    const RigSessionConfig& config,
+                                                    const Eigen::Vector3d& target);
+
+}  // namespace flexura

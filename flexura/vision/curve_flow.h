@@ -40,6 +40,7 @@ class AngleIntegrator {
   /// Starts at measured angles, rad.
   explicit AngleIntegrator(std::vector<double> angles) : angles_(std::move(angles)) {}
 
+  /// As they stand now, rad; not brought within a turn.
   [[nodiscard]] const std::vector<double>& angles() const { return angles_; }
   /// Adds turns, rad; those that are not numbers count as their neighbours'. std::invalid_argument: another
   /// number of them.

@@ -11,9 +11,9 @@ namespace flexura {
 
 /// What one camera saw of the arm in one picture.
 struct RigImage {
-  std::size_t stance = 0, pose = 0;  ///< Which of the observations'.
-  std::vector<SeenMarker> markers = {};
-  std::vector<CurvePoint> points = {};  ///< Where the backbone is seen, from base to tip.
+  std::size_t stance = 0, pose = 0;      ///< Which of the observations'.
+  std::vector<SeenMarker> markers = {};  ///< Those that were recognised.
+  std::vector<CurvePoint> points = {};   ///< Where the backbone is seen, from base to tip.
 };
 
 /// Everything that was seen. Pictures that were taken without moving the head share a stance, and those taken

@@ -226,6 +226,7 @@ struct ImageMessage {
   std::string format = "png";
 };
 
+/// Where a run's log has its messages.
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";

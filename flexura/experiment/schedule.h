@@ -30,8 +30,7 @@ struct Leg {
 class Schedule {
  public:
   /// `performed` has what tasks did whose motion is decided on the way or followed before (calibrations,
-  /// servos, dynamics), by their numbers;
-  /// those that are left out are taken to do everything that they may.
+  /// servos, dynamics), by their numbers; those that are left out are taken to do everything that they may.
   explicit Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed = {});
 
   /// At least one: without tasks, a hold of no duration.

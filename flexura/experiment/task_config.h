@@ -75,6 +75,7 @@ struct ExpressionTask {
   std::optional<std::vector<std::string>> stretches;             ///< Factors.
 };
 
+/// One `[[task]]` of a file.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 

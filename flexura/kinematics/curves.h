@@ -50,6 +50,7 @@ struct CurveDeviation {
       0.0;  ///< Largest distance of the curve's points from the backbone, m (256 a piece looked at).
   double length = 0.0;  ///< Of the curve, m.
 };
+/// How far off `curve` is, and how long.
 [[nodiscard]] CurveDeviation deviation(std::span<const CubicBezier> curve, const Backbone& backbone);
 
 }  // namespace flexura

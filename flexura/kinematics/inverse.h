@@ -54,6 +54,7 @@ struct InverseOptions {
   std::uint64_t seed = 1;         ///< Of the starts after the first two.
 };
 
+/// How a search ended.
 enum class InverseOutcome {
   converged,       ///< Within the tolerances.
   not_reachable,   ///< Proven so (is_proven), or no limit is in the way and no state comes nearer.

@@ -58,6 +58,7 @@ class [[nodiscard]] Outcome {
 
 /// The value of a command that was taken.
 struct Accepted {};
+/// What a command comes to: taken, or why not. It does not wait for the motion.
 using CommandOutcome = Outcome<Accepted>;
 
 }  // namespace flexura

@@ -21,6 +21,7 @@ namespace flexura {
 struct ServoError {
   double rms = 0, most = 0, tip = 0;  ///< Root mean square; the largest; at the tip.
 };
+/// At 51 places along both, evenly from base to tip. `length`: the arm's, m.
 [[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
 [[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 

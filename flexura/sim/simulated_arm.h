@@ -51,6 +51,7 @@ class SimulatedArm : public ArmPort {
 
   /// The arm's true shape, from `horizon` s before the last command on: not for algorithms.
   [[nodiscard]] ArmState truth(double time) const;
+  /// The true arm's; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return {arm_, truth(time)}; }
   /// What connects the arm: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }

@@ -22,6 +22,7 @@ struct McapMessage {
   std::uint32_t sequence;           ///< As the writer counted it; it may wrap.
   std::span<const std::byte> data;  ///< As written: JSON in the logs of runs.
 
+  /// The data as they stand, read as text.
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(data.data()), data.size()};
   }

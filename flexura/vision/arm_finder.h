@@ -34,6 +34,7 @@ struct AxisSample {
   bool is_seen = false;             ///< Both borders are; otherwise what is near carries over.
 };
 
+/// Why an axis ends where it does.
 enum class AxisEndKind {
   free,    ///< The arm ends: `pixel` is where its sides do.
   border,  ///< Cut by the picture's border.

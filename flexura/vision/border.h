@@ -30,8 +30,8 @@ struct BorderPoint {
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
                  std::uint32_t component, double blur, std::vector<BorderPoint>& border);
 
-/// The largest figure of a picture and its border: of those that do not touch the picture's own border, if
-/// there is one such, of at least 24 px.
+/// The largest figure of a picture, of 24 px at least, and its border: of the figures that do not touch the
+/// picture's own border, or of all where none such is.
 struct FigureBorder {
   Threshold threshold;
   std::string reason;               ///< Why there is none; "" when there is one.
@@ -40,6 +40,7 @@ struct FigureBorder {
   bool touches_border = false;      ///< Any of its pixels lies in the picture's outermost ring.
   std::vector<BorderPoint> points;  ///< In their order around it (find_border).
 };
+/// Of a gray picture.
 [[nodiscard]] FigureBorder largest_figure(const Image<std::uint8_t>& gray,
                                           const ThresholdConfig& config = {});
 

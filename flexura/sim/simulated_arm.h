@@ -27,7 +27,7 @@ class SimulatedDrive {
   void halt(double time);
   /// What the model makes of the motors.
   [[nodiscard]] ArmReading reading(double time) const;
-  /// The shape of the true arm; not for algorithms. `time` goes back to the horizon.
+  /// The shape of the true arm, known back to the horizon: not for algorithms.
   [[nodiscard]] ArmState truth(double time) const;
 
  private:

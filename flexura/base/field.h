@@ -18,6 +18,7 @@ struct NumberRange {
   double max = std::numeric_limits<double>::infinity();
   bool open_min = false;  ///< min itself is out.
 
+  /// `value` in base units, as the bounds are. No range holds NaN.
   [[nodiscard]] bool contains(double value) const {
     return (open_min ? value > min : value >= min) && value <= max;
   }
@@ -34,16 +35,17 @@ struct NumberRange {
 
 /// How many entries an array takes.
 struct Count {
+  /// Both numbers are in.
   std::size_t min = 0;
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
 /// What the table of fields says about one field, beside the member it fills.
 struct Spec {
-  std::string meaning = {};
+  std::string meaning = {};  ///< A sentence for people: in errors, the schema and the reference.
   Unit unit = Unit::none;
-  NumberRange range = {};
-  Count count = {};  ///< Of the outermost array.
+  NumberRange range = {};  ///< Of a number, or of each number of an array.
+  Count count = {};        ///< Of the outermost array.
   bool required = false;
   bool partial = false;           ///< A table of which a file may write parts; the reader is given the whole.
   bool one_for_all = false;       ///< An array may be written as one value, meant for every entry.
@@ -52,6 +54,7 @@ struct Spec {
 
 /// The shape of a field's value.
 struct Type {
+  /// choice: one of the texts `choices`; bytes: binary data, in messages alone.
   enum class Kind { boolean, integer, number, text, bytes, choice, array, table, one_of };
   Kind kind = Kind::number;
   std::vector<std::string> choices = {};            ///< choice
@@ -63,7 +66,7 @@ struct Type {
 
 /// A field without its member: all that a schema or a reference page needs.
 struct FieldInfo {
-  std::string name;
+  std::string name;  ///< The key without a unit's suffix.
   Type type;
   Spec spec;
   std::string default_text;  ///< As it would be written; "" when required.
@@ -71,10 +74,11 @@ struct FieldInfo {
 
 /// A table of fields without its struct.
 struct TableInfo {
-  std::string name;
+  std::string name;  ///< In messages and schemas; of a one_of's tables the text under "kind".
   std::string meaning = {};
   std::vector<FieldInfo> fields;
 
+  /// The field of this name, without a unit's suffix; null when there is none.
   [[nodiscard]] const FieldInfo* find(std::string_view field_name) const;
 };
 

@@ -24,8 +24,9 @@ struct Node {
   using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table, Other>;
 
   Value value;
-  SourcePosition where;
+  SourcePosition where;  ///< Of the value; the key before it has its own place (Member::where).
 
+  /// The value if it is a T, one of the types of Value; else null. An integer is no double.
   template <class T>
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(&value);
@@ -34,6 +35,7 @@ struct Node {
   [[nodiscard]] T* as() {
     return std::get_if<T>(&value);
   }
+  /// Nothing is written here. Empty texts, arrays and tables are something.
   [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value); }
 
   /// The value under `key` of a table; null when there is none or this is no table.

@@ -23,6 +23,7 @@ class Reader {
     Scope(Reader& reader, std::string_view name, const SourcePosition& where);
     /// A field, which messages name as it was spelt (`key`) and checks by its `name`.
     Scope(Reader& reader, std::string_view name, std::string_view key, const SourcePosition& where);
+    /// The entry `index`, from 0, of the array that is the current place.
     Scope(Reader& reader, std::size_t index, const SourcePosition& where);
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -57,6 +58,8 @@ class Reader {
 
   /// A finite number within the range, in base units; a problem and false otherwise.
   bool number(const Node& node, const Spec& spec, double& value);
+  /// The same of a whole number, within the range as it stands: units are not counted in. 3.0 is no whole
+  /// one.
   bool integer(const Node& node, const Spec& spec, std::int64_t& value);
   /// A text without control characters: one that is printed cannot pass for more than it is.
   bool text(const Node& node, std::string& value);
@@ -75,8 +78,9 @@ class Reader {
 
 /// A field of `table` found in a document: which, how it was spelt, and its value.
 struct FoundField {
+  /// Null where the field was left out; else it points into the document, which has to live longer.
   const Node::Member* member = nullptr;
-  UnitSpelling spelling;
+  UnitSpelling spelling;  ///< The unit in which the key says it is written.
 };
 
 /// Finds each field of `table` (in its order; `member` null where left out). Problems: not a table, unknown

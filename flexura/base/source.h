@@ -25,6 +25,7 @@ struct SourcePosition {
 /// One thing that is wrong with the input, in one line.
 struct Problem {
   SourcePosition where;
+  /// Begins with the path of what is wrong, where that has one: "arm.kind = 3: expected ...".
   std::string what;
 
   /// "file:line:column: what".
@@ -35,6 +36,7 @@ struct Problem {
 /// 2).
 class InputError : public std::runtime_error {
  public:
+  /// what() has a line each for the first 20, and how many more there are.
   explicit InputError(std::vector<Problem> problems);
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
 

@@ -34,6 +34,8 @@ struct Codec;
 template <class S>
 class Table {
  public:
+  /// `name`: the text under "kind" where this is one of several tables. `meaning`: a sentence for the
+  /// reference.
   Table(std::string name, std::string meaning) {
     info_.name = std::move(name), info_.meaning = std::move(meaning);
   }

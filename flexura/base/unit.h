@@ -20,7 +20,7 @@ enum class Unit {
 /// A way to write a quantity: a value under the key NAME + suffix counts `factor` base units.
 struct UnitSpelling {
   std::string_view suffix;  ///< "" for the base unit, "_deg", "_pi", "_mm", ...
-  double factor = 1.0;
+  double factor = 1.0;      ///< Base units for a written 1.
   std::string_view symbol;  ///< "rad", "deg", "x pi rad", "mm", ...
 };
 

@@ -13,7 +13,7 @@ namespace flexura {
 /// What cameras that stand still to each other saw of a board at one time: for each camera the pixels of the
 /// board's points, in the board's order; none where it saw no board.
 struct BoardView {
-  std::vector<std::vector<Eigen::Vector2d>> pixels;
+  std::vector<std::vector<Eigen::Vector2d>> pixels;  ///< (u, v), px.
 };
 
 /// What a set of views is explained by.
@@ -25,20 +25,20 @@ struct BoardBundle {
 
 /// What of a bundle is fitted.
 struct BundleConfig {
-  bool cameras = true;  ///< Lenses and cameras, and not the boards alone.
-  int distortion = 5;   ///< How many of k1, k2, p1, p2, k3; the others keep their values.
-  int most_steps = 100;
+  bool cameras = true;        ///< Lenses and cameras, and not the boards alone.
+  int distortion = 5;         ///< How many of k1, k2, p1, p2, k3; the others keep their values.
+  int most_steps = 100;       ///< Of BundleFit::steps.
   double least_gain = 1e-12;  ///< A step that gains less than this share of the sum is the last.
 };
 
 /// A bundle fitted to views.
 struct BundleFit {
   BoardBundle bundle;
-  bool is_converged = false;
-  int steps = 0;             ///< Linearizations.
-  double square_sum = 0;     ///< Of all pixels' distances, px^2.
-  std::size_t points = 0;    ///< Pixels that were compared.
-  std::size_t unknowns = 0;  ///< Cameras' and boards'.
+  bool is_converged = false;  ///< Else no step helped, or they ran out.
+  int steps = 0;              ///< The first linearization, and every step tried.
+  double square_sum = 0;      ///< Of all pixels' distances, px^2.
+  std::size_t points = 0;     ///< Pixels that were compared.
+  std::size_t unknowns = 0;   ///< Cameras' and boards'.
   /// Of the cameras' unknowns, the boards' eliminated, for noise of 1 px: its inverse is their covariance.
   /// Camera by camera its lens, in the order of `intrinsics_count` as far as it is fitted; then for each
   /// camera but the first its small motion [v; w] of X_1C: p + v, exp(w) R.

@@ -37,15 +37,16 @@ struct CameraFit {
   /// or, where corner_sigma is more than that, the image's corners.
   std::vector<int> untold;
 
+  /// The standard deviation of one, by its place in the order of `intrinsics_count`, in its unit.
   [[nodiscard]] double sigma(int parameter) const;
 };
 
 /// Cameras that stand still to each other, calibrated together.
 struct IntrinsicsFit {
   bool is_found = false;
-  std::string reason;  ///< Why not.
-  std::vector<CameraFit> cameras;
-  std::vector<Pose> poses;  ///< X_1C: each camera in the first one.
+  std::string reason;              ///< Why not.
+  std::vector<CameraFit> cameras;  ///< In the order of the sizes given.
+  std::vector<Pose> poses;         ///< X_1C: each camera in the first one.
   /// Of the small motion [v; w] of X_1C (p + v, exp(w) R); 0 for the first.
   std::vector<Eigen::Matrix<double, 6, 6>> pose_covariance;
   double rms = 0;                      ///< Of the distances in all pictures that were fitted, px.

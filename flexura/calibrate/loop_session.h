@@ -50,8 +50,8 @@ struct LoopConfig {
 /// How a loop went.
 struct LoopResult {
   bool is_done = false;
-  std::string reason;  ///< Why it is not, and where the rig was left.
-  std::vector<LoopDecision> steps;
+  std::string reason;                                ///< Why it is not, and where the rig was left.
+  std::vector<LoopDecision> steps;                   ///< What was decided, in order.
   std::array<std::size_t, 2> pictures = {0, 0};      ///< By camera.
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What the cameras look at, m.
   std::array<RigStance, 2> start, stances;           ///< How they stood at first, and at the end, as read.
@@ -59,7 +59,7 @@ struct LoopResult {
   std::optional<double> angle;                       ///< Between the axes beyond 90 degrees, as seen, rad.
   std::optional<double> zoom_ratio;                  ///< How much larger the first shows it, as seen.
   std::vector<std::string> notes;                    ///< What else there is to know.
-  std::array<std::optional<RigSight>, 2> before, after;  ///< Of each camera.
+  std::array<std::optional<RigSight>, 2> before, after;  ///< The first and the last picture of each camera.
 };
 
 /// Calibrates two cameras by a loop of looking, measuring, deciding and moving (docs/calibration-paper.md),

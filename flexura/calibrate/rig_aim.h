@@ -31,7 +31,7 @@ namespace flexura {
 struct RigWish {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What both cameras look at, in W, m.
   std::array<RigStance, 2> now;                      ///< From where they go: of two cameras.
-  bool may_use_stages = true;
+  bool may_use_stages = true;                        ///< Else they stay where they stand.
   /// Focal length over depth that both shall have, px/m; the one between their present ones that both can
   /// reach when left out.
   std::optional<double> magnification;
@@ -48,8 +48,8 @@ struct RigRemainder {
 /// What to command for the wanted configuration, and what remains of it for want of range or resolution.
 struct WantedRig {
   std::array<RigStance, 2> stances;  ///< To be commanded: within the limits, in steps of the resolutions.
-  RigRemainder remainder;
-  std::vector<std::string> notes;  ///< What keeps it from being had: "front: pan ends at ...".
+  RigRemainder remainder;            ///< When these are commanded.
+  std::vector<std::string> notes;    ///< What keeps it from being had: "front: pan ends at ...".
 };
 
 /// The commands after which both cameras look at the target along orthogonal axes and show it equally large:

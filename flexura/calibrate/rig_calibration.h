@@ -27,8 +27,8 @@ struct RigCalibration {
   Eigen::MatrixXd covariance;  ///< Of x. Infinite entries: the observations leave part of x without bound.
   double rms = 0;              ///< Of the residuals' entries, in their own standard deviations.
   double scale = 1;  ///< Of the residuals, for what was fitted; sigmas are larger by it where it is above 1.
-  std::vector<RigDoubt> doubts;  ///< What was taken for something else's.
-  int iterations = 0, starts = 0;
+  std::vector<RigDoubt> doubts;    ///< What was taken for something else's.
+  int iterations = 0, starts = 0;  ///< Of all descents together; rough starts tried.
 };
 
 /// The rig that explains the observations best, from rough guesses on (docs/calibration.md): the least of

@@ -59,7 +59,7 @@ struct ArmPrior {
 
 /// How far a rig may be off its guess: standard deviations.
 struct RigPrior {
-  ArmPrior arm;
+  ArmPrior arm;                      ///< The same of every section.
   std::vector<CameraPrior> cameras;  ///< One a camera.
 };
 
@@ -70,7 +70,7 @@ struct RigPrior {
 
 /// A way in which one camera stood, as its head and stage say.
 struct RigStance {
-  std::size_t camera = 0;
+  std::size_t camera = 0;  ///< Its place in RigModel::cameras.
   HeadState head = {};
   StageState stage = {};
   /// An earlier stance (of the observations) since which the camera was neither panned nor tilted, though it

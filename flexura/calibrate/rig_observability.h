@@ -10,7 +10,7 @@ namespace flexura {
 
 /// What observations tell of one of a rig's own numbers.
 struct RigKnowledge {
-  std::string name;
+  std::string name;             ///< "front: mount, x"
   double prior = 0, sigma = 0;  ///< Standard deviation before and after, in the number's unit.
   bool is_told = false;         ///< It is known at least twice as well as before.
 };

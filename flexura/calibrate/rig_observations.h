@@ -13,11 +13,12 @@ namespace flexura {
 
 /// What one camera saw in one picture: of the arm, or of the calibration cylinder.
 struct RigImage {
-  std::size_t stance = 0, pose = 0;  ///< Which of the observations'.
-  std::vector<SeenMarker> markers = {};
-  std::vector<CurvePoint> points = {};  ///< Where the backbone is seen, from base to tip.
-  std::vector<EtalonPoint> etalon = {};
+  std::size_t stance = 0, pose = 0;      ///< Which of the observations'.
+  std::vector<SeenMarker> markers = {};  ///< Those that were recognised.
+  std::vector<CurvePoint> points = {};   ///< Where the backbone is seen, from base to tip.
+  std::vector<EtalonPoint> etalon = {};  ///< Of the cylinder's borders and red lines.
 
+  /// How many things were seen.
   [[nodiscard]] std::size_t things() const { return markers.size() + points.size() + etalon.size(); }
 };
 

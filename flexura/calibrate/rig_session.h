@@ -38,7 +38,7 @@ struct RigSessionConfig {
   /// then, the one pose is the arm's own, the target is the cylinder's middle unless there is another, and
   /// looks begin with the shortest focal length.
   std::optional<EtalonConfig> etalon;
-  bool may_use_stages = true;
+  bool may_use_stages = true;            ///< Else they stay where they stand.
   std::vector<double> zooms = {1, 2.5};  ///< Ratios of focal length to that at the start, to look with.
   double slide = 0.15;       ///< To both sides, of the camera's distance, as far as the stage travels.
   double move_duration = 2;  ///< Of the arm to a pose or back, s.
@@ -57,23 +57,23 @@ struct RigSight {
   std::size_t look = 0;  ///< From 1; 0 while the arm is looked for.
   RigStance stance;      ///< As read.
   ArmState pose;         ///< As the drives say.
-  Frame frame;
+  Frame frame;           ///< The picture, and when it was taken.
   SeenArm seen;
   std::vector<SeenValue> values;  ///< What the methods of the paper measure (loop_session.h).
 };
 
 /// What was known after a look.
 struct RigStep {
-  double time = 0;        ///< s
-  std::size_t looks = 0;  ///< Up to now.
-  bool is_found = false;
-  std::string reason;  ///< Why not.
-  double rms = 0;      ///< Of residuals, in standard deviations.
-  std::size_t doubts = 0;
+  double time = 0;                       ///< s
+  std::size_t looks = 0;                 ///< Up to now.
+  bool is_found = false;                 ///< A rig explains what was seen so far.
+  std::string reason;                    ///< Why not.
+  double rms = 0;                        ///< Of residuals, in standard deviations.
+  std::size_t doubts = 0;                ///< Things seen that were left out (RigCalibration::doubts).
   double angle = 0;                      ///< Between the axes where the cameras would be sent, rad, as
   std::array<double, 2> focal = {0, 0};  ///< the rig is believed then; focal lengths at ratio 1, px.
-  RigSigmas sigmas;
-  std::array<RigStance, 2> wanted;  ///< Where the cameras would be sent.
+  RigSigmas sigmas;                      ///< Of what is known so far.
+  std::array<RigStance, 2> wanted;       ///< Where the cameras would be sent.
   /// What would have remained if they had been sent there, by all that is known at the end.
   std::optional<RigRemainder> remainder;
   std::string next;  ///< What is looked at next, and why.
@@ -98,10 +98,15 @@ class RigSessionWatcher {
   RigSessionWatcher(const RigSessionWatcher&) = delete;
   RigSessionWatcher& operator=(const RigSessionWatcher&) = delete;
 
+  /// The arm is sent to `state`, to arrive `duration` s later; and a head and a stage to where the stance has
+  /// them. At `time`, s of the rig's clock.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
   virtual void camera_sent(double time, const RigStance& stance) = 0;
+  /// A picture was taken and measured.
   virtual void seen(const RigSight& sight) = 0;
+  /// What the least squares know after a look (calibrate_rig_in_session).
   virtual void known(const RigStep& step) = 0;
+  /// What a loop of the paper's decides (calibrate_by_loop).
   virtual void decided(const LoopDecision& /*decision*/) {}
   /// Whether the session shall end early.
   virtual bool is_cancelled() { return false; }
@@ -110,9 +115,9 @@ class RigSessionWatcher {
 /// How a session went.
 struct RigSessionResult {
   bool is_done = false;
-  std::string reason;  ///< Why it is not, and where the rig was left.
-  std::vector<RigStep> steps;
-  std::size_t looks = 0;
+  std::string reason;                            ///< Why it is not, and where the rig was left.
+  std::vector<RigStep> steps;                    ///< After each look from which a rig was sought.
+  std::size_t looks = 0;                         ///< As RigSessionConfig::images counts them.
   std::array<std::size_t, 2> pictures = {0, 0};  ///< By camera, those that looked for the arm among them.
   RigCalibration found;                          ///< By all pictures.
   std::size_t markers = 0, points = 0, etalon_points = 0;  ///< In all pictures.
@@ -126,7 +131,7 @@ struct RigSessionResult {
   /// How far from where they were foretold the things of the last look were seen, root mean square, px: its
   /// pictures have no part in the foretelling.
   std::array<double, 2> verified = {0, 0};
-  std::array<std::optional<RigSight>, 2> before, after;  ///< Of each camera.
+  std::array<std::optional<RigSight>, 2> before, after;  ///< The first and the last picture of each camera.
 };
 
 /// Calibrates two cameras of a rig and drives them to the wanted configuration (section 3.4 of the paper;

@@ -114,7 +114,8 @@ ViewGrid RigSessionPlan::grid() const {
   if (config_.etalon) {
     // All of the cylinder has to be inside: as much longer as it fits, and halfway there.
     const double fits = etalon_zoom(begins, start);
-    grid.zooms = {start, std::sqrt(start * fits), fits};
+    for (const double ratio : {std::sqrt(start * fits), fits})
+      if (std::ranges::find(grid.zooms, ratio) == grid.zooms.end()) grid.zooms.push_back(ratio);
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {

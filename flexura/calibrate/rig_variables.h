@@ -50,12 +50,14 @@ class RigVariables {
     Eigen::Index column = -1;  ///< In x; -1: held.
   };
 
+  /// Numbers in x; those of them, the first, that are the rig's own.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] Eigen::Index globals() const { return globals_; }
   /// In the order of x.
   [[nodiscard]] const Variable& variable(Eigen::Index column) const {
     return slots_[slot_of_[static_cast<std::size_t>(column)]];
   }
+  /// The rig at x = 0.
   [[nodiscard]] const RigModel& guess() const { return guess_; }
 
   /// Where the slots of each begin, to be looked up in `column` and `value`.
@@ -65,7 +67,9 @@ class RigVariables {
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
   /// How many slots a camera has.
   [[nodiscard]] Eigen::Index slots_a_camera(std::size_t camera) const;
+  /// Where a slot's number stands in x; -1: held.
   [[nodiscard]] Eigen::Index column(std::size_t slot) const { return slots_[slot].column; }
+  /// A slot's number in x; 0 where it is held. `value3`: of three slots that follow each other.
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
@@ -78,6 +82,7 @@ class RigVariables {
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
   /// The rig that x means.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
+  /// The observations' poses, as commanded, and stances, as read.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
   /// How the arm stood in a pose, and a camera in a stance.

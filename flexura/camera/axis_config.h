@@ -9,7 +9,7 @@ namespace flexura {
 
 /// How one motor-driven axis of a camera may move, in the units of its position: rad, m, or a zoom's.
 struct AxisConfig {
-  std::array<double, 2> limits = {0, 0};
+  std::array<double, 2> limits = {0, 0};                              ///< Smallest and largest position.
   double max_rate = std::numeric_limits<double>::infinity();          ///< A second.
   double max_acceleration = std::numeric_limits<double>::infinity();  ///< A second squared.
   double resolution = 0;  ///< Distance of the positions that can be commanded; 0: any.
@@ -22,7 +22,7 @@ struct AxisConfig {
 
 /// The units in which an axis is written.
 struct AxisUnits {
-  Unit position, rate, acceleration;
+  Unit position, rate, acceleration;  ///< Of a position, a second and a second squared.
 };
 
 /// Adds what all axes have: rates, resolution, backlash. S has the members of AxisConfig.

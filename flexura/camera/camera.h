@@ -15,12 +15,12 @@ namespace flexura {
 
 /// A pixel of a point in W, and how it changes with all that it depends on: px per m, rad, or unit of zoom.
 struct CameraProjection {
-  Eigen::Vector2d pixel;
+  Eigen::Vector2d pixel;                 ///< (u, v), px; in the image or not.
   Eigen::Matrix<double, 2, 3> by_point;  ///< The point in W.
   /// A small motion [v; w] of the mount, V_WM_W: p_WM + v, exp(w) R_WM, in W's axes.
   Eigen::Matrix<double, 2, 6> by_mount;
-  Eigen::Matrix<double, 2, 3> by_stage;  ///< The stage's offset.
-  Eigen::Vector2d by_pan, by_tilt;
+  Eigen::Matrix<double, 2, 3> by_stage;                      ///< The stage's offset.
+  Eigen::Vector2d by_pan, by_tilt;                           ///< px/rad
   Eigen::Vector2d by_zoom;                                   ///< Through the lens and the pupil's shift.
   Eigen::Matrix<double, 2, 3> by_tilt_axis;                  ///< HeadConfig::tilt_axis.
   Eigen::Matrix<double, 2, 3> by_pupil;                      ///< HeadConfig::pupil.
@@ -38,6 +38,7 @@ class Camera {
   explicit Camera(const CameraConfig& config);
 
   [[nodiscard]] const CameraConfig& config() const { return config_; }
+  /// The lens at every zoom, for this sensor's size.
   [[nodiscard]] const ZoomTable& lens() const { return lens_; }
   /// X_WM at stage offset 0.
   [[nodiscard]] const Pose& mount() const { return X_WM_; }

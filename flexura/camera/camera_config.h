@@ -22,7 +22,7 @@ struct CameraStartConfig {
 
 /// One `[[camera]]` of a file.
 struct CameraConfig {
-  std::string name;
+  std::string name;  ///< Names files and topics of logs: letters, digits, -, _, spaces, points.
   MountConfig mount;
   HeadConfig head;
   LensConfig lens;
@@ -43,6 +43,7 @@ void check_cameras(const std::vector<CameraConfig>& cameras, const std::string& 
                                                         const std::array<double, 3>& center = {0, 0, 0});
 
 /// The same at given distances from the planes through `center`, m: the paper's D1 and D2.
+/// std::invalid_argument for one that is not positive and finite.
 [[nodiscard]] std::vector<CameraConfig> cameras_at(const std::array<double, 2>& distances,
                                                    const std::array<double, 3>& center = {0, 0, 0});
 

@@ -30,6 +30,7 @@ struct TiltConfig : AxisConfig {
 struct ZoomConfig {
   std::optional<std::array<double, 2>> limits;  ///< 1 to 10 for a linear zoom, else the table's.
   std::optional<double> max_rate;               ///< A second; over all its range in 3 s when left out.
+  /// As AxisConfig's, in positions.
   double max_acceleration = std::numeric_limits<double>::infinity();
   double resolution = 0;
   double backlash = 0;

@@ -19,6 +19,7 @@ struct Intrinsics {
   double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
 
+  /// Whether any coefficient is not 0.
   [[nodiscard]] bool is_distorted() const { return distortion != std::array<double, 5>{}; }
 };
 

@@ -14,12 +14,13 @@ namespace flexura {
 
 /// A rotation as one writes it: the rows of its matrix, or the quaternion (w, x, y, z).
 struct RotationConfig {
+  /// The rows, or the quaternion; as written, not yet brought to a rotation.
   std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
       std::array<double, 4>{1, 0, 0, 0};
 
   /// How far the matrix is from a rotation, or the quaternion from one of norm 1.
   [[nodiscard]] double error() const;
-  /// The matrix, or that of the quaternion brought to norm 1.
+  /// A rotation by either: a matrix that is off one is drawn to one, a quaternion brought to norm 1.
   [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
@@ -39,7 +40,7 @@ struct CameraDoubtConfig {
 /// One `[[camera]]` of a file of cameras as they were measured: a lens that stands still, and where it
 /// stands.
 struct MeasuredCamera {
-  std::string name;
+  std::string name;                                    ///< For messages.
   double fx = 800;                                     ///< px
   std::optional<double> fy;                            ///< px; fx when left out.
   double cx = 319.5, cy = 239.5;                       ///< px
@@ -48,6 +49,7 @@ struct MeasuredCamera {
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
   CameraDoubtConfig doubt;
 
+  /// std::invalid_argument: as Lens says.
   [[nodiscard]] Lens lens() const;
   /// X_WC.
   [[nodiscard]] Pose pose() const;

@@ -40,7 +40,7 @@ struct MountConfig {
   StageConfig stage;
 
   /// X_WM at stage offset 0. std::invalid_argument: no orientation or two, a look_at in M's origin or
-  /// straight above or below it, a quaternion of norm 0.
+  /// straight above or below it, a quaternion whose norm is not 1 (to 1e-3), a roll beside a rotation.
   [[nodiscard]] Pose pose() const;
 };
 

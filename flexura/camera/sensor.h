@@ -8,6 +8,7 @@
 
 namespace flexura {
 
+/// What a pixel holds: one value, or red, green and blue.
 enum class PixelKind { gray, color };
 
 /// How rows become an image: all at once, one after another, or the even rows of one instant and the odd ones

@@ -17,19 +17,19 @@ namespace flexura {
 
 /// A measured position of a zoom, `[[camera.lens.zoom]]`. What is left out follows from the lens at ratio 1.
 struct ZoomRow {
-  double ratio = 1;             ///< Focal length over that at ratio 1; > 0.
-  std::optional<double> count;  ///< Of the zoom's motor.
-  std::optional<double> fx, fy, cx, cy;
-  std::optional<std::array<double, 5>> distortion;
+  double ratio = 1;                                 ///< Focal length over that at ratio 1; > 0.
+  std::optional<double> count;                      ///< Of the zoom's motor.
+  std::optional<double> fx, fy, cx, cy;             ///< px; else the lens's, fx and fy times the ratio.
+  std::optional<std::array<double, 5>> distortion;  ///< k1, k2, p1, p2, k3; the lens's when left out.
 };
 
 /// A zoom lens as the file describes it: the lens at ratio 1, and how it changes.
 struct LensConfig {
-  double fx = 800;               ///< px, at ratio 1
-  std::optional<double> fy;      ///< px; fx when left out.
-  std::optional<double> cx, cy;  ///< px; the image's middle when left out.
-  std::array<double, 5> distortion = {0, 0, 0, 0, 0};
-  std::vector<ZoomRow> zoom;  ///< By rising ratio. Empty: the linear zoom.
+  double fx = 800;                                     ///< px, at ratio 1
+  std::optional<double> fy;                            ///< px; fx when left out.
+  std::optional<double> cx, cy;                        ///< px; the image's middle when left out.
+  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3, at ratio 1.
+  std::vector<ZoomRow> zoom;                           ///< By rising ratio. Empty: the linear zoom.
 };
 
 const Table<ZoomRow>& fields_of(const ZoomRow*);
@@ -49,7 +49,7 @@ class ZoomTable {
 
   /// What is wrong with a lens, and where in its table.
   struct Fault {
-    std::string path, what;
+    std::string path, what;  ///< In the lens's table, "zoom[1].ratio"; what is expected there.
   };
   /// What keeps the rows from being a zoom, if anything does: ratios and focal lengths that do not rise,
   /// counts that neither all rise nor all fall, or that some rows lack, a single row.
@@ -58,6 +58,7 @@ class ZoomTable {
   /// The positions for which there is a lens: those of the rows, or all above 0.
   [[nodiscard]] double first() const { return first_; }
   [[nodiscard]] double last() const { return last_; }
+  /// Whether there are no rows.
   [[nodiscard]] bool is_linear() const { return curves_.empty(); }
 
   /// The lens at `zoom`. Past an end by no more than rounding (1e-9 of it) is at that end; further outside

@@ -14,13 +14,14 @@ namespace flexura {
 /// the way from base to tip as the picture shows it, then left (docs/control.md, eq. 19a and 19b). All are
 /// not numbers where rays touch the section nowhere: the arm points at the camera there.
 struct ContourImage {
-  Eigen::Matrix2Xd pixels;
+  Eigen::Matrix2Xd pixels;   ///< px, a column a point.
   Eigen::Matrix2Xd normals;  ///< Unit, across the curve in the picture, away from the arm.
   Eigen::Matrix3Xd places;   ///< p_CP, m.
   Eigen::Matrix3Xd arms;     ///< From the section's middle to P, in C, m.
   /// By how much the curve moves along `normals` as the surface at P moves, by p_CP, px/m.
   Eigen::Matrix3Xd slopes;
 
+  /// Whether the contour has point i.
   [[nodiscard]] bool has(Eigen::Index i) const { return pixels.col(i).allFinite(); }
 };
 

@@ -25,9 +25,9 @@ struct DistributedArmModel {
   double length_damping = 0;  ///< Of the lengths' rates, N s/m; >= 0.
   /// theta and q at the base, rad, where it is clamped; none: it turns freely about its base point.
   std::optional<std::array<double, 2>> clamp = std::array<double, 2>{0, 0};
-  AngleBasis basis = AngleBasis::polynomial;
-  int nodes = 10;   ///< Numbers for each angle (polynomial basis).
-  int points = 14;  ///< Of quadrature in each section.
+  AngleBasis basis = AngleBasis::polynomial;  ///< Of both angles.
+  int nodes = 10;                             ///< Numbers for each angle (polynomial basis).
+  int points = 14;                            ///< Of quadrature in each section.
 };
 
 /// The equations of motion of such an arm, discretised along s before Lagrange's equations are taken, so that
@@ -41,6 +41,7 @@ class DistributedArm {
   explicit DistributedArm(const DistributedArmModel& model);
 
   [[nodiscard]] const DistributedArmModel& model() const { return model_; }
+  /// Of each of the two angles; its s are the points that this class speaks of.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
   /// How many coordinates there are, and how many numbers an angle has.
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -63,6 +64,7 @@ class DistributedArm {
   [[nodiscard]] const Eigen::VectorXd& elastic_gradient() const { return elastic_gradient_; }
   /// The Hessian of V_g + V_e.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
+  /// Of the coordinates, size() x size(), symmetric: T = 1/2 v . M v.
   [[nodiscard]] Eigen::MatrixXd mass_matrix() const;
   /// d^2 x/dt^2 under generalized forces. False where the coordinates are singular (|q| = pi/2) or a number
   /// is not finite.
@@ -105,6 +107,7 @@ class DistributedMotion {
   /// which the sum is kept: what a law's damping takes.
   using Force = std::function<double(double t, const DistributedArm& arm, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& v, Eigen::VectorXd& Q)>;
+  /// The tolerance is of (x; v) and both sums. At rest at x = 0, all angles 0, until start().
   DistributedMotion(DistributedArm arm, Force force, const OdeTolerance& tolerance = {});
 
   /// From rest at x at time 0.
@@ -112,6 +115,7 @@ class DistributedMotion {
   /// Goes on to the time `until`, s. False: it could not (DormandPrince), or the arm met a singularity.
   [[nodiscard]] bool advance(double until);
 
+  /// s since the start; x and its rates then.
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
   [[nodiscard]] const Eigen::VectorXd& v() const { return v_; }

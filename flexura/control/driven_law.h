@@ -27,6 +27,8 @@ struct ProjectedForce {
   Eigen::VectorXd force;   ///< G f
   double left_over = 0;    ///< |Q - G f| / |Q|: 0 where the drives can give it; W falls there.
 };
+/// The least of |Q - G f|, and of the f that reach it the shortest. std::invalid_argument: a Q of another
+/// size than G has rows.
 [[nodiscard]] ProjectedForce project_on_drives(const Eigen::MatrixXd& G, const Eigen::VectorXd& Q);
 
 /// The artificial potential on the drives' own numbers y = G^T x alone (docs/control.md, eq. 12):

@@ -21,6 +21,7 @@ class FeatureImages {
   FeatureImages(const Arm& arm, FeatureSet set);
 
   [[nodiscard]] const FeatureSet& set() const { return set_; }
+  /// The points behind the features, set to the state last seen.
   [[nodiscard]] const PointImages& points() const { return points_; }
 
   /// What all cameras see, camera by camera. False where a lens shows a needed point nowhere, or an image has

@@ -16,7 +16,7 @@ struct ImageLawGains {
 
 /// What a law asks for, and how sure its Jacobian is of it.
 struct ImageStep {
-  ArmState asked;
+  ArmState asked;  ///< To be sent next, through a limiter; within the sections' limits.
   /// Least over greatest singular value of the Jacobian: of n variables never more than that and at least an
   /// n-th of it, and just that where it is 1e-5 or less.
   double reciprocal_condition = 0;

@@ -31,6 +31,7 @@ struct PixelFeature {
 struct CurveMoments {
   /// Length (px); centroid u, v (px); central second moments uu, uv, vv over the length (px^2).
   Eigen::Vector<double, 6> values;
+  /// Of these six; the columns are u and v of each vertex in turn.
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_pixels;
 };
 /// std::domain_error: fewer than two pixels, or no length.

@@ -14,6 +14,7 @@ class BroydenEstimate {
   /// std::invalid_argument: numbers out of these ranges or not finite.
   explicit BroydenEstimate(Eigen::MatrixXd J, double share = 1, double least = 1e-6);
 
+  /// Features by variables: as it was given, with what was learned.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
   /// The variables moved by dx, the features by df. False: too small a motion, or numbers that are not
   /// finite; nothing is learned. std::invalid_argument for other sizes.

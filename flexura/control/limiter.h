@@ -14,9 +14,9 @@ namespace flexura {
 
 /// What a limiter keeps to besides the arm's own limits.
 struct LimiterSettings {
-  double step = 1.0 / 30;           ///< Time from one command to the next, s; > 0.
-  std::optional<Drive> drive = {};  ///< Its motors' speeds, step rates, accelerations and positions.
-  std::vector<Obstacle> obstacles = {};
+  double step = 1.0 / 30;                ///< Time from one command to the next, s; > 0.
+  std::optional<Drive> drive = {};       ///< Its motors' speeds, step rates, accelerations and positions.
+  std::vector<Obstacle> obstacles = {};  ///< Which no way may touch, with looks_ahead.
   bool looks_ahead = true;  ///< Every way is checked for contact (check_motions) until the arm would rest.
   int most_braking = 200;   ///< The most steps that coming to rest may take.
 };
@@ -31,8 +31,8 @@ struct LimitedCommand {
 
 /// What is kept of a fault.
 struct LimiterFault {
-  double time = 0;  ///< s since the limiter was made: its steps.
-  std::string reason;
+  double time = 0;                   ///< s since the limiter was made: its steps.
+  std::string reason;                ///< Why the arm was stopped.
   std::optional<ArmState> observed;  ///< The last that observe() was told.
   ArmState sent;                     ///< The last command before it.
   std::optional<ArmState> asked;     ///< What the law asked for then.
@@ -63,12 +63,14 @@ class CommandLimiter {
   void observe(const ArmState& observed) { observed_ = observed; }
   /// Stops the arm: a port's fault, a lost estimate. Of several the first one is kept.
   void fault(const std::string& reason);
+  /// What stopped the arm; none since the start or the last reset().
   [[nodiscard]] const std::optional<LimiterFault>& fault() const { return fault_; }
   /// Goes on after a fault. std::logic_error before the arm rests.
   void reset();
 
   /// The last command.
   [[nodiscard]] const ArmState& sent() const { return sent_; }
+  /// The arm stays where the last command sent it.
   [[nodiscard]] bool is_at_rest() const { return way_to_rest_.empty(); }
 
  private:

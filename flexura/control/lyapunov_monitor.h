@@ -28,6 +28,7 @@ struct LyapunovVerdict {
   double gravity_share = 0, elastic_share = 0, potential_share = 0;
   std::vector<std::string> reasons;  ///< In words; empty for a run as the theory has it.
 
+  /// The run is as the theory has it.
   [[nodiscard]] bool is_good() const { return reasons.empty(); }
 };
 

@@ -18,6 +18,7 @@ class PointImages {
   /// At `shares` of the unstretched arm's length, from its base. std::invalid_argument: one outside [0, 1].
   PointImages(Arm arm, const std::vector<double>& shares);
 
+  /// Points: one a share, in their order.
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(points_.size()); }
   /// Columns of derivatives: each section's bend_x, bend_y (rad), stretch.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }

@@ -24,7 +24,7 @@ struct PotentialGains {
   double length_stiffness = 200;                              ///< Of each u_i, N/m; > 0.
   double length_damping = 40;                                 ///< N s/m; > 0.
   double gravity_share = 1;                                   ///< Of dV_g/dx that is compensated.
-  ElasticityRule elasticity = ElasticityRule::cancelled;
+  ElasticityRule elasticity = ElasticityRule::cancelled;      ///< What is done about dV_e/dx.
   double sign = 1;  ///< Of the potential's force; -1 drives away from the target.
 };
 
@@ -55,6 +55,7 @@ class PotentialLaw {
   /// int (theta_t, q_t) K (theta_t, q_t) ds + k sum u_t^2: what the law takes, W.
   [[nodiscard]] double dissipation(const Eigen::VectorXd& v) const { return v.dot(damping_ * v); }
 
+  /// The coordinates that the law leads to.
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
   [[nodiscard]] const PotentialGains& gains() const { return gains_; }
 

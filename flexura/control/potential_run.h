@@ -30,6 +30,7 @@ class PotentialRun {
   /// Why it cannot go on; empty: it can.
   [[nodiscard]] const std::string& stopped() const { return stopped_; }
 
+  /// Time, coordinates and rates now, and the arm set to them.
   [[nodiscard]] const DistributedMotion& motion() const { return motion_; }
   [[nodiscard]] const PotentialLaw& law() const { return law_; }
   /// The energies now. Where elasticity is shaped V_e is part of Pi and 0 here.

@@ -21,6 +21,7 @@ class CurveImage {
   bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
            Eigen::Index count);
 
+  /// The place of the last knot; places count from 0 at the base.
   [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
 
   /// A place of the image.
@@ -31,11 +32,13 @@ class CurveImage {
     double speed = 0;         ///< px a knot.
     double scale = 0;         ///< px a metre across the line of sight, there.
   };
+  /// `place` from 0 to last(); beyond, the last piece's cubic goes on.
   [[nodiscard]] Point at(double place) const;
   /// Where to look: from one knot to another, and first in the interval after a third.
   struct Window {
     std::size_t first = 0, last = 0, likely = 0;
   };
+  /// All of the curve, looked at from the first knot.
   [[nodiscard]] Window everywhere() const { return {0, pieces_.size(), 0}; }
   /// The curve's point nearest to a pixel, within a window, that runs about as `heading` does (unit): of a
   /// hairpin's branches the one that is meant.

@@ -16,7 +16,7 @@ namespace flexura {
 /// How an estimate is made.
 struct EstimatorConfig {
   std::size_t most_points = 100;  ///< Of each sighting; more are thinned out.
-  int most_iterations = 60;
+  int most_iterations = 60;       ///< Of each descent.
   /// Estimates whose standard deviation, root mean square along the arm, is larger are marked; share of its
   /// length.
   double uncertain = 1.1e-4;
@@ -29,7 +29,7 @@ struct EstimatorConfig {
 
 /// The arm's shape from what cameras see of it.
 struct ShapeEstimate {
-  Shape shape;
+  Shape shape;  ///< Where it was not found no more than a guess.
   bool is_found = false;
   std::string reason;              ///< Why it is not.
   std::vector<std::string> notes;  ///< Why it is to be doubted; empty when nothing speaks against it.
@@ -38,9 +38,9 @@ struct ShapeEstimate {
   double scale = 1;                ///< Of the residuals, in units of their sigmas: at least 1; in `sigma`.
   /// Of the position at the knots `s` (m of arc length), standard deviation, m: the root of the trace.
   std::vector<double> s, sigma;
-  Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables).
-  double surprise = 0;         ///< ShapeFit::surprise
-  int iterations = 0;
+  Eigen::MatrixXd covariance;         ///< Of the unknowns (ShapeVariables).
+  double surprise = 0;                ///< ShapeFit::surprise
+  int iterations = 0;                 ///< Of the descent that ended in it.
   std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
 };
 

@@ -14,8 +14,8 @@ namespace flexura {
 
 /// What is known of an arm before it is looked at.
 struct ShapePrior {
-  Arm arm;  ///< Its sections, and its base as far as it is known.
-  bool is_base_position_known = true;
+  Arm arm;                              ///< Its sections, and its base as far as it is known.
+  bool is_base_position_known = true;   ///< Arm::X_WB's position holds.
   bool is_base_direction_known = true;  ///< And how the arm is turned about it.
   bool is_length_known = true;          ///< Otherwise all sections stretch alike.
   /// Standard deviation of the change of curvature from one section to the next, 1/m; infinite: sections bend
@@ -27,7 +27,7 @@ struct ShapePrior {
 
 /// An arm as it may be: a point in the space of what is not known.
 struct Shape {
-  Arm arm;
+  Arm arm;  ///< With what is found of its base.
   ArmState state;
   std::vector<ViewError> views = {};  ///< Of the cameras that see it; of those that are not here, none.
 };
@@ -43,8 +43,10 @@ struct ShapeBelief {
 /// view that is in doubt its error (turn in rad, focal).
 class ShapeVariables {
  public:
+  /// `sightings` say which views are in doubt.
   explicit ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings = {});
 
+  /// Of all unknowns.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   /// Of these the ones that the arm's shape depends on come first.
   [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
@@ -52,6 +54,7 @@ class ShapeVariables {
   [[nodiscard]] Eigen::Index of_view(std::size_t sighting) const {
     return sighting < views_.size() ? views_[sighting] : -1;
   }
+  /// 1 of a planar arm, 2 of a spatial one.
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }
   /// The step from one shape to another: the inverse of moved(), to first order in turns of the base.
   [[nodiscard]] Eigen::VectorXd between(const Shape& from, const Shape& to) const;

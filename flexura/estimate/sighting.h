@@ -13,8 +13,8 @@ namespace flexura {
 
 /// A point where the backbone is seen.
 struct CurvePoint {
-  Eigen::Vector2d pixel = {0, 0};
-  double sigma = 0.1;  ///< Standard deviation across the curve, px; > 0.
+  Eigen::Vector2d pixel = {0, 0};  ///< px
+  double sigma = 0.1;              ///< Standard deviation across the curve, px; > 0.
   /// Standard deviation of what the points of a long stretch are off by together, beside that, px.
   double offset = 0;
 };
@@ -43,21 +43,21 @@ struct SeenBand {
 
 /// Where an end of the arm is seen.
 struct SeenEnd {
-  Eigen::Vector2d pixel = {0, 0};
-  double sigma = 0.3;  ///< Standard deviation along the curve, px; > 0.
+  Eigen::Vector2d pixel = {0, 0};  ///< px
+  double sigma = 0.3;              ///< Standard deviation along the curve, px; > 0.
 };
 
 /// A point of the arm's silhouette.
 struct SeenBorder {
-  Eigen::Vector2d pixel = {0, 0};
-  double sigma = 0.5;  ///< Standard deviation across the border, px; > 0.
+  Eigen::Vector2d pixel = {0, 0};  ///< px
+  double sigma = 0.5;              ///< Standard deviation across the border, px; > 0.
 };
 
 /// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is:
 /// its frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
 struct ViewError {
   Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the optical frame as it is believed to be, rad.
-  double focal = 0;
+  double focal = 0;                  ///< The logarithm of the factor on both focal lengths.
 };
 
 /// The view without its error.
@@ -68,6 +68,7 @@ struct ViewDoubt {
   double turn = 0;   ///< About each axis, rad.
   double focal = 0;  ///< Share of the focal lengths.
 
+  /// Whether anything of the view is in doubt.
   [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }
 };
 
@@ -77,7 +78,7 @@ struct Sighting {
   std::vector<CurvePoint> points;  ///< Along the arm, in the order from base to tip where that is known.
   /// The base and the tip; none where the arm goes on unseen (out of the picture, behind something).
   std::array<std::optional<SeenEnd>, 2> ends;
-  std::vector<SeenMarker> markers;
+  std::vector<SeenMarker> markers;   ///< Those that were recognised.
   std::vector<SeenBand> bands = {};  ///< In any order; which is which the estimator finds out.
   ViewDoubt doubt = {};              ///< In the view.
   /// Points of the silhouette where no axis was found, in any order: of arms of known radius.

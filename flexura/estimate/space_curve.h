@@ -26,8 +26,10 @@ class SpaceCurve {
   SpaceCurve(const ShapeVariables& variables, std::size_t intervals)
       : variables_(variables), intervals_(intervals) {}
 
+  /// Sets it to a shape of the prior's arm. std::invalid_argument: a state that does not fit the arm.
   void set(const Shape& shape);
 
+  /// `intervals` of each section, and one more: the first at the base, the last at the tip.
   [[nodiscard]] const std::vector<Knot>& knots() const { return knots_; }
   [[nodiscard]] std::size_t intervals_a_section() const { return intervals_; }
   /// Between knots i and i + 1, m.

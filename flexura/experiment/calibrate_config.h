@@ -67,12 +67,12 @@ struct CalibrateTask {
   CalibrateGuessConfig guess;
   CalibrateLoopConfig loop;
   std::optional<std::array<double, 3>> target;  ///< What the cameras shall look at, m.
-  bool stages = true;
-  std::vector<double> zooms = {1, 2.5};
-  double move_duration = 2;    ///< s
-  double settle_timeout = 20;  ///< s
-  double frame_timeout = 3;    ///< s
-  std::string save;            ///< A file beside the experiment for the rig as found; "": none.
+  bool stages = true;                           ///< They may be moved, as far as they travel.
+  std::vector<double> zooms = {1, 2.5};  ///< Focal lengths to look with, as factors on that at the start.
+  double move_duration = 2;              ///< s
+  double settle_timeout = 20;            ///< s
+  double frame_timeout = 3;              ///< s
+  std::string save;                      ///< A file beside the experiment for the rig as found; "": none.
 };
 
 const std::vector<std::string>& names_of(const CalibrateMethod*);

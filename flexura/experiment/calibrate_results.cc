@@ -119,6 +119,7 @@ Node::Table run_members(const CalibrationRun& run) {
       {"pictures", {}, {Node::Array{whole(result.pictures[0]), whole(result.pictures[1])}, {}}},
       {"markers", {}, whole(result.markers)},
       {"points", {}, whole(result.points)}};
+  if (result.etalon_points > 0) members.push_back({"etalon_points", {}, whole(result.etalon_points)});
   if (!result.is_done) members.push_back({"reason", {}, {result.reason, {}}});
   const auto add = [&](const char* key, Node node) { members.push_back({key, {}, std::move(node)}); };
   add("steps", step_nodes(result.steps));

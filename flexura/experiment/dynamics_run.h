@@ -31,10 +31,10 @@ struct DynamicsError {
 
 /// What a task of kind "dynamics" did.
 struct DynamicsRun {
-  std::string name;
+  std::string name;      ///< The task's.
   std::size_t task = 0;  ///< Its number.
   double start = 0;      ///< s
-  DynamicsPlant plant;
+  DynamicsPlant plant;   ///< The arm as a continuum.
   PotentialLaw law;
   bool is_measured = false;                ///< The law had measured angles, not the arm's own.
   std::vector<DynamicsSample> samples;     ///< At the steps of the clock, and at both ends.
@@ -43,13 +43,16 @@ struct DynamicsRun {
   std::optional<LyapunovVerdict> verdict;  ///< None of a run that could not begin.
   std::vector<std::string> reasons;  ///< Why the run is not as the theory has it; empty: it is, or it was
                                      ///< measured and came to its target.
-  DynamicsError remaining;
+  DynamicsError remaining;           ///< At the end.
   double apart = 0;  ///< The largest distance of the arm's tip from that of the arcs it is shown by, m.
   MotionPtr motion;  ///< By those arcs, from the task's start.
 
+  /// As the theory has it, or measured and come to its target.
   [[nodiscard]] bool is_done() const { return reasons.empty(); }
   [[nodiscard]] std::string reason() const;  ///< All of them; "" when done.
+  /// How far the arm in a sample's coordinates is from the law's target.
   [[nodiscard]] DynamicsError error(const DynamicsSample& sample) const;
+  /// The sample as the log has it: its time is since the experiment's start, s.
   [[nodiscard]] DynamicsSampleMessage message(const DynamicsSample& sample) const;
 };
 

@@ -29,7 +29,7 @@ struct PotentialConfig {
   double length_damping = 40;                                         ///< N s/m
   double gravity_compensation = 1;                                    ///< Share of dV_g/dx.
   ElasticityRule elasticity = ElasticityRule::cancelled;
-  std::int64_t sign = 1;
+  std::int64_t sign = 1;  ///< Of the potential's force: 1, or -1 to lead away from the target.
 };
 
 /// How the law gets to know the angles, when it does not have them exactly (AngleMeasurement).
@@ -51,12 +51,12 @@ struct DynamicsTask {
   double axial_stiffness = 0;                     ///< EA, N
   double damping = 0;                             ///< c, N s
   double length_damping = 0;                      ///< N s/m
-  bool variable_lengths = false;
-  AngleBasis basis = AngleBasis::sections;
-  std::int64_t nodes = 6;
+  bool variable_lengths = false;                  ///< The sections' lengths change by the law too.
+  AngleBasis basis = AngleBasis::sections;        ///< Of both angles.
+  std::int64_t nodes = 6;                         ///< Numbers of each angle (polynomial basis).
   PotentialConfig law;
-  std::optional<MeasurementConfig> measurement;
-  double tolerance = 1e-3;  ///< Share of W at the start.
+  std::optional<MeasurementConfig> measurement;  ///< None: the law has the angles exactly.
+  double tolerance = 1e-3;                       ///< Share of W at the start.
 };
 
 const std::vector<std::string>& names_of(const ElasticityRule*);

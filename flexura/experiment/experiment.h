@@ -44,20 +44,20 @@ struct TruthConfig {
 
 /// An experiment file: a rig and the tasks it does, one after another.
 struct Experiment {
-  std::string flexura;  ///< Version that ran it; written into results.
-  std::string title;
-  std::int64_t seed = 1;
+  std::string flexura;               ///< Version that ran it; written into results.
+  std::string title;                 ///< For the report.
+  std::int64_t seed = 1;             ///< Of every random number of the run; from 0 on.
   std::vector<std::string> include;  ///< Resolved by the file reader; empty from then on.
   ClockConfig clock;
   RecordConfig record;
-  ArmConfig arm;
-  std::optional<DriveConfig> drive;
+  ArmConfig arm;                     ///< As tasks believe it to be.
+  std::optional<DriveConfig> drive;  ///< None: bends follow commands as their own rates allow.
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
   std::vector<CameraConfig> camera;  ///< None: the paper's two (cameras()).
-  std::optional<TruthConfig> truth;
-  std::vector<TaskConfig> task;
-  std::filesystem::path folder;  ///< In which the file is; not a part of it.
+  std::optional<TruthConfig> truth;  ///< None: the world is as it is believed to be.
+  std::vector<TaskConfig> task;      ///< Done in this order.
+  std::filesystem::path folder;      ///< In which the file is; not a part of it.
 
   /// The rig as tasks believe it to be, and as it is.
   [[nodiscard]] RigConfig model_rig() const;
@@ -78,8 +78,8 @@ const Table<Experiment>& fields_of(const Experiment*);
 
 /// What the command line changes in a file before it is read.
 struct Overrides {
-  std::vector<std::string> sets;  ///< "path=value" each, in TOML ("arm.section.0.length=2.5").
-  std::optional<std::int64_t> seed;
+  std::vector<std::string> sets;     ///< "path=value" each, in TOML ("arm.section.0.length=2.5").
+  std::optional<std::int64_t> seed;  ///< Takes the place of the file's.
 };
 
 /// Reads and checks an experiment (or an arm alone: a file without tasks). Throws InputError with every

@@ -7,8 +7,8 @@ namespace flexura {
 
 /// What an export made of a run's log.
 struct ExportResult {
-  std::filesystem::path folder;
-  bool truncated = false;  ///< The run was cut short: its log ended without a summary.
+  std::filesystem::path folder;  ///< The new one, with the tables.
+  bool truncated = false;        ///< The run was cut short: its log ended without a summary.
 };
 
 /// Writes a run's log as tables into the new folder RESULTS/csv (csv-2, ... when it exists): states.csv with

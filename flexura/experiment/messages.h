@@ -20,14 +20,14 @@ namespace flexura {
 /// foxglove.Time: the experiment's time since its start.
 struct TimeMessage {
   std::int64_t sec = 0;
-  std::int64_t nsec = 0;
+  std::int64_t nsec = 0;  ///< Beyond sec, from 0 to 999999999.
 };
 
 /// flexura.ArmState, on /arm/state.
 struct ArmStateMessage {
-  double time = 0;                           ///< s
-  std::vector<std::array<double, 2>> bends;  ///< rad
-  std::vector<double> stretches;
+  double time = 0;                                 ///< s
+  std::vector<std::array<double, 2>> bends;        ///< rad
+  std::vector<double> stretches;                   ///< Factors, one a section.
   std::optional<std::vector<double>> archings;     ///< rad; planar arms.
   std::optional<std::vector<double>> cord_angles;  ///< rad; planar arms.
 };
@@ -44,14 +44,14 @@ struct QuaternionMessage {
 
 /// foxglove.Pose
 struct PoseMessage {
-  VectorMessage position;  ///< m
-  QuaternionMessage orientation;
+  VectorMessage position;         ///< m
+  QuaternionMessage orientation;  ///< A unit quaternion; w stands last.
 };
 
 /// foxglove.PosesInFrame, on /arm/poses: each section's base frame and, last, the tip, in the world.
 struct PosesMessage {
   TimeMessage timestamp;
-  std::string frame_id;
+  std::string frame_id;  ///< "world"
   std::vector<PoseMessage> poses;
 };
 
@@ -61,7 +61,7 @@ struct EventMessage {
   std::int64_t level = 2;  ///< 2 info, 3 warning, 4 error.
   std::string message;
   std::string name;  ///< What speaks: a task's name, "run".
-  std::string file;
+  std::string file;  ///< Empty; line 0: for other programs' sake.
   std::int64_t line = 0;
 };
 
@@ -146,14 +146,14 @@ struct CalibrationSightingMessage {
 
 /// flexura.CalibrationDecision, on /calibration/decisions: what is known after a look, and what follows.
 struct CalibrationDecisionMessage {
-  double time = 0;         ///< s
-  std::int64_t looks = 0;  ///< Up to now.
-  bool found = false;
-  std::optional<std::string> reason;  ///< Why no rig was found.
-  double rms = 0;                     ///< Of the residuals, in standard deviations.
-  std::int64_t doubts = 0;            ///< Things seen that were left out.
-  double angle = 0;                   ///< Between the axes where the cameras would be sent, rad.
-  double angle_sigma = 0;
+  double time = 0;                             ///< s
+  std::int64_t looks = 0;                      ///< Up to now.
+  bool found = false;                          ///< A rig was found.
+  std::optional<std::string> reason;           ///< Why no rig was found.
+  double rms = 0;                              ///< Of the residuals, in standard deviations.
+  std::int64_t doubts = 0;                     ///< Things seen that were left out.
+  double angle = 0;                            ///< Between the axes where the cameras would be sent, rad.
+  double angle_sigma = 0;                      ///< rad
   std::array<double, 2> focal = {0, 0};        ///< px
   std::array<double, 2> focal_sigma = {0, 0};  ///< Shares.
   double zoom_ratio_sigma = 0;                 ///< Share.
@@ -167,7 +167,7 @@ struct CalibrationDecisionMessage {
 struct HeadCommandMessage {
   std::string camera;
   double pan = 0, tilt = 0;  ///< rad
-  double zoom = 0;
+  double zoom = 0;           ///< A position of the lens's table.
 };
 
 /// flexura.ServoStep, on /servo/steps: one command of a servo, and what it was made of.
@@ -189,7 +189,7 @@ struct ServoStepMessage {
   std::optional<double> true_rms, true_most, true_tip;  ///< Likewise, of the simulated truth.
   double potential = 0;                                 ///< Half the square of the law's error.
   bool fresh = false;                                   ///< The pictures are new.
-  bool singular = false;
+  bool singular = false;               ///< Some motion of the arm shows in nothing that is seen.
   std::optional<std::string> limited;  ///< What held the law back.
 };
 
@@ -226,6 +226,7 @@ struct ImageMessage {
   std::string format = "png";
 };
 
+/// Where a run's log has its messages.
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";

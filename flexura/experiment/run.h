@@ -31,8 +31,8 @@ enum class RunOutcome {
 struct RunResult {
   RunOutcome outcome = RunOutcome::done;
   std::vector<std::string> reasons;  ///< Why it is not done, a line each.
-  std::filesystem::path folder;
-  Node summary;  ///< As in summary.json.
+  std::filesystem::path folder;      ///< As it was given: all files are in it.
+  Node summary;                      ///< As in summary.json.
 };
 
 /// Where a camera's head and stage say that they stand.

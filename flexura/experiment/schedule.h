@@ -18,10 +18,10 @@ namespace flexura {
 
 /// One task, placed in time.
 struct Leg {
-  std::string name;
-  std::string kind;
+  std::string name;  ///< The task's; its kind where it has none (task_name).
+  std::string kind;  ///< "move", ...
   double start = 0;  ///< s
-  MotionPtr motion;
+  MotionPtr motion;  ///< Never null; its times count from `start`.
 
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };
@@ -29,10 +29,11 @@ struct Leg {
 /// What an experiment is going to do: the arm's state at every time, known before anything moves.
 class Schedule {
  public:
-  /// `performed` has what tasks did whose motion is decided on the way (calibrations), by their numbers;
-  /// those that are left out are taken to do everything that they may.
+  /// `performed` has what tasks did whose motion is decided on the way or followed before (calibrations,
+  /// servos, dynamics), by their numbers; those that are left out are taken to do everything that they may.
   explicit Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed = {});
 
+  /// At least one: without tasks, a hold of no duration.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< s
   /// Steps of the clock after time 0; the last one is at duration(), the others at whole steps before it.

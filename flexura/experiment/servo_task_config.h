@@ -42,16 +42,16 @@ struct ServoTask {
   ServoJacobian jacobian = ServoJacobian::model;
   std::vector<std::string> cameras;       ///< Two names; empty: the first two.
   std::vector<ServoTargetConfig> target;  ///< At least one.
-  std::int64_t points = 12;
-  double rate = 4;  ///< 1/s
-  double damping = 0.01;
-  bool predict = true;
+  std::int64_t points = 12;  ///< Of the laws points, chords, potential and silhouettes: places along the arm.
+  double rate = 4;           ///< 1/s
+  double damping = 0.01;     ///< ImageLawGains::damping; not with `shape`.
+  bool predict = true;       ///< What was sent after a picture was taken is counted as done.
   double tolerance = 0.005;  ///< Share of the arm's length.
   double settle = 0.5;       ///< s
   double timeout = 20;       ///< s
   double blind = 0.3;        ///< s
   double lost = 3;           ///< s
-  bool follow = false;
+  bool follow = false;       ///< Heads turn so that the arm stays in their pictures.
   ServoDoubtConfig doubt;
   std::optional<double> step;  ///< s; a frame of the slower camera.
 };
@@ -68,7 +68,7 @@ const Table<ServoTask>& fields_of(const ServoTask*);
 /// of the arm's length. The search for it begins at `from`.
 struct ServoTargetShape {
   ArmState state;
-  double missed = 0;
+  double missed = 0;  ///< Share of the arm's length; 0 when the shape is what was asked for.
 };
 [[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
                                                   const ArmState& from);

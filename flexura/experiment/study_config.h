@@ -14,9 +14,9 @@ namespace flexura {
 
 /// What a study varies, from the first to the second value. One of these.
 struct VaryConfig {
-  using Values = std::optional<std::array<double, 2>>;
-  Values pan, tilt, roll, orbit;        ///< rad
-  Values distance;                      ///< From the target's centre, m.
+  using Values = std::optional<std::array<double, 2>>;  ///< From, to.
+  Values pan, tilt, roll, orbit;                        ///< rad
+  Values distance;                                      ///< From the target's centre, m.
   Values mount_x, mount_y, mount_z;     ///< MountConfig::position, m; the camera keeps its orientation.
   Values zoom;                          ///< A position of the lens's table.
   Values stage_x, stage_y, stage_z;     ///< m
@@ -29,10 +29,10 @@ struct VaryConfig {
 
 /// The one parameter that a study varies.
 struct Variation {
-  std::string_view name;   ///< As in the file: "orbit".
-  Unit unit = Unit::none;  ///< Of its values.
-  VaryConfig::Values VaryConfig::* parameter = nullptr;
-  std::array<double, 2> values = {0, 0};  ///< First and last, in base units.
+  std::string_view name;                                 ///< As in the file: "orbit".
+  Unit unit = Unit::none;                                ///< Of its values.
+  VaryConfig::Values VaryConfig::* parameter = nullptr;  ///< The member that has `values`.
+  std::array<double, 2> values = {0, 0};                 ///< First and last, in base units.
 };
 
 /// What a study looks at: a circle with the square inscribed in it.
@@ -48,8 +48,8 @@ struct StudyTask {
   std::string name;
   std::string camera;  ///< Its name; the first one when empty.
   VaryConfig vary;
-  std::int64_t points = 101;
-  bool measure = false;  ///< In pictures of the square too.
+  std::int64_t points = 101;  ///< Values, evenly from the first to the last.
+  bool measure = false;       ///< In pictures of the square too.
   StudyTargetConfig target;
 };
 

@@ -36,7 +36,7 @@ struct MoveTask {
   std::vector<MoveLaw> law = {MoveLaw::linear};         ///< One for all sections, or one each.
   std::optional<std::vector<double>> max_rate;          ///< rad/s; trapezoid. One for all, or one each.
   std::optional<std::vector<double>> max_acceleration;  ///< rad/s^2; trapezoid. One for all, or one each.
-  MoveTarget to;
+  MoveTarget to;                                        ///< The shape, or the tip's place.
 };
 
 /// `kind = "hold"`: the arm stays as it is.
@@ -60,8 +60,8 @@ struct KeyframesTask {
   std::string file;  ///< Beside the experiment; read into columns and rows with the experiment.
   std::vector<std::string>
       columns;  ///< "time", and per section "arching_1", "cord_angle_1_deg", "bend_x_1", ...
-  std::vector<std::vector<double>> rows;  ///< As the columns say.
-  Interpolation interpolation = Interpolation::linear;
+  std::vector<std::vector<double>> rows;                ///< As the columns say.
+  Interpolation interpolation = Interpolation::linear;  ///< Between the rows.
 };
 
 /// `kind = "expression"`: a formula of t (s in the task), T (its duration) and i (the section's number from
@@ -72,9 +72,10 @@ struct ExpressionTask {
   std::optional<std::vector<std::string>> cord_angles;           ///< rad
   std::optional<std::vector<std::string>> archings;              ///< rad
   std::optional<std::vector<std::array<std::string, 2>>> bends;  ///< rad
-  std::optional<std::vector<std::string>> stretches;
+  std::optional<std::vector<std::string>> stretches;             ///< Factors.
 };
 
+/// One `[[task]]` of a file.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 

@@ -12,8 +12,8 @@ namespace flexura {
 
 /// What a picture shows, at an instant.
 struct ShownScene {
-  Scene scene;
-  View view;
+  Scene scene;  ///< All that stands there then.
+  View view;    ///< The camera's.
 };
 
 /// Writes what is true of the picture of `shown` in the file `image`, from the geometry and free of sensor

@@ -13,8 +13,9 @@ namespace flexura {
 
 /// A cubic Bezier curve by its four control points, u in [0, 1].
 struct CubicBezier {
-  std::array<Eigen::Vector3d, 4> points;
+  std::array<Eigen::Vector3d, 4> points;  ///< The first and the last are its ends, in W, m.
 
+  /// Its point, in W, m. u outside [0, 1] goes on along the cubic.
   [[nodiscard]] Eigen::Vector3d at(double u) const;
   /// d/du.
   [[nodiscard]] Eigen::Vector3d velocity(double u) const;
@@ -49,6 +50,7 @@ struct CurveDeviation {
       0.0;  ///< Largest distance of the curve's points from the backbone, m (256 a piece looked at).
   double length = 0.0;  ///< Of the curve, m.
 };
+/// How far off `curve` is, and how long.
 [[nodiscard]] CurveDeviation deviation(std::span<const CubicBezier> curve, const Backbone& backbone);
 
 }  // namespace flexura

@@ -10,6 +10,7 @@ namespace flexura {
 /// What is wrong with an expression, and where: `position` counts its characters from 0.
 class ExpressionError : public std::runtime_error {
  public:
+  /// `what` tells what is wrong and not where.
   ExpressionError(const std::string& what, std::size_t position)
       : std::runtime_error(what), position_(position) {}
   [[nodiscard]] std::size_t position() const { return position_; }

@@ -44,7 +44,7 @@ enum class InverseWish {
 struct InverseOptions {
   /// Where the search begins; one arc towards the target when left out.
   std::optional<ArmState> start = {};
-  InverseWish wish = InverseWish::none;
+  InverseWish wish = InverseWish::none;  ///< For the freedom that the target leaves.
   /// m; when left out 1e-9 of the arm's greatest length, and for curves 1e-3 of it and twice
   /// polyline_error(), together at most 1e-2 of it: what a coarse polyline leaves open beyond that is the
   /// caller's to allow.
@@ -54,6 +54,7 @@ struct InverseOptions {
   std::uint64_t seed = 1;         ///< Of the starts after the first two.
 };
 
+/// How a search ended.
 enum class InverseOutcome {
   converged,       ///< Within the tolerances.
   not_reachable,   ///< Proven so (is_proven), or no limit is in the way and no state comes nearer.

@@ -20,13 +20,14 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// after P's are zero. Smooth through every straight section.
 class BackboneJacobian {
  public:
+  /// Twists [v; w] by bend_x, bend_y and stretch.
   using Columns = Eigen::Matrix<double, 6, 3>;
   /// A section as it stands.
   struct Part {
-    Pose X_WS;             ///< Its base.
-    Eigen::Vector2d bend;  ///< rad.
-    double rest_length;    ///< Not stretched, m.
-    double stretch;
+    Pose X_WS;              ///< Its base.
+    Eigen::Vector2d bend;   ///< rad.
+    double rest_length;     ///< Not stretched, m.
+    double stretch;         ///< The factor on rest_length.
     Columns V_end;          ///< Twist of its end at its own rates, in W.
     Eigen::Vector3d p_end;  ///< Its end, in W.
   };
@@ -37,6 +38,7 @@ class BackboneJacobian {
 
   /// Another state; without allocation for as many sections as before. std::invalid_argument likewise.
   void set(const Arm& arm, const ArmState& state);
+  /// One a section, base first.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
   /// X_WS at `point`.

@@ -34,6 +34,7 @@ class Motion {
                                                           double end) const = 0;
 };
 
+/// Shared by who plays it and who checks it.
 using MotionPtr = std::shared_ptr<const Motion>;
 
 /// The arm stays in `state`.

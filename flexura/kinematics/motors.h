@@ -57,6 +57,7 @@ class PlayModel {
   /// The motors at `positions` with the play taken up for pulling in.
   PlayModel(const Drive& drive, std::span<const std::int64_t> positions);
 
+  /// How far each tendon is pulled in now, by its spool and not by its motor.
   [[nodiscard]] TendonDisplacements displacements() const;
   /// The motors go to `positions` (one an axis, else std::invalid_argument), each straight there.
   void follow(std::span<const std::int64_t> positions);
@@ -80,6 +81,7 @@ class MotorWatch {
   explicit MotorWatch(const Drive& drive);
   /// std::invalid_argument: not one position an axis, or a time not after the last one.
   void add(double time, std::span<const double> positions);
+  /// One an axis; 0 until there are samples enough: two for a rate, three for an acceleration.
   [[nodiscard]] const std::vector<MotorPeaks>& peaks() const { return peaks_; }
 
  private:

@@ -28,7 +28,7 @@ namespace flexura {
 
 /// The state that fits displacements best.
 struct TendonFit {
-  ArmState state;
+  ArmState state;  ///< One bend and one stretch a section.
   /// What each tendon is pulled in beyond what the state asks for, m: where positive it pulls against the
   /// others, where negative it hangs slack. Zero when the displacements agree with each other.
   TendonDisplacements residual;

@@ -8,6 +8,7 @@ namespace flexura {
 
 // Arrays of a file's numbers as what they stand for.
 
+/// The same numbers in the same order.
 [[nodiscard]] inline Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 [[nodiscard]] inline Eigen::Vector4d vector(const std::array<double, 4>& a) {
   return {a[0], a[1], a[2], a[3]};

@@ -11,10 +11,10 @@ namespace flexura {
 
 /// How exactly an ordinary differential equation is followed.
 struct OdeTolerance {
-  double relative = 1e-9;  ///< Of each component, a step.
-  double absolute = 1e-12;
+  double relative = 1e-9;    ///< Of each component, a step.
+  double absolute = 1e-12;   ///< The same in the units of y; the two add up.
   double first_step = 1e-3;  ///< To try, in units of the time; > 0.
-  double largest_step = std::numeric_limits<double>::infinity();
+  double largest_step = std::numeric_limits<double>::infinity();  ///< In units of the time.
   int most_steps = 1'000'000;  ///< Of one advance, those that are taken back too.
 };
 
@@ -24,6 +24,7 @@ struct OdeTolerance {
 /// constructor.
 class DormandPrince {
  public:
+  /// For `size` components.
   explicit DormandPrince(Eigen::Index size, const OdeTolerance& tolerance = {})
       : tolerance_(tolerance), step_(tolerance.first_step), trial_(size) {
     for (Eigen::VectorXd& slope : slopes_) slope.resize(size);
@@ -32,7 +33,7 @@ class DormandPrince {
   /// How an advance ended.
   struct Progress {
     bool is_there = false;  ///< False: out of steps, or no step is small enough; t and y are where it ended.
-    int steps = 0, taken_back = 0;
+    int steps = 0, taken_back = 0;  ///< Accepted; refused for their error.
   };
 
   /// From (t, y) on to the time `until` >= t exactly. f(t, y, slope) writes dy/dt into `slope`.

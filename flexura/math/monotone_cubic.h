@@ -15,6 +15,7 @@ class MonotoneCubic {
   /// finite, x that does not rise. A single point makes a constant.
   MonotoneCubic(std::vector<double> x, std::vector<double> y);
 
+  /// The first and the last x.
   [[nodiscard]] double front() const { return x_.front(); }
   [[nodiscard]] double back() const { return x_.back(); }
 

@@ -7,8 +7,8 @@ namespace flexura {
 
 /// Nodes and weights of a rule on [-1, 1].
 struct Quadrature {
-  std::vector<double> nodes;
-  std::vector<double> weights;
+  std::vector<double> nodes;    ///< Rising, within (-1, 1).
+  std::vector<double> weights;  ///< One a node; their sum is 2.
 };
 
 /// The Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1;

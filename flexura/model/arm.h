@@ -44,8 +44,8 @@ struct ArmState {
 /// An arm as the file describes it.
 struct Arm {
   ArmKind kind = ArmKind::planar;
-  Pose X_WB = default_base_pose();
-  std::vector<Section> sections;
+  Pose X_WB = default_base_pose();  ///< m
+  std::vector<Section> sections;    ///< Base first; one at least.
   /// Planar arms: cord angles count from the base's tangent, whose angle from +X is the one nearest to this,
   /// rad. A file that says 270 degrees means 270 and not -90.
   double near_tangent = 0;

@@ -39,8 +39,8 @@ struct BaseConfig {
 struct ArmConfig {
   ArmKind kind = ArmKind::planar;
   BaseConfig base;
-  ShapeConfig initial;
-  std::vector<Section> section;
+  ShapeConfig initial;           ///< Where and how it starts.
+  std::vector<Section> section;  ///< Base first.
   LookConfig look;
 
   /// The arm it describes.

@@ -33,6 +33,7 @@ class Backbone {
   /// positive.
   Backbone(const Arm& arm, const ArmState& state);
 
+  /// One a section, base first.
   [[nodiscard]] std::span<const Arc> arcs() const { return arcs_; }
   /// m, stretch included.
   [[nodiscard]] double length() const;

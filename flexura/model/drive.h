@@ -29,7 +29,7 @@ struct Tendon {
 
 /// A stepper motor as its controller drives it. Its positions are counted in microsteps.
 struct StepperMotor {
-  std::int64_t phases = 3;
+  std::int64_t phases = 3;       ///< Of its windings; from 2 on.
   std::int64_t steps = 300;      ///< Full steps a turn; a multiple of the phases.
   std::int64_t microsteps = 10;  ///< A full step.
   double max_speed = std::numeric_limits<double>::infinity();         ///< Of the motor, rad/s.
@@ -71,7 +71,7 @@ struct Drive {
   /// The tendons run straight between guide disks that cut each section into this many equal pieces;
   /// otherwise in a continuous channel.
   std::optional<std::int64_t> disks;
-  std::size_t axes_per_controller = 4;
+  std::size_t axes_per_controller = 4;  ///< > 0; for names alone.
 
   /// "CONTROLLER.AXIS", both counted from 1: the fifth axis is "2.1" where a controller has four.
   [[nodiscard]] std::string axis_name(std::size_t axis) const;

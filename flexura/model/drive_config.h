@@ -16,16 +16,18 @@ struct TendonConfig {
   std::int64_t section = 1;      ///< The one at whose end it ends, counted from 1 at the base.
   double angle = 0;              ///< rad
   std::optional<double> radius;  ///< m
-  bool reversed = false;
+  bool reversed = false;         ///< As Axis::reversed.
+  /// Of its own, whole: nothing of it is taken from the drive's.
   std::optional<StepperMotor> motor;
   std::optional<Spool> spool;
 };
 
 /// The table [drive] of a file.
 struct DriveConfig {
-  double radius = 0.015;  ///< m
-  std::optional<std::int64_t> disks;
+  double radius = 0.015;              ///< m
+  std::optional<std::int64_t> disks;  ///< As Drive::disks.
   std::int64_t axes_per_controller = 4;
+  /// Of tendons without one of their own.
   StepperMotor motor;
   Spool spool;
   std::vector<TendonConfig> tendon;  ///< Their order is that of the axes.

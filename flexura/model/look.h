@@ -40,10 +40,10 @@ struct Disk {
 
 /// What a camera sees of the arm beside its shape.
 struct LookConfig {
-  ColorConfig color = {0.08, 0.08, 0.09};
+  ColorConfig color = {0.08, 0.08, 0.09};  ///< Of the tube.
   TipKind tip = TipKind::flat;
   std::optional<MarkerBands> bands;
-  std::vector<Marker> marker;
+  std::vector<Marker> marker;  ///< Single ones, beside the bands.
   std::vector<Disk> disk;
   ColorConfig disk_color = {0.35, 0.35, 0.37};
 

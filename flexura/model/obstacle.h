@@ -14,7 +14,7 @@ namespace flexura {
 
 /// Something the arm must not touch: a convex body.
 struct Obstacle {
-  std::string name = {};
+  std::string name = {};   ///< What messages call it.
   double ignore_base = 0;  ///< This much of the unstretched arm, from its base, may touch it; m.
   /// Signed distance of a point in W to its surface, m; negative inside. Convex.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
@@ -26,41 +26,41 @@ struct Obstacle {
     Eigen::Vector3d normal;
     double offset = 0;
   };
-  std::vector<Side> sides{};
+  std::vector<Side> sides{};  ///< Empty for all but boxes.
 };
 
 /// A half space: all that is not on the side of the plane to which the normal points.
 struct PlaneConfig {
-  std::string name = {};
-  double ignore_base = 0;
-  std::array<double, 3> point = {0, 0, 0};
-  std::array<double, 3> normal = {0, 1, 0};
+  std::string name = {};   ///< What messages call it; "": its kind and place in the list. Of all kinds.
+  double ignore_base = 0;  ///< As Obstacle::ignore_base, m. Of all kinds.
+  std::array<double, 3> point = {0, 0, 0};   ///< Of the plane, in W, m.
+  std::array<double, 3> normal = {0, 1, 0};  ///< Out of it, in W; of any length above 0.
 };
 
 /// A ball.
 struct SphereConfig {
   std::string name = {};
   double ignore_base = 0;
-  std::array<double, 3> center = {0, 0, 0};
-  double radius = 0;
+  std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
+  double radius = 0;                         ///< m
 };
 
 /// All that is within `radius` of a segment.
 struct CapsuleConfig {
   std::string name = {};
   double ignore_base = 0;
-  std::array<double, 3> from = {0, 0, 0};
+  std::array<double, 3> from = {0, 0, 0};  ///< The segment's ends, in W, m; they may be one point.
   std::array<double, 3> to = {0, 0, 0};
-  double radius = 0;
+  double radius = 0;  ///< m
 };
 
 /// A box; its rotation is a quaternion (w, x, y, z) from its axes into the world's.
 struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
-  std::array<double, 3> center = {0, 0, 0};
-  std::array<double, 3> half_sizes = {0, 0, 0};
-  std::array<double, 4> rotation = {1, 0, 0, 0};
+  std::array<double, 3> center = {0, 0, 0};       ///< In W, m.
+  std::array<double, 3> half_sizes = {0, 0, 0};   ///< Half its edges along its own axes, m.
+  std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Of norm 1.
 };
 
 /// One `[[obstacle]]` of a file.

@@ -31,7 +31,7 @@ struct EtalonConfig {
   ColorConfig color = {0.1, 0.1, 0.1};
   double line_width =
       0.01;  ///< m around the cylinder; a line towards E's +Z and every 90 degrees from there.
-  ColorConfig line_color = {0.75, 0.08, 0.08};
+  ColorConfig line_color = {0.75, 0.08, 0.08};  ///< Of the lines.
 };
 
 /// The light on the arm, the etalon and the obstacles; screens have a brightness of their own.
@@ -46,7 +46,7 @@ struct LightConfig {
 /// What stands around the arm.
 struct StandConfig {
   std::optional<std::vector<ScreenConfig>> screen;  ///< Left out: two behind the arm (default_screens).
-  std::optional<EtalonConfig> etalon;
+  std::optional<EtalonConfig> etalon;               ///< Left out: there is none.
   LightConfig light;
   /// Of the default cameras from the planes XOY and ZOY through the arm's base, the paper's D1 and D2, m.
   /// Left out: so far that all of the arm's reach is in view.

@@ -36,14 +36,15 @@ class ArmPort {
   [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
   /// As fast as the drives can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
+  /// What the drives say now. Moves nothing.
   [[nodiscard]] virtual Outcome<ArmReading> read() = 0;
 };
 
 /// Where a head says that it stands: its motors, in steps of their resolution.
 struct HeadReading {
-  double time = 0;
+  double time = 0;  ///< s, when it was true.
   HeadState state;
-  bool moving = false;
+  bool moving = false;  ///< A commanded motion is under way or still to come.
 };
 
 /// A camera's pan/tilt head and its zoom.
@@ -54,16 +55,19 @@ class HeadPort {
   HeadPort(const HeadPort&) = delete;
   HeadPort& operator=(const HeadPort&) = delete;
 
+  /// Sends pan, tilt (rad) and zoom (a position of the lens's table), each for itself as fast as it can.
   [[nodiscard]] virtual CommandOutcome command(const HeadState& state) = 0;
+  /// As fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
+  /// What the motors say now. Moves nothing.
   [[nodiscard]] virtual Outcome<HeadReading> read() = 0;
 };
 
 /// Where a stage says that it stands.
 struct StageReading {
-  double time = 0;
+  double time = 0;  ///< s, when it was true.
   StageState state;
-  bool moving = false;
+  bool moving = false;  ///< A commanded motion is under way or still to come.
 };
 
 /// What a camera's head is moved along by.
@@ -74,8 +78,11 @@ class StagePort {
   StagePort(const StagePort&) = delete;
   StagePort& operator=(const StagePort&) = delete;
 
+  /// Sends the mount's offset, m along its axes, each for itself as fast as it can.
   [[nodiscard]] virtual CommandOutcome command(const StageState& state) = 0;
+  /// As fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
+  /// What the motors say now. Moves nothing.
   [[nodiscard]] virtual Outcome<StageReading> read() = 0;
 };
 

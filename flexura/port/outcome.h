@@ -30,6 +30,7 @@ class [[nodiscard]] Outcome {
   Outcome(T value) : held_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
   Outcome(PortFault fault) : held_(std::move(fault)) {}  // NOLINT(google-explicit-constructor)
 
+  /// Whether there is a value.
   explicit operator bool() const { return std::holds_alternative<T>(held_); }
 
   /// std::runtime_error with the fault's text when there is no value.
@@ -37,6 +38,7 @@ class [[nodiscard]] Outcome {
     require_value();
     return std::get<T>(held_);
   }
+  /// The same, moved out.
   [[nodiscard]] T&& value() && {
     require_value();
     return std::get<T>(std::move(held_));
@@ -56,6 +58,7 @@ class [[nodiscard]] Outcome {
 
 /// The value of a command that was taken.
 struct Accepted {};
+/// What a command comes to: taken, or why not. It does not wait for the motion.
 using CommandOutcome = Outcome<Accepted>;
 
 }  // namespace flexura

@@ -11,7 +11,7 @@ namespace flexura {
 
 /// A camera of a rig with what moves it. Never null.
 struct CameraPorts {
-  std::string name;
+  std::string name;  ///< CameraConfig::name
   CameraPort* camera = nullptr;
   HeadPort* head = nullptr;
   StagePort* stage = nullptr;
@@ -21,7 +21,7 @@ struct CameraPorts {
 struct RigPorts {
   ClockPort* clock = nullptr;
   ArmPort* arm = nullptr;
-  std::vector<CameraPorts> cameras;
+  std::vector<CameraPorts> cameras;  ///< In the order in which tasks count them, from 0.
 };
 
 }  // namespace flexura

@@ -29,6 +29,7 @@ class Renderer {
   /// The first step of render(), for those who ask for truth: everything as `view` sees it. What is asked
   /// then reads `scene`, which must stay as it is until the next call.
   void prepare(const Scene& scene, const View& view);
+  /// What was prepared last, as truth.h asks for it; valid until the next call.
   [[nodiscard]] const View& view() const { return view_; }
   [[nodiscard]] const Stage& stage() const { return stage_; }
   [[nodiscard]] const RayField& rays() const { return rays_; }

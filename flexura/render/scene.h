@@ -62,20 +62,20 @@ struct Etalon {
   double radius = 0.05;       ///< m; > 0.
   double height = 0.3;        ///< m; > 0.
   double line_width = 0.004;  ///< Around the surface, m; at least 0, under a quarter of the way around.
-  Color albedo = {0.12, 0.12, 0.12};
+  Color albedo = {0.12, 0.12, 0.12};  ///< Of the cylinder, and of the lines.
   Color line_albedo = {0.8, 0.04, 0.04};
 };
 
 /// An obstacle as cameras see it.
 struct VisibleObstacle {
-  ObstacleConfig shape;
+  ObstacleConfig shape;  ///< In W.
   Color albedo = {0.4, 0.45, 0.4};
 };
 
 /// A surface shows albedo * (ambient + directional * max(0, cosine of its normal to the light)).
 struct Light {
   Eigen::Vector3d direction = {0.4, 0.8, 0.45};  ///< Towards the light, W; not 0.
-  double ambient = 0.45, directional = 0.55;
+  double ambient = 0.45, directional = 0.55;     ///< Shares of full scale.
   /// Share of the directional light, or of a screen's, that a shadow takes away; 0: no shadows. The arm
   /// casts them on everything; disks, the etalon and obstacles other than planes on screens and planes.
   double shadow = 0;
@@ -89,7 +89,7 @@ struct Scene {
   std::optional<Etalon> etalon;
   std::vector<VisibleObstacle> obstacles;
   Light light;
-  Color background = {0.02, 0.02, 0.02};
+  Color background = {0.02, 0.02, 0.02};  ///< Where nothing is seen.
 };
 
 /// std::invalid_argument, naming the part and the value: a number that is not finite, a size that is not

@@ -14,6 +14,8 @@ namespace flexura {
 /// What cameras see of an experiment: the part that stays while the arm moves, and the arm as it stands.
 class SceneMaker {
  public:
+  /// An arm that is looked at with `look` before what stands there; the paper's screens where the stand names
+  /// none. Where `stand.arm` is false the scenes are without the arm.
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 

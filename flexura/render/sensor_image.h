@@ -15,7 +15,7 @@ namespace flexura {
 /// What the noise of an image depends on, beside the pixel and the channel: the same stream gives the same
 /// noise, any other one independent noise.
 struct NoiseStream {
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;    ///< Of the run.
   std::uint64_t camera = 0;  ///< Its place among the cameras.
   std::uint64_t frame = 0;   ///< Its number.
 };
@@ -27,10 +27,10 @@ struct SensorRows {
   std::vector<std::uint8_t> same;  ///< SameAs of their blocks.
   std::vector<std::uint8_t> age;   ///< By block: so many of the last rows were equal to the one before them.
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;  ///< Of the row under way, by block.
-  std::vector<BlockWork> work;
-  std::vector<const float*> window;
-  std::vector<float> light, levels;
-  std::vector<std::uint8_t> bytes;
+  std::vector<BlockWork> work;                                       ///< By block.
+  std::vector<const float*> window;  ///< The rows that the PSF takes for this one, in their order.
+  std::vector<float> light, levels;  ///< Of the row under way, up to whole blocks.
+  std::vector<std::uint8_t> bytes;   ///< Likewise, of sensors of up to 8 bits.
 };
 
 /// A sensor ready to turn light into the numbers that a camera delivers. In physical order, for each value:
@@ -57,12 +57,14 @@ class Sensor {
   /// from sensors of up to 8 bits, words from those of more. std::invalid_argument: another size or type.
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
             Image<std::uint8_t>& image) const;
+  /// The same for words.
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
             Image<std::uint16_t>& image) const;
 
   /// Rows [first, last) of it alone, into an image of the right size: one thread's part.
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<std::uint8_t>& image) const;
+  /// The same for words.
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<std::uint16_t>& image) const;
 

@@ -17,6 +17,7 @@ struct OutlinePoint {
   bool is_visible = false;               ///< Nothing stands in front of it, the arm itself included.
 };
 
+/// Which of the arm's curves an outline is.
 enum class OutlineKind {
   contour,  ///< Where rays touch the tube's side.
   rim,      ///< The edge of a flat end.

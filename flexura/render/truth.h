@@ -35,6 +35,7 @@ struct TruthMaps {
   Image<std::uint16_t> label;  ///< label_value().
   Image<float> s;              ///< On the arm, arc length from its base, m; no number elsewhere.
 };
+/// Makes `maps` to fit the renderer's view and fills them.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
 /// The share of each pixel's square that shows surfaces of `kind`; with an index, those alone.

@@ -17,10 +17,10 @@ inline constexpr double limit_tolerance = 1e-9;
 /// A quantity of one section that has a limit.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
-  std::size_t section = 0;
-  double limit = 0;  ///< As reported.
-  double sign = 1;   ///< -1: the value must not fall below the limit.
-  std::function<double(const ArmState& state)> value;
+  std::size_t section = 0;                             ///< From 0.
+  double limit = 0;                                    ///< As reported.
+  double sign = 1;                                     ///< -1: the value must not fall below the limit.
+  std::function<double(const ArmState& state)> value;  ///< Of the section in a state, in the hazard's unit.
   /// A bound on |d value/dt| anywhere in [start, end] of a motion that knows its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 

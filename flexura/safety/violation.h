@@ -36,7 +36,7 @@ struct Violation {
   std::optional<std::size_t> other_section = {};  ///< From 0; which `section` touches.
   std::string name = {};                          ///< Of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< The worst in that time, in the hazard's unit.
-  double limit = 0;
+  double limit = 0;                               ///< What the value may be, in the hazard's unit.
   bool is_of_stretch = false;                  ///< A jump of the stretch (a factor), not of the bend (rad).
   std::optional<Eigen::Vector3d> target = {};  ///< The place that the tip misses, world, m.
 

@@ -50,8 +50,8 @@ using RecordedViews = std::array<Picture, 2>;
 
 /// What is wanted from a time on.
 struct ServoGoal {
-  double time = 0;  ///< s from the start of the servo.
-  std::variant<ArmState, RecordedViews> shape;
+  double time = 0;                              ///< s from the start of the servo.
+  std::variant<ArmState, RecordedViews> shape;  ///< A state of the arm, or what the cameras see of it then.
   /// How far the nearest shape of this arm is from what was asked for, share of its length.
   double missed = 0;
 };
@@ -70,7 +70,7 @@ struct ServoConfig {
   std::vector<ServoGoal>
       goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
   ServoLawKind law = ServoLawKind::shape;
-  ServoMeasure measure = ServoMeasure::picture;
+  ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that look at chords' angles.
   double anchor = 0.1;  ///< Angles that flow carries are drawn back as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
   int points = 12;           ///< Of the laws points, chords, potential and silhouettes: places along the arm.
@@ -86,7 +86,7 @@ struct ServoConfig {
   ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
   double step = 1.0 / 30;   ///< From one command to the next, s.
   bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
-  std::optional<Drive> drive = {};
+  std::optional<Drive> drive = {};  ///< For the limiter (LimiterSettings).
   std::vector<Obstacle> obstacles = {};
   ServoPatience patience;
 };

@@ -19,8 +19,9 @@ namespace flexura {
 /// How far a shape is from another one: distances between points of equal shares of their lengths, as shares
 /// of the arm's length.
 struct ServoError {
-  double rms = 0, most = 0, tip = 0;
+  double rms = 0, most = 0, tip = 0;  ///< Root mean square; the largest; at the tip.
 };
+/// At 51 places along both, evenly from base to tip. `length`: the arm's, m.
 [[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
 [[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 
@@ -30,7 +31,7 @@ struct ServoSight {
   ArmState desired;              ///< Then.
   std::array<Frame, 2> frames;   ///< Of both cameras.
   std::array<Sighting, 2> seen;  ///< Axes, bands and borders, in the views as believed, less their errors.
-  ShapeEstimate estimate;
+  ShapeEstimate estimate;        ///< Of the arm's shape at that time.
   std::array<std::string, 2> reasons;  ///< Why a picture shows no arm; "" when it does.
 };
 
@@ -45,7 +46,7 @@ struct ServoStep {
   /// Of the shape that is expected after all that was sent, from what is desired when it is sent.
   std::optional<ServoError> ahead;
   ArmState believed;  ///< What the drives say.
-  ArmState sent;
+  ArmState sent;      ///< To the drives, by the limiter.
   /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
   /// law's own units (rad^2, px^2, share of the length squared).
   double potential = 0;
@@ -64,9 +65,13 @@ class ServoWatcher {
   ServoWatcher(const ServoWatcher&) = delete;
   ServoWatcher& operator=(const ServoWatcher&) = delete;
 
+  /// The arm was sent to `state`, to arrive `duration` s later; and a head to where the stance has it. At
+  /// `time`, s of the rig's clock. What was refused is not told.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
   virtual void camera_sent(double /*time*/, const RigStance& /*stance*/) {}
+  /// Two pictures of one instant were measured.
   virtual void seen(const ServoSight& /*sight*/) {}
+  /// A step was done.
   virtual void stepped(const ServoStep& /*step*/) {}
   /// Something happened that is worth a line: "camera side does not see the arm: ...".
   virtual void told(double /*time*/, const std::string& /*what*/) {}
@@ -76,17 +81,17 @@ class ServoWatcher {
 
 /// How a servo went.
 struct ServoResult {
-  bool is_done = false;
+  bool is_done = false;          ///< The last shape was reached, and held for `settle` s.
   std::string reason;            ///< Why it is not; the arm rests.
   std::vector<ServoStep> steps;  ///< None of a servo that keeps none.
   /// Steps whose time had passed before the one before them was done: nothing was sent at these.
   long missed_steps = 0;
-  double start = 0;                     ///< s
-  std::optional<double> settled;        ///< Time from the start to 2 % for good, s.
-  double overshoot = 0;                 ///< By how much the tip went past its goal, share of its way.
-  std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
-  std::optional<LimiterFault> fault;    ///< What is kept of it.
-  std::optional<ServoSight> first, last;
+  double start = 0;                       ///< s
+  std::optional<double> settled;          ///< Time from the start to 2 % for good, s.
+  double overshoot = 0;                   ///< By how much the tip went past its goal, share of its way.
+  std::optional<ServoError> remaining;    ///< Mean over the last `settle` s.
+  std::optional<LimiterFault> fault;      ///< What is kept of it.
+  std::optional<ServoSight> first, last;  ///< The first of all, and the newest that told a shape.
 };
 
 /// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest

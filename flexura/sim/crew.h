@@ -14,7 +14,7 @@ namespace flexura {
 /// Threads that do jobs together and sleep in between: a camera's each, where frames are drawn.
 class Crew {
  public:
-  using Job = std::function<void(std::size_t)>;
+  using Job = std::function<void(std::size_t)>;  ///< Takes the job's number.
 
   /// `threads` of them, the caller's among them; at least that one.
   explicit Crew(std::size_t threads);
@@ -27,6 +27,7 @@ class Crew {
   /// what the threads threw, the first's is thrown here. Not to be called from two threads at once.
   void run(std::size_t count, const Job& job);
 
+  /// The caller's among them.
   [[nodiscard]] std::size_t threads() const { return helpers_.size() + 1; }
 
  private:

@@ -16,17 +16,18 @@ namespace flexura {
 /// A rig as tables of a file describe it: what the tasks believe, or what is true.
 struct RigConfig {
   ArmConfig arm;
-  std::optional<DriveConfig> drive;
-  std::vector<CameraConfig> cameras;
+  std::optional<DriveConfig> drive;   ///< None: bends follow commands as their own rates allow.
+  std::vector<CameraConfig> cameras;  ///< In the order in which tasks count them.
 };
 
 /// What a simulation needs to know of an arm and what moves it.
 struct ArmSetup {
+  /// The arm, its drive and its start as `config` says. Errors as arm_state() says (kinematics/shape.h).
   explicit ArmSetup(const RigConfig& config);
 
   Arm arm;
-  ArmState initial;
-  std::optional<Drive> drive;
+  ArmState initial;            ///< Where it starts, as the model or the truth has it.
+  std::optional<Drive> drive;  ///< None: bends are moved as their own rates allow.
 };
 
 /// The document with its table [truth] laid upon the rest: the simulated world as the file describes it, to

@@ -23,8 +23,11 @@ class SimulatedDrive {
 
   /// False when a motor's position could not be counted; nothing moves then.
   [[nodiscard]] bool command(double time, const ArmState& state, double duration);
+  /// The motors brake as fast as they can.
   void halt(double time);
+  /// What the model makes of the motors.
   [[nodiscard]] ArmReading reading(double time) const;
+  /// The shape of the true arm, known back to the horizon: not for algorithms.
   [[nodiscard]] ArmState truth(double time) const;
 
  private:
@@ -48,7 +51,9 @@ class SimulatedArm : public ArmPort {
 
   /// The arm's true shape, from `horizon` s before the last command on: not for algorithms.
   [[nodiscard]] ArmState truth(double time) const;
+  /// The true arm's; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return {arm_, truth(time)}; }
+  /// What connects the arm: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:

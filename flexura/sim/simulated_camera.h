@@ -66,6 +66,7 @@ class SimulatedCamera : public CameraPort {
   /// None of those is given any more.
   void pass_over() { next_ = last_received(clock_->now()) + 1; }
 
+  /// What connects the camera: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:

@@ -20,7 +20,7 @@ class ThreeAxes {
   struct Reading {
     double time;                ///< s
     Eigen::Vector3d positions;  ///< Of the motors, in steps of their resolution, within their limits.
-    bool moving;
+    bool moving;                ///< Any of the three.
   };
 
   /// What they carry stands at `start`, where the motors count `counted`: a difference stays as an offset.
@@ -29,6 +29,7 @@ class ThreeAxes {
   ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& counted,
             const Eigen::Vector3d& start, double delay, double horizon);
 
+  /// Sends all three. Refused: what is not finite. Positions are drawn to what can be commanded.
   CommandOutcome command(const Eigen::Vector3d& target);
   CommandOutcome halt();
   [[nodiscard]] Outcome<Reading> read() const;
@@ -56,6 +57,7 @@ class SimulatedHead : public HeadPort {
 
   /// Where the camera is turned and zoomed to: not for algorithms.
   [[nodiscard]] HeadState truth(double time) const;
+  /// What connects it, which can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:
@@ -72,6 +74,7 @@ class SimulatedStage : public StagePort {
   CommandOutcome halt() override { return axes_.halt(); }
   Outcome<StageReading> read() override;
 
+  /// The mount's true offset; not for algorithms.
   [[nodiscard]] StageState truth(double time) const { return {axes_.positions(time)}; }
   [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 

@@ -23,6 +23,7 @@ class SimulatedView {
   SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
                 const TakePicture& take_picture, SimulatedClock& clock, double horizon);
 
+  /// The camera as it truly is.
   [[nodiscard]] const Camera& description() const { return description_; }
   /// What the camera truly sees at a time: not for algorithms.
   [[nodiscard]] View view(double time) const {
@@ -31,6 +32,7 @@ class SimulatedView {
   [[nodiscard]] SimulatedHead& head() { return head_; }
   [[nodiscard]] SimulatedStage& stage() { return stage_; }
   [[nodiscard]] SimulatedCamera& camera() { return camera_; }
+  /// They stay its own: valid as long as this.
   [[nodiscard]] CameraPorts ports() { return {description_.config().name, &camera_, &head_, &stage_}; }
 
  private:
@@ -54,6 +56,7 @@ class SimulatedRig {
   /// Valid as long as the rig.
   [[nodiscard]] RigPorts ports();
 
+  /// What stands behind ports(), with its truth: for who plays the rig, not for algorithms.
   [[nodiscard]] SimulatedClock& clock() { return clock_; }
   [[nodiscard]] SimulatedArm& arm() { return arm_; }
   /// In the order of the truth's cameras.

@@ -10,6 +10,7 @@ namespace flexura {
 /// exactly.
 class CsvText {
  public:
+  /// Adds a cell to the row; a number that is not finite is "nan" or "inf".
   void cell(std::string_view text);
   void cell(double value);
   void cells(std::span<const double> values);

@@ -8,7 +8,7 @@ namespace flexura {
 
 /// A table of numbers with named columns.
 struct NumberTable {
-  std::vector<std::string> columns;
+  std::vector<std::string> columns;       ///< Names, all different.
   std::vector<std::vector<double>> rows;  ///< Finite; one entry a column.
   int header_line = 1;                    ///< The line of the source that the names stand in, from 1.
   std::vector<int> lines;                 ///< That of each row.

@@ -20,6 +20,7 @@ class AppendFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Bytes appended so far: where the next ones will lie.
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// False from close() or a failure on.
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
   /// Hands the bytes to the operating system before it returns: they outlive the process. When they do not

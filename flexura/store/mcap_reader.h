@@ -18,10 +18,11 @@ namespace flexura {
 /// One message of a log; lives as long as its McapReader.
 struct McapMessage {
   const McapChannel* channel;
-  std::uint64_t log_time;  ///< Simulated time, ns.
-  std::uint32_t sequence;
-  std::span<const std::byte> data;
+  std::uint64_t log_time;           ///< Simulated time, ns.
+  std::uint32_t sequence;           ///< As the writer counted it; it may wrap.
+  std::span<const std::byte> data;  ///< As written: JSON in the logs of runs.
 
+  /// The data as they stand, read as text.
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(data.data()), data.size()};
   }

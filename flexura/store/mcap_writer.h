@@ -43,6 +43,7 @@ class McapWriter {
   /// Adds a message. `log_time` is simulated time in ns and need not grow. Throws std::out_of_range for a
   /// channel that add_channel did not return.
   void write(std::uint16_t channel, std::uint64_t log_time, std::span<const std::byte> data);
+  /// The same of text.
   void write(std::uint16_t channel, std::uint64_t log_time, std::string_view text) {
     write(channel, log_time, std::as_bytes(std::span(text)));
   }

@@ -17,7 +17,7 @@ namespace flexura {
 
 /// What is known of the picture beforehand, and how it is told what is arm.
 struct ArmFinderConfig {
-  ThresholdConfig threshold;
+  ThresholdConfig threshold;  ///< How arm and ground are told apart.
   /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
   /// lower one in the picture.
   std::optional<Eigen::Vector2d> base;
@@ -27,13 +27,14 @@ struct ArmFinderConfig {
 
 /// A point of a median axis.
 struct AxisSample {
-  Eigen::Vector2d pixel = {0, 0};
+  Eigen::Vector2d pixel = {0, 0};   ///< On the middle line, px; (0, 0) is the middle of the top-left pixel.
   Eigen::Vector2d normal = {0, 1};  ///< A unit vector: the direction from base to tip, turned from u to v.
   double width = 0;                 ///< Between the borders along the normal, px.
   double sigma = 0;                 ///< Standard deviation of `pixel` along the normal, px.
   bool is_seen = false;             ///< Both borders are; otherwise what is near carries over.
 };
 
+/// Why an axis ends where it does.
 enum class AxisEndKind {
   free,    ///< The arm ends: `pixel` is where its sides do.
   border,  ///< Cut by the picture's border.
@@ -44,7 +45,7 @@ const std::vector<std::string>& names_of(const AxisEndKind*);
 /// Where the median axis ends, and why there.
 struct AxisEnd {
   AxisEndKind kind = AxisEndKind::lost;
-  Eigen::Vector2d pixel = {0, 0};
+  Eigen::Vector2d pixel = {0, 0};  ///< Where the axis ends, px.
   /// How far the silhouette reaches beyond `pixel`, px: an end seen at an angle, or a round one.
   double bulge = 0;
   double sigma = 0;  ///< Of a free end: standard deviation of `pixel` along the axis, px.
@@ -76,6 +77,7 @@ class ArmFinder {
  public:
   explicit ArmFinder(ArmFinderConfig config = {});
   ~ArmFinder();
+  /// One that was moved from can be assigned to and destroyed, and nothing else.
   ArmFinder(ArmFinder&&) noexcept;
   ArmFinder& operator=(ArmFinder&&) noexcept;
 

@@ -18,10 +18,10 @@ inline constexpr double lone_border_blur = 1.2;
 
 /// A point of a figure's outer border.
 struct BorderPoint {
-  Eigen::Vector2d pixel = {0, 0};
+  Eigen::Vector2d pixel = {0, 0};   ///< To a small part of a pixel.
   Eigen::Vector2d normal = {1, 0};  ///< Outward, a unit vector.
-  double contrast = 0;
-  double residual = 0;  ///< Standard deviation of the brightnesses there from a blurred step.
+  double contrast = 0;              ///< Across the border, of 0 to 255.
+  double residual = 0;              ///< Standard deviation of the brightnesses there from a blurred step.
 };
 
 /// The outer border of a component, to a small part of a pixel: from each of its pixels that the ground
@@ -30,15 +30,17 @@ struct BorderPoint {
 void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, const Components& components,
                  std::uint32_t component, double blur, std::vector<BorderPoint>& border);
 
-/// The largest figure of a picture and its border.
+/// The largest figure of a picture, of 24 px at least, and its border: of the figures that do not touch the
+/// picture's own border, or of all where none such is.
 struct FigureBorder {
   Threshold threshold;
-  std::string reason;  ///< Why there is none; "" when there is one.
-  std::int64_t area = 0;
-  double blur = 0;  ///< Of its border, px.
-  bool touches_border = false;
-  std::vector<BorderPoint> points;
+  std::string reason;               ///< Why there is none; "" when there is one.
+  std::int64_t area = 0;            ///< Pixels of the figure.
+  double blur = 0;                  ///< Of its border, px.
+  bool touches_border = false;      ///< Any of its pixels lies in the picture's outermost ring.
+  std::vector<BorderPoint> points;  ///< In their order around it (find_border).
 };
+/// Of a gray picture.
 [[nodiscard]] FigureBorder largest_figure(const Image<std::uint8_t>& gray,
                                           const ThresholdConfig& config = {});
 

@@ -10,8 +10,8 @@ namespace flexura {
 
 /// A circle through points: the least sum of squared distances.
 struct CircleFit {
-  Eigen::Vector2d center = {0, 0};
-  double radius = 0;
+  Eigen::Vector2d center = {0, 0};                       ///< px, in the picture's (u, v).
+  double radius = 0;                                     ///< px
   double rms = 0;                                        ///< Of the distances, px.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of center and radius.
   double arc = 0;  ///< What the points span of the circle, rad; 2 pi when all of it.
@@ -43,10 +43,10 @@ struct CircleFit {
 
 /// An ellipse through points: the least sum of squared distances.
 struct EllipseFit {
-  Eigen::Vector2d center = {0, 0};
+  Eigen::Vector2d center = {0, 0};     ///< px, in the picture's (u, v).
   Eigen::Vector2d semi_axes = {0, 0};  ///< The longer one first.
   double angle = 0;                    ///< Of the longer one from u towards v, in (-pi/2, pi/2].
-  double rms = 0;
+  double rms = 0;                      ///< Of the distances, px.
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();  ///< In the order above.
 };
 

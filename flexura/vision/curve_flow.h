@@ -19,9 +19,11 @@ struct CurveFlow {
   /// By how much the axis turns there, rad, from u towards v: n . (dv/ds) / |dp/ds| for small motions.
   std::vector<double> turn;
 };
+/// One entry of each a sample of `before`.
 [[nodiscard]] CurveFlow curve_flow(const std::vector<AxisSample>& before,
                                    const std::vector<AxisSample>& after);
 
+/// How motion in pictures is found.
 enum class FlowMethod {
   lucas_kanade,  ///< Pyramidal (J.-Y. Bouguet, 2001), at the places alone; OpenCV's.
   dis,           ///< Dense inverse search (T. Kroeger et al., 2016), of the whole picture; OpenCV's.
@@ -40,6 +42,7 @@ class AngleIntegrator {
   /// Starts at measured angles, rad.
   explicit AngleIntegrator(std::vector<double> angles) : angles_(std::move(angles)) {}
 
+  /// As they stand now, rad; not brought within a turn.
   [[nodiscard]] const std::vector<double>& angles() const { return angles_; }
   /// Adds turns, rad; those that are not numbers count as their neighbours'. std::invalid_argument: another
   /// number of them.

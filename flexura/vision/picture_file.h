@@ -14,7 +14,7 @@ namespace flexura {
 struct Photograph {
   Image<std::uint8_t> bytes;   ///< Always; of more than 8 bits the upper ones.
   Image<std::uint16_t> words;  ///< Empty for 8 bits; values from 0 to `white`, of hot pixels more.
-  int white = 255;
+  int white = 255;             ///< What counts as white in `words`; 255 where there are none.
   /// It has two values only: `bytes` has 0 and 255 for them, blurred by a pixel.
   bool is_mask = false;
 };

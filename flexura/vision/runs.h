@@ -20,7 +20,7 @@ struct Component {
   int left = 0, top = 0, right = 0, bottom = 0;  ///< Its box; the last two are in it.
   int on_border = 0;            ///< Of its pixels, how many lie in the picture's outermost ring.
   std::uint32_t first_run = 0;  ///< In Components::runs.
-  std::uint32_t run_count = 0;
+  std::uint32_t run_count = 0;  ///< How many of them are its own; they need not follow each other.
 };
 
 /// The figure of a picture, as runs of pixels joined to components (A. Rosenfeld, J. L. Pfaltz, 1966, by

@@ -354,10 +354,17 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
       problem_of("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = small({WrongStart{}, WrongStart{}});
-  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-            "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+  EXPECT_EQ(
+      problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
+      "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
             "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
+            "task[0]: has no pose with this method: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
+                                  "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
+                                  rig)),
+            "none");
 }
 
 TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {

@@ -78,7 +78,8 @@ class Session {
   // Shows the arm in a pose and takes a picture from each stance.
   Trouble look(const ViewCandidate& what) {
     if (watcher_.is_cancelled()) return "cancelled";
-    if (auto trouble = trip_.show(what.pose)) return trouble;
+    if (!config_.etalon)
+      if (auto trouble = trip_.show(what.pose)) return trouble;
     for (const RigStance& stance : what.stances)
       if (auto trouble = send(stance)) return trouble;
     if (auto trouble = hands_.settle()) return trouble;

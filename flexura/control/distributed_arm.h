@@ -109,8 +109,10 @@ class DistributedMotion {
 
   /// From rest at x at time 0.
   void start(const Eigen::VectorXd& x);
-  /// Goes on to the time `until`, s. False: it could not (DormandPrince), or the arm met a singularity.
-  [[nodiscard]] bool advance(double until);
+  /// Goes on to the time `until`, s, as long as go_on(), asked before every step of the integrator, says so;
+  /// empty: it always does. False: it ended, or could not go on (DormandPrince), or the arm met a
+  /// singularity.
+  [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }

@@ -28,6 +28,18 @@ double nearest_turn(double angle, double other) {
   return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
 }
 
+// Given azimuths as they go on from the base's own.
+std::vector<double> continued(double base, std::vector<double> azimuths) {
+  double before = azimuths.front();
+  azimuths.front() = base;
+  for (std::size_t i = 1; i < azimuths.size(); ++i) {
+    const double step = azimuth_step(before, azimuths[i]);
+    before = azimuths[i];
+    azimuths[i] = azimuths[i - 1] + step;
+  }
+  return azimuths;
+}
+
 // Of the origin from the straight way between two points.
 double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;
@@ -75,6 +87,12 @@ DistributedArmModel model_of(const DynamicsTask& task, const Arm& arm, const Arm
 }
 
 }  // namespace
+
+double azimuth_step(double from, double to) {
+  constexpr double rounding = 1e-9;
+  const double step = to - from;
+  return std::abs(step) > std::numbers::pi + rounding ? nearest_turn(step, 0) : step;
+}
 
 AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone_(arm, state) {
   constexpr double step = 0.05;  // rad of bend
@@ -127,12 +145,29 @@ DynamicsPlant::DynamicsPlant(const DynamicsTask& task, const Arm& arm, const Arm
   target_ = coordinates(to, target_off_);
   if (!target.azimuths) return;
   const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
+  const std::vector<double> azimuths = continued((*distributed_.model().clamp)[0], *target.azimuths);
   const Angles angles = [&](double s) -> Eigen::Vector2d {
-    return {linear_between(*target.azimuths, s / length), linear_between(*target.elevations, s / length)};
+    return {linear_between(azimuths, s / length), linear_between(*target.elevations, s / length)};
   };
   const Eigen::Index numbers = 2 * distributed_.nodes();
   target_.head(numbers) = distributed_.coordinates(angles).head(numbers);
   target_off_ = off(target_, angles);
+}
+
+double DynamicsPlant::largest_target_elevation() const {
+  const AngleShapes& shapes = distributed_.shapes();
+  const Eigen::VectorXd q = target_.segment(distributed_.nodes(), distributed_.nodes());
+  const double base = (*distributed_.model().clamp)[1];
+  double largest = std::max(std::abs(base), q.cwiseAbs().maxCoeff());
+  if (shapes.basis == AngleBasis::sections) return largest;  // Linear between its values.
+  // At Chebyshev's points, between which a polynomial of so few nodes hardly rises.
+  constexpr int steps = 1000;
+  const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::RowVectorXd row = shapes.at(0.5 * length * (1 - std::cos(std::numbers::pi * i / steps)));
+    largest = std::max(largest, std::abs(row.head(q.size()).dot(q) + row[q.size()] * base));
+  }
+  return largest;
 }
 
 Eigen::VectorXd DynamicsPlant::coordinates(const ArmState& state, double& off_by) const {

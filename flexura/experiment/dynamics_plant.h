@@ -15,6 +15,10 @@ namespace flexura {
 /// Nearer to a quarter turn an azimuth is known to rounding only, rad.
 inline constexpr double most_elevation = 1.569;
 
+/// The step from one azimuth to the next, given at neighbouring places, rad: by more than half a turn it is
+/// meant without its whole turns.
+[[nodiscard]] double azimuth_step(double from, double to);
+
 /// The two angles of an arm's direction along it, theta (azimuth) and q (elevation) as in docs/estimation.md,
 /// rad: theta goes on continuously from the base, where it is in (-pi, pi].
 class AnglesAlongArm {
@@ -49,6 +53,8 @@ class DynamicsPlant {
   /// where it is to lead, root mean square along the arm, rad.
   [[nodiscard]] double start_off() const { return start_off_; }
   [[nodiscard]] double target_off() const { return target_off_; }
+  /// The largest |q| on the target as the basis has it, rad: a polynomial may go beyond its values.
+  [[nodiscard]] double largest_target_elevation() const;
   /// p_WB, m: the distributed arm's places count from there, along W's axes.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 

@@ -40,7 +40,9 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
           .field(
               "azimuths", &Target::azimuths,
               {.meaning = "theta: the direction's angle from +Y towards +X, at equal shares of the length, "
-                          "from the base, where it is the base's own, to the tip.",
+                          "from the base, where it is the base's own, to the tip. Whole turns count for "
+                          "nothing: from place to place a step of more than half a turn is the shorter one "
+                          "the other way round, of a quarter turn or less.",
                .unit = Unit::radian,
                .range = between(-50, 50),
                .count = {2, most_angles},
@@ -84,7 +86,7 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
           .field("elasticity", &P::elasticity,
                  {.meaning = "What the law does about the arm's own elasticity: cancels it, makes it part of "
                              "the potential, or ignores it, which the theory does not allow where the target "
-                             "bends the arm."})
+                             "bends or stretches the arm."})
           .field("sign", &P::sign,
                  {.meaning = "Of the potential's force: 1, or -1 to lead away from the target.",
                   .range = between(-1, 1)});

@@ -112,8 +112,10 @@ class DistributedMotion {
 
   /// From rest at x at time 0.
   void start(const Eigen::VectorXd& x);
-  /// Goes on to the time `until`, s. False: it could not (DormandPrince), or the arm met a singularity.
-  [[nodiscard]] bool advance(double until);
+  /// Goes on to the time `until`, s, as long as go_on(), asked before every step of the integrator, says so;
+  /// empty: it always does. False: it ended, or could not go on (DormandPrince), or the arm met a
+  /// singularity.
+  [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
   /// s since the start; x and its rates then.
   [[nodiscard]] double time() const { return time_; }

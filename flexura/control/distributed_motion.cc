@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -83,9 +84,10 @@ void DistributedMotion::slope(double t, const Eigen::VectorXd& y, Eigen::VectorX
   slope[2 * n] = arm_.damping_power(), slope[2 * n + 1] = power;
 }
 
-bool DistributedMotion::advance(double until) {
-  const auto progress = ode_.advance(
-      [this](double t, const Eigen::VectorXd& y, Eigen::VectorXd& to) { slope(t, y, to); }, time_, y_, until);
+bool DistributedMotion::advance(double until, const std::function<bool()>& go_on) {
+  const auto progress =
+      ode_.advance([this](double t, const Eigen::VectorXd& y, Eigen::VectorXd& to) { slope(t, y, to); },
+                   time_, y_, until, [&] { return !go_on || go_on(); });
   x_ = y_.head(arm_.size()), v_ = y_.segment(arm_.size(), arm_.size());
   arm_.set(x_, v_);
   return progress.is_there;

@@ -15,6 +15,16 @@ double least_eigenvalue(const Eigen::MatrixXd& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
+// Whether elasticity has its least energy there, but for rounding.
+bool is_unstrained(const DistributedArm& arm) {
+  constexpr double rounding = 1e-9;  // rad; share of a length
+  const DistributedArmModel& model = arm.model();
+  const double turn = (arm.direction().colwise() - arm.direction().col(0).eval()).cwiseAbs().maxCoeff();
+  const double strain = (arm.stretch().array() - 1).abs().maxCoeff();
+  return (model.bending_stiffness == 0 || turn <= rounding) &&
+         (model.axial_stiffness == 0 || strain <= rounding);
+}
+
 }  // namespace
 
 PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, const PotentialGains& gains)
@@ -39,6 +49,9 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
   damping_.diagonal().tail(lengths).setConstant(gains.length_damping);
   DistributedArm there = arm;
   there.set(target_, Eigen::VectorXd::Zero(arm.size()));
+  // There is nothing to add then: V_e as it is has its minimum where Pi has its own.
+  if (gains_.elasticity == ElasticityRule::ignored && is_unstrained(there))
+    gains_.elasticity = ElasticityRule::shaped;
   elastic_at_target_ = there.elastic_gradient();
   elastic_energy_at_target_ = there.elastic_energy();
   stiffness_at_target_ = there.stiffness();
@@ -66,7 +79,7 @@ std::vector<std::string> PotentialLaw::violations() const {
   if (gains_.gravity_share != 1)
     found.push_back(
         fmt::format("gravity is compensated to {:.3g} %, not to 100 %", 100 * gains_.gravity_share));
-  if (gains_.elasticity == ElasticityRule::ignored && elastic_at_target_.cwiseAbs().maxCoeff() > 1e-12)
+  if (gains_.elasticity == ElasticityRule::ignored)
     found.emplace_back(
         "the arm's elasticity is neither cancelled nor part of the potential, and pulls away from the "
         "target");

@@ -13,7 +13,8 @@ namespace flexura {
 enum class ElasticityRule : std::uint8_t {
   cancelled,  ///< The law adds dV_e/dx.
   shaped,     ///< V_e is part of the potential, tilted so that its slope at the target is zero.
-  ignored,    ///< Neither: the condition of the theory is violated unless the target bends nothing.
+  ignored,    ///< Neither: the condition of the theory is violated, unless elasticity is at rest at the
+              ///< target (nothing bent or stretched); then it is shaped already.
 };
 
 /// Numbers of the law. The defaults for what the theory demands are its own; others violate it, for showing
@@ -57,6 +58,7 @@ class PotentialLaw {
 
   /// The coordinates that the law leads to.
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
+  /// As they count: an elasticity that is ignored and at rest at the target is `shaped`.
   [[nodiscard]] const PotentialGains& gains() const { return gains_; }
 
  private:

@@ -190,6 +190,37 @@ TEST(PotentialLaw, FailsWithItsReasonWhereAConditionIsViolated) {
   }
 }
 
+// A straight arm at its own length is where elasticity draws to anyway.
+TEST(PotentialLaw, MayIgnoreElasticityThatIsAtRestAtTheTarget) {
+  DistributedArmModel model{.lengths = {0.5, 0.4},
+                            .has_variable_lengths = true,
+                            .bending_stiffness = 2,
+                            .axial_stiffness = 50,
+                            .clamp = {{0.7, -0.3}},
+                            .nodes = 3,
+                            .points = 6};
+  for (const AngleBasis basis : {AngleBasis::polynomial, AngleBasis::sections}) {
+    model.basis = basis;
+    const DistributedArm arm(model);
+    const Eigen::VectorXd straight = arm.coordinates([](double) { return Eigen::Vector2d(0.7, -0.3); });
+    const PotentialGains ignoring{.elasticity = ElasticityRule::ignored};
+    const PotentialLaw law(arm, straight, ignoring);
+    EXPECT_THAT(law.violations(), IsEmpty());
+    Eigen::VectorXd start = bent(arm, 1, -0.6), end;
+    start.tail(2) << 0.05, -0.05;
+    const LyapunovVerdict verdict = watched_run(arm, law, forces_of(law), start, 4, &end);
+    EXPECT_THAT(verdict.reasons, IsEmpty());
+    EXPECT_TRUE(verdict.is_monotone);
+    EXPECT_LE((end - straight).cwiseAbs().maxCoeff(), 1e-2);
+    // Longer than at rest, or bent by a little, it is drawn away.
+    Eigen::VectorXd stretched = straight, tilted = straight;
+    stretched[arm.size() - 1] += 1e-4, tilted[arm.nodes() - 1] += 1e-4;
+    for (const Eigen::VectorXd& target : {stretched, tilted})
+      EXPECT_THAT(PotentialLaw(arm, target, ignoring).violations(),
+                  testing::ElementsAre(HasSubstr("elasticity is neither cancelled nor part")));
+  }
+}
+
 TEST(PotentialLaw, NeedsAMinimumOfPotentialAndElasticityTogether) {
   // An arc of 2.6 rad in one plane, held in that plane by nothing: elasticity turns it out.
   const DistributedArm arm({.bending_stiffness = 4, .nodes = 4, .points = 10});

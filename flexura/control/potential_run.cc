@@ -51,7 +51,12 @@ double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, 
   return law_.dissipation(v);
 }
 
-bool PotentialRun::advance(double until) {
+bool PotentialRun::advance(double until, const std::function<bool()>& go_on) {
+  bool is_cancelled = false;
+  const auto goes_on = [&] {
+    is_cancelled = go_on && !go_on();
+    return !is_cancelled;
+  };
   while (stopped_.empty() && motion_.time() < until) {
     double next = until;
     if (measured_) {
@@ -61,7 +66,7 @@ bool PotentialRun::advance(double until) {
       }
       next = std::min(until, measured_->next());
     }
-    if (!motion_.advance(next)) stopped_ = reason();
+    if (!motion_.advance(next, goes_on)) stopped_ = is_cancelled ? "cancelled" : reason();
   }
   return stopped_.empty();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -24,9 +25,10 @@ class PotentialRun {
   PotentialRun(const PotentialRun&) = delete;  // The motion's force refers to it.
   PotentialRun& operator=(const PotentialRun&) = delete;
 
-  /// Goes on to the time `until`, s. False: it could not, and stopped() says why; it then stands where it
-  /// came to, and stays there.
-  [[nodiscard]] bool advance(double until);
+  /// Goes on to the time `until`, s, as long as go_on(), asked before every step of the integrator, says so;
+  /// empty: it always does. False: it could not, and stopped() says why ("cancelled": it was told so); it
+  /// then stands where it came to, and stays there.
+  [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
   /// Why it cannot go on; empty: it can.
   [[nodiscard]] const std::string& stopped() const { return stopped_; }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -130,6 +131,23 @@ TEST(PotentialRun, EndsWhereTheAnglesDo) {
   const double ended = run.motion().time();
   EXPECT_FALSE(run.advance(6));
   EXPECT_EQ(run.motion().time(), ended);
+}
+
+TEST(PotentialRun, EndsWithinAnAdvanceWhereItIsTold) {
+  const DistributedArm arm = three_section_arm();
+  const PotentialLaw law(arm, evenly_bent(arm, 1.2, -0.6), {});
+  for (const auto& measurement : {std::optional<AngleMeasurement>(), std::optional(AngleMeasurement{})}) {
+    PotentialRun run(arm, law, evenly_bent(arm, 0, 0), measurement), whole(arm, law, evenly_bent(arm, 0, 0));
+    int asked = 0;
+    EXPECT_FALSE(run.advance(5, [&] { return ++asked <= 20; }));
+    EXPECT_EQ(asked, 21);
+    EXPECT_EQ(run.stopped(), "cancelled");
+    EXPECT_GT(run.motion().time(), 0);
+    EXPECT_LT(run.motion().time(), 1);
+    EXPECT_EQ(run.sample().time, run.motion().time());
+    EXPECT_FALSE(run.advance(5));
+    EXPECT_TRUE(whole.advance(0.1, [] { return true; }));
+  }
 }
 
 TEST(PotentialRun, EndsAtOnceWhereItCannotStart) {

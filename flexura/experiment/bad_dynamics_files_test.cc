@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,6 +34,11 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
               "task[0].target.elevations[1]: 90 deg: expected less than 90 deg, where the azimuth is none"},
           Bad{"target.azimuths_deg = [10, 10]\ntarget.elevations_deg = [0, 0]\n",
               "task[0].target.azimuths[0]: 10 deg: expected that of the arm's base, which is clamped, 0 deg"},
+          Bad{"target.azimuths_deg = [0, 200]\ntarget.elevations_deg = [0, 0]\n",
+              "task[0].target.azimuths[1]: 200 deg, where the one before is 0 deg: expected half a turn at "
+              "most from one to the next, for azimuths go on beyond 180 deg"},
+          Bad{"target.azimuths_deg = [0, 60, -190]\ntarget.elevations_deg = [0, 0, 0]\n",
+              "task[0].target.azimuths[2]: -190 deg, where the one before is 60 deg"},
           Bad{"target.bends = [[0, 0]]\n", "task[0].target.bends: 1 given: expected 3"},
           Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "leads through an elevation of 90 deg"},
           Bad{"target.bends = [[0, 2000], [0, 0], [0, 0]]\n", "expected a number from -1000 rad to 1000 rad"},
@@ -76,6 +82,42 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
   EXPECT_EQ(error_of_file(dynamics_arm() + dynamics_task(angles)), "no error");
 }
 
+// A polynomial that rises to 85 deg and stays there for a while goes beyond; straight lines do not.
+TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
+  const auto error = [](const std::string& target, const std::string& basis, int nodes) {
+    return error_of_file(dynamics_arm() +
+                         dynamics_task(target + fmt::format("basis = \"{}\"\nnodes = {}\n", basis, nodes)));
+  };
+  const std::string angles = "target.azimuths_deg = [0, 0, 0, 0]\ntarget.elevations_deg = [0, 85, 85, -40]\n";
+  EXPECT_EQ(error(angles, "sections", 3), "no error");
+  EXPECT_THAT(
+      error(angles, "polynomial", 4),
+      MatchesRegex("x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), "
+                   "through an elevation of [0-9.]+ deg: expected less than 90 deg, where the "
+                   "azimuth is none"));
+  EXPECT_EQ(error(angles, "polynomial", 5), "no error");
+  // Bends too.
+  const std::string bends = "target.bends = [[0, -1.5], [0, 0], [0, 0]]\n";
+  EXPECT_EQ(error(bends, "sections", 3), "no error");
+  EXPECT_THAT(error(bends, "polynomial", 4), HasSubstr("task[0].target: leads, as a polynomial (nodes = 4)"));
+  EXPECT_EQ(error(bends, "polynomial", 5), "no error");
+}
+
+TEST(BadDynamics, WholeTurnsOfAzimuthsAreNone) {
+  const auto error = [](const std::string& arm, const std::string& azimuths) {
+    return error_of_file(
+        arm + dynamics_task("target.elevations_deg = [0, 0, 0]\ntarget.azimuths_deg = " + azimuths + "\n"));
+  };
+  // Of an arm that hangs the base's azimuth is half a turn, either way round.
+  const std::string hanging = replaced(
+      dynamics_arm(), "[[arm", "base.rotation = [0.7071067811865476, 0.7071067811865476, 0, 0]\n[[arm");
+  for (const char* azimuths : {"[180, 170, 160]", "[-180, -190, -200]", "[540, 550, 560]"})
+    EXPECT_EQ(error(hanging, azimuths), "no error") << azimuths;
+  EXPECT_THAT(error(hanging, "[0, 10, 20]"), HasSubstr("expected that of the arm's base"));
+  for (const char* azimuths : {"[0, 170, 190]", "[360, 370, 380]", "[0, 180, 360]", "[0, -180, 0]"})
+    EXPECT_EQ(error(dynamics_arm(), azimuths), "no error") << azimuths;
+}
+
 TEST(BadDynamics, TheArmHasToFitToo) {
   const std::string straight = "target.archings = [0, 0, 0]\n";
   EXPECT_THAT(error_of_file(dynamics_arm("planar") + dynamics_task(straight + "gravity = [0, -9, 1]\n")),
@@ -86,14 +128,21 @@ TEST(BadDynamics, TheArmHasToFitToo) {
   EXPECT_THAT(error_of_file(replaced(dynamics_arm(), "[[arm", "base.rotation = [1, 0, 0, 0]\n[[arm") +
                             dynamics_task(bent_target)),
               HasSubstr("task[0]: the arm's base points along Z: expected an elevation below 90 deg"));
-  std::string many = "[arm]\n";
-  std::string zeros;
-  for (int i = 0; i < 41; ++i) many += "[[arm.section]]\nlength = 0.1\n", zeros += "0, ";
-  const std::string target = "target.archings = [" + zeros + "]\n";
+  const auto error_of_many = [](int sections, const std::string& basis) {
+    std::string many = "[arm]\n";
+    for (int i = 0; i < sections; ++i) many += "[[arm.section]]\nlength = 0.1\n";
+    return error_of_file(
+        many +
+        dynamics_task("target.azimuths = [0, 0]\ntarget.elevations = [0, 0]\nbasis = \"" + basis + "\"\n"));
+  };
   EXPECT_THAT(
-      error_of_file(many + dynamics_task(target)),
+      error_of_many(41, "sections"),
       HasSubstr("task[0].basis: \"sections\" with 41 sections: expected at most 40, or \"polynomial\""));
-  EXPECT_EQ(error_of_file(many + dynamics_task(target + "basis = \"polynomial\"\n")), "no error");
+  EXPECT_EQ(error_of_many(41, "polynomial"), "no error");
+  EXPECT_THAT(error_of_many(201, "polynomial"),
+              testing::EndsWith("task[0].basis: \"polynomial\" with 201 sections: expected at most 200"));
+  EXPECT_THAT(error_of_many(201, "sections"),
+              testing::EndsWith("task[0].basis: \"sections\" with 201 sections: expected at most 40"));
 }
 
 }  // namespace

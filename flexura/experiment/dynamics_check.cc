@@ -13,8 +13,9 @@ namespace flexura {
 namespace {
 
 double as_degrees(double radians) { return radians * 180 / std::numbers::pi; }
-// The most sections of which each has numbers of its own: the work grows with the third power.
-constexpr std::size_t most_sections = 40;
+// The most sections of which each has numbers of its own, and of those that share a polynomial's: the work
+// grows with the third power, and with the second.
+constexpr std::size_t most_sections = 40, most_of_polynomial = 200;
 
 bool says_bends(const DynamicsTargetConfig& target) {
   return target.cord_angles || target.archings || target.bends;
@@ -35,6 +36,16 @@ void check_ways(const DynamicsTask& task, const std::string& path, Reader& reade
     reader.problem_at(path + ".stretches", "is for variable_lengths = true: else lengths stay as they are");
 }
 
+void check_size(const DynamicsTask& task, std::size_t sections, const std::string& path, Reader& reader) {
+  const bool is_polynomial = task.basis == AngleBasis::polynomial;
+  const std::size_t most = is_polynomial ? most_of_polynomial : most_sections;
+  if (sections <= most) return;
+  reader.problem_at(
+      path + ".basis",
+      fmt::format("\"{}\" with {} sections: expected at most {}{}", is_polynomial ? "polynomial" : "sections",
+                  sections, most, sections <= most_of_polynomial ? ", or \"polynomial\"" : ""));
+}
+
 void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& path, Reader& reader) {
   const std::vector<double>&azimuths = *task.target.azimuths, &elevations = *task.target.elevations;
   for (std::size_t i = 0; i < elevations.size(); ++i) {
@@ -46,11 +57,23 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
                         "leaves the plane: expected 0 of a planar arm");
   }
+  for (std::size_t i = 1; i < azimuths.size(); ++i) {
+    constexpr double most = std::numbers::pi + 1e-9;
+    if (std::abs(azimuths[i] - azimuths[i - 1]) > most)
+      reader.problem_at(
+          fmt::format("{}.azimuths[{}]", path, i),
+          fmt::format("{:.6g} deg, where the one before is {:.6g} deg: expected half a turn at most from one "
+                      "to the next, for azimuths go on beyond 180 deg",
+                      as_degrees(azimuths[i]), as_degrees(azimuths[i - 1])));
+  }
   const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
   constexpr double rounding = 1e-6;
-  for (const auto& [name, first, own] :
-       {std::tuple("azimuths", azimuths[0], base[0]), std::tuple("elevations", elevations[0], base[1])})
-    if (std::abs(first - own) > rounding)
+  // Whole turns of all of them count for nothing.
+  const double azimuth_off = std::remainder(azimuths[0] - base[0], 2 * std::numbers::pi);
+  for (const auto& [name, first, own, off] :
+       {std::tuple("azimuths", azimuths[0], base[0], azimuth_off),
+        std::tuple("elevations", elevations[0], base[1], elevations[0] - base[1])})
+    if (std::abs(off) > rounding)
       reader.problem_at(
           fmt::format("{}.{}[0]", path, name),
           fmt::format("{:.6g} deg: expected that of the arm's base, which is clamped, {:.6g} deg",
@@ -66,10 +89,7 @@ void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std
   check_shape(task.target, config.kind, config.section.size(), target, reader);
   check_ways(task, target, reader);
   if (task.law.sign == 0) reader.problem_at(path + ".law.sign", "0: expected 1 or -1");
-  if (task.basis == AngleBasis::sections && config.section.size() > most_sections)
-    reader.problem_at(path + ".basis",
-                      fmt::format("\"sections\" with {} sections: expected at most {}, or \"polynomial\"",
-                                  config.section.size(), most_sections));
+  check_size(task, config.section.size(), path, reader);
   if (config.kind == ArmKind::planar && task.gravity[2] != 0)
     reader.problem_at(path + ".gravity", "leaves the plane of a planar arm: expected 0 along Z");
   if (reader.problems().size() > before) return;
@@ -90,6 +110,15 @@ void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std
                             "the azimuth is none",
                             as_degrees(q)));
   }
+  if (reader.problems().size() > before) return;
+  // The curve as it will be, not only what is given of it.
+  const DynamicsPlant plant(task, arm, ArmState::straight(arm.sections.size()));
+  if (const double q = plant.largest_target_elevation(); q > most_elevation)
+    reader.problem_at(
+        target,
+        fmt::format("leads, as a polynomial (nodes = {}), through an elevation of {:.4g} deg: expected "
+                    "less than 90 deg, where the azimuth is none",
+                    task.nodes, as_degrees(q)));
 }
 
 }  // namespace flexura

@@ -28,6 +28,13 @@ double nearest_turn(double angle, double other) {
   return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
 }
 
+// Given azimuths, less the whole turns by which the first is not the base's own.
+std::vector<double> continued(double base, std::vector<double> azimuths) {
+  const double turns = azimuths.front() - base;
+  for (double& azimuth : azimuths) azimuth -= turns;
+  return azimuths;
+}
+
 // Of the origin from the straight way between two points.
 double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;
@@ -127,12 +134,29 @@ DynamicsPlant::DynamicsPlant(const DynamicsTask& task, const Arm& arm, const Arm
   target_ = coordinates(to, target_off_);
   if (!target.azimuths) return;
   const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
+  const std::vector<double> azimuths = continued((*distributed_.model().clamp)[0], *target.azimuths);
   const Angles angles = [&](double s) -> Eigen::Vector2d {
-    return {linear_between(*target.azimuths, s / length), linear_between(*target.elevations, s / length)};
+    return {linear_between(azimuths, s / length), linear_between(*target.elevations, s / length)};
   };
   const Eigen::Index numbers = 2 * distributed_.nodes();
   target_.head(numbers) = distributed_.coordinates(angles).head(numbers);
   target_off_ = off(target_, angles);
+}
+
+double DynamicsPlant::largest_target_elevation() const {
+  const AngleShapes& shapes = distributed_.shapes();
+  const Eigen::VectorXd q = target_.segment(distributed_.nodes(), distributed_.nodes());
+  const double base = (*distributed_.model().clamp)[1];
+  double largest = std::max(std::abs(base), q.cwiseAbs().maxCoeff());
+  if (shapes.basis == AngleBasis::sections) return largest;  // Linear between its values.
+  // At Chebyshev's points, between which a polynomial of so few nodes hardly rises.
+  constexpr int steps = 1000;
+  const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::RowVectorXd row = shapes.at(0.5 * length * (1 - std::cos(std::numbers::pi * i / steps)));
+    largest = std::max(largest, std::abs(row.head(q.size()).dot(q) + row[q.size()] * base));
+  }
+  return largest;
 }
 
 Eigen::VectorXd DynamicsPlant::coordinates(const ArmState& state, double& off_by) const {

@@ -49,6 +49,8 @@ class DynamicsPlant {
   /// where it is to lead, root mean square along the arm, rad.
   [[nodiscard]] double start_off() const { return start_off_; }
   [[nodiscard]] double target_off() const { return target_off_; }
+  /// The largest |q| on the target as the basis has it, rad: a polynomial may go beyond its values.
+  [[nodiscard]] double largest_target_elevation() const;
   /// p_WB, m: the distributed arm's places count from there, along W's axes.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "flexura/experiment/dynamics_run.h"
 #include "flexura/math/so3.h"
@@ -83,6 +84,30 @@ TEST(DynamicsPlant, TakesAPolynomialThroughManyNodes) {
   DistributedArm distributed = plant.distributed();
   distributed.set(plant.start(), Eigen::VectorXd::Zero(plant.start().size()));
   EXPECT_LE((distributed.tip() - Backbone(arm, state).tip().position).norm(), 1e-6);
+}
+
+// An azimuth is an angle: with whole turns more it is the same direction.
+TEST(DynamicsPlant, TakesNoTurnsForAnotherShape) {
+  constexpr double turn = 2 * std::numbers::pi;
+  for_random_cases(40, [](TestRandom& random) {
+    Arm arm = uneven_arm(random, random.integer(0, 1) == 0 ? ArmKind::planar : ArmKind::spatial);
+    if (random.integer(0, 1) == 0) arm.X_WB.rotation = so3_exp({0, 0, 3}) * arm.X_WB.rotation;
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    const Eigen::Vector2d base = AnglesAlongArm(arm, straight).at(0, 0);
+    DynamicsTask task;
+    task.basis = random.integer(0, 1) == 0 ? AngleBasis::sections : AngleBasis::polynomial;
+    std::vector<double> azimuths = {base[0]}, elevations = {base[1]};
+    for (int i = random.integer(1, 6); i > 0; --i) {
+      azimuths.push_back(azimuths.back() + random.uniform(-1.5, 1.5));
+      elevations.push_back(0);
+    }
+    task.target.azimuths = azimuths, task.target.elevations = elevations;
+    const Eigen::VectorXd target = DynamicsPlant(task, arm, straight).target();
+    const int turns = random.integer(-3, 3);
+    for (double& azimuth : azimuths) azimuth += turn * turns;
+    task.target.azimuths = azimuths;
+    EXPECT_LE((DynamicsPlant(task, arm, straight).target() - target).cwiseAbs().maxCoeff(), 1e-12);
+  });
 }
 
 TEST(AnglesAlongArm, GoOnContinuouslyFromTheBase) {

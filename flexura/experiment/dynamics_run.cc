@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "flexura/control/potential_run.h"
-#include "flexura/experiment/schedule.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/hash.h"
 #include "flexura/safety/motion_check.h"
@@ -31,6 +30,10 @@ PotentialGains gains_of(const PotentialConfig& law) {
     for (std::size_t k = 0; k < 2; ++k)
       gains.damping(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = law.damping[i][k];
   return gains;
+}
+
+PotentialLaw law_of(const DynamicsTask& task, const DynamicsPlant& plant) {
+  return {plant.distributed(), plant.target(), gains_of(task.law)};
 }
 
 std::optional<AngleMeasurement> measurement_of(const Experiment& experiment, std::size_t number,
@@ -74,11 +77,14 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
     run.samples.push_back({plant.motion().x(), sample});
   };
   add(plant.sample());
+  // A step of a long arm takes a while, and it may take many from one sample to the next.
+  const auto go_on = [&] {
+    progress.update(plant.motion().time() / times.back(), run.name);
+    return !progress.cancelled();
+  };
   for (const double time : times) {
-    if (progress.cancelled()) run.stopped = "cancelled";
     if (!run.stopped.empty()) break;
-    progress.update(time / times.back(), run.name);
-    if (!plant.advance(time)) run.stopped = plant.stopped();
+    if (!plant.advance(time, go_on)) run.stopped = plant.stopped();
     const LyapunovSample sample = plant.sample();
     if (!is_finite(sample)) {
       run.stopped = "the energies are no numbers any more";
@@ -105,11 +111,15 @@ void judge(DynamicsRun& run) {
   if (!run.stopped.empty()) run.reasons.push_back(run.stopped);
 }
 
-void show_as_arcs(DynamicsRun& run, const Arm& arm, const ArmState& from) {
+void show_as_arcs(DynamicsRun& run, const Arm& arm, const ArmState& from, Progress& progress) {
   std::vector<double> times;
   std::vector<ArmState> states;
   DistributedArm distributed = run.plant.distributed();
   for (const DynamicsSample& sample : run.samples) {
+    if (progress.cancelled()) {
+      run.stopped = "cancelled";
+      break;
+    }
     times.push_back(sample.energies.time);
     states.push_back(run.plant.state(sample.x, states.empty() ? from : states.back()));
     distributed.set(sample.x, Eigen::VectorXd::Zero(sample.x.size()));
@@ -175,7 +185,7 @@ DynamicsRun run_dynamics(const Experiment& experiment, std::size_t number, const
   const auto& task = std::get<DynamicsTask>(experiment.task.at(number));
   const Arm arm = experiment.arm.arm();
   const DynamicsPlant plant(task, arm, from);
-  const PotentialLaw law(plant.distributed(), plant.target(), gains_of(task.law));
+  const PotentialLaw law = law_of(task, plant);
   DynamicsRun run{.name = task_name(experiment.task[number]),
                   .task = number,
                   .start = start,
@@ -197,8 +207,8 @@ DynamicsRun run_dynamics(const Experiment& experiment, std::size_t number, const
     run.stopped = "it starts with an elevation of 90 deg, where the azimuth is none";
     run.samples.push_back({plant.start(), {}});
   }
+  show_as_arcs(run, arm, from, progress);
   judge(run);
-  show_as_arcs(run, arm, from);
   run.remaining = run.error(run.samples.back());
   return run;
 }
@@ -218,7 +228,9 @@ void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, Moti
   }
 }
 
-void add_caveats(const std::vector<DynamicsRun>& runs, const Arm& arm, SafetyReport& report) {
+void add_caveats(const Experiment& experiment, const Schedule& schedule, const std::vector<DynamicsRun>& runs,
+                 SafetyReport& report) {
+  const Arm arm = experiment.arm.arm();
   double thickness = 0;
   for (const Section& section : arm.sections)
     thickness = std::max({thickness, 2 * section.radius[0], 2 * section.radius[1]});
@@ -228,22 +240,32 @@ void add_caveats(const std::vector<DynamicsRun>& runs, const Arm& arm, SafetyRep
           fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend so "
                       "far out of a plane are no arcs",
                       run.name, run.apart));
+  const std::string why =
+      runs.empty() || runs.back().is_done()
+          ? "it is simulated when the tasks before it are done"
+          : fmt::format("it is not simulated, for the run ends with {}", runs.back().name);
+  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
+    const auto* task = std::get_if<DynamicsTask>(&experiment.task[i]);
+    if (task == nullptr || std::ranges::find(runs, i, &DynamicsRun::task) != runs.end()) continue;
+    const Leg& leg = schedule.legs()[i];
+    report.caveats.push_back(fmt::format("{}: judged by the straight way only: {}", leg.name, why));
+    const ArmState from = leg.motion->at(0);
+    if (!is_possible(from)) continue;
+    const DynamicsPlant plant(*task, arm, from);
+    for (const std::string& violation : law_of(*task, plant).violations())
+      report.notes.push_back(fmt::format("{}: {}", leg.name, violation));
+  }
 }
 
 SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress) {
   std::map<std::size_t, MotionPtr> performed;
   std::vector<DynamicsRun> runs;
   run_known_dynamics(experiment, performed, runs, progress);
-  SafetyReport report = Schedule(experiment, performed).check(&progress);
+  const Schedule schedule(experiment, performed);
+  SafetyReport report = schedule.check(&progress);
   for (const DynamicsRun& run : runs)
     if (!run.is_done()) report.notes.push_back(fmt::format("{}: {}", run.name, run.reason()));
-  add_caveats(runs, experiment.arm.arm(), report);
-  for (std::size_t i = 0; i < experiment.task.size(); ++i)
-    if (std::holds_alternative<DynamicsTask>(experiment.task[i]) && !performed.contains(i))
-      report.caveats.push_back(fmt::format(
-          "{}: judged by the straight way only: where it starts is known when the tasks before it "
-          "have ended",
-          task_name(experiment.task[i])));
+  add_caveats(experiment, schedule, runs, report);
   return report;
 }
 

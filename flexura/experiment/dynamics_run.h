@@ -12,6 +12,7 @@
 #include "flexura/experiment/dynamics_plant.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/messages.h"
+#include "flexura/experiment/schedule.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/safety/violation.h"
 
@@ -66,9 +67,11 @@ struct DynamicsRun {
 void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, MotionPtr>& performed,
                         std::vector<DynamicsRun>& runs, Progress& progress);
 
-/// Says of which of these runs the check does not tell: the arcs that it judges are farther from the arm than
-/// the arm is thick.
-void add_caveats(const std::vector<DynamicsRun>& runs, const Arm& arm, SafetyReport& report);
+/// Says what the check of this schedule, which has what these runs did, does not tell: of runs where the arcs
+/// that it judges are farther from the arm than the arm is thick, and of tasks that were not simulated, why.
+/// Which conditions of the theory those violate is known all the same, and noted.
+void add_caveats(const Experiment& experiment, const Schedule& schedule, const std::vector<DynamicsRun>& runs,
+                 SafetyReport& report);
 
 /// What the motions of an experiment would harm (Schedule::check), with those of run_known_dynamics. Why one
 /// is not as the theory has it is a note.

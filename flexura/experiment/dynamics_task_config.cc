@@ -37,14 +37,15 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
           .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
           .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
           .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
-          .field(
-              "azimuths", &Target::azimuths,
-              {.meaning = "theta: the direction's angle from +Y towards +X, at equal shares of the length, "
-                          "from the base, where it is the base's own, to the tip.",
-               .unit = Unit::radian,
-               .range = between(-50, 50),
-               .count = {2, most_angles},
-               .default_text = "not set"})
+          .field("azimuths", &Target::azimuths,
+                 {.meaning =
+                      "theta: the direction's angle from +Y towards +X, at equal shares of the length, "
+                      "from the base, where it is the base's own, to the tip; by half a turn at most from "
+                      "place to place.",
+                  .unit = Unit::radian,
+                  .range = between(-50, 50),
+                  .count = {2, most_angles},
+                  .default_text = "not set"})
           .field(
               "elevations", &Target::elevations,
               {.meaning = "q: its angle from the plane XOY towards +Z, at the same places; below a quarter "
@@ -84,7 +85,7 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
           .field("elasticity", &P::elasticity,
                  {.meaning = "What the law does about the arm's own elasticity: cancels it, makes it part of "
                              "the potential, or ignores it, which the theory does not allow where the target "
-                             "bends the arm."})
+                             "bends or stretches the arm."})
           .field("sign", &P::sign,
                  {.meaning = "Of the potential's force: 1, or -1 to lead away from the target.",
                   .range = between(-1, 1)});

@@ -373,6 +373,75 @@ TEST_F(Dynamics, CanBeCancelledWhileItIsSimulated) {
   EXPECT_FALSE(open_log(result.folder).truncated());
 }
 
+// A long arm takes long from one sample to the next.
+TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
+  class CancelledSoon : public Quiet {
+   public:
+    void update(double fraction, std::string_view) override { told_.push_back(fraction); }
+    [[nodiscard]] bool cancelled() const override { return told_.size() > 20; }
+    [[nodiscard]] const std::vector<double>& told() const { return told_; }
+
+   private:
+    std::vector<double> told_;
+  } cancelled;
+  std::map<std::size_t, MotionPtr> performed;
+  std::vector<DynamicsRun> runs;
+  run_known_dynamics(
+      parse_experiment("[clock]\nstep = 5\n" + dynamics_arm() + dynamics_task(bent_target), "x.toml"),
+      performed, runs, cancelled);
+  ASSERT_EQ(runs.size(), 1);
+  EXPECT_EQ(runs[0].reason(), "cancelled");
+  EXPECT_GT(runs[0].samples.back().energies.time, 0);
+  EXPECT_LT(runs[0].samples.back().energies.time, 1);
+  EXPECT_EQ(cancelled.told().size(), 21);
+  EXPECT_GT(cancelled.told().back(), 0);
+  EXPECT_LT(cancelled.told().back(), 0.2);
+}
+
+// The run ends with the first that fails; what is known of those after it is told.
+TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
+  const std::string text =
+      dynamics_arm() + dynamics_task("name = \"first\"\nlaw.gravity_compensation = 0.5\n" + bent_target) +
+      dynamics_task("name = \"second\"\nlaw.sign = -1\nlaw.elasticity = \"ignored\"\n" + bent_target) +
+      dynamics_task("name = \"third\"\n" + bent_target);
+  const Experiment experiment = parse_experiment(text, "x.toml", {{"record.report=false"}, {}});
+  const auto is_told = [](const std::vector<std::string>& caveats, const std::vector<std::string>& notes) {
+    for (const char* name : {"second", "third"})
+      EXPECT_THAT(caveats,
+                  testing::Contains(fmt::format("{}: judged by the straight way only: it is not simulated, "
+                                                "for the run ends with first",
+                                                name)));
+    EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the potential's force has the sign -1")));
+    EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the arm's elasticity is neither")));
+    EXPECT_THAT(notes, testing::Not(testing::Contains(StartsWith("third"))));
+  };
+  Quiet quiet;
+  const SafetyReport report = safety_with_dynamics(experiment, quiet);
+  is_told(report.caveats, report.notes);
+  EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
+  const RunResult result = run_experiment(experiment, make_new_folder(folder_.path() / "results"), quiet);
+  const auto lines = [&](const char* key) {
+    std::vector<std::string> texts;
+    for (const Node& line : *result.summary.find(key)->as<Node::Array>())
+      texts.push_back(*line.as<std::string>());
+    return texts;
+  };
+  is_told(lines("caveats"), lines("notes"));
+  EXPECT_THAT(result.reasons, ElementsAre("first: gravity is compensated to 50 %, not to 100 %"));
+}
+
+// Elasticity draws to a straight arm by itself, and is part of the potential then.
+TEST_F(Dynamics, MayIgnoreElasticityOnTheWayToAStraightArm) {
+  const RunResult result =
+      run(replaced(dynamics_arm(), "[[arm", "initial.bends = [[0.5, -0.3], [0.4, 0.2], [0.3, -0.2]]\n[[arm") +
+              dynamics_task("target.bends = [[0, 0], [0, 0], [0, 0]]\nlaw.elasticity = \"ignored\"\n"),
+          {"task.0.bending_stiffness=2", "record.report=false"});
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  EXPECT_TRUE(dynamics(result).find("violations")->as<Node::Array>()->empty());
+  const Node& verdict = *dynamics(result).find("verdict");
+  EXPECT_TRUE(truth(verdict, "monotone") && truth(verdict, "balanced") && truth(verdict, "settled"));
+}
+
 TEST_F(Dynamics, AnArmThatIsThereStaysThere) {
   const RunResult result =
       run(replaced(dynamics_arm("planar"), "[[arm", "initial.archings = [0.3, -0.2, 0.1]\n[[arm") +

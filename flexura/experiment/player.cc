@@ -46,7 +46,7 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       safety_(checked(schedule_, progress)),
       believed_(rig_model(experiment.arm.arm(), experiment.cameras())),
       played_{0, 0, schedule_.initial(), false, ""} {
-  add_caveats(dynamics_, experiment.arm.arm(), safety_);
+  add_caveats(experiment, schedule_, dynamics_, safety_);
   if (experiment.record.cameras || std::ranges::any_of(experiment.task, is_for_rig))
     filming_.emplace(experiment);
   plan(0);
@@ -206,7 +206,7 @@ bool Player::perform(std::size_t task) {
   const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
   schedule_ = done.failure.empty() ? scheduled(played) : Schedule(experiment_, performed_);
   safety_ = schedule_.check();
-  add_caveats(dynamics_, experiment_.arm.arm(), safety_);
+  add_caveats(experiment_, schedule_, dynamics_, safety_);
   plan(schedule_.legs()[task].end());
   filming_->skip_to_now();
   if (done.failure.empty()) return true;

@@ -32,17 +32,19 @@ class DormandPrince {
 
   /// How an advance ended.
   struct Progress {
-    bool is_there = false;  ///< False: out of steps, or no step is small enough; t and y are where it ended.
+    /// False: out of steps, no step is small enough, or told to end; t and y are where it ended.
+    bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Accepted; refused for their error.
   };
 
-  /// From (t, y) on to the time `until` >= t exactly. f(t, y, slope) writes dy/dt into `slope`.
-  template <class Function>
-  Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until) {
+  /// From (t, y) on to the time `until` >= t exactly. f(t, y, slope) writes dy/dt into `slope`; go_on() is
+  /// asked before every step, and may end it.
+  template <class Function, class GoOn = bool (*)()>
+  Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;
     f(t, y, slopes_[0]);
     while (t < until) {
-      if (progress.steps + progress.taken_back == tolerance_.most_steps) return progress;
+      if (progress.steps + progress.taken_back == tolerance_.most_steps || !go_on()) return progress;
       const double wanted = std::min(step_, tolerance_.largest_step);
       const bool is_last = t + wanted >= until;
       const double h = is_last ? until - t : wanted;
@@ -66,6 +68,8 @@ class DormandPrince {
   }
 
  private:
+  static bool always() { return true; }
+
   // trial_ = y after h, slopes_[6] the slope there. The error in units of the tolerance, root mean square.
   template <class Function>
   double attempt(Function& f, double t, const Eigen::VectorXd& y, double h) {

@@ -82,5 +82,21 @@ TEST(DormandPrince, EndsWhereItCannotGoOn) {
   EXPECT_EQ(y[0], 1);
 }
 
+TEST(DormandPrince, EndsBetweenTwoStepsWhereItIsTold) {
+  const auto fall = [](double, const Eigen::VectorXd& y, Eigen::VectorXd& slope) { slope = -y; };
+  DormandPrince ode(1, {.largest_step = 0.01});
+  double t = 0;
+  Eigen::VectorXd y = Eigen::VectorXd::Ones(1);
+  int asked = 0;
+  const auto progress = ode.advance(fall, t, y, 1.0, [&] { return ++asked <= 5; });
+  EXPECT_FALSE(progress.is_there);
+  EXPECT_EQ(progress.steps, 5);
+  EXPECT_GT(t, 0);
+  EXPECT_LE(t, 0.05 + 1e-12);
+  EXPECT_NEAR(y[0], std::exp(-t), 1e-9);
+  EXPECT_TRUE(ode.advance(fall, t, y, 1.0).is_there);  // And goes on from there.
+  EXPECT_NEAR(y[0], std::exp(-1), 1e-9);
+}
+
 }  // namespace
 }  // namespace flexura

@@ -42,14 +42,15 @@ Line line_at(const Side& side, double inwards) {
                third = 0.5 * inwards * (inwards - 1);
   Line line;
   for (std::size_t i = 0; i < side[0].size(); ++i)
-    line.push_back(first * side[0][i] + second * side[1][i] + third * side[2][i]);
+    line.emplace_back(first * side[0][i] + second * side[1][i] + third * side[2][i]);
   return line;
 }
 
 // The mean brightness about a place; none outside of the picture.
 std::optional<double> brightness(const Image<std::uint8_t>& gray, const Vector2d& pixel) {
-  if (!(pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= gray.width() - 2 && pixel.y() <= gray.height() - 2))
-    return std::nullopt;
+  const bool is_inside =
+      pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= gray.width() - 2 && pixel.y() <= gray.height() - 2;
+  if (!is_inside) return std::nullopt;
   const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
   double sum = 0;
   for (int dv = -1; dv <= 1; ++dv)

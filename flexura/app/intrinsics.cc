@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <ostream>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,15 @@ void check_file(const std::string& option, const std::string& file) {
   if (file.empty() || std::filesystem::path(file).extension() == ".toml") return;
   throw input_error(option,
                     fmt::format("{}: expected a file name that ends in .toml", text_node(file).brief()));
+}
+
+// Before minutes of work rather than after them.
+void check_folder(const std::string& option, const std::string& file) {
+  const auto folder = std::filesystem::path(file).parent_path();
+  std::error_code error;
+  if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
+  throw input_error(option, fmt::format("{}: no folder {}: expected one that is there",
+                                        text_node(file).brief(), text_node(folder.string()).brief()));
 }
 
 void check(const IntrinsicsArguments& arguments) {
@@ -57,6 +67,7 @@ void check(const IntrinsicsArguments& arguments) {
     throw input_error("--rig-from", "needs --rig, the file to write");
   if (!arguments.zooms.empty() && !arguments.out.empty())
     throw input_error("--out", "a lens at several zooms is no measured camera: --rig FILE writes it");
+  check_folder("--out", arguments.out), check_folder("--rig", arguments.rig);
 }
 
 // One camera, or two that stand still to each other.
@@ -87,7 +98,7 @@ int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& boa
     cameras.reserve(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
       cameras.push_back({names[i], first_pose(arguments) * fit.poses[i], lens_config(fit.cameras[i].lens),
-                         pictures[i].size});
+                         pictures[i].size, doubt_of(fit, i)});
     write_files(arguments, cameras, fit.rms, fit.points, answer);
     if (is_pair) answer.push_back({"pair", {}, pair_node(fit)});
   }

@@ -134,6 +134,14 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < fit.cameras.size() && i < cameras.size(); ++i) {
     add_doubts(cameras[i], fit.cameras[i], notes);
+    // As far as they are still taken for a pair (IntrinsicsFit::reason).
+    constexpr double much_worse = 2, visible = 0.3;  // px
+    const double alone = fit.cameras[i].rms_alone, together = fit.cameras[i].rms;
+    if (fit.cameras.size() > 1 && together > std::max(visible, much_worse * alone))
+      notes.push_back(
+          fmt::format("camera {} fits to {:.2g} px alone and to {:.2g} px with the other: pictures that were "
+                      "not taken together, or a camera that moved",
+                      i + 1, alone, together));
     const auto& untold = fit.cameras[i].untold;
     if (!untold.empty() && untold.front() >= 4)
       notes.push_back(

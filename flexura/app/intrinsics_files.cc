@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "flexura/base/source.h"
-#include "flexura/camera/measured_camera.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/arrays.h"
 #include "flexura/store/text_file.h"
@@ -41,6 +42,18 @@ LensConfig lens_config(const Intrinsics& lens) {
       .fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .distortion = lens.distortion, .zoom = {}};
 }
 
+CameraDoubtConfig doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
+  constexpr double together = 3;  // Corners of one picture err together: docs/intrinsics.md.
+  constexpr double most = 0.3;    // More no file may say.
+  const CameraFit& own = fit.cameras[camera];
+  const auto [fx, fy] = std::pair(own.lens.fx, own.lens.fy);
+  const double focal = std::max(own.sigma(0) / fx, own.sigma(1) / fy),
+               aside = std::max(own.sigma(2) / fx, own.sigma(3) / fy),
+               turn = std::sqrt(fit.pose_covariance[camera].diagonal().tail<3>().maxCoeff());
+  return {.turn = std::min(most, together * std::max(aside, turn)),
+          .focal = std::min(most, together * focal)};
+}
+
 std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, const std::string& remark) {
   MeasuredCameras file;
   for (const CalibratedCamera& camera : cameras) {
@@ -51,6 +64,7 @@ std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, 
     written.distortion = camera.lens.distortion;
     written.position = array_of(camera.pose.position);
     written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));
+    written.doubt = camera.doubt;
   }
   return fmt::format("# {}\n", remark) +
          write_toml(Codec<MeasuredCameras>::write(file), fields_of(&file).info());
@@ -88,7 +102,9 @@ std::filesystem::path write_beside(const std::filesystem::path& wanted, std::str
     if (number > 1)
       file.replace_filename(
           fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string()));
-    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;
+    // What cannot be looked at is left to the system to refuse.
+    const auto type = std::filesystem::symlink_status(file, error).type();
+    if (!error && type != std::filesystem::file_type::not_found) continue;
     write_new_file(file, text);
     return file;
   }
@@ -128,8 +144,20 @@ void write_files(const IntrinsicsArguments& arguments, const std::vector<Calibra
   // All of it is made before any of it is written.
   const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark),
                     rig = arguments.rig.empty() ? "" : rig_toml(cameras, arguments.rig_from, remark);
-  if (!measured.empty()) answer.push_back({"file", {}, {write_beside(arguments.out, measured).string(), {}}});
-  if (!rig.empty()) answer.push_back({"rig", {}, {write_beside(arguments.rig, rig).string(), {}}});
+  std::filesystem::path file;
+  if (!measured.empty()) {
+    file = write_beside(arguments.out, measured);
+    answer.push_back({"file", {}, {file.string(), {}}});
+  }
+  if (rig.empty()) return;
+  try {
+    answer.push_back({"rig", {}, {write_beside(arguments.rig, rig).string(), {}}});
+  } catch (...) {
+    // Both or none: who runs the command again finds no file of the time that it failed.
+    std::error_code ignored;
+    if (!file.empty()) std::filesystem::remove(file, ignored);
+    throw;
+  }
 }
 
 }  // namespace flexura

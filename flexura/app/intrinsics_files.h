@@ -10,8 +10,10 @@
 #include "flexura/app/intrinsics.h"
 #include "flexura/base/node.h"
 #include "flexura/base/table.h"
+#include "flexura/calibrate/intrinsics_fit.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/intrinsics.h"
+#include "flexura/camera/measured_camera.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
@@ -22,6 +24,7 @@ struct CalibratedCamera {
   Pose pose;        ///< X_WC
   LensConfig lens;  ///< At ratio 1, with the zoom's rows where it was measured at several.
   std::array<int, 2> size = {640, 480};
+  CameraDoubtConfig doubt;
 };
 
 /// What experiments include of a rig: its cameras.
@@ -32,6 +35,11 @@ const Table<RigFile>& fields_of(const RigFile*);
 
 /// A lens as a file has it, without zoom.
 [[nodiscard]] LensConfig lens_config(const Intrinsics& lens);
+
+/// How wrong a camera of a fit may be: three times what the fit's covariance says, which takes each corner
+/// for an observation of its own, of its focal length, and of where it looks by its principal point and by
+/// how it is turned to the first camera.
+[[nodiscard]] CameraDoubtConfig doubt_of(const IntrinsicsFit& fit, std::size_t camera);
 
 /// A file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,
@@ -55,8 +63,8 @@ const Table<RigFile>& fields_of(const RigFile*);
 [[nodiscard]] std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
                                                         std::vector<std::string> usual);
 
-/// Writes the files that were asked for and adds to `answer` which. `rms` px over `points` goes into their
-/// first line.
+/// Writes the files that were asked for, all or none, and adds to `answer` which. `rms` px over `points` goes
+/// into their first line.
 void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
                  double rms, std::size_t points, Node::Table& answer);
 

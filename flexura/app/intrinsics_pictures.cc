@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "flexura/base/node.h"
@@ -68,6 +69,46 @@ std::vector<BoardView> views_of(const std::vector<BoardPictures>& cameras) {
   return views;
 }
 
+// Refuses a count that is less than the board's: the points would be a part of it, another one in each
+// picture.
+void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
+  const auto found = std::ranges::count_if(pictures.sightings, &BoardSighting::is_found),
+             larger = std::ranges::count_if(pictures.sightings, &BoardSighting::is_larger);
+  if (larger <= found) return;
+  const auto first = std::ranges::find_if(pictures.sightings, &BoardSighting::is_larger);
+  throw input_error(
+      "--board",
+      fmt::format("{}x{}: the board's pattern goes on beyond these in {} of {} pictures ({} is the first): "
+                  "expected the number of all its inner corners (or circles)",
+                  board.columns, board.rows, larger, pictures.names.size(),
+                  pictures.names[static_cast<std::size_t>(first - pictures.sightings.begin())]));
+}
+
+// Refuses pictures that are given twice, which would count as two observations. They have the same corners to
+// the last bit, whatever their files are called; noise keeps those of two pictures of one board apart.
+void refuse_twice(const std::vector<BoardPictures>& cameras) {
+  std::vector<std::pair<const std::string*, const BoardSighting*>> once;
+  std::vector<std::pair<std::string, std::string>> twice;
+  for (const BoardPictures& camera : cameras) {
+    for (std::size_t i = 0; i < camera.names.size(); ++i) {
+      const BoardSighting& sighting = camera.sightings[i];
+      if (!sighting.is_found()) continue;
+      const auto same = std::ranges::find_if(
+          once, [&](const auto& earlier) { return earlier.second->pixels == sighting.pixels; });
+      if (same == once.end())
+        once.emplace_back(&camera.names[i], &sighting);
+      else
+        twice.emplace_back(camera.names[i], *same->first);
+    }
+  }
+  if (twice.empty()) return;
+  const auto& [name, earlier] = twice.front();
+  throw input_error(
+      name, fmt::format("{}{}: expected each picture once",
+                        name == earlier ? "is given twice" : fmt::format("the same picture as {}", earlier),
+                        twice.size() > 1 ? fmt::format(" (and {} more like it)", twice.size() - 1) : ""));
+}
+
 }  // namespace
 
 BoardTarget board_of(const IntrinsicsArguments& arguments) {
@@ -114,6 +155,7 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
                                           pictures.size[0], pictures.size[1], files.front()));
     pictures.sightings.push_back(find_board(gray_picture(photograph.bytes), board));
   }
+  refuse_larger(pictures, board);
   return pictures;
 }
 
@@ -150,6 +192,7 @@ std::vector<std::string> pictures_in(const std::string& folder) {
 
 IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                            const std::vector<BoardPictures>& pictures) {
+  refuse_twice(pictures);
   std::vector<std::array<int, 2>> sizes;
   sizes.reserve(pictures.size());
   for (const BoardPictures& camera : pictures) sizes.push_back(camera.size);

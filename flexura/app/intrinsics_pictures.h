@@ -29,7 +29,7 @@ struct ZoomGroup {
 [[nodiscard]] BoardTarget board_of(const IntrinsicsArguments& arguments);
 
 /// Reads pictures and looks for the board in each. InputError: fewer than two, one that cannot be read, sizes
-/// that differ.
+/// that differ, more parts of a larger board than boards of this size.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                                            const std::string& option);
 
@@ -40,7 +40,7 @@ struct ZoomGroup {
 /// The picture files in a folder, by name. InputError when it is none.
 [[nodiscard]] std::vector<std::string> pictures_in(const std::string& folder);
 
-/// Calibrates cameras whose pictures belong together one by one.
+/// Calibrates cameras whose pictures belong together one by one. InputError: a picture given twice.
 [[nodiscard]] IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                          const std::vector<BoardPictures>& pictures);
 

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -110,6 +112,11 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   ASSERT_EQ(written.size(), 1U);
   EXPECT_EQ(written[0].fx, number(camera, "fx"));
   EXPECT_EQ(written[0].pose().position, Eigen::Vector3d(1, 2, 3));
+  const auto three_sigmas = [&](const char* key) {
+    return 3 * number(*camera.find("sigma"), key) / written[0].fx;
+  };
+  EXPECT_NEAR(written[0].doubt.focal, std::max(three_sigmas("fx"), three_sigmas("fy")), 1e-5);
+  EXPECT_NEAR(written[0].doubt.turn, std::max(three_sigmas("cx"), three_sigmas("cy")), 1e-4);
   // Once more, of fewer pictures.
   arguments_.images.pop_back(), arguments_.images.pop_back();
   EXPECT_EQ(*answer(exit_done).find("file")->as<std::string>(), path("cameras-2.toml"));
@@ -120,7 +127,7 @@ TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
   const Pose X_12{so3_exp({0.02, -0.14, -0.03}), {0.05, 0.01, -0.02}};
   arguments_.left = photograph("left", 260), arguments_.right = photograph("right", 260, X_12);
   arguments_.names = {"front", "side"};
-  arguments_.rig = path("rig.toml");
+  arguments_.rig = path("rig.toml"), arguments_.out = path("pair.toml");
   arguments_.rotation = {0, 1, 0, 0};
   arguments_.hold_out = 5;
   const Node found = answer(exit_done);
@@ -128,6 +135,9 @@ TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
   const auto& position = *pair.find("position")->as<Node::Array>();
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(*position[i].as<double>(), X_12.position[static_cast<Eigen::Index>(i)], 1.5e-3);
+  const auto written = read_as<MeasuredCameras>(read_toml_file(path("pair.toml"))).camera;
+  for (const Node& sigma : *pair.find("sigma_rotation")->as<Node::Array>())
+    EXPECT_GE(written.at(1).doubt.turn, 2.999 * *sigma.as<double>());
   EXPECT_EQ(*found.find("held_out")->find("views")->as<std::int64_t>(), 1);
   EXPECT_NE(entry(found, "cameras", 1).find("rms_alone_px"), nullptr);
   // An experiment includes it.
@@ -191,6 +201,54 @@ TEST_F(IntrinsicsCommand, SaysWhyThereIsNoCamera) {
     arguments_.images.push_back(write(name, Image<std::uint8_t>(width, height, 1, 200)));
   arguments_.out = path("cameras.toml");
   EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("no view"));
+  EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
+}
+
+TEST_F(IntrinsicsCommand, SaysThatPicturesOfAPairDoNotBelongTogether) {
+  const Pose X_12{so3_exp({0.02, -0.14, -0.03}), {0.05, 0.01, -0.02}};
+  arguments_.left = photograph("left", 260), arguments_.right = photograph("right", 260, X_12);
+  arguments_.out = path("pair.toml");
+  std::ranges::rotate(arguments_.right, arguments_.right.begin() + 1);
+  EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("do not belong"));
+  EXPECT_FALSE(std::filesystem::exists(path("pair.toml")));
+}
+
+TEST_F(IntrinsicsCommand, RefusesPicturesThatAreGivenTwice) {
+  arguments_.images = photograph("a", 260);
+  arguments_.images.push_back(arguments_.images[1]);
+  EXPECT_THAT(refusal(), HasSubstr("a1.png: is given twice: expected"));
+  std::filesystem::copy(path("a3.png"), path("copy.png"));
+  arguments_.images.back() = path("copy.png");
+  EXPECT_THAT(refusal(), HasSubstr("copy.png: the same picture as " + path("a3.png")));
+  arguments_.images.pop_back();
+  arguments_.left = arguments_.right = arguments_.images, arguments_.images = {};
+  EXPECT_THAT(refusal(), HasSubstr("a0.png: is given twice (and 4 more like it)"));
+}
+
+TEST_F(IntrinsicsCommand, RefusesTheNumberOfAPartOfTheBoard) {
+  const BoardTarget circles{.pattern = BoardPattern::circles, .columns = 7, .rows = 5};
+  const Lens lens({.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5});
+  for (std::uint64_t i = 1; i < 4; ++i) {
+    TestRandom random(i);
+    const Pose X_CB = random_board(random, circles, 0.3, 0.4, 0.02);
+    arguments_.images.push_back(
+        write(fmt::format("{}.png", i), board_picture(circles, lens, X_CB, 320, 240)));
+  }
+  arguments_.pattern = "circles", arguments_.board = "6x5";
+  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board's pattern goes on"));
+  arguments_.board = "7x5";
+  EXPECT_EQ(*entry(answer(exit_done), "cameras", 0).find("views_used")->as<std::int64_t>(), 3);
+}
+
+TEST_F(IntrinsicsCommand, WritesBothFilesOrNone) {
+  arguments_.images = photograph("a", 260);
+  arguments_.out = path("cameras.toml"), arguments_.rig = path("nowhere/rig.toml");
+  EXPECT_THAT(refusal(), HasSubstr("--rig"));
+  EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
+  // A name that no file system takes is refused only when it is written.
+  arguments_.rig = path(std::string(300, 'r') + ".toml");
+  std::ostringstream out;
+  EXPECT_THROW((void)intrinsics_command(arguments_, out), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
 }
 

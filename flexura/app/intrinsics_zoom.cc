@@ -84,7 +84,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     zoom.fit = fit_pictures(arguments, board, {zoom.pictures});
     if (!zoom.fit.is_found && reason.empty()) reason = group.folder + ": " + zoom.fit.reason;
   }
-  CalibratedCamera camera{name, first_pose(arguments), {}, zooms.front().pictures.size};
+  CalibratedCamera camera{name, first_pose(arguments), {}, zooms.front().pictures.size, {}};
   if (reason.empty()) {
     camera.lens = zoom_lens(zooms);
     if (const auto fault = ZoomTable::fault(camera.lens))

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "flexura/calibrate/board_start.h"
+#include "flexura/math/so3.h"
 
 namespace flexura {
 namespace {
@@ -63,22 +64,43 @@ CameraAlone fit_alone(std::span<const Vector2d> points, std::span<const BoardVie
   return alone;
 }
 
-std::optional<Pose> start_camera(const CameraAlone& first, const CameraAlone& other) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  int count = 0;
+std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other) {
+  std::vector<CameraStep> steps;
   for (std::size_t i = 0; i < first.views.size(); ++i) {
     const auto same = std::ranges::find(other.views, first.views[i]);
     if (same == other.views.end()) continue;
     const auto j = static_cast<std::size_t>(same - other.views.begin());
-    const Pose X_1C = first.fit.bundle.boards[i] * other.fit.bundle.boards[j].inverse();
-    sum += X_1C.rotation, position += X_1C.position, ++count;
+    steps.push_back({*same, first.fit.bundle.boards[i] * other.fit.bundle.boards[j].inverse()});
   }
-  if (count == 0) return std::nullopt;
+  return steps;
+}
+
+std::optional<Pose> start_camera(std::span<const CameraStep> steps) {
+  if (steps.empty()) return std::nullopt;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (const CameraStep& step : steps) sum += step.X_1C.rotation, position += step.X_1C.position;
   const Eigen::JacobiSVD<Eigen::Matrix3d> nearest(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d left = nearest.matrixU();
   if ((left * nearest.matrixV().transpose()).determinant() < 0) left.col(2) *= -1;
-  return Pose{left * nearest.matrixV().transpose(), position / count};
+  return Pose{left * nearest.matrixV().transpose(), position / static_cast<double>(steps.size())};
+}
+
+StepSpread step_spread(std::span<const CameraStep> steps) {
+  const auto turn = [](const CameraStep& from, const CameraStep& to) {
+    return so3_log(from.X_1C.rotation.transpose() * to.X_1C.rotation).norm();
+  };
+  const auto median_turn = [&](const CameraStep& from) {
+    std::vector<double> turns;
+    for (const CameraStep& to : steps) turns.push_back(turn(from, to));
+    const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+    std::ranges::nth_element(turns, middle);
+    return *middle;
+  };
+  const CameraStep& usual = *std::ranges::min_element(steps, {}, median_turn);
+  const CameraStep& farthest =
+      *std::ranges::max_element(steps, {}, [&](const CameraStep& step) { return turn(usual, step); });
+  return {turn(usual, farthest), (farthest.X_1C.position - usual.X_1C.position).norm(), farthest.view};
 }
 
 }  // namespace flexura

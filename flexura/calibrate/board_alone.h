@@ -27,7 +27,23 @@ struct CameraAlone {
                                     std::size_t camera, const std::array<int, 2>& size,
                                     const BundleConfig& config);
 
-/// X_1C, the mean of what the views say in which both cameras saw the board; none without such a view.
-[[nodiscard]] std::optional<Pose> start_camera(const CameraAlone& first, const CameraAlone& other);
+/// Where one view, in which both cameras saw the board, has a camera in the first one.
+struct CameraStep {
+  std::size_t view = 0;  ///< Of the views given.
+  Pose X_1C;
+};
+[[nodiscard]] std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other);
+
+/// X_1C, the mean of what the views say; none without a view.
+[[nodiscard]] std::optional<Pose> start_camera(std::span<const CameraStep> steps);
+
+/// How far the views disagree about where a camera is.
+struct StepSpread {
+  double turn = 0, distance = 0;  ///< rad and m, of the view that is farthest
+  std::size_t view = 0;           ///< from what most say, and which of the views given that is.
+};
+/// From the step that is nearest to the others (the median of its turns from them is least). At least one
+/// step.
+[[nodiscard]] StepSpread step_spread(std::span<const CameraStep> steps);
 
 }  // namespace flexura

@@ -11,6 +11,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "flexura/calibrate/board_beyond.h"
+
 namespace flexura {
 namespace {
 
@@ -117,6 +119,8 @@ BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& boa
     return sighting;
   }
   for (const cv::Point2f& corner : corners) sighting.pixels.emplace_back(corner.x, corner.y);
+  if (goes_on(gray, board, sighting.pixels))
+    return {.pixels = {}, .reason = "a part of a larger board: its pattern goes on", .is_larger = true};
   put_in_order(gray, board, sighting.pixels);
   return sighting;
 }

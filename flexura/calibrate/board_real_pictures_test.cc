@@ -30,7 +30,7 @@ class RealBoards : public testing::Test {
     GTEST_SKIP() << "skipped: " << folder << " is not there";
   }
 
-  static BoardSighting look(const std::string& name) {
+  static BoardSighting look(const std::string& name, const BoardTarget& board = {}) {
     std::ifstream in(folder / name, std::ios::binary);
     const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
     return find_board(gray_picture(decode_picture(bytes, name).bytes), board);
@@ -58,8 +58,7 @@ class RealBoards : public testing::Test {
     return views;
   }
 
-  static constexpr BoardTarget board{};
-  const std::vector<Eigen::Vector2d> points_ = board.points();
+  const std::vector<Eigen::Vector2d> points_ = BoardTarget{}.points();
 };
 
 TEST_F(RealBoards, GiveEachCameraTheKnownResidual) {
@@ -97,6 +96,19 @@ TEST_F(RealBoards, ArePredictedWhenTheyAreHeldOut) {
                       pair = fit_intrinsics(points_, pairs(), two_sizes, {.hold_out = 2});
   EXPECT_LT(*right.held_out_rms, 1.03 * right.rms);
   EXPECT_LT(*pair.held_out_rms, 1.1 * pair.rms);
+}
+
+// Whole boards are not mistaken for parts: pairs() finds all of them.
+TEST_F(RealBoards, AreNotTakenForSmallerOnes) {
+  int larger = 0;
+  for (const char* side : {"left", "right"}) {
+    for (int number = 2; number <= 8; ++number) {
+      const BoardSighting part = look(fmt::format("{}{:02}.jpg", side, number), {.columns = 8, .rows = 6});
+      EXPECT_FALSE(part.is_found()) << side << number;
+      larger += part.is_larger ? 1 : 0;
+    }
+  }
+  EXPECT_GE(larger, 12);
 }
 
 }  // namespace

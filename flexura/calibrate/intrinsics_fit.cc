@@ -1,12 +1,14 @@
 #include "flexura/calibrate/intrinsics_fit.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -61,6 +63,7 @@ class Calibration {
     BoardBundle start;
     if (!find_start(start)) return std::move(result_);
     const BundleFit fit = fit_bundle(points_, fitted_, start, bundle_config(1e-12));
+    if (std::string reason = why_apart(fit); !reason.empty()) return fail(std::move(reason));
     if (!fit.is_converged) return fail(why_not_converged(fit));
     take(fit);
     tell_views();
@@ -108,7 +111,8 @@ class Calibration {
       }
       if (!result_.reason.empty()) return false;
       start.lenses.push_back(own.fit.bundle.lenses.front());
-      const auto pose = camera == 0 ? std::optional(Pose{}) : start_camera(alone.front(), own);
+      if (camera > 0) steps_.push_back(camera_steps(alone.front(), own));
+      const auto pose = camera == 0 ? std::optional(Pose{}) : start_camera(steps_.back());
       if (!pose) {
         result_.reason = camera_text(camera) + "no view of the board together with camera 1";
         return false;
@@ -132,6 +136,35 @@ class Calibration {
       }
     }
     return true;
+  }
+
+  // Why cameras that are good by themselves have no places to each other that explain all views; "" if they
+  // have.
+  [[nodiscard]] std::string why_apart(const BundleFit& fit) const {
+    constexpr double much_worse = 5, visible = 1;  // px
+    std::vector<std::string> rms_alone;
+    double bound = visible;
+    for (const CameraFit& own : result_.cameras) {
+      rms_alone.push_back(fmt::format("{:.2g}", own.rms_alone));
+      bound = std::max(bound, much_worse * own.rms_alone);
+    }
+    const double rms = rms_of(fit.square_sum, fit.points);
+    if (steps_.empty() || (fit.points > 0 && rms <= bound)) return "";
+    std::size_t camera = 0;
+    StepSpread spread;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const StepSpread own = step_spread(steps_[i]);
+      if (i == 0 || own.turn > spread.turn) spread = own, camera = i + 1;
+    }
+    return fmt::format(
+        "{}its pictures do not belong to those of camera 1: the cameras fit to {} px alone and {} together, "
+        "and "
+        "view {} puts it {:.0f} degrees and {:.2g} m elsewhere than most do: expected pictures taken "
+        "together, "
+        "in the same order, by cameras that stand still to each other",
+        camera_text(camera), fmt::join(rms_alone, " and "),
+        fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
+        spread.turn * 180 / std::numbers::pi, spread.distance);
   }
 
   // The unknowns' order is that of BundleFit::information.
@@ -257,6 +290,7 @@ class Calibration {
   IntrinsicsConfig config_;
   std::vector<std::size_t> numbers_;  // Of the views that are fitted.
   std::vector<BoardView> fitted_;
+  std::vector<std::vector<CameraStep>> steps_;  // Of each camera but the first.
   BoardBundle bundle_;
   MatrixXd unit_covariance_;
   IntrinsicsFit result_;

@@ -24,6 +24,7 @@ namespace flexura {
 namespace {
 
 using testing::Contains;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -263,6 +264,26 @@ TEST(IntrinsicsFit, UsesViewsThatOneCameraHas) {
   // Boards that never were seen by both do not tell where the second camera stands.
   for (std::size_t view = 4; view < 8; ++view) views[view].pixels[view % 2].clear();
   EXPECT_THAT(fit_intrinsics(points, views, two_sizes).reason, HasSubstr("together"));
+}
+
+TEST(IntrinsicsFit, KnowsThatPicturesDoNotBelongTogether) {
+  for_random_cases(4, [](TestRandom& random) {
+    const BoardBundle truth = random_pair(random, 8);
+    const auto views = seen_boards(truth, points, 0.1, random);
+    // All of the second camera's shifted by one; and one alone that shows the board where it was before.
+    auto shifted = views, one = views;
+    for (std::size_t i = 0; i < views.size(); ++i)
+      shifted[i].pixels[1] = views[(i + 1) % views.size()].pixels[1];
+    one[5].pixels[1] = views[4].pixels[1];
+    for (const auto& wrong : {shifted, one}) {
+      const IntrinsicsFit fit = fit_intrinsics(points, wrong, two_sizes);
+      EXPECT_FALSE(fit.is_found);
+      EXPECT_THAT(fit.reason, HasSubstr("camera 2: its pictures do not belong to those of camera 1"));
+      EXPECT_THAT(fit.reason, ContainsRegex("0\\.1[0-9]* px alone and to [0-9.]+ px together"));
+    }
+    EXPECT_THAT(fit_intrinsics(points, one, two_sizes).reason, HasSubstr("view 6 puts it"));
+    EXPECT_TRUE(fit_intrinsics(points, views, two_sizes).is_found);
+  });
 }
 
 TEST(IntrinsicsFit, SaysWhatIsMissing) {

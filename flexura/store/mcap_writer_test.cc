@@ -2,12 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <system_error>
 
 #include "tests/mcap_testing.h"
+#include "tests/support/full_disk.h"
 
 namespace flexura {
 namespace {
@@ -162,27 +161,6 @@ TEST(McapWriter, SaysWhichFileItCannotCreate) {
   EXPECT_THROW(McapWriter(folder / "log.mcap", {.chunk_size = 0}), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(folder / "log.mcap"));
 }
-
-/// Lets files grow up to a size only, as a full disk would, while it lives.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
-  sighandler_t signal_;
-};
 
 TEST(McapWriter, LeavesCompleteChunksWhenTheDiskIsFull) {
   const TestFolder folder;

@@ -65,21 +65,23 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
 }
 
 void write_new_file(const std::filesystem::path& file, std::string_view text) {
-  const auto fail = [&] {
-    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+  const auto fail = [&](bool is_begun) {
+    const int reason = errno;
+    if (is_begun) ::unlink(file.c_str());  // A piece of a file is none.
+    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(reason)));
   };
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (descriptor < 0) fail();
+  if (descriptor < 0) fail(false);
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       ::close(descriptor);
-      fail();
+      fail(true);
     }
     text.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::close(descriptor) != 0) fail();
+  if (::close(descriptor) != 0) fail(true);
 }
 
 void replace_file(const std::filesystem::path& file, std::string_view text) {

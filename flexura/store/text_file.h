@@ -19,7 +19,7 @@ namespace flexura {
 /// it lies outside or is no file.
 [[nodiscard]] std::filesystem::path file_inside(const std::filesystem::path& folder, const std::string& name);
 
-/// Writes a new file whole; std::runtime_error with the path when it exists already or cannot be written.
+/// Writes a new file, whole or none; std::runtime_error with the path when it exists or cannot be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 
 /// Writes a file that may be there already: it keeps its old content until all of the new is written.

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include "flexura/base/source.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -56,6 +58,22 @@ TEST_F(TextFileTest, FindsMissingOnlyWhatIsNotThere) {
   EXPECT_TRUE(is_missing(folder_.path() / "link"));
   std::filesystem::create_symlink("loop", folder_.path() / "loop");
   EXPECT_FALSE(is_missing(folder_.path() / "loop"));
+}
+
+TEST_F(TextFileTest, LeavesNoPieceOfAFileWhenTheDiskIsFull) {
+  const auto file = folder_.path() / "long";
+  write_new_file(folder_.path() / "kept", "old");
+  {
+    const FullDisk disk(1000);
+    EXPECT_THROW(write_new_file(file, std::string(3000, 'x')), std::runtime_error);
+    EXPECT_THROW(replace_file(folder_.path() / "kept", std::string(3000, 'x')), std::runtime_error);
+  }
+  EXPECT_TRUE(is_missing(file));
+  EXPECT_TRUE(is_missing(folder_.path() / "kept.new"));
+  EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
+  // What was there before is nobody's piece.
+  EXPECT_THROW(write_new_file(folder_.path() / "kept", "new"), std::runtime_error);
+  EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ RigPrior arcs_prior(RigPrior prior) {
   // planes of two arcs stand to each other that bend each as they like.
   prior.arm.bend_share = prior.arm.bend = 0;
   for (CameraPrior& camera : prior.cameras) {
-    camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
+    camera.pan_zero = camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
     camera.focal = camera.aspect = camera.zoom_row = 0;
     camera.distortion = {0, 0, 0, 0, 0};
     camera.principal_point = 1;

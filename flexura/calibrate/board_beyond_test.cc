@@ -17,14 +17,14 @@
 namespace flexura {
 namespace {
 
-constexpr int width = 320, height = 240;
+constexpr int columns_px = 320, rows_px = 240;
 
-const Intrinsics lens_numbers = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
+const Intrinsics seen_by = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
 
 // The pixels of some columns and rows of a board, from the given ones on.
 std::vector<Eigen::Vector2d> pixels_of(const BoardTarget& board, const Pose& X_CB, const BoardTarget& part,
                                        int first_column, int first_row) {
-  const Lens lens(lens_numbers);
+  const Lens lens(seen_by);
   const auto points = board.points();
   std::vector<Eigen::Vector2d> pixels;
   for (int row = first_row; row < first_row + part.rows; ++row) {
@@ -42,7 +42,7 @@ TEST(BoardBeyond, TellsEveryPartOfABoardFromTheWhole) {
     const BoardTarget board{.pattern = pattern, .columns = 7, .rows = 5};
     for_random_cases(3, [&](TestRandom& random) {
       const Pose X_CB = random_board(random, board, 0.3, 0.6, 0.02);
-      const Image<std::uint8_t> picture = board_picture(board, Lens(lens_numbers), X_CB, width, height);
+      const Image<std::uint8_t> picture = board_picture(board, Lens(seen_by), X_CB, columns_px, rows_px);
       EXPECT_FALSE(goes_on(picture, board, pixels_of(board, X_CB, board, 0, 0)));
       for (int columns = 3; columns <= board.columns; ++columns) {
         for (int rows = 3; rows <= board.rows; ++rows) {
@@ -63,14 +63,14 @@ TEST(BoardBeyond, SaysNothingOfWhatThePictureDoesNotShow) {
   TestRandom random(case_seed(0));
   const Pose X_CB = random_board(random, board, 0.3, 0.2, 0.02);
   const auto pixels = pixels_of(board, X_CB, part, 0, 0);
-  const Image<std::uint8_t> picture = board_picture(board, Lens(lens_numbers), X_CB, width, height);
+  const Image<std::uint8_t> picture = board_picture(board, Lens(seen_by), X_CB, columns_px, rows_px);
   EXPECT_TRUE(goes_on(picture, part, pixels));
   // The same, cut off behind the points.
   double right = 0;
   for (const Eigen::Vector2d& pixel : pixels) right = std::max(right, pixel.x());
-  Image<std::uint8_t> cut(static_cast<int>(right) + 3, height);
-  for (int v = 0; v < height; ++v)
-    for (int u = 0; u < cut.width(); ++u) cut.at(u, v) = picture.at(u, v);
+  Image<std::uint8_t> cut(static_cast<int>(right) + 3, rows_px);
+  for (int v = 0; v < rows_px; ++v)
+    for (int u = 0; u < cut.columns_px(); ++u) cut.at(u, v) = picture.at(u, v);
   EXPECT_FALSE(goes_on(cut, part, pixels));
 }
 

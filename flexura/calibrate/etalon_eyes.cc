@@ -41,18 +41,20 @@ double bearing_of(const UprightLine& line, const EtalonSighting& seen) {
 std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
                                        const View& view) {
   std::vector<EtalonPoint> points;
-  add(EtalonPart::left_side, 0, seen.left, seen, points);
-  add(EtalonPart::right_side, 0, seen.right, seen, points);
+  // A camera that hangs has left and right, and up and down, the other way round.
+  const bool hangs = view.X_WC.rotation.col(1).dot(etalon.up()) > 0;
+  add(EtalonPart::left_side, 0, hangs ? seen.right : seen.left, seen, points);
+  add(EtalonPart::right_side, 0, hangs ? seen.left : seen.right, seen, points);
   const auto add_rim = [&](EtalonPart part, const std::optional<double>& v) {
     if (v) points.push_back({part, 0, {seen.middle(*v), *v}, least_red_sigma});
   };
-  add_rim(EtalonPart::upper_rim, seen.upper_edge);
-  add_rim(EtalonPart::lower_rim, seen.lower_edge);
+  add_rim(EtalonPart::upper_rim, hangs ? seen.lower_edge : seen.upper_edge);
+  add_rim(EtalonPart::lower_rim, hangs ? seen.upper_edge : seen.lower_edge);
   // Beyond `facing` a line's middle is not the middle of what is seen of it; lines are 90 degrees apart.
   constexpr double facing = std::numbers::pi / 3, known = 40 * std::numbers::pi / 180;
   constexpr std::size_t lines = 4;
   for (const UprightLine& line : seen.lines) {
-    const double bearing = bearing_of(line, seen);
+    const double bearing = (hangs ? -1 : 1) * bearing_of(line, seen);
     if (std::abs(bearing) > facing) continue;
     for (std::size_t i = 0; i < lines; ++i)
       if (std::abs(etalon.bearing(i, view.X_WC.position) - bearing) < known)
@@ -71,19 +73,19 @@ bool EtalonEyes::look(std::size_t i, const Picture& picture) {
   return last_.reason.empty();
 }
 
-SeenArm EtalonEyes::told(const EtalonSighting& seen, const View& view) const {
-  SeenArm told;
+SeenArm EtalonEyes::drawn(const EtalonSighting& seen, const View& view) const {
+  SeenArm drawn;
   for (const EtalonPoint& point : etalon_points(seen, etalon_, view)) {
     if (point.part != EtalonPart::red_line) continue;
     const auto place = etalon_.nearest(point, view);
     const double up = place ? (*place - etalon_.middle()).y() + 0.5 * config_.etalon->height : 0;
-    told.markers.push_back({point.pixel, up, point.sigma});
+    drawn.markers.push_back({point.pixel, up, point.sigma});
   }
-  if (told.markers.empty()) told.reason = "no red line is seen that can be told from the others";
+  if (drawn.markers.empty()) drawn.reason = "no red line is seen that can be told from the others";
   for (const auto& [line, share] :
        {std::pair{&seen.left, -0.5}, {&seen.left, 0.5}, {&seen.right, 0.5}, {&seen.right, -0.5}})
-    told.points.push_back({at(*line, seen, share), least_sigma});
-  return told;
+    drawn.points.push_back({at(*line, seen, share), least_sigma});
+  return drawn;
 }
 
 SeenArm EtalonEyes::unkept(const View& /*view*/) const {
@@ -94,7 +96,7 @@ SeenArm EtalonEyes::unkept(const View& /*view*/) const {
 
 SeenArm EtalonEyes::keep(std::size_t stance, std::size_t pose, const RigModel* found) {
   looks_.push_back({stance, pose, last_.sighting});
-  return told(last_.sighting, view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
+  return drawn(last_.sighting, view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
 }
 
 RigObservations EtalonEyes::observations(const RigModel& model) const {
@@ -107,10 +109,21 @@ RigObservations EtalonEyes::observations(const RigModel& model) const {
   return result;
 }
 
-// Which red line is which is told by the guess, and told again by the rig that is found.
+// Which red line is which is told by the rig that was found before or, where that leads nowhere, by the
+// guess; and told again by the rig that is found.
 RigReading EtalonEyes::read(const RigModel* found) const {
+  RigReading reading = read_by(found != nullptr ? *found : believed_);
+  if (found != nullptr && !reading.is_whole()) {
+    RigReading again = read_by(believed_);
+    if (again.found.is_found && (!reading.found.is_found || again.explained > reading.explained))
+      reading = std::move(again);
+  }
+  return reading;
+}
+
+RigReading EtalonEyes::read_by(const RigModel& first) const {
   RigReading reading;
-  RigModel model = found != nullptr ? *found : believed_;
+  RigModel model = first;
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     reading.problem.emplace(believed_, prior_, observations(model));
@@ -125,19 +138,13 @@ RigReading EtalonEyes::read(const RigModel* found) const {
   return reading;
 }
 
-double EtalonEyes::off_foretold(const RigModel& model, const RigSight& sight) const {
-  const View view = view_of(model, sight.stance);
+RigImage EtalonEyes::told(const RigModel& model, const RigSight& sight) const {
+  RigImage image;
   const auto last = std::ranges::find_if(looks_.rbegin(), looks_.rend(), [&](const Look& look) {
     return stances_[look.stance].camera == sight.stance.camera;
   });
-  double squares = 0, count = 0;
-  if (last == looks_.rend()) return 0;
-  for (const EtalonPoint& point : etalon_points(last->seen, etalon_, view)) {
-    const auto place = etalon_.nearest(point, view);
-    const auto pixel = place ? view.project(*place) : std::nullopt;
-    if (pixel) squares += (*pixel - point.pixel).squaredNorm(), count += 1;
-  }
-  return std::sqrt(squares / count);
+  if (last != looks_.rend()) image.etalon = etalon_points(last->seen, etalon_, view_of(model, sight.stance));
+  return image;
 }
 
 }  // namespace flexura

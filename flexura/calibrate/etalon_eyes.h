@@ -12,7 +12,8 @@
 namespace flexura {
 
 /// Points of the cylinder that a sighting tells: two of each side and of each red line that can be told from
-/// the others, and one of each rim. By a view that is known within 40 degrees around the cylinder.
+/// the others, and one of each rim. By a view that is known within 40 degrees around the cylinder, upright or
+/// upside down.
 [[nodiscard]] std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
                                                      const View& view);
 
@@ -30,7 +31,7 @@ class EtalonEyes : public RigEyes {
   SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override;
   std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
   RigReading read(const RigModel* found) const override;
-  double off_foretold(const RigModel& model, const RigSight& sight) const override;
+  RigImage told(const RigModel& model, const RigSight& sight) const override;
 
  private:
   struct Look {
@@ -38,7 +39,8 @@ class EtalonEyes : public RigEyes {
     EtalonSighting seen;
   };
   [[nodiscard]] RigObservations observations(const RigModel& model) const;
-  [[nodiscard]] SeenArm told(const EtalonSighting& seen, const View& view) const;
+  [[nodiscard]] RigReading read_by(const RigModel& first) const;
+  [[nodiscard]] SeenArm drawn(const EtalonSighting& seen, const View& view) const;
 
   const RigModel& believed_;
   const RigPrior& prior_;

@@ -21,7 +21,9 @@ Eigen::Vector3d outwards(double angle) { return {std::sin(angle), 0, std::cos(an
 EtalonFigure::EtalonFigure(const EtalonConfig& etalon)
     : X_WE_{rotation_of(etalon.rotation), vector(etalon.position)},
       radius_(etalon.radius),
-      height_(etalon.height) {}
+      height_(etalon.height),
+      // The middle of what is seen of a line that is wide lies a little deeper than the line's own.
+      red_radius_(etalon.radius * std::cos(0.5 * etalon.line_width / etalon.radius)) {}
 
 std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number,
                                              const Eigen::Vector3d& p_WC) const {
@@ -29,21 +31,28 @@ std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number
   const double distance = std::hypot(p_EC.x(), p_EC.z());
   if (!(distance > radius_)) return std::nullopt;
   const double towards = std::atan2(p_EC.x(), p_EC.z()), grazing = std::acos(radius_ / distance);
-  const auto along = [&](double angle) {
-    return EtalonLine{X_WE_ * (radius_ * outwards(angle)), X_WE_.rotation.col(1)};
+  const auto along = [&](double angle, double radius) {
+    return EtalonLine{X_WE_ * (radius * outwards(angle)), up()};
   };
-  // Of a rim at this height the camera sees the near edge as the silhouette's end where it stands beyond the
-  // cylinder's end that way, else the far one.
+  // Of a rim at this height the near half ends the silhouette as long as the camera does not see the end's
+  // face, else the far one. Where it is measured, a quarter of the width beside the middle, it is as far
+  // around the rim to either side; halfway between these two places lies what their mean shows.
   const auto rim = [&](double height, bool is_near) {
-    const Eigen::Vector3d edge = (is_near ? radius_ : -radius_) * outwards(towards);
+    const double side = is_near ? 1 : -1;
+    double around = std::numbers::pi / 6;
+    for (int i = 0; i < 20; ++i)
+      around = std::asin(std::clamp(0.5 * (distance - side * radius_ * std::cos(around)) /
+                                        std::sqrt(distance * distance - radius_ * radius_),
+                                    -1.0, 1.0));
+    const Eigen::Vector3d edge = side * radius_ * std::cos(around) * outwards(towards);
     return EtalonLine{X_WE_ * Eigen::Vector3d(edge.x(), height, edge.z()),
                       X_WE_.rotation * outwards(towards + quarter)};
   };
   switch (part) {
     case EtalonPart::left_side:
-      return along(towards - grazing);
+      return along(towards - grazing, radius_);
     case EtalonPart::right_side:
-      return along(towards + grazing);
+      return along(towards + grazing, radius_);
     case EtalonPart::upper_rim:
       return rim(height_, p_EC.y() < height_);
     case EtalonPart::lower_rim:
@@ -51,7 +60,7 @@ std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number
     case EtalonPart::red_line:
       break;
   }
-  return along(quarter * static_cast<double>(number));
+  return along(quarter * static_cast<double>(number), red_radius_);
 }
 
 std::optional<Eigen::Vector3d> EtalonFigure::nearest(const EtalonPoint& seen, const View& view) const {
@@ -74,35 +83,37 @@ double EtalonFigure::bearing(std::size_t number, const Eigen::Vector3d& p_WC) co
                         2 * std::numbers::pi);
 }
 
+std::optional<std::array<Eigen::Vector2d, 4>> EtalonFigure::corners(const View& view, double margin) const {
+  std::array<Eigen::Vector2d, 4> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto side = line(i < 2 ? EtalonPart::left_side : EtalonPart::right_side, 0, view.X_WC.position);
+    if (!side) return std::nullopt;
+    const double up = i % 2 == 0 ? 0 : height_;
+    const auto pixel = view.project(side->point + up * side->direction);
+    if (!pixel || pixel->minCoeff() < margin || pixel->x() > view.width - 1 - margin ||
+        pixel->y() > view.height - 1 - margin)
+      return std::nullopt;
+    corners[i] = *pixel;
+  }
+  return corners;
+}
+
 std::optional<std::vector<EtalonPoint>> EtalonFigure::expected(const View& view, double margin) const {
+  if (!corners(view, margin)) return std::nullopt;
   std::vector<EtalonPoint> points;
   const auto add = [&](EtalonPart part, std::size_t number, double share) {
     const auto known = line(part, number, view.X_WC.position);
-    if (!known) return false;
-    const double up = part == EtalonPart::upper_rim || part == EtalonPart::lower_rim ? 0 : share * height_;
-    const auto pixel = view.project(known->point + up * known->direction);
-    if (!pixel || pixel->minCoeff() < margin || pixel->x() > view.width - 1 - margin ||
-        pixel->y() > view.height - 1 - margin)
-      return false;
-    points.push_back({part, number, *pixel, 0});
-    return true;
+    if (const auto pixel = view.project(known->point + share * height_ * known->direction))
+      points.push_back({part, number, *pixel, 0});
   };
-  constexpr std::array<double, 2> ends = {0, 1}, places = {0.25, 0.75};
-  for (const EtalonPart side : {EtalonPart::left_side, EtalonPart::right_side}) {
-    for (const double end : ends)
-      if (!add(side, 0, end)) return std::nullopt;
-    points.resize(points.size() - 2);  // These were to see whether all of it is inside.
-    for (const double place : places)
-      if (!add(side, 0, place)) return std::nullopt;
-  }
-  for (const EtalonPart rim : {EtalonPart::upper_rim, EtalonPart::lower_rim})
-    if (!add(rim, 0, 0)) return std::nullopt;
+  constexpr std::array<double, 2> places = {0.25, 0.75};
+  for (const EtalonPart side : {EtalonPart::left_side, EtalonPart::right_side})
+    for (const double place : places) add(side, 0, place);
+  for (const EtalonPart rim : {EtalonPart::upper_rim, EtalonPart::lower_rim}) add(rim, 0, 0);
   constexpr double facing = std::numbers::pi / 3;
-  for (std::size_t i = 0; i < red_lines; ++i) {
-    if (std::abs(bearing(i, view.X_WC.position)) > facing) continue;
-    for (const double place : places)
-      if (!add(EtalonPart::red_line, i, place)) return std::nullopt;
-  }
+  for (std::size_t i = 0; i < red_lines; ++i)
+    if (std::abs(bearing(i, view.X_WC.position)) <= facing)
+      for (const double place : places) add(EtalonPart::red_line, i, place);
   return points;
 }
 

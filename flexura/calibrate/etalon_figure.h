@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -15,8 +16,8 @@ namespace flexura {
 enum class EtalonPart {
   left_side,   ///< Where the silhouette ends on the left: a line along the cylinder that sight grazes.
   right_side,  ///< Likewise on the right.
-  upper_rim,   ///< Where it ends at the top, near its middle.
-  lower_rim,
+  upper_rim,  ///< Where it ends at the top: the mean of two places, a quarter of the width beside its middle.
+  lower_rim,  ///< Likewise at the bottom.
   red_line,
 };
 
@@ -52,15 +53,19 @@ class EtalonFigure {
   /// camera faces within 60 degrees, one of each rim. None where it does not show all of the cylinder,
   /// `margin` px from its border at least.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
+  /// The four ends of its sides in the picture, left ones first; none likewise.
+  [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 4>> corners(const View& view, double margin) const;
   /// The angle by which a red line lies to the right of where the camera stands around the cylinder, rad.
   [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
 
   /// Halfway up its axis, in W, m.
   [[nodiscard]] Eigen::Vector3d middle() const;
+  /// Along its axis, in W, unit.
+  [[nodiscard]] Eigen::Vector3d up() const { return X_WE_.rotation.col(1); }
 
  private:
   Pose X_WE_;
-  double radius_, height_;
+  double radius_, height_, red_radius_;
 };
 
 }  // namespace flexura

@@ -37,8 +37,8 @@ class RigEyes {
 
   /// The rig that explains all that was kept; `found`: the one before.
   [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
-  /// How far what a picture shows is from where the rig has it, root mean square, px.
-  [[nodiscard]] virtual double off_foretold(const RigModel& model, const RigSight& sight) const = 0;
+  /// What a picture that was kept tells, by the rig as found, for stance and pose 0.
+  [[nodiscard]] virtual RigImage told(const RigModel& model, const RigSight& sight) const = 0;
 };
 
 /// Those of a session with this configuration, which outlives them as the others do. `target`: what the

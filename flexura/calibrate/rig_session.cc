@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "flexura/calibrate/rig_eyes.h"
+#include "flexura/calibrate/rig_foretelling.h"
 #include "flexura/calibrate/rig_session_plan.h"
 #include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
@@ -214,7 +215,8 @@ class Session {
     step.doubts = found.doubts.size();
     found_.reset();
     if (!found.is_found) {
-      step.next = "another pose from where the heads stand: nothing is known yet";
+      step.next = config_.etalon ? "a little aside: nothing is known yet"
+                                 : "another pose from where the heads stand: nothing is known yet";
       watcher_.known(step);
       return std::nullopt;
     }
@@ -239,7 +241,15 @@ class Session {
   }
   [[nodiscard]] ViewCandidate next() const {
     if (next_) return *next_;
-    return {pose(result_.looks), {stands_[0], stands_[1]}};
+    ViewCandidate another{pose(result_.looks), {stands_[0], stands_[1]}};
+    // What stands still looks the same from the same place.
+    constexpr double aside = 0.03;  // rad
+    for (RigStance& stance : another.stances) {
+      if (!config_.etalon) break;
+      stance.head.pan += result_.looks % 2 == 0 ? -aside : aside;
+      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
+    }
+    return another;
   }
   [[nodiscard]] bool is_enough() const {
     const RigSigmas &is = result_.steps.back().sigmas, &wanted = config_.wanted;
@@ -256,15 +266,19 @@ class Session {
       if (misses_[i] > 0)
         return fmt::format("the {} is not seen by camera {} after the move: {}", what_, name(i),
                            result_.after[i]->seen.reason);
-      result_.verified[i] = eyes_->off_foretold(model(), *result_.after[i]);
-      constexpr double likely = 6, noise = 1;  // Standard deviations; of the markers' centres, px.
-      const double explained = likely * plan_.foretold_sigma(*problem_, *found_, wanted_, i) + noise;
-      if (result_.verified[i] > explained)
+      const RigSight& sight = *result_.after[i];
+      // Markers' and borders' middles are not known to nothing, whatever a picture's noise is.
+      constexpr double least = 0.5, most = 4;  // px; standard deviations.
+      const RigForetelling foretelling =
+          foretell(*problem_, *found_, sight.stance, sight.pose, eyes_->told(model(), sight), least);
+      result_.verified[i] = foretelling.px;
+      if (!(foretelling.sigmas <= most))
         return fmt::format(
-            "camera {} sees the {} {:.1f} px from where it was foretold after the move, and no more than "
-            "{:.1f} px are explained: a head with play, one that was pushed, or an arm that bends otherwise "
-            "each time",
-            name(i), what_, result_.verified[i], explained);
+            "camera {} sees the {} {:.1f} px from where it was foretold after the move, which is {:.1f} "
+            "times "
+            "what is not known: a head with play, or one that was pushed{}",
+            name(i), what_, foretelling.px, foretelling.sigmas,
+            config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }
     return std::nullopt;
   }

@@ -82,40 +82,70 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
   }
 }
 
-double RigSessionPlan::etalon_zoom(const RigStance& begins, double start) const {
-  constexpr double longer = 1.05, most = 20, margin = 20;
-  const CameraConfig& camera = believed_.cameras[begins.camera];
+// Ratios of a camera from its shortest to the longest that shows all of the cylinder, and how far beside the
+// image's middle it still does.
+std::vector<RigSessionPlan::EtalonZoom> RigSessionPlan::etalon_zooms(const RigModel& model,
+                                                                     std::size_t camera) const {
+  constexpr double longer = 1.05, most = 20, margin = 20, spread = 0.6;
+  const Camera optics(model.cameras[camera]);
   const EtalonFigure etalon(*config_.etalon);
+  // The share of half the picture by which the cylinder may be moved from the middle, if it fits at all.
+  const auto room = [&](double ratio) -> std::optional<double> {
+    RigStance stance{.camera = camera, .head = optics.initial_head(), .stage = optics.initial_stage()};
+    stance.head.zoom = zoom_at(optics, ratio);
+    stance.head = aimed(model.cameras[camera], stance, etalon.middle());
+    const View view = view_of(model, stance);
+    const auto points = etalon.corners(view, margin);
+    if (!points) return std::nullopt;
+    const Eigen::Vector2d half(0.5 * view.width, 0.5 * view.height);
+    Eigen::Vector2d reach(0, 0);
+    for (const Eigen::Vector2d& point : *points) reach = reach.cwiseMax((point - half).cwiseAbs());
+    return std::clamp((1 - (reach.array() + 1.5 * margin) / half.array()).minCoeff(), 0.0, spread);
+  };
+  const double start = optics.lens().ratio(zoom_ends(optics)[0]),
+               end = optics.lens().ratio(zoom_ends(optics)[1]);
   double fits = start;
-  for (double ratio = start * longer; ratio < most * start; ratio *= longer) {
-    RigStance stance = begins;
-    stance.head.zoom = zoom_at(Camera(camera), ratio);
-    stance.head = aimed(camera, stance, etalon.middle());
-    const double reached = Camera(camera).lens().ratio(stance.head.zoom);
-    if (reached <= fits || !etalon.expected(view_of(believed_, stance), margin)) break;
-    fits = reached;
+  for (double ratio = start * longer; ratio <= std::min(end, most * start) && room(ratio); ratio *= longer)
+    fits = ratio;
+  std::vector<EtalonZoom> zooms;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const double ratio = start * std::pow(fits / start, share);
+    zooms.push_back({ratio, room(ratio).value_or(0)});
   }
-  return fits;
+  return zooms;
+}
+
+std::vector<ViewCandidate> RigSessionPlan::etalon_candidates(const RigModel& model) const {
+  std::vector<std::vector<EtalonZoom>> zooms;
+  for (const std::size_t camera : config_.cameras) zooms.push_back(etalon_zooms(model, camera));
+  constexpr std::array<std::array<double, 2>, 5> places = {{{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+  std::vector<ViewCandidate> candidates;
+  for (std::size_t zoom = 0; zoom < zooms[0].size(); ++zoom) {
+    for (const Eigen::Vector3d& slide : grid().slides) {
+      for (const auto& [across, down] : places) {
+        ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{config_.poses.front(), {}});
+        for (std::size_t i = 0; i < 2; ++i) {
+          const EtalonZoom& own = zooms[i][zoom];
+          candidate.stances.push_back(looking_at(model, config_.cameras[i], slide, own.ratio,
+                                                 EtalonFigure(*config_.etalon).middle(),
+                                                 own.room * Eigen::Vector2d(across, down)));
+        }
+      }
+    }
+  }
+  return candidates;
 }
 
 ViewGrid RigSessionPlan::grid() const {
   ViewGrid grid;
   grid.poses = config_.poses, grid.spread = 0.6;
-  if (config_.etalon) grid.target = EtalonFigure(*config_.etalon).middle();
   const Camera camera(believed_.cameras[config_.cameras[0]]);
   grid.zooms.clear();
-  const RigStance begins{.camera = config_.cameras[0], .head = camera.initial_head(), .stage = {}};
-  const double start = camera.lens().ratio(first(begins).head.zoom);
+  const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
     // As far as the lens goes.
     const double reached = camera.lens().ratio(zoom_at(camera, start * ratio));
     if (std::ranges::find(grid.zooms, reached) == grid.zooms.end()) grid.zooms.push_back(reached);
-  }
-  if (config_.etalon) {
-    // All of the cylinder has to be inside: as much longer as it fits, and halfway there.
-    const double fits = etalon_zoom(begins, start);
-    for (const double ratio : {std::sqrt(start * fits), fits})
-      if (std::ranges::find(grid.zooms, ratio) == grid.zooms.end()) grid.zooms.push_back(ratio);
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
@@ -130,7 +160,8 @@ ViewGrid RigSessionPlan::grid() const {
 std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
     const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const {
-  std::vector<ViewCandidate> candidates = view_candidates(found.model, grid());
+  std::vector<ViewCandidate> candidates =
+      config_.etalon ? etalon_candidates(found.model) : view_candidates(found.model, grid());
   for (ViewCandidate& candidate : candidates) {
     if (!config_.may_use_stages)
       for (RigStance& stance : candidate.stances)
@@ -179,7 +210,12 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   for (const std::string& note : wanted.notes) why += "; " + note;
   constexpr double far_off = 0.5 * degree, likely = 4;  // Standard deviations.
   const double left = std::abs(wanted.remainder.angle);
-  if (left > far_off + likely * step.sigmas.angle)
+  double step_of_heads = 0;
+  for (const std::size_t i : config_.cameras) {
+    const HeadConfig& head = model.cameras[i].head;
+    step_of_heads = std::max({step_of_heads, head.pan.resolution, head.tilt.resolution});
+  }
+  if (left > far_off + step_of_heads + likely * step.sigmas.angle)
     return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
                        left / degree, why);
   for (const RigStance& stance : wanted.stances)
@@ -200,27 +236,6 @@ bool RigSessionPlan::is_in_view(const RigModel& model, const RigStance& stance, 
                   ? 1
                   : 0;
   return inside >= config_.fewest;
-}
-
-double RigSessionPlan::foretold_sigma(const RigProblem& problem, const RigCalibration& found,
-                                      const WantedRig& wanted, std::size_t i) const {
-  const OpticalAxis axis = optical_axis(problem.variables(), found.x, {wanted.stances[i], {}});
-  const auto off = aim_errors(axis, target(found.model));
-  // What the pose adds to the bends as they are known; the tip has all of it.
-  const ArmPrior& prior = problem.prior().arm;
-  const ArmState& pose = config_.poses.front();
-  double beyond = 0, squares = 0;
-  for (std::size_t section = config_.etalon ? 0 : pose.bends.size(); section-- > 0;) {
-    beyond += found.model.arm.sections[section].length * pose.stretches[section];
-    squares += std::pow(beyond * std::hypot(prior.bend, prior.bend_share * pose.bends[section].norm()), 2);
-  }
-  for (const RigQuantity& quantity : off) squares += std::pow(quantity.sigma(found.covariance), 2);
-  const RigStance& stance = wanted.stances[i];
-  const Camera camera(found.model.cameras[stance.camera]);
-  const auto& [pan, tilt, zoom] = camera.head_axes();
-  const double depth = axis.direction.dot(target(found.model) - axis.pupil);
-  const double steps = problem.prior().cameras[stance.camera].steps;
-  return axis.focal * std::hypot(std::sqrt(squares) / depth, steps * pan.resolution, steps * tilt.resolution);
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

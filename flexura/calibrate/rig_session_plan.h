@@ -41,10 +41,6 @@ class RigSessionPlan {
   /// is said before the angle is known.
   [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
                                                const RigStep& step, const ArmState& home) const;
-  /// How far from where they are foretold an arm's markers may be seen by camera `i` (of two) where it is
-  /// sent, by all that is not known of rig, head and arm: a standard deviation, px.
-  [[nodiscard]] double foretold_sigma(const RigProblem& problem, const RigCalibration& found,
-                                      const WantedRig& wanted, std::size_t i) const;
   /// By how much to turn a head from where it stands to look for the arm, pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
 
@@ -52,8 +48,12 @@ class RigSessionPlan {
   [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
                                             const WantedRig& wanted) const;
   [[nodiscard]] ViewGrid grid() const;
-  /// The largest ratio of focal length at which all of the cylinder is in the picture of a camera.
-  [[nodiscard]] double etalon_zoom(const RigStance& begins, double start) const;
+  struct EtalonZoom {
+    double ratio = 1;  // Of focal length.
+    double room = 0;   // Beside the image's middle, a share of half the image.
+  };
+  [[nodiscard]] std::vector<EtalonZoom> etalon_zooms(const RigModel& model, std::size_t camera) const;
+  [[nodiscard]] std::vector<ViewCandidate> etalon_candidates(const RigModel& model) const;
   [[nodiscard]] bool is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const;
 
   const RigModel& believed_;

@@ -150,11 +150,8 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
   return best;
 }
 
-namespace {
-
-// A stance from which the target is seen at this place of the image, in shares of half its width and height.
-RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double ratio,
-                  const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
+RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide, double ratio,
+                     const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
   const CameraConfig& camera = model.cameras[number];
   const Camera optics(camera);
   RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom_at(optics, ratio))}, {}};
@@ -169,21 +166,19 @@ RigStance looking(const RigModel& model, std::size_t number, const Eigen::Vector
   return stance;
 }
 
-}  // namespace
-
 std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid) {
   const double far = grid.spread;
   const std::array<Eigen::Vector2d, 5> places = {
       {{0, 0}, {-far, -far}, {far, -far}, {-far, far}, {far, far}}};
   std::vector<ViewCandidate> candidates;
   for (const ArmState& pose : grid.poses) {
-    const Eigen::Vector3d middle = grid.target ? *grid.target : arm_middle(model, pose);
+    const Eigen::Vector3d middle = arm_middle(model, pose);
     for (const double zoom : grid.zooms) {
       for (const Eigen::Vector3d& slide : grid.slides) {
         for (const Eigen::Vector2d& place : places) {
           ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{pose, {}});
           for (std::size_t i = 0; i < model.cameras.size(); ++i)
-            candidate.stances.push_back(looking(model, i, slide, zoom, middle, place));
+            candidate.stances.push_back(looking_at(model, i, slide, zoom, middle, place));
         }
       }
     }

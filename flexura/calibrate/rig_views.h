@@ -55,11 +55,16 @@ struct ViewGrid {
   std::vector<ArmState> poses;
   std::vector<double> zooms = {1};  ///< Ratios; each camera goes to where its own lens has them.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
-  std::optional<Eigen::Vector3d> target = {};  ///< In W, m; the arm's middle in each pose when left out.
-  /// It is brought to the image's middle, and so far from there towards its four corners; share
+  /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
   /// of half the image.
   double spread = 0.4;
 };
+
+/// A stance of camera `number` from which a point of W is seen at this place of the image, in shares of half
+/// its width and height to the right and down of the middle: with the stage slid so far and a focal length of
+/// this ratio, within the limits of head and stage, in positions that can be commanded.
+[[nodiscard]] RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide,
+                                   double ratio, const Eigen::Vector3d& target, const Eigen::Vector2d& place);
 
 /// All of a grid's, every camera doing the same: within the limits of heads and stages, in positions that can
 /// be commanded.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
@@ -38,7 +39,10 @@ Pose Camera::pose(const StageState& stage, const HeadState& head) const {
 
 HeadState Camera::looking_along(const Eigen::Vector3d& direction, double zoom) const {
   const Eigen::Vector3d u = (X_WM_.rotation.transpose() * direction).normalized();
-  return {std::atan2(-u.x(), u.z()) - config_.head.pan.zero,
+  // Of the pans that differ by whole turns the one nearest to the middle of its limits.
+  const auto& [least, most] = config_.head.pan.limits;
+  const double middle = 0.5 * (least + most), pan = std::atan2(-u.x(), u.z()) - config_.head.pan.zero;
+  return {middle + std::remainder(pan - middle, 2 * std::numbers::pi),
           std::asin(std::clamp(-u.y(), -1.0, 1.0)) - config_.head.tilt.zero, zoom};
 }
 

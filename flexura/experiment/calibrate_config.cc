@@ -298,6 +298,8 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
 
 RigPrior session_prior(const CalibrateTask& task, const RigModel& believed) {
   RigPrior prior = rough_prior(believed, task.guess.distance);
+  // The cylinder tells nothing of the arm.
+  if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
   for (CameraPrior& camera : prior.cameras) {
     if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.guess.zero : 0;
     camera.tilt_zero = task.guess.zero;
@@ -341,7 +343,8 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
   if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
     reader.problem_at(path, "needs a cylinder that stands upright: expected a stand.etalon.rotation about Y");
   if (!is_loop(task)) {
-    if (!task.pose.empty()) reader.problem_at(path, "has no pose with this method: expected no such key");
+    if (!task.pose.empty() || task.zooms != CalibrateTask{}.zooms)
+      reader.problem_at(path, "has no pose and no zooms with this method: expected none of these keys");
   } else if (!task.pose.empty() || task.target || !task.stages) {
     reader.problem_at(
         path, "has no pose, no target and moves stages with this method: expected none of these keys");

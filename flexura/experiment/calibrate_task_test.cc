@@ -81,7 +81,7 @@ TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanItWasForetold) {
       "images = 8\n" + three_poses, both_heads("{ pan = { backlash_deg = 3 }, tilt = { zero_deg = 0 } }")));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("from where it was foretold after the move"));
+  EXPECT_THAT(result.reason, HasSubstr("from where it was foretold after the move, which is"));
   bench.expect_back();
 }
 

@@ -360,7 +360,7 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
   EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
             "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
-            "task[0]: has no pose with this method: expected no such key");
+            "task[0]: has no pose and no zooms with this method: expected none of these keys");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
                                   "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
                                   rig)),

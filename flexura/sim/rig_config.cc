@@ -70,8 +70,9 @@ bool lay_entries(Node& under, Node& over, const std::string& path) {
 // A mount says how it is turned in one of two ways (camera/mount.h); what lies above chooses it.
 void drop_other_ways(Node::Table& below, std::string_view key) {
   std::erase_if(below, [&](const Node::Member& member) {
-    if (key == "look_at") return member.key == "rotation";
-    return key == "rotation" && (member.key == "look_at" || without_unit(member.key) == "roll");
+    const auto below_key = without_unit(member.key);
+    if (without_unit(key) == "look_at") return below_key == "rotation";
+    return key == "rotation" && (below_key == "look_at" || below_key == "roll");
   });
 }
 

@@ -81,9 +81,9 @@ TEST(Truth, ChoosesHowAMountSaysItsTurn) {
   EXPECT_EQ(turned.find("roll_deg"), nullptr);
   EXPECT_EQ(number(turned.find("rotation")), 4.0);
   EXPECT_EQ(number(turned.find("position")), 3.0);
-  const Node looking = mount_of({member("rotation", 4.0)}, {member("look_at", 1.0), member("roll", 0.1)});
+  const Node looking = mount_of({member("rotation", 4.0)}, {member("look_at_mm", 1.0), member("roll", 0.1)});
   EXPECT_EQ(looking.find("rotation"), nullptr);
-  EXPECT_EQ(number(looking.find("look_at")), 1.0);
+  EXPECT_EQ(number(looking.find("look_at_mm")), 1.0);
   EXPECT_EQ(number(looking.find("roll")), 0.1);
   // Both from above are both kept, so that the reader can tell.
   const Node both = mount_of({}, {member("rotation", 4.0), member("look_at", 1.0)});

@@ -194,7 +194,7 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
     ShapeEstimator of_base(unknown_arm(base, {}), sure), of_length(unknown_arm(base, truth.length()), sure);
     const ShapeEstimate cut = of_base.estimate(seen_to({0.98, 0.98}));
     ASSERT_TRUE(cut.is_found) << cut.reason;
-    EXPECT_GT(shape_error(cut.shape, truth), 5e-3);
+    EXPECT_GT(shape_error(cut.shape, truth), 1e-3);
     EXPECT_TRUE(speaks_of_tip(cut));
     EXPECT_FALSE(cut.is_trusted());
     // One picture that shows it is enough, and so is a length that is known.

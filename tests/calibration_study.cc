@@ -18,6 +18,7 @@
 #include "flexura/calibrate/rig_views.h"
 #include "tests/support/rig_figures.h"
 #include "tests/support/rig_trials.h"
+#include "tests/support/study_numbers.h"
 
 namespace flexura {
 namespace {
@@ -132,14 +133,8 @@ struct Spread {
 
 Spread spread(const std::vector<Outcome>& outcomes, const std::function<double(const Outcome&)>& what) {
   std::vector<double> sizes;
-  double sum = 0;
-  for (const Outcome& outcome : outcomes) {
-    sizes.push_back(std::abs(what(outcome)));
-    sum += sizes.back() * sizes.back();
-  }
-  std::ranges::sort(sizes);
-  const auto count = static_cast<double>(sizes.size());
-  return {std::sqrt(sum / count), sizes[static_cast<std::size_t>(0.95 * (count - 1))], sizes.back()};
+  for (const Outcome& outcome : outcomes) sizes.push_back(std::abs(what(outcome)));
+  return {root_mean_square(sizes), quantile(sizes, 0.95), quantile(sizes, 1)};
 }
 
 void print(const char* title, const std::vector<Outcome>& all) {

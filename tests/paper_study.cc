@@ -23,6 +23,7 @@
 
 #include "tests/support/calibration_trials.h"
 #include "tests/support/outcome_plot.h"
+#include "tests/support/study_numbers.h"
 
 namespace flexura {
 namespace {
@@ -54,12 +55,7 @@ std::vector<CalibrationTrial> run_all(const std::string& method, std::size_t cou
   return file.all(indices);
 }
 
-double share_of(std::vector<double> sizes, double share) {
-  for (double& size : sizes) size = std::abs(size);
-  std::ranges::sort(sizes);
-  const double place = std::ceil(share * static_cast<double>(sizes.size()));
-  return sizes[static_cast<std::size_t>(std::max(1.0, place)) - 1];
-}
+double share_of(const std::vector<double>& values, double share) { return quantile(sizes_of(values), share); }
 
 void print_row(const std::string& method, const std::vector<CalibrationTrial>& trials) {
   std::vector<double> pictures, angle, aim, zoom;

@@ -280,24 +280,23 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
     looks.push_back(look_at(arguments.images[i], cameras[i], prior, threshold));
     sightings.push_back(looks.back().sighting);
   }
-  const ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
+  ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
+  if (found.is_found && !prior.is_base_position_known)
+    found.notes.emplace_back(
+        "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
+        "one; --base tells");
   Node::Array images;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     std::optional<ViewError> error;
     if (found.is_found && sightings[i].doubt.is_any()) error = found.shape.views.at(i);
     images.push_back(image_node(arguments.images[i], cameras[i], looks[i], error));
   }
-  Node::Table answer{{"found", {}, {found.is_found, {}}}};
+  Node::Table answer{{"found", {}, {found.is_found, {}}}, {"trusted", {}, {found.is_trusted(), {}}}};
   if (found.is_found)
     add_shape(found, sightings, arguments, answer);
   else
     answer.push_back({"reason", {}, text_node(found.reason)});
-  std::vector<std::string> notes = found.notes;
-  if (found.is_found && !prior.is_base_position_known)
-    notes.emplace_back(
-        "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
-        "one; --base tells");
-  if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
+  if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});
   answer.push_back({"images", {}, {std::move(images), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;

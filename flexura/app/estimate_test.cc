@@ -194,6 +194,138 @@ TEST_F(Estimate, FindsWhatIsWrongWithACameraThatIsDoubted) {
   EXPECT_NEAR(*turn[1].as<double>(), 0.0087265, 5e-4);
 }
 
+std::string replaced_everywhere(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+// Through lenses that shift the arm's ends by some pixels.
+TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
+  const std::string distortion = "distortion = [-0.4, 0.15, 0.003, -0.002, 0.0]";
+  write_new_file(folder_.path() / "bent.toml",
+                 replaced_everywhere(arm_text, "sensor =", "lens = { " + distortion + " }\nsensor ="));
+  arguments_.images = {photographed("bent", "front"), photographed("bent", "side")};
+  const std::string untold = arguments_.cameras, told = (folder_.path() / "lenses.toml").string();
+  write_new_file(told, replaced_everywhere(cameras_text, "fx = 800.0", "fx = 800.0\n" + distortion));
+  const auto expect_right_where_told = [&](double most) {
+    arguments_.cameras = untold;
+    const Node wrong = answer(exit_done);
+    EXPECT_GT(error(wrong), 5e-3);
+    EXPECT_FALSE(*wrong.find("trusted")->as<bool>());
+    arguments_.cameras = told;
+    EXPECT_LT(error(answer(exit_done)), most);
+  };
+  // A known arm, then one of unknown make.
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  expect_right_where_told(5e-4);
+  arguments_.arm.clear(), arguments_.base = {0, 0, 0}, arguments_.length = 1;
+  expect_right_where_told(4e-3);
+}
+
+// What `node` holds at `key`, as finite numbers; of rows one after the other.
+std::vector<double> numbers_in(const Node& node, const char* key) {
+  std::vector<double> numbers;
+  const Node* values = node.find(key);
+  EXPECT_NE(values, nullptr) << key;
+  if (values == nullptr) return numbers;
+  const auto add = [&](const auto& self, const Node& value) -> void {
+    if (const auto* array = value.as<Node::Array>()) {
+      for (const Node& one : *array) self(self, one);
+      return;
+    }
+    const auto* number = value.as<double>();
+    EXPECT_TRUE(number != nullptr && std::isfinite(*number)) << key << ": " << write_json(value);
+    if (number != nullptr) numbers.push_back(*number);
+  };
+  add(add, *values);
+  return numbers;
+}
+
+// The table of docs/estimation.md, of an arm that is known before cameras that look along Z and X.
+TEST_F(Estimate, HasEveryKeyThatIsDocumentedInItsShape) {
+  constexpr std::size_t points = 33;
+  write_banded("banded", {"0.2", "0.5", "0.8"});
+  arguments_.images = {photographed("banded", "front"), photographed("banded", "side")};
+  arguments_.arm = (folder_.path() / "banded.toml").string();
+  arguments_.points = points;
+  arguments_.markers = {"0.2", "0.5", "0.8"};
+  write_new_file(folder_.path() / "doubted.toml",
+                 replaced(cameras_text, "name = \"side\"", "name = \"side\"\ndoubt = { turn_deg = 0.1 }"));
+  arguments_.cameras = (folder_.path() / "doubted.toml").string();
+  const Node found = answer(exit_done);
+  EXPECT_TRUE(*found.find("found")->as<bool>());
+  ASSERT_NE(found.find("trusted"), nullptr);
+  EXPECT_EQ(*found.find("trusted")->as<bool>(), found.find("notes") == nullptr);
+  EXPECT_EQ(found.find("reason"), nullptr);
+  EXPECT_EQ(numbers_in(found, "backbone").size(), 3 * points);
+  EXPECT_EQ(found.find("backbone")->as<Node::Array>()->size(), points);
+  for (const char* key : {"azimuth", "elevation", "sigmas"})
+    EXPECT_EQ(numbers_in(found, key).size(), points) << key;
+  const Node* planes = found.find("planes");
+  ASSERT_NE(planes, nullptr);
+  for (const char* key : {"azimuth", "elevation"}) EXPECT_EQ(numbers_in(*planes, key).size(), points) << key;
+  const auto& singular = *planes->find("singular")->as<Node::Array>();
+  EXPECT_EQ(singular.size(), points);
+  for (const Node& one : singular) EXPECT_NE(one.as<bool>(), nullptr);
+  EXPECT_NEAR(numbers_in(found, "length").at(0), 1, 1e-3);
+  const std::vector<double> sigmas = numbers_in(found, "sigmas");
+  const double sigma = numbers_in(found, "sigma").at(0);
+  EXPECT_GT(sigma, 0);
+  EXPECT_LT(sigma, std::ranges::max(sigmas));
+  EXPECT_GT(numbers_in(found, "rms_px").at(0), 0);
+  EXPECT_EQ(numbers_in(found, "bends").size(), 6U);
+  EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 3U);
+  const auto& markers = *found.find("markers")->as<Node::Array>();
+  ASSERT_EQ(markers.size(), 3U);
+  for (const Node& marker : markers) {
+    EXPECT_EQ(numbers_in(marker, "s").size(), 1U);
+    EXPECT_EQ(numbers_in(marker, "at").size(), 3U);
+    EXPECT_EQ(*marker.find("images")->as<std::int64_t>(), 2);
+  }
+  const auto& images = *found.find("images")->as<Node::Array>();
+  ASSERT_EQ(images.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(*images[i].find("image")->as<std::string>(), arguments_.images[i]);
+    EXPECT_EQ(*images[i].find("camera")->as<std::string>(), i == 0 ? "front" : "side");
+    EXPECT_GT(*images[i].find("points")->as<std::int64_t>(), 50);
+  }
+  const Node* off = images[1].find("camera_error");
+  ASSERT_NE(off, nullptr);
+  EXPECT_EQ(numbers_in(*off, "turn").size(), 3U);
+  EXPECT_EQ(numbers_in(*off, "focal").size(), 1U);
+}
+
+// The angles are those of the printed backbone: (sin a cos e, cos a cos e, sin e) is its direction.
+TEST_F(Estimate, TellsTheAnglesOfItsBackbone) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  arguments_.points = 201;
+  const Node found = answer(exit_done);
+  const std::vector<double> points = numbers_in(found, "backbone"), azimuth = numbers_in(found, "azimuth"),
+                            elevation = numbers_in(found, "elevation");
+  for (std::size_t i = 1; i < 200; ++i) {
+    const Eigen::Vector3d before(&points[3 * (i - 1)]), after(&points[3 * (i + 1)]);
+    const double a = azimuth[i], e = elevation[i];
+    const Eigen::Vector3d told(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
+    EXPECT_LT(((after - before).normalized() - told).norm(), 0.01) << i;
+  }
+}
+
+TEST_F(Estimate, SaysWhetherItsAnswerIsToBeTrusted) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  const Node right = answer(exit_done);
+  EXPECT_TRUE(*right.find("trusted")->as<bool>()) << write_json(right);
+  EXPECT_EQ(right.find("notes"), nullptr);
+  // Of an arm of unknown make less is known, and which end is its base is a guess.
+  arguments_.arm.clear();
+  const Node guessed = answer(exit_done);
+  EXPECT_FALSE(*guessed.find("trusted")->as<bool>());
+  EXPECT_NE(guessed.find("notes"), nullptr);
+  arguments_.images[1] = (folder_.path() / "blank.png").string();
+  write_new_file(arguments_.images[1], png(Image<std::uint8_t>(64, 48)));
+  EXPECT_FALSE(*answer(exit_missed).find("trusted")->as<bool>());
+}
+
 TEST_F(Estimate, SaysWhyThereIsNone) {
   arguments_.images[1] = (folder_.path() / "blank.png").string();
   write_new_file(arguments_.images[1], png(Image<std::uint8_t>(64, 48)));

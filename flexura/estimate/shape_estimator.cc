@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "flexura/estimate/band_match.h"
@@ -79,6 +81,26 @@ double root_mean_square(const std::vector<double>& values) {
   double squares = 0;
   for (const double value : values) squares += value * value / static_cast<double>(values.size());
   return std::sqrt(squares);
+}
+
+// Why the arm may begin or end elsewhere on the same curve; "" where two of its ends, its length and places
+// of markers tell. Else an axis that stops short draws the shape's end to its last point, and rows across
+// that are then taken for what they are not: its place along the curve, to a hundredth of a pixel.
+std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) {
+  std::set<double> places;  // Of markers that are known, m.
+  std::array<bool, 2> is_seen = {};
+  for (const Sighting& seen : problem.sightings()) {
+    for (std::size_t end = 0; end < 2; ++end) is_seen[end] = is_seen[end] || seen.ends[end].has_value();
+    for (const SeenMarker& marker : seen.markers) places.insert(marker.s);
+  }
+  for (const BandLook& look : problem.looks())
+    if (look.s) places.insert(*look.s);
+  const bool has_base = prior.is_base_position_known || is_seen[0], has_tip = is_seen[1];
+  const std::size_t told =
+      places.size() + (has_base ? 1 : 0) + (has_tip ? 1 : 0) + (prior.is_length_known ? 1 : 0);
+  if (told >= 2) return "";
+  const char* what = has_base ? "the tip" : has_tip ? "the base" : "either end";
+  return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
 }
 
 ShapeEstimate unseen(Shape shape) {
@@ -307,6 +329,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   if (fit.contradicted > 0)
     result.notes.push_back(fmt::format(
         "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
+  if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
+    result.notes.push_back(std::move(doubt));
   if (sigma > config_.uncertain * length) result.notes.push_back(fmt::format("uncertain to {:.2g} m", sigma));
   return result;
 }

@@ -42,6 +42,9 @@ struct ShapeEstimate {
   double surprise = 0;                ///< ShapeFit::surprise
   int iterations = 0;                 ///< Of the descent that ended in it.
   std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
+
+  /// Found, and nothing speaks against it.
+  [[nodiscard]] bool is_trusted() const { return is_found && notes.empty(); }
 };
 
 /// Fits shapes to sightings by one or more cameras: least squares of the distances in all images at once,

@@ -6,8 +6,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "tests/support/random_cases.h"
@@ -168,6 +170,41 @@ TEST(ShapeEstimator, KnowsLessWhereTheArmIsCut) {
     // What only one camera sees may bend towards it or away from it.
     EXPECT_FALSE(cut.notes.empty());
     EXPECT_LT(cut.rms, 0.1);
+  });
+}
+
+// An axis that stops short in both pictures, as at a tip that points away from them: the arm's length is then
+// that of what is seen of it, however exactly that is known.
+TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
+  for_random_cases(10, [](TestRandom& random) {
+    const Arm arm = three_section_arm();
+    const Backbone truth(arm, random_bends(random, arm, 1.0));
+    const std::array<View, 2> views = two_views();
+    const auto seen_to = [&](std::array<double, 2> shares) {
+      return std::vector<Sighting>{sighting_of(truth, views[0], random, 0.02, {0, shares[0]}),
+                                   sighting_of(truth, views[1], random, 0.02, {0, shares[1]})};
+    };
+    const auto speaks_of_tip = [](const ShapeEstimate& found) {
+      return std::ranges::any_of(found.notes,
+                                 [](const std::string& note) { return note.find("the tip") != note.npos; });
+    };
+    // Doubts for uncertainty alone are left aside.
+    const EstimatorConfig sure{.uncertain = 1};
+    const Eigen::Vector3d base = arm.X_WB.position;
+    ShapeEstimator of_base(unknown_arm(base, {}), sure), of_length(unknown_arm(base, truth.length()), sure);
+    const ShapeEstimate cut = of_base.estimate(seen_to({0.98, 0.98}));
+    ASSERT_TRUE(cut.is_found) << cut.reason;
+    EXPECT_GT(shape_error(cut.shape, truth), 1e-3);
+    EXPECT_TRUE(speaks_of_tip(cut));
+    EXPECT_FALSE(cut.is_trusted());
+    // One picture that shows it is enough, and so is a length that is known.
+    EXPECT_FALSE(speaks_of_tip(of_base.estimate(seen_to({1, 0.98}))));
+    EXPECT_FALSE(speaks_of_tip(of_length.estimate(seen_to({0.98, 0.98}))));
+    // Or a marker of which is known how far along it is.
+    std::vector<Sighting> marked = seen_to({0.98, 0.98});
+    for (Sighting& one : marked)
+      one.markers.push_back({one.view.project(truth.pose(0.5 * truth.length()).position).value(), 0.5, 0.1});
+    EXPECT_FALSE(speaks_of_tip(of_base.estimate(marked)));
   });
 }
 

@@ -69,6 +69,25 @@ TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
   }
 }
 
+// Neither picture shows the tip of these, and what is seen of them fits to a hundredth of a pixel.
+TEST(ShapesInPictures, OfUnknownLengthWithoutATipAreNotTrusted) {
+  for (const std::uint64_t seed : {8776U, 8802U}) {
+    SCOPED_TRACE(seed);
+    TestRandom random(seed);
+    const SeenShape one = random_seen_shape(random);
+    const Eigen::Vector3d base = one.bent.arm.X_WB.position;
+    std::vector<Sighting> seen;
+    for (std::size_t i = 0; i < 2; ++i) {
+      ArmFinder finder({.threshold = {}, .base = one.views[i].project(base)});
+      seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+    }
+    const ShapeEstimate found = ShapeEstimator(unknown_arm(base, {})).estimate(seen);
+    ASSERT_TRUE(found.is_found);
+    EXPECT_GT(relative_shape_error(found.shape, one.bent.backbone()), 5e-3);
+    EXPECT_FALSE(found.is_trusted());
+  }
+}
+
 // Each camera sees all of it in one place, and the two places are none in space: what fits best may be an arm
 // of no length, of which no look-alikes can be made.
 TEST(ShapesOfPlaces, AreDoubtedOrRefused) {

@@ -52,6 +52,7 @@ class ShapeProblem {
   }
   [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
   [[nodiscard]] std::span<const Sighting> sightings() const { return sightings_; }
+  [[nodiscard]] std::span<const BandLook> looks() const { return looks_; }
 
  private:
   void add_points(const Sighting& seen);

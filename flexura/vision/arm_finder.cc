@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -21,6 +22,10 @@
 
 namespace flexura {
 namespace {
+
+// Borders that are blurred by more, px and as a share of the figure's width, are modelled no more; figures of
+// less contrast are easily lost in noise.
+constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
 
 // As many pixels tell a histogram's two classes apart well enough: the borders are measured on their own.
 constexpr std::size_t histogram_samples = 12288;
@@ -85,7 +90,9 @@ struct ArmFinder::Work {
   std::vector<CrossSection> ahead, sections;
   BlurredSteps steps;
   AxisCurve curve;
+  double least_blur = 0;  // Of the places from which a component was followed, px.
 
+  [[nodiscard]] std::string reason_against_following(double width) const;
   void segment(const Image<std::uint8_t>& gray);
   template <typename Value>
   void find_axis(const Image<Value>& picture, double scale);
@@ -171,6 +178,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
     return false;
   }
   best.axis.clear();
+  least_blur = std::numeric_limits<double>::infinity();
   try_seeds(picture, scale, component);
   if (best.axis.empty()) {
     // Where hairs make more of the figure than the arm does, it is the thickest.
@@ -179,16 +187,25 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   }
   if (best.axis.empty()) {
     seen.axis.clear();
-    seen.reason = fmt::format(
-        "the borders of the figure ({} px, about {:.0f} px across) cannot be followed: it is no "
-        "tube, or points at the camera",
-        component.area, width);
+    seen.reason =
+        fmt::format("the borders of the figure ({} px, about {:.0f} px across) cannot be followed: {}",
+                    component.area, width, reason_against_following(width));
     return false;
   }
   seen = best;
   for (AxisSample& sample : seen.axis) sample.sigma = std::max(sample.sigma, config.least_sigma);
   order_ends();
   return true;
+}
+
+std::string ArmFinder::Work::reason_against_following(double width) const {
+  if (std::isfinite(least_blur) && least_blur > std::max(least_blurred, blurred_share * width))
+    return fmt::format("they are blurred by some {:.0f} px", least_blur);
+  const double contrast = seen.threshold.bright - seen.threshold.dark;
+  if (contrast < faint)
+    return fmt::format("it is no tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)",
+                       contrast);
+  return "it is no tube, or points at the camera";
 }
 
 // The first few: `best` is what the best of them leads to.
@@ -209,6 +226,7 @@ bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, con
   const TubeSeed place = shortest_chord(components, rough.center, 2 * rough.width + 4);
   TubeTracker<Value> tracker(picture, seen.threshold.figure, seen.threshold.level * scale, contrast, steps);
   const auto seed = tracker.seed(place.center, place.normal, 0.5 * place.width);
+  least_blur = std::min(least_blur, tracker.blur());
   if (!seed) return false;
   ahead.clear(), sections.clear();
   const TrackEnd back = tracker.follow(*seed, -1, ahead);

@@ -17,6 +17,10 @@ namespace {
 // Two classes nearer than this are none: noise, or a shaded screen.
 constexpr double least_contrast = 10;
 
+// Of a picture that is darker than this all over, or brighter than the same below white, exposure is to be
+// spoken of.
+constexpr double dimmest = 32;
+
 // Pixels counted side by side in one place. (Longer stretches cost less, but fewer of them miss thin arms.)
 constexpr std::size_t run_length = 16;
 
@@ -88,13 +92,19 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
                        100.0 * histogram[end] / count, end == 0 ? 0 : 255);
   }
   const double contrast = found.bright - found.dark;
-  if (contrast < std::max(least_contrast, 3 * found.spread)) {
-    return fmt::format(
-        "the picture is blank: no two brightnesses stand apart (means {:.1f} and {:.1f}, "
-        "spread {:.1f})",
-        found.dark, found.bright, found.spread);
-  }
-  return "";
+  if (contrast >= std::max(least_contrast, 3 * found.spread)) return "";
+  const std::string means =
+      fmt::format("(means {:.1f} and {:.1f}, spread {:.1f})", found.dark, found.bright, found.spread);
+  // Noise alone is split into halves 2.7 of their spreads apart, a shaded screen 3.5.
+  constexpr double spreads = 5;
+  const char* exposure = found.bright < dimmest              ? "too dark"
+                         : found.dark > 255 - dimmest        ? "too bright"
+                         : contrast > spreads * found.spread ? "too faint"
+                                                             : "blank";
+  if (contrast > spreads * found.spread)
+    return fmt::format("the picture is {}: its two brightnesses are nearer than {} {}", exposure,
+                       least_contrast, means);
+  return fmt::format("the picture is {}: no two brightnesses stand apart {}", exposure, means);
 }
 
 // The share of bright pixels in the ring that many pixels within the picture's border. `level`: at (u, v).

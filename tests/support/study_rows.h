@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "tests/support/study_numbers.h"
 
 // What the servo's study prints of its targets.
 namespace flexura {
@@ -21,14 +21,6 @@ struct Arrival {
   // Of those who believe their cameras, and of those who doubt them as the servo does.
   double believing = 0, doubting = 0;
 };
-
-inline double quantile(std::vector<double> values, double share) {
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::ranges::sort(values);
-  const double place = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(place, 1.0)) - 1];
-}
 
 // "-" where there is none.
 inline std::string number(double value, int digits) {

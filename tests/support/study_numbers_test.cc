@@ -1,0 +1,58 @@
+#include "tests/support/study_numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+TEST(StudyNumbers, AQuantileIsTheNearestRank) {
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.5), 2);
+  EXPECT_EQ(quantile({3, 1, 2, 4}, 0.51), 3);
+  // Of two values no more than the half lies below the larger one.
+  EXPECT_EQ(quantile({1, 2}, 0.999), 2);
+  EXPECT_EQ(quantile({1, 2}, 0), 1);
+  EXPECT_EQ(quantile({1, 2}, 1), 2);
+  EXPECT_EQ(quantile({none, 1}, 1), 1);
+  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+}
+
+TEST(StudyNumbers, SoManyValuesDoNotExceedAQuantileAndFewerWouldNotDo) {
+  for_random_cases(100, [](TestRandom& random) {
+    std::vector<double> values(static_cast<std::size_t>(random.integer(1, 2000)));
+    for (double& value : values) value = random.integer(0, 50);
+    const double share = random.uniform(0, 1), found = quantile(values, share);
+    double below = 0, within = 0;
+    for (const double value : values) below += value < found ? 1 : 0, within += value <= found ? 1 : 0;
+    const double count = static_cast<double>(values.size());
+    EXPECT_GE(within, share * count);
+    EXPECT_LT(below, share * count);
+  });
+}
+
+TEST(StudyNumbers, AnAimIsMetUpToItselfAndOfNothingThereIsNoVerdict) {
+  EXPECT_EQ(verdict(0.02, 0.02), "met");
+  EXPECT_EQ(verdict(0.0201, 0.02), "missed");
+  EXPECT_EQ(verdict(quantile({}, 0.999), 0.05), "nothing to judge");
+  EXPECT_EQ(verdict(root_mean_square({}), 0.02), "nothing to judge");
+}
+
+TEST(StudyNumbers, EvenSharesAreToldFromUnevenOnes) {
+  TestRandom random(1);
+  std::vector<double> even(2000), uneven(2000);
+  for (double& share : even) share = random.uniform(0, 1);
+  for (double& share : uneven) share = std::pow(random.uniform(0, 1), 1.2);
+  constexpr double rare = 27.88;  // One in a thousand, of nine degrees of freedom.
+  EXPECT_LT(unevenness(even), rare);
+  EXPECT_GT(unevenness(uneven), rare);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -70,7 +70,7 @@ TEST(BoardBeyond, SaysNothingOfWhatThePictureDoesNotShow) {
   for (const Eigen::Vector2d& pixel : pixels) right = std::max(right, pixel.x());
   Image<std::uint8_t> cut(static_cast<int>(right) + 3, rows_px);
   for (int v = 0; v < rows_px; ++v)
-    for (int u = 0; u < cut.columns_px(); ++u) cut.at(u, v) = picture.at(u, v);
+    for (int u = 0; u < cut.width(); ++u) cut.at(u, v) = picture.at(u, v);
   EXPECT_FALSE(goes_on(cut, part, pixels));
 }
 

@@ -19,12 +19,12 @@ namespace {
 
 constexpr int columns_px = 320, rows_px = 240;
 
-const Intrinsics seen_by = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
+const Intrinsics board_lens = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
 
 // The pixels of some columns and rows of a board, from the given ones on.
 std::vector<Eigen::Vector2d> pixels_of(const BoardTarget& board, const Pose& X_CB, const BoardTarget& part,
                                        int first_column, int first_row) {
-  const Lens lens(seen_by);
+  const Lens lens(board_lens);
   const auto points = board.points();
   std::vector<Eigen::Vector2d> pixels;
   for (int row = first_row; row < first_row + part.rows; ++row) {
@@ -42,7 +42,7 @@ TEST(BoardBeyond, TellsEveryPartOfABoardFromTheWhole) {
     const BoardTarget board{.pattern = pattern, .columns = 7, .rows = 5};
     for_random_cases(3, [&](TestRandom& random) {
       const Pose X_CB = random_board(random, board, 0.3, 0.6, 0.02);
-      const Image<std::uint8_t> picture = board_picture(board, Lens(seen_by), X_CB, columns_px, rows_px);
+      const Image<std::uint8_t> picture = board_picture(board, Lens(board_lens), X_CB, columns_px, rows_px);
       EXPECT_FALSE(goes_on(picture, board, pixels_of(board, X_CB, board, 0, 0)));
       for (int columns = 3; columns <= board.columns; ++columns) {
         for (int rows = 3; rows <= board.rows; ++rows) {
@@ -63,7 +63,7 @@ TEST(BoardBeyond, SaysNothingOfWhatThePictureDoesNotShow) {
   TestRandom random(case_seed(0));
   const Pose X_CB = random_board(random, board, 0.3, 0.2, 0.02);
   const auto pixels = pixels_of(board, X_CB, part, 0, 0);
-  const Image<std::uint8_t> picture = board_picture(board, Lens(seen_by), X_CB, columns_px, rows_px);
+  const Image<std::uint8_t> picture = board_picture(board, Lens(board_lens), X_CB, columns_px, rows_px);
   EXPECT_TRUE(goes_on(picture, part, pixels));
   // The same, cut off behind the points.
   double right = 0;

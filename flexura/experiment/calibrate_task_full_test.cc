@@ -190,7 +190,8 @@ TEST(CalibrateTaskFully, TellsOfTheCylinderInSummaryAndReport) {
   const std::filesystem::path file = folder.path() / "cylinder.toml";
   write_new_file(file, etalon_rig("method = \"bundle-etalon\"\nimages = 6\n", {}));
   Quiet quiet;
-  const RunResult result = run_experiment(load_experiment(file), folder.path() / "out", quiet);
+  const TemporaryFolder out;
+  const RunResult result = run_experiment(load_experiment(file), out.path(), quiet);
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
   const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
   EXPECT_GE(number_at(calibration, "etalon_points"), 60);

@@ -129,7 +129,9 @@ std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u,
 // width beside its middle, where no line is if one is in the middle.
 std::optional<double> end_edge(const EdgeFinder<std::uint8_t>& edges, const Image<std::uint8_t>& gray,
                                const EtalonSighting& seen, int way) {
-  const double quarter = 0.25 * (seen.right.at - seen.left.at), room = 0.25 * (seen.bottom - seen.top);
+  const double end = way > 0 ? seen.bottom : seen.top, room = 0.25 * (seen.bottom - seen.top);
+  const double quarter =
+      0.25 * (seen.right.at - seen.left.at + (seen.right.slope - seen.left.slope) * (end - seen.middle_row));
   const double least_contrast = 0.3 * (seen.threshold.bright - seen.threshold.dark);
   double sum = 0;
   for (const double side : {-1.0, 1.0}) {

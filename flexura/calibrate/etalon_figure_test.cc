@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_quantities.h"
@@ -37,7 +40,7 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEnds) {
     const View view = seen_by(true_rig(believed_rig(), {.turn = 0.02, .roll = 0}, random), 0);
     const auto expected = figure.expected(view, -1e4);
     ASSERT_TRUE(expected);
-    double top = 1e9, bottom = -1e9;
+    std::vector<Eigen::Vector2d> surface;
     double least = 1e9, most = -1e9;  // Across the image of the left side, and of the right side.
     const auto across = [&](const EtalonPoint& a, const EtalonPoint& b, const Eigen::Vector2d& pixel) {
       const Eigen::Vector2d way = (b.pixel - a.pixel).normalized();
@@ -59,14 +62,31 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEnds) {
         const Eigen::Vector2d pixel = *view.project(p_WP);
         least = std::min(least, sign * across(left0, left1, pixel));
         most = std::max(most, sign * across(right0, right1, pixel));
-        top = std::min(top, pixel.y()), bottom = std::max(bottom, pixel.y());
+        if (j == 0 || j == up) surface.push_back(pixel);
       }
     }
     EXPECT_NEAR(least, 0, 2e-3);
     EXPECT_NEAR(most, 0, 2e-3);
-    // A camera that looks past it to a side sees a rim's highest point a little beside the near one.
-    EXPECT_NEAR((*expected)[4].pixel.y(), top, 0.5);
-    EXPECT_NEAR((*expected)[5].pixel.y(), bottom, 0.5);
+    // As pictures are measured: where the silhouette ends in two columns, a quarter of its width at that end
+    // beside its middle.
+    const auto end_of = [&](double way, double v) {
+      const auto at = [&](const EtalonPoint& a, const EtalonPoint& b) {
+        return a.pixel.x() + (b.pixel.x() - a.pixel.x()) * (v - a.pixel.y()) / (b.pixel.y() - a.pixel.y());
+      };
+      const double left = at(left0, left1), right = at(right0, right1);
+      double sum = 0;
+      for (const double share : {0.25, 0.75}) {
+        double end = -1e9;
+        for (const Eigen::Vector2d& pixel : surface)
+          if (std::abs(pixel.x() - left - share * (right - left)) < 0.1) end = std::max(end, way * pixel.y());
+        sum += 0.5 * way * end;
+      }
+      return sum;
+    };
+    for (const auto& [rim, way] : {std::pair{4, -1.0}, {5, 1.0}}) {
+      const double v = (*expected)[static_cast<std::size_t>(rim)].pixel.y();
+      EXPECT_NEAR(end_of(way, v), v, 0.1) << rim;
+    }
   });
 }
 
@@ -132,10 +152,16 @@ TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {
     };
     const auto numerical =
         numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 1e-5);
-    for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j)
-      EXPECT_LE((numerical.value.col(j) - rows.derivatives.col(j)).norm(),
-                1e-5 * std::max(1.0, rows.derivatives.col(j).norm()))
-          << problem.variables().variable(rows.columns[static_cast<std::size_t>(j)]).name;
+    // Where rims are measured hardly wanders as the camera comes nearer.
+    constexpr Eigen::Index first_rim = 4, rims = 2;
+    for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j) {
+      Eigen::VectorXd off = numerical.value.col(j) - rows.derivatives.col(j);
+      const double size = std::max(1.0, rows.derivatives.col(j).norm());
+      const std::string& name = problem.variables().variable(rows.columns[static_cast<std::size_t>(j)]).name;
+      EXPECT_LE(off.segment(first_rim, rims).norm(), 1e-3 * size) << name;
+      off.segment(first_rim, rims).setZero();
+      EXPECT_LE(off.norm(), 1e-5 * size) << name;
+    }
   });
 }
 

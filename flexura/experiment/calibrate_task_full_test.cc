@@ -194,7 +194,7 @@ TEST(CalibrateTaskFully, TellsOfTheCylinderInSummaryAndReport) {
   const RunResult result = run_experiment(load_experiment(file), out.path(), quiet);
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
   const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
-  EXPECT_GE(number_at(calibration, "etalon_points"), 60);
+  EXPECT_GE(*calibration.find("etalon_points")->as<std::int64_t>(), 60);
   EXPECT_LE(std::abs(number_at(*calibration.find("remainder_in_truth"), "angle_from_square")), 0.2 * degree);
   const std::string report = read_text_file(result.folder / "report.html", 1 << 24);
   EXPECT_NE(report.find("points of its borders and red lines"), std::string::npos);

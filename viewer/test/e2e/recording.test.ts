@@ -270,7 +270,7 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 
 describe.skipIf(!program)('a run that is watched', () => {
   /** Takes some seconds to be run. */
-  const watched_s = 2000;
+  const watched_s = 8000;
 
   on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
 

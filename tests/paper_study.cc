@@ -146,7 +146,8 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   print_head();
   MethodTrials all, shown;
-  for (const std::string method : {"bundle", "bundle-etalon", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
+  for (const std::string method :
+       {"bundle", "bundle-etalon", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
     const bool is_printed = method.ends_with("-paper");
     all.emplace_back(method, run_all(method, is_printed ? printed : trials, seed, folder));
     if (is_printed) shown.push_back(all.back());

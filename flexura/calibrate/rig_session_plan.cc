@@ -117,6 +117,7 @@ std::vector<RigSessionPlan::EtalonZoom> RigSessionPlan::etalon_zooms(const RigMo
 
 std::vector<ViewCandidate> RigSessionPlan::etalon_candidates(const RigModel& model) const {
   std::vector<std::vector<EtalonZoom>> zooms;
+  zooms.reserve(config_.cameras.size());
   for (const std::size_t camera : config_.cameras) zooms.push_back(etalon_zooms(model, camera));
   constexpr std::array<std::array<double, 2>, 5> places = {{{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
   std::vector<ViewCandidate> candidates;

@@ -13,7 +13,8 @@ Camera::Camera(const CameraConfig& config)
     : config_(config),
       lens_(config.lens, config.sensor.width, config.sensor.height),
       X_WM_(config.mount.pose()),
-      head_axes_{config.head.pan, config.head.tilt, config.head.zoom.axis(lens_)},
+      head_axes_{static_cast<const AxisConfig&>(config.head.pan),
+                 static_cast<const AxisConfig&>(config.head.tilt), config.head.zoom.axis(lens_)},
       stage_axes_{config.mount.stage.x, config.mount.stage.y, config.mount.stage.z} {}
 
 HeadState Camera::initial_head() const {

@@ -99,7 +99,9 @@ std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) 
   const std::size_t told =
       places.size() + (has_base ? 1 : 0) + (has_tip ? 1 : 0) + (prior.is_length_known ? 1 : 0);
   if (told >= 2) return "";
-  const char* what = has_base ? "the tip" : has_tip ? "the base" : "either end";
+  const char* what = "either end";
+  if (has_base) what = "the tip";
+  if (has_tip) what = "the base";
   return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
 }
 

@@ -185,8 +185,8 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
                                    sighting_of(truth, views[1], random, 0.02, {0, shares[1]})};
     };
     const auto speaks_of_tip = [](const ShapeEstimate& found) {
-      return std::ranges::any_of(found.notes,
-                                 [](const std::string& note) { return note.find("the tip") != note.npos; });
+      return std::ranges::any_of(
+          found.notes, [](const std::string& note) { return note.find("the tip") != std::string::npos; });
     };
     // Doubts for uncertainty alone are left aside.
     const EstimatorConfig sure{.uncertain = 1};

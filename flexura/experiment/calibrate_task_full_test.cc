@@ -114,11 +114,11 @@ class TruePoints : public NobodyWatches {
     if (!sight.seen.reason.empty()) return;
     const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, 255);
     const View view = view_of(truth_, sight.stance);
-    for (const EtalonPoint& point : etalon_points(find_etalon(picture, gray_picture(picture)), figure_, view)) {
+    for (const EtalonPoint& point :
+         etalon_points(find_etalon(picture, gray_picture(picture)), figure_, view)) {
       const Eigen::Vector2d off = *view.project(*figure_.nearest(point, view)) - point.pixel;
-      off_[point.part].push_back(point.part == EtalonPart::upper_rim || point.part == EtalonPart::lower_rim
-                                     ? off.y()
-                                     : off.x());
+      off_[point.part].push_back(
+          point.part == EtalonPart::upper_rim || point.part == EtalonPart::lower_rim ? off.y() : off.x());
     }
   }
   // Mean and root mean square, px.

@@ -91,8 +91,7 @@ NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, 
   const char* when = is_last ? "last" : "first";
   const auto found = std::ranges::find_if(
       run.believed.cameras, [&](const CameraConfig& camera) { return camera.name == run.cameras[i]; });
-  const Image<std::uint8_t> picture =
-      eight_bits(*sight.frames[i].picture, (1 << found->sensor.bits) - 1);
+  const Image<std::uint8_t> picture = eight_bits(*sight.frames[i].picture, (1 << found->sensor.bits) - 1);
   ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
                  .legend = "",
                  .width = picture.width(),

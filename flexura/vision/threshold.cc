@@ -97,10 +97,9 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
       fmt::format("(means {:.1f} and {:.1f}, spread {:.1f})", found.dark, found.bright, found.spread);
   // Noise alone is split into halves 2.7 of their spreads apart, a shaded screen 3.5.
   constexpr double spreads = 5;
-  const char* exposure = found.bright < dimmest              ? "too dark"
-                         : found.dark > 255 - dimmest        ? "too bright"
-                         : contrast > spreads * found.spread ? "too faint"
-                                                             : "blank";
+  const char* exposure = contrast > spreads * found.spread ? "too faint" : "blank";
+  if (found.dark > 255 - dimmest) exposure = "too bright";
+  if (found.bright < dimmest) exposure = "too dark";
   if (contrast > spreads * found.spread)
     return fmt::format("the picture is {}: its two brightnesses are nearer than {} {}", exposure,
                        least_contrast, means);

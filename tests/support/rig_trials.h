@@ -25,9 +25,9 @@ struct RigTrialConfig {
   double turn = 10 * std::numbers::pi / 180;  ///< Of the mounts, in pan and in tilt.
   double roll = std::numbers::pi / 180;
   double zero = std::numbers::pi / 180;  ///< Of the heads' axes.
-  double shift = 0.2;           ///< Of the mounts, along each axis, m.
-  double focal = 0.1;           ///< Share.
-  double principal_point = 10;  ///< px
+  double shift = 0.2;                    ///< Of the mounts, along each axis, m.
+  double focal = 0.1;                    ///< Share.
+  double principal_point = 10;           ///< px
   double bend = 0.01, length = 0.005;
   bool are_heads_exact = false;  ///< Otherwise evenly within half a step of what they say.
   double noise = 0.2;            ///< px

@@ -133,6 +133,7 @@ struct Spread {
 
 Spread spread(const std::vector<Outcome>& outcomes, const std::function<double(const Outcome&)>& what) {
   std::vector<double> sizes;
+  sizes.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) sizes.push_back(std::abs(what(outcome)));
   return {root_mean_square(sizes), quantile(sizes, 0.95), quantile(sizes, 1)};
 }

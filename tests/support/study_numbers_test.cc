@@ -31,7 +31,7 @@ TEST(StudyNumbers, SoManyValuesDoNotExceedAQuantileAndFewerWouldNotDo) {
     const double share = random.uniform(0, 1), found = quantile(values, share);
     double below = 0, within = 0;
     for (const double value : values) below += value < found ? 1 : 0, within += value <= found ? 1 : 0;
-    const double count = static_cast<double>(values.size());
+    const auto count = static_cast<double>(values.size());
     EXPECT_GE(within, share * count);
     EXPECT_LT(below, share * count);
   });

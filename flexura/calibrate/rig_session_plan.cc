@@ -177,7 +177,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
                                [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
   });
   ViewConfig view;
-  if (config_.etalon) view.sigma = 0.05;
+  if (config_.etalon) view.sigma = 0.05;  // Of borders and lines, px.
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
       next_best_view(problem, found, candidates, goals(problem.variables(), found, wanted), view);

@@ -102,9 +102,12 @@ NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_a
                  .outlines = {},
                  .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
   const double size = 0.012 * picture.width();
-  ImageOutline backbone{"backbone", "s2", {}}, markers{"markers", "s1", {}}, axis{"optical axis", "s5", {}};
+  const bool is_arm = run.result.etalon_points == 0;
+  ImageOutline backbone{is_arm ? "backbone" : "silhouette", "s2", {}},
+      markers{is_arm ? "markers" : "red lines", "s1", {}}, axis{"optical axis", "s5", {}};
   auto& line = backbone.lines.emplace_back();
   for (const CurvePoint& point : sight.seen.points) line.points.push_back(point.pixel);
+  if (!is_arm && !line.points.empty()) line.points.push_back(line.points.front());
   for (const SeenMarker& marker : sight.seen.markers) markers.lines.push_back(cross(marker.pixel, size));
   plot.outlines = {backbone, markers};
   if (run.result.is_done) {

@@ -378,6 +378,8 @@ TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
   for (const CameraPrior& camera : prior.cameras) {
     EXPECT_EQ(camera.rotation, 0.02);
     EXPECT_EQ(camera.steps, 0);
+    EXPECT_EQ(camera.pan_zero, 0);
+    EXPECT_EQ(camera.tilt_zero, 0);
     EXPECT_EQ(camera.principal_point, 1);
     EXPECT_EQ(camera.focal, 0);
   }

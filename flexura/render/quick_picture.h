@@ -70,6 +70,17 @@ class QuickPicture {
     std::vector<float> light;  // A row of its light, if that is plain.
   };
 
+  // A pixel of the current row that one edge of a screen divides: the other part's area and centroid (from
+  // the pixel's middle).
+  struct ScreenEdge {
+    int u = 0;
+    double nearness = 0, rest_area = 0;
+    Eigen::Vector2d rest = {0, 0};
+    bool is_full = false;           // A screen is seen in that part.
+    bool is_before_screen = false;  // One that is drawn later than this one: `light` is what both make.
+    float light[3];
+  };
+
   void start(const Stage& stage);
   [[nodiscard]] SpanRow row_of(int v);
   void find_left_out();
@@ -106,7 +117,11 @@ class QuickPicture {
   void fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const;
   void draw_screens(SpanRow& row);
   void clear(int begin, int end, SpanRow& row) const;
-  void draw_panel(const Panel& panel, bool is_first, SpanRow& row);
+  void draw_panel(std::size_t index, SpanRow& row);
+  void draw_around_crossing(const PixelRange& inner, SpanRow& row);
+  void lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
+                        const SpanRow& row);
+  void light_of(const SpanScreen& screen, double x, double y, float (&light)[3]) const;
   void draw_edge(const Panel& panel, int u, SpanRow& row);
 
   void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
@@ -144,7 +159,7 @@ class QuickPicture {
   std::vector<std::uint8_t> states_, has_exact_;  // Of pixels; of rows.
   std::vector<float> background_;                 // A row of it.
   std::vector<int> borders_;
-  std::vector<int> edge_columns_;  // Of the row: where an edge of a screen has been drawn.
+  std::vector<ScreenEdge> screen_edges_;  // Of the row.
   std::vector<Panel> panels_;
   std::size_t panel_count_ = 0;
   std::vector<Skin> skins_;

@@ -140,8 +140,11 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
                                       piece.is_ball ? 2 * widest : widest * (lean + 0.1));
   if (!region) return false;
+  // An etalon's lines are wide: seen more from its end they are bent by more than its pixels' points tell.
+  const bool is_etalon = stage.bodies[static_cast<std::size_t>(piece.body)].is_etalon;
+  const double most_slant = is_etalon ? 0.5 : 0.9;  // Squares of cosines.
   bool is_quick = is_drawn_skin(stage, piece) && !piece.is_ball && piece.widening == 0 &&
-                  slant * slant < 0.5 && is_gentle(piece) && center.z() > 4 * piece.bound_radius &&
+                  slant * slant < most_slant && is_gentle(piece) && center.z() > 4 * piece.bound_radius &&
                   is_near_picture(center) && !meets_screen(stage, center, piece.bound_radius);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();

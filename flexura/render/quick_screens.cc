@@ -10,6 +10,11 @@ namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
+double value_at(const Linear& f, double right, double down) {
+  return static_cast<double>(f.value) + static_cast<double>(f.by_u) * right +
+         static_cast<double>(f.by_v) * down;
+}
+
 }  // namespace
 
 void QuickPicture::plan_screens(const Stage& stage) {
@@ -70,7 +75,7 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
 void QuickPicture::draw_screens(SpanRow& row) {
   // Without distortion the first screen leaves to the background what it does not cover.
   if (panel_count_ == 0 || row.lens.u != nullptr) clear(0, width_, row);
-  for (std::size_t i = 0; i < panel_count_; ++i) draw_panel(panels_[i], i == 0, row);
+  for (std::size_t i = 0; i < panel_count_; ++i) draw_panel(i, row);
 }
 
 void QuickPicture::clear(int begin, int end, SpanRow& row) const {
@@ -81,7 +86,9 @@ void QuickPicture::clear(int begin, int end, SpanRow& row) const {
 
 // Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are divided or
 // left.
-void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
+void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
+  const Panel& panel = panels_[index];
+  const bool is_first = index == 0;
   if (row.lens.u != nullptr) {
     kernels_->screen(panel.screen, 0, width_, is_first, row);
     return;
@@ -102,12 +109,11 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
   inner.begin = std::clamp(inner.begin, outer.begin, outer.end);
   inner.end = std::clamp(inner.end, inner.begin, outer.end);
   if (is_first) {
-    edge_columns_.clear();
+    screen_edges_.clear();
     clear(0, inner.begin, row);
     clear(inner.end, width_, row);
   }
-  for (const int u : edge_columns_)
-    if (u >= outer.begin && u < outer.end) leave(u, row.v);
+  lay_behind_edges(panel, outer, inner, row);
   for (int u = outer.begin; u < inner.begin; ++u) draw_edge(panel, u, row);
   for (int u = inner.end; u < outer.end; ++u) draw_edge(panel, u, row);
   if (inner.begin == inner.end) return;
@@ -127,15 +133,105 @@ void QuickPicture::draw_panel(const Panel& panel, bool is_first, SpanRow& row) {
                 row.light + static_cast<std::size_t>(inner.begin) * channels_);
   if (is_first && panel.screen.is_plain && nearness.by_u == 0)
     std::fill_n(row.depth + inner.begin, count, 1 / here);
+  else if (index == 1)
+    draw_around_crossing(inner, row);
   else
     kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
+  for (const ScreenEdge& edge : screen_edges_)
+    if (edge.is_before_screen) std::copy_n(edge.light, channels_, &picture_->light.at(edge.u, row.v));
 }
 
-// A pixel that one edge divides, before nothing; any other is left.
+// The second panel. Where it meets the first one nearness is as large: a straight line.
+void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
+  const SpanScreen &screen = panels_[1].screen, &other = panels_[0].screen;
+  const double y = row.v - static_cast<double>(screen.v0), middle = static_cast<double>(screen.u0);
+  const double value = value_at(screen.nearness, 0, y) - value_at(other.nearness, 0, y),
+               by_u = static_cast<double>(screen.nearness.by_u) - static_cast<double>(other.nearness.by_u),
+               by_v = static_cast<double>(screen.nearness.by_v) - static_cast<double>(other.nearness.by_v);
+  const auto margin = static_cast<double>(screen.least_distance);
+  const double side = margin / std::abs(by_u), at = middle - value / by_u;
+  PixelRange crossing = by_u == 0
+                            ? PixelRange{inner.begin, std::abs(value) < margin ? inner.end : inner.begin}
+                            : PixelRange::around(at - side, at + side, width_);
+  crossing.begin = std::clamp(crossing.begin, inner.begin, inner.end);
+  crossing.end = std::clamp(crossing.end, crossing.begin, inner.end);
+  kernels_->screen(screen, inner.begin, crossing.begin, false, row);
+  kernels_->screen(screen, crossing.end, inner.end, false, row);
+  const Eigen::Vector2d slope(by_u, by_v);
+  for (int u = crossing.begin; u < crossing.end; ++u) {
+    std::uint8_t& what = state(u, row.v);
+    if ((what & (state_exact | state_edge)) != 0) continue;
+    const double x = u - middle, here = value + by_u * x;
+    constexpr double corner = 0.75;  // px from the middle, and more.
+    const bool is_first_there = !std::isinf(row.depth[u]),
+               is_divided = std::abs(here) < corner * slope.norm();
+    SquarePart part;
+    part.area = here > 0 || !is_first_there ? 1 : 0;
+    if (is_first_there && is_divided) part = part_beyond(0.5, slope.normalized(), -here / slope.norm());
+    if (here == 0 && is_first_there && !is_divided) {
+      leave(u, row.v);
+      continue;
+    }
+    if (part.area > 0 && part.area < 1)
+      what = static_cast<std::uint8_t>(what | state_edge), row.has_edge = true;
+    if (here > 0 || part.area == 1) row.depth[u] = static_cast<float>(1 / value_at(screen.nearness, x, y));
+    if (!(part.area > 0)) continue;
+    float seen[3];
+    light_of(screen, x + part.centroid.x(), y + part.centroid.y(), seen);
+    float* const light = row.light + static_cast<std::size_t>(u) * channels_;
+    for (std::size_t c = 0; c < channels_; ++c)
+      light[c] += static_cast<float>(part.area) * (seen[c] - light[c]);
+  }
+}
+
+// What of the panel is seen beside the edges of those before it. One edge before one panel, that is: other
+// pixels are left.
+void QuickPicture::lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
+                                    const SpanRow& row) {
+  std::erase_if(screen_edges_, [&](ScreenEdge& edge) {
+    if (edge.u < outer.begin || edge.u >= outer.end) return false;
+    const SpanScreen& screen = panel.screen;
+    const double x = edge.u - static_cast<double>(screen.u0), y = row.v - static_cast<double>(screen.v0);
+    const double before = edge.nearness - value_at(screen.nearness, x, y);
+    const bool is_within = edge.u >= inner.begin && edge.u < inner.end;
+    if (!is_within || edge.is_full || std::abs(before) < static_cast<double>(screen.least_distance)) {
+      leave(edge.u, row.v);
+      return true;
+    }
+    std::uint8_t& what = state(edge.u, row.v);
+    if (before < 0) {
+      what = static_cast<std::uint8_t>(what & ~state_edge);
+      return true;
+    }
+    float light[3];
+    light_of(screen, x + edge.rest.x(), y + edge.rest.y(), light);
+    const float* const here = &picture_->light.at(edge.u, row.v);
+    for (std::size_t c = 0; c < channels_; ++c)
+      edge.light[c] = here[c] + static_cast<float>(edge.rest_area) * (light[c] - background_[c]);
+    edge.is_before_screen = edge.is_full = true;
+    return false;
+  });
+}
+
+// The panel's light x and y px from its (u0, v0).
+void QuickPicture::light_of(const SpanScreen& screen, double x, double y, float (&light)[3]) const {
+  const double depth = 1 / value_at(screen.nearness, x, y);
+  double rise = 1, square = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double place =
+        depth * value_at(screen.place[axis], x, y) - static_cast<double>(screen.middle[axis]);
+    rise += static_cast<double>(screen.gradient[axis]) * place;
+    square += place * place;
+  }
+  const double factor = std::max(0.0, rise * (1 - 0.5 * static_cast<double>(screen.falloff) * square));
+  for (std::size_t c = 0; c < channels_; ++c) light[c] = screen.brightness[c] * static_cast<float>(factor);
+}
+
+// A pixel that one edge divides, before nothing or before one panel; any other is left.
 void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   const Panel::Edge* here = nullptr;
   double value_here = 0;
-  bool is_one = std::isinf(row.depth[u]);
+  bool is_one = (state(u, row.v) & state_exact) == 0;
   for (const Panel::Edge& edge : panel.edges) {
     const double value = edge.value + edge.by_v * row.v + edge.by_u * u;
     if (value >= edge.margin) continue;
@@ -145,41 +241,36 @@ void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   }
   const SpanScreen& screen = panel.screen;
   const double x = u - static_cast<double>(screen.u0), y = row.v - static_cast<double>(screen.v0);
-  const auto at = [&](const Linear& f, double right, double down) {
-    return static_cast<double>(f.value) + static_cast<double>(f.by_u) * right +
-           static_cast<double>(f.by_v) * down;
-  };
-  const double nearness = at(screen.nearness, x, y);
-  if (!is_one || here == nullptr || !(nearness > 0)) {
+  const double nearness = value_at(screen.nearness, x, y);
+  const bool is_before_nothing = std::isinf(row.depth[u]);
+  const double before = nearness - 1 / static_cast<double>(row.depth[u]);
+  const bool is_clear = is_before_nothing || std::abs(before) > static_cast<double>(screen.least_distance);
+  if (!is_one || here == nullptr || !(nearness > 0) || !is_clear) {
     leave(u, row.v);
     return;
   }
+  if (!is_before_nothing && before < 0) return;
   const Eigen::Vector2d slope(here->by_u, here->by_v);
   const SquarePart part = part_beyond(0.5, slope.normalized(), -value_here / slope.norm());
   const double right = x + part.centroid.x(), down = y + part.centroid.y();
-  const double depth = 1 / at(screen.nearness, right, down);
+  const double depth = 1 / value_at(screen.nearness, right, down);
   if (!(depth > 0) || !std::isfinite(depth)) {
     leave(u, row.v);
     return;
   }
   std::uint8_t& what = state(u, row.v);
   what = static_cast<std::uint8_t>(what | state_edge);
-  edge_columns_.push_back(u);
   row.has_edge = true;
+  ScreenEdge& edge = screen_edges_.emplace_back();
+  edge.u = u, edge.nearness = nearness, edge.is_full = !is_before_nothing, edge.rest_area = 1 - part.area;
+  if (edge.rest_area > 0) edge.rest = -part.area / edge.rest_area * part.centroid;
   if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
   if (!(part.area > 0)) return;
-  double rise = 1, square = 0;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double place =
-        depth * at(screen.place[axis], right, down) - static_cast<double>(screen.middle[axis]);
-    rise += static_cast<double>(screen.gradient[axis]) * place;
-    square += place * place;
-  }
-  const double factor = std::max(0.0, rise * (1 - 0.5 * static_cast<double>(screen.falloff) * square));
+  float seen[3];
+  light_of(screen, right, down, seen);
   float* const light = row.light + static_cast<std::size_t>(u) * channels_;
   for (std::size_t c = 0; c < channels_; ++c)
-    light[c] +=
-        static_cast<float>(part.area) * (screen.brightness[c] * static_cast<float>(factor) - light[c]);
+    light[c] += static_cast<float>(part.area) * (seen[c] - light[c]);
 }
 
 }  // namespace flexura

@@ -19,6 +19,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
+#include "tests/support/drawn_arms.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/temporary_folder.h"
 
@@ -26,9 +27,6 @@ namespace flexura {
 namespace {
 
 using testing::HasSubstr;
-
-/// The share of a pixel that lies within `distance` (a signed distance of its middle, px, positive outside).
-double share(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
 
 /// A dark bent tube 12 px wide before a bright ground, with three red bands.
 Image<std::uint8_t> tube() {
@@ -69,21 +67,6 @@ TEST(Measure, TellsAxisMarkersAndTheCircleOfAnArm) {
   EXPECT_EQ(found.overlay.width(), 320);
   // A line over the picture.
   EXPECT_NE(found.overlay, tube());
-}
-
-// A dark arm before a bright ground whose middle is at v = middle(u), `thickness` px across.
-template <typename Middle>
-Image<std::uint8_t> gray_arm(const Middle& middle, double thickness, TestRandom& random) {
-  Image<std::uint8_t> picture(320, 240);
-  for (int v = 0; v < 240; ++v) {
-    for (int u = 0; u < 320; ++u) {
-      const double slope = (middle(u + 0.5) - middle(u - 0.5));
-      const double off = std::abs(v - middle(u)) / std::hypot(1.0, slope) - 0.5 * thickness;
-      const double dark = u > 20 && u < 300 ? share(off) : 0;
-      picture.at(u, v) = static_cast<std::uint8_t>(std::lround(220 - 190 * dark + random.uniform(-3, 3)));
-    }
-  }
-  return picture;
 }
 
 // Each pixel the mean of those within `reach` of it each way, as far as the picture goes.
@@ -204,126 +187,6 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   const auto& depths = *backbone.find("depth")->as<Node::Array>();
   EXPECT_NEAR(*depths[depths.size() / 2].as<double>(), 1, 0.02);
   EXPECT_EQ(depths.size(), backbone.find("axis")->as<Node::Array>()->size());
-}
-
-// `flexura measure` of a picture, thresholded in some way.
-class MeasureBy : public testing::Test {
- protected:
-  Node measured_by(const Image<std::uint8_t>& picture, const ThresholdArguments& threshold,
-                   int expected_status = exit_done) {
-    MeasureArguments arguments;
-    arguments.images = {(folder_.path() / fmt::format("{}.png", ++count_)).string()};
-    arguments.threshold = threshold;
-    write_new_file(arguments.images.front(), png(picture));
-    std::ostringstream out;
-    EXPECT_EQ(measure_command(arguments, out), expected_status) << out.str();
-    return parse_json(out.str(), "answer");
-  }
-  // How far the axis is off v = middle(u) at most, px, and how much of u it reaches over.
-  template <typename Middle>
-  static std::pair<double, double> off_and_reach(const Node& answer, const Middle& middle) {
-    if (answer.find("axis") == nullptr) return {1e9, 0};
-    double most = 0, left = 1e9, right = -1e9;
-    for (const Node& point : *answer.find("axis")->as<Node::Array>()) {
-      const auto& place = *point.as<Node::Array>();
-      const double u = *place[0].as<double>();
-      most = std::max(most, std::abs(*place[1].as<double>() - middle(u)));
-      left = std::min(left, u), right = std::max(right, u);
-    }
-    return {most, right - left};
-  }
-  static std::string word(const Node& answer, const char* key) {
-    const Node* node = answer.find(key);
-    return node == nullptr ? "" : *node->as<std::string>();
-  }
-
- private:
-  const TemporaryFolder folder_;
-  int count_ = 0;
-};
-
-TEST_F(MeasureBy, EachThresholdFindsTheSameAxisAndNamesItself) {
-  for_random_cases(4, [&](TestRandom& random) {
-    const double bend = random.uniform(10, 30), thickness = random.uniform(9, 16);
-    const auto wave = [&](double u) { return 120 + bend * std::sin(u * std::numbers::pi / 320); };
-    const Image<std::uint8_t> picture = gray_arm(wave, thickness, random);
-    const double level = random.uniform(90, 160);
-    for (const ThresholdArguments& how :
-         {ThresholdArguments{}, ThresholdArguments{.method = "two_mode"},
-          ThresholdArguments{.method = "by_block"}, ThresholdArguments{.method = "fixed", .level = level},
-          ThresholdArguments{.level = level}}) {
-      SCOPED_TRACE(how.method);
-      const Node answer = measured_by(picture, how);
-      EXPECT_EQ(word(answer, "method"), how.level ? "fixed" : how.method);
-      EXPECT_EQ(word(answer, "figure"), "dark");
-      const double told = *answer.find("threshold")->as<double>();
-      // Between the arm's 30 and the ground's 220, with their noise.
-      EXPECT_GT(told, 33);
-      EXPECT_LT(told, 217);
-      EXPECT_EQ(told == level, how.level.has_value());
-      const auto [most, reach] = off_and_reach(answer, wave);
-      EXPECT_LT(most, 0.3);
-      EXPECT_GT(reach, 265);
-    }
-  });
-}
-
-// From left to right the screen grows so much brighter that it begins darker than the arm ends.
-TEST_F(MeasureBy, OnlyBlocksFollowAnUnevenScreen) {
-  const auto line = [](double u) { return 110 + 0.05 * u; };
-  Image<std::uint8_t> picture(320, 240);
-  for (int v = 0; v < 240; ++v)
-    for (int u = 0; u < 320; ++u) {
-      const double dark = u > 20 && u < 300 ? share(std::abs(v - line(u)) - 7) : 0;
-      picture.at(u, v) = static_cast<std::uint8_t>(std::lround((1 - 0.6 * dark) * (70 + 0.4 * u)));
-    }
-  const Node by_block = measured_by(picture, {.method = "by_block"});
-  const auto [most, reach] = off_and_reach(by_block, line);
-  EXPECT_LT(most, 0.3);
-  // But for its dim end, whose contrast is a third of the bright one's.
-  EXPECT_GT(reach, 220);
-  for (const ThresholdMethod method : {ThresholdMethod::otsu, ThresholdMethod::two_mode}) {
-    MeasureSettings settings;
-    settings.finder.threshold.method = method;
-    const std::string file = png(picture);
-    const Measurement found = measure_picture(
-        {reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "uneven.png", settings);
-    EXPECT_TRUE(!found.is_found || off_and_reach(found.answer, line).second < 200);
-  }
-}
-
-TEST_F(MeasureBy, AFixedLevelAndTheFigureAreHeeded) {
-  TestRandom random(3);
-  const auto line = [](double u) { return 80 + 0.1 * u; };
-  Image<std::uint8_t> picture = gray_arm(line, 12, random);
-  const Node dark = measured_by(picture, {.level = 200});
-  EXPECT_EQ(*dark.find("threshold")->as<double>(), 200);
-  // Below the arm, and above the ground, nothing is parted from anything.
-  for (const double level : {5.0, 250.0}) {
-    const Node none = measured_by(picture, {.level = level}, exit_missed);
-    EXPECT_FALSE(*none.find("found")->as<bool>());
-    EXPECT_NE(word(none, "reason"), "");
-  }
-  EXPECT_EQ(word(measured_by(picture, {.figure = "dark"}), "figure"), "dark");
-  EXPECT_NE(word(measured_by(picture, {.figure = "bright"}, exit_missed), "reason"), "");
-  for (std::uint8_t& value : picture.values()) value = static_cast<std::uint8_t>(255 - value);
-  const Node bright = measured_by(picture, {});
-  EXPECT_EQ(word(bright, "figure"), "bright");
-  EXPECT_LT(off_and_reach(bright, line).first, 0.3);
-}
-
-TEST_F(MeasureBy, RefusesThresholdsThatSayNothing) {
-  TestRandom random(4);
-  const Image<std::uint8_t> picture = gray_arm([](double) { return 100.0; }, 12, random);
-  for (const ThresholdArguments& how :
-       {ThresholdArguments{.method = "otsi"}, ThresholdArguments{.method = "fixed"},
-        ThresholdArguments{.method = "two_mode", .level = 100},
-        ThresholdArguments{.method = "by_block", .level = 100}, ThresholdArguments{.level = 256},
-        ThresholdArguments{.level = -1}, ThresholdArguments{.level = NAN},
-        ThresholdArguments{.figure = "gray"}}) {
-    SCOPED_TRACE(how.method + how.figure);
-    EXPECT_THROW((void)measured_by(picture, how), InputError);
-  }
 }
 
 TEST(Measure, DoesNotDrawOverThePictureThatItMeasures) {

@@ -192,15 +192,13 @@ ArcsLoop::Wanted ArcsLoop::wanted() const {
   std::array<RigStance, 2> stances = {loop_.stance(0), loop_.stance(1)};
   std::array<double, 2> pans = {0, 0};
   for (std::size_t i = 0; i < 2; ++i) {
-    const Camera camera(model().cameras[loop_.config().cameras[i]]);
-    const Eigen::Matrix3d& R_WM = camera.mount().rotation;
-    stances[i].head = camera.looking_along(plan_.ideal[i].X_WC.rotation.col(2), stances[i].head.zoom);
+    const CameraConfig& camera = model().cameras[loop_.config().cameras[i]];
+    stances[i].head = Camera(camera).looking_along(plan_.ideal[i].X_WC.rotation.col(2), stances[i].head.zoom);
     pans[i] = stances[i].head.pan;
     const double tilt = stances[i].head.tilt;
     stances[i] = loop_.commandable_stance(i, stances[i]);
     // Where the pupil will be by then decides how far the stage goes.
-    const Eigen::Vector3d will_be = view_of(model(), stances[i]).X_WC.position;
-    stances[i].stage.offset += R_WM.transpose() * (plan_.ideal[i].X_WC.position - will_be);
+    stances[i].stage.offset = stage_towards(camera, stances[i], plan_.ideal[i].X_WC.position);
     stances[i].head.tilt = tilt;
   }
   double least = std::numeric_limits<double>::infinity();

@@ -14,6 +14,7 @@
 #include "flexura/calibrate/rig_quantities.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/random_cases.h"
+#include "tests/support/rig_figures.h"
 #include "tests/support/rig_trials.h"
 
 namespace flexura {
@@ -143,15 +144,7 @@ TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {
     ASSERT_TRUE(problem.linearise(x));
     const RigRows rows = problem.rows()[3];
     EXPECT_LE(rows.residuals.norm(), 1e-4);
-    const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
-      Eigen::VectorXd there = x;
-      for (std::size_t i = 0; i < rows.columns.size(); ++i)
-        there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
-      EXPECT_TRUE(problem.linearise(there));
-      return problem.rows()[3].residuals;
-    };
-    const auto numerical =
-        numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 1e-5);
+    const NumericalJacobian numerical = row_differences(problem, x, 3, 1e-5);
     // Where rims are measured hardly wanders as the camera comes nearer.
     constexpr Eigen::Index first_rim = 4, rims = 2;
     for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j) {

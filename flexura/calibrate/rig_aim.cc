@@ -250,6 +250,13 @@ HeadState aimed(const CameraConfig& model, const RigStance& stance, const Eigen:
   return head;
 }
 
+Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
+                              const Eigen::Vector3d& p_WC) {
+  const Camera camera(model);
+  const Eigen::Vector3d now = camera.pose(stance.stage, stance.head).position;
+  return stance.stage.offset + camera.mount().rotation.transpose() * (p_WC - now);
+}
+
 HeadState commanded_head(const CameraConfig& model, const HeadState& head) {
   const Camera camera(model);
   const auto& [pan, tilt, zoom] = camera.head_axes();

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "flexura/camera/camera.h"
+#include "flexura/math/so3.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rig_trials.h"
 
@@ -44,6 +48,52 @@ TEST(Aim, BringsThePointOntoTheAxis) {
     const Pose X_WC = Camera(model.cameras[1]).pose(stance.stage, head);
     EXPECT_LE((X_WC.inverse() * target).head<2>().norm(), 1e-12);
     EXPECT_GT((X_WC.inverse() * target).z(), 0);
+  });
+}
+
+MountConfig looking_down_z() {
+  MountConfig mount;
+  mount.look_at = {{0, 0, -1}};
+  return mount;
+}
+
+// The camera's place is known from pictures each time, the turn of its mount is not: `turn` is wrong in what
+// the stage is sent by. How far the pupil is from where it should be, after each move.
+std::vector<double> distances_by_stage(const Eigen::Vector3d& turn, const Eigen::Vector3d& start, int moves) {
+  const MountConfig mount = looking_down_z();
+  CameraConfig truth, believed;
+  truth.mount = believed.mount = mount;
+  const Eigen::Quaterniond wrong(so3_exp(turn) * mount.pose().rotation);
+  believed.mount.look_at.reset(), believed.mount.rotation = {{wrong.w(), wrong.x(), wrong.y(), wrong.z()}};
+  RigStance stance{0, {0, 0, 1}, {start}};
+  const Eigen::Vector3d wanted = Camera(truth).pose({}, stance.head).position;
+  std::vector<double> distances;
+  for (int i = 0; i <= moves; ++i) {
+    const Eigen::Vector3d now = Camera(truth).pose(stance.stage, stance.head).position;
+    distances.push_back((now - wanted).norm());
+    const Eigen::Vector3d off = now - Camera(believed).pose(stance.stage, stance.head).position;
+    for (std::size_t k = 0; k < 3; ++k) believed.mount.position[k] += off[static_cast<Eigen::Index>(k)];
+    stance.stage.offset = stage_towards(believed, stance, wanted);
+  }
+  return distances;
+}
+
+// |I - R| = 2 sin(angle / 2), across the axis of R.
+TEST(StageTowards, ClosesInWhereTheMountsTurnIsKnownWithin60DegreesAndNowhereElse) {
+  for_random_cases(300, [](TestRandom& random) {
+    const Eigen::Vector3d axis = random.vector<3>(-1, 1).normalized();
+    const double angle = random.uniform(1, 59.9) * degree, least = random.uniform(60.1, 179) * degree;
+    const Eigen::Vector3d start = random.vector<3>(-1, 1);
+    const double by = 2 * std::sin(0.5 * angle);
+    constexpr int moves = 10;
+    const std::vector<double> closer = distances_by_stage(angle * axis, start, moves);
+    for (std::size_t i = 1; i <= moves; ++i) EXPECT_LE(closer[i], by * closer[i - 1] + 1e-12);
+    // Of an offset along the axis nothing is left; one across it grows.
+    const Eigen::Matrix3d R_WM = looking_down_z().pose().rotation;
+    const Eigen::Vector3d across = R_WM.transpose() * axis.cross(random.vector<3>(-1, 1)).normalized();
+    const std::vector<double> farther = distances_by_stage(least * axis, across, moves);
+    for (std::size_t i = 1; i <= moves; ++i)
+      EXPECT_NEAR(farther[i] / farther[i - 1], 2 * std::sin(0.5 * least), 1e-9);
   });
 }
 

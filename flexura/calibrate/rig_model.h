@@ -63,10 +63,11 @@ struct RigPrior {
   std::vector<CameraPrior> cameras;  ///< One a camera.
 };
 
-/// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from the arm's
-/// base, 10 % of its focal length, its principal point 10 px off, the zeros of its tilt axis, and of its pan
-/// axis where its stage can move, 2 degrees.
-[[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2);
+/// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from what it
+/// looks at (p_WS, m; the arm's base when left out), 10 % of its focal length, its principal point 10 px off,
+/// the zeros of its tilt axis, and of its pan axis where its stage can move, 2 degrees.
+[[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
+                                   const std::optional<Eigen::Vector3d>& seen = {});
 
 /// A way in which one camera stood, as its head and stage say.
 struct RigStance {

@@ -7,6 +7,7 @@
 #include "flexura/math/derivative_check.h"
 #include "tests/support/cameras.h"
 #include "tests/support/random_cases.h"
+#include "tests/support/rig_figures.h"
 #include "tests/support/rig_trials.h"
 
 namespace flexura {
@@ -57,15 +58,7 @@ TEST(RigRows, DerivativesByEveryNumberAreThoseOfDifferences) {
     ASSERT_TRUE(problem.linearise(x));
     for (std::size_t image = 0; image < 2; ++image) {
       const RigRows rows = problem.rows()[image];
-      const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
-        Eigen::VectorXd there = x;
-        for (std::size_t i = 0; i < rows.columns.size(); ++i)
-          there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
-        EXPECT_TRUE(problem.linearise(there));
-        return problem.rows()[image].residuals;
-      };
-      const auto numerical =
-          numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 3e-4);
+      const NumericalJacobian numerical = row_differences(problem, x, image, 3e-4);
       for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j) {
         const double size = std::max(1.0, rows.derivatives.col(j).norm());
         EXPECT_LE((numerical.value.col(j) - rows.derivatives.col(j)).norm(), 1e-6 * size)
@@ -88,15 +81,7 @@ TEST(RigRows, AxisPointsFollowTheCurveAsItMoves) {
     ASSERT_TRUE(problem.linearise(x));
     const RigRows rows = problem.rows()[1];
     ASSERT_GT(rows.residuals.size(), 20);
-    const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
-      Eigen::VectorXd there = x;
-      for (std::size_t i = 0; i < rows.columns.size(); ++i)
-        there[rows.columns[i]] += part[static_cast<Eigen::Index>(i)];
-      EXPECT_TRUE(problem.linearise(there));
-      return problem.rows()[1].residuals;
-    };
-    const auto numerical =
-        numerical_jacobian(residuals, Eigen::VectorXd::Zero(rows.derivatives.cols()), 1e-4);
+    const NumericalJacobian numerical = row_differences(problem, x, 1, 1e-4);
     // The normals of a curve that is cubic between knots turn a little otherwise than its own, and what is
     // beyond its end is not off along them.
     EXPECT_LE((numerical.value - rows.derivatives).norm(), 1e-2 * rows.derivatives.norm());

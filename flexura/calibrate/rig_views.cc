@@ -30,6 +30,9 @@ class Forecast {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(bare.count());
     x.head(bare.globals()) = found_.x.head(bare.globals());
     for (std::size_t i = 0; i < next.stances.size(); ++i) {
+      const RigStance& where = bare.read()[i];
+      const ZoomTable lens = Camera(guess.cameras[where.camera]).lens();
+      if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
       const auto image = next.etalon ? etalon_picture(bare, x, i) : picture(bare, x, i);
       if (!image) return std::nullopt;
       next.images.push_back(*image);
@@ -42,9 +45,6 @@ class Forecast {
  private:
   [[nodiscard]] std::optional<RigImage> etalon_picture(const RigVariables& bare, const Eigen::VectorXd& x,
                                                        std::size_t stance) const {
-    const RigStance& where = bare.read()[stance];
-    const ZoomTable lens = Camera(bare.guess().cameras[where.camera]).lens();
-    if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
     auto points = EtalonFigure(*problem_.observations().etalon)
                       .expected(RigProjector(bare, x).view(stance), config_.margin);
     if (!points) return std::nullopt;
@@ -54,9 +54,6 @@ class Forecast {
   [[nodiscard]] std::optional<RigImage> picture(const RigVariables& bare, const Eigen::VectorXd& x,
                                                 std::size_t stance) const {
     RigProjector projector(bare, x);
-    const RigStance& where = bare.read()[stance];
-    const ZoomTable lens = Camera(bare.guess().cameras[where.camera]).lens();
-    if (where.head.zoom < lens.first() || where.head.zoom > lens.last()) return std::nullopt;
     const View view = projector.view(stance);
     RigImage image{.stance = stance};
     const auto look = [&](double share) -> std::optional<Eigen::Vector2d> {

@@ -288,7 +288,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   config.arc = arc_bend(task);
   for (const Marker& marker : arm.look.markers(arm.arm()))
     config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
-  config.prior = session_prior(task, rig_model(arm.arm(), cameras));
+  config.prior = session_prior(task, rig_model(arm.arm(), cameras), stand);
   config.etalon = stand.etalon.value_or(EtalonConfig{});
   for (std::size_t i = 0; i < 2; ++i) config.white[i] = (1 << cameras.at(config.cameras[i]).sensor.bits) - 1;
   config.move_duration = task.move_duration;
@@ -296,8 +296,10 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   return config;
 }
 
-RigPrior session_prior(const CalibrateTask& task, const RigModel& believed) {
-  RigPrior prior = rough_prior(believed, task.guess.distance);
+RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, const StandConfig& stand) {
+  std::optional<Eigen::Vector3d> seen;
+  if (is_before_etalon(task)) seen = vector(stand.etalon.value_or(EtalonConfig{}).position);
+  RigPrior prior = rough_prior(believed, task.guess.distance, seen);
   // The cylinder tells nothing of the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
   for (CameraPrior& camera : prior.cameras) {
@@ -378,6 +380,10 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.guess != CalibrateGuessConfig{})
     reader.problem_at(path + ".guess",
                       "is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+  if (is_bundle && task.loop != CalibrateLoopConfig{})
+    reader.problem_at(path + ".loop",
+                      "is how the paper's methods go about it, bundle and bundle-etalon do not: expected no "
+                      "such key");
   if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
     check_markers(arm, path, reader);
   if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);

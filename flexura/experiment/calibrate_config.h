@@ -54,6 +54,7 @@ struct CalibrateLoopConfig {
   double slide = 0.005;                 ///< every way of a stage, m,
   double zoom_step = 0.02;              ///< and every change of a zoom, a share.
   std::optional<double> arc;            ///< By which the arm is bent into an arc, rad.
+  bool operator==(const CalibrateLoopConfig&) const = default;
 };
 
 /// `kind = "calibrate"`: the arm is shown to two cameras, which are then sent to the wanted configuration.
@@ -102,7 +103,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 [[nodiscard]] RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
                                               const std::vector<CameraConfig>& cameras,
                                               const StandConfig& stand);
-[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed);
+[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed,
+                                     const StandConfig& stand);
 
 /// What a task by one of the paper's methods asks of its loop; the simulator's pictures are left out.
 [[nodiscard]] LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,

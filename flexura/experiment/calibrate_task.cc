@@ -129,8 +129,8 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
     loop.draw = ideal_pictures(experiment);
     run.loop = calibrate_by_loop(ports, run.believed, loop, log);
   } else {
-    run.result =
-        calibrate_rig_in_session(ports, run.believed, session_prior(config, run.believed), session, log);
+    const RigPrior prior = session_prior(config, run.believed, experiment.stand);
+    run.result = calibrate_rig_in_session(ports, run.believed, prior, session, log);
   }
   // Time passes in a camera that is waited for as well, unseen by the clock.
   const double end = clock.now();

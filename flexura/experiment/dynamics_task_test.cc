@@ -19,6 +19,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/dynamics_files.h"
+#include "tests/support/dynamics_runs.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/quiet.h"
 #include "tests/support/random_cases.h"
@@ -30,39 +31,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-class Dynamics : public testing::Test {
- protected:
-  RunResult run(const std::string& text, const std::vector<std::string>& sets = {}) {
-    Quiet quiet;
-    return run_experiment(parse_experiment(text, "x.toml", {sets, {}}),
-                          make_new_folder(folder_.path() / "results"), quiet);
-  }
-  static const Node& dynamics(const RunResult& result, std::size_t i = 0) {
-    return result.summary.find("dynamics")->as<Node::Array>()->at(i);
-  }
-  static double number(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
-  static bool truth(const Node& node, const char* key) { return *node.find(key)->as<bool>(); }
-  template <class M>
-  static std::vector<M> logged(const RunResult& result, std::string_view topic) {
-    std::vector<M> found;
-    const McapReader log = open_log(result.folder);
-    for (const McapMessage& message : log.messages())
-      if (message.channel->topic == topic) found.push_back(read_as<M>(parse_json(message.text(), "the log")));
-    return found;
-  }
-  static std::vector<DynamicsSampleMessage> samples(const RunResult& result) {
-    return logged<DynamicsSampleMessage>(result, dynamics_samples_topic);
-  }
-  static std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-      if (entry.is_regular_file())
-        files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
-    return files;
-  }
-  TemporaryFolder folder_;
-};
 
 // Any arm, start, target and gains for which the theory's conditions hold.
 std::string random_dynamics_file(TestRandom& random) {
@@ -273,72 +241,6 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
   EXPECT_GT(number(*dynamics(late).find("verdict"), "largest_rise"), 100 * rise);
 }
 
-TEST_F(Dynamics, IsTheSameByteForByteOfOneSeed) {
-  const std::string text =
-      "title = \"x\"\n" + dynamics_arm() +
-      dynamics_task("duration = 0.5\n" + bent_target + "measurement = { delay = 0.05, noise = 0.01 }\n");
-  const RunResult first = run(text);
-  const auto files = files_in(first.folder);
-  EXPECT_TRUE(files_in(run(text).folder) == files);
-  EXPECT_TRUE(files.contains("figures/dynamics-1-lyapunov.svg"));
-  Quiet quiet;
-  const RunResult again = run_experiment(load_experiment(first.folder / experiment_file_name),
-                                         make_new_folder(folder_.path() / "again"), quiet);
-  EXPECT_TRUE(files_in(again.folder) == files);
-  EXPECT_NE(samples(run(text, {"seed=2"})).back().lyapunov, samples(first).back().lyapunov);
-}
-
-TEST_F(Dynamics, GoesOnWhereTheTaskBeforeEndedAndTheNextGoesOnFromThere) {
-  const RunResult result =
-      run(dynamics_arm() +
-          "[[task]]\nkind = \"move\"\nduration = 0.113\nto.bends = [[0.2, 0.1], [0, 0], [0, 0]]\n" +
-          dynamics_task("name = \"law\"\nduration = 3.005\n" + bent_target) +
-          "[[task]]\nkind = \"hold\"\nduration = 0.1\n");
-  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
-  EXPECT_EQ(number(dynamics(result), "start"), 0.113);
-  const auto all = samples(result);
-  EXPECT_EQ(all[0].time, 0.113);
-  EXPECT_NEAR(all[1].time, 0.12, 1e-12);
-  EXPECT_NEAR(all.back().time, 3.118, 1e-12);
-  const auto states = logged<ArmStateMessage>(result, arm_state_topic);
-  for (std::size_t i = 1; i < states.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_NEAR(std::hypot(states[i].bends[k][0] - states[i - 1].bends[k][0],
-                             states[i].bends[k][1] - states[i - 1].bends[k][1]),
-                  0, 0.1);
-  const std::vector<std::array<double, 2>> wanted = {{0.5, -0.3}, {0.4, 0.2}, {0.3, -0.2}};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(states.back().bends[k][i], wanted[k][i], 1e-3);
-  EXPECT_EQ(states.back().bends, states[states.size() - 2].bends);
-}
-
-TEST_F(Dynamics, LogsEveryNthStateAndBothEnds) {
-  const RunResult result =
-      run(dynamics_arm() + dynamics_task("duration = 3.01\n" + bent_target), {"record.every=10"});
-  const auto all = samples(result);
-  ASSERT_EQ(all.size(), 17);  // At 0, 0.2, ... 3 and 3.01 s.
-  for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(all[i].time, 0.2 * static_cast<double>(i), 1e-9);
-  EXPECT_NEAR(all.back().time, 3.01, 1e-12);
-}
-
-TEST_F(Dynamics, IsExportedAsATable) {
-  const RunResult result =
-      run(dynamics_arm("planar") + dynamics_task("duration = 3\ntarget.archings_deg = [-20, 10, 5]\n"));
-  const ExportResult exported = export_csv(result.folder);
-  std::ifstream table(exported.folder / "dynamics.csv");
-  std::string head, line, last;
-  std::getline(table, head);
-  EXPECT_EQ(
-      head,
-      "time,kinetic_energy,gravity_energy,elastic_energy,potential,lyapunov,taken_by_law,taken_by_medium,"
-      "azimuth_error,elevation_error,tip_error,tip_x,tip_y,tip_z");
-  std::size_t rows = 0;
-  for (; std::getline(table, line); ++rows) last = line;
-  EXPECT_EQ(rows, samples(result).size());
-  EXPECT_THAT(last, StartsWith("3,"));
-  EXPECT_THAT(last, testing::EndsWith(",0"));  // A planar arm stays in its plane.
-}
-
 // The straight way to the target is free; that of an arm which its weight draws down is not.
 TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   const std::string text =
@@ -359,75 +261,6 @@ TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   EXPECT_EQ(result.outcome, RunOutcome::failed);
   EXPECT_THAT(result.reasons.front(), HasSubstr("table"));
   EXPECT_THAT(result.reasons.back(), HasSubstr("gravity"));
-}
-
-TEST_F(Dynamics, CanBeCancelledWhileItIsSimulated) {
-  class Cancelled : public Quiet {
-   public:
-    [[nodiscard]] bool cancelled() const override { return true; }
-  } cancelled;
-  const RunResult result =
-      run_experiment(parse_experiment(dynamics_arm() + dynamics_task(bent_target), "x.toml"),
-                     make_new_folder(folder_.path() / "results"), cancelled);
-  EXPECT_EQ(result.outcome, RunOutcome::cancelled);
-  EXPECT_FALSE(open_log(result.folder).truncated());
-}
-
-// A long arm takes long from one sample to the next.
-TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
-  class CancelledSoon : public Quiet {
-   public:
-    void update(double fraction, std::string_view) override { told_.push_back(fraction); }
-    [[nodiscard]] bool cancelled() const override { return told_.size() > 20; }
-    [[nodiscard]] const std::vector<double>& told() const { return told_; }
-
-   private:
-    std::vector<double> told_;
-  } cancelled;
-  std::map<std::size_t, MotionPtr> performed;
-  std::vector<DynamicsRun> runs;
-  run_known_dynamics(
-      parse_experiment("[clock]\nstep = 5\n" + dynamics_arm() + dynamics_task(bent_target), "x.toml"),
-      performed, runs, cancelled);
-  ASSERT_EQ(runs.size(), 1);
-  EXPECT_EQ(runs[0].reason(), "cancelled");
-  EXPECT_GT(runs[0].samples.back().energies.time, 0);
-  EXPECT_LT(runs[0].samples.back().energies.time, 1);
-  EXPECT_EQ(cancelled.told().size(), 21);
-  EXPECT_GT(cancelled.told().back(), 0);
-  EXPECT_LT(cancelled.told().back(), 0.2);
-}
-
-// The run ends with the first that fails; what is known of those after it is told.
-TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
-  const std::string text =
-      dynamics_arm() + dynamics_task("name = \"first\"\nlaw.gravity_compensation = 0.5\n" + bent_target) +
-      dynamics_task("name = \"second\"\nlaw.sign = -1\nlaw.elasticity = \"ignored\"\n" + bent_target) +
-      dynamics_task("name = \"third\"\n" + bent_target);
-  const Experiment experiment = parse_experiment(text, "x.toml", {{"record.report=false"}, {}});
-  const auto is_told = [](const std::vector<std::string>& caveats, const std::vector<std::string>& notes) {
-    for (const char* name : {"second", "third"})
-      EXPECT_THAT(caveats,
-                  testing::Contains(fmt::format("{}: judged by the straight way only: it is not simulated, "
-                                                "for the run ends with first",
-                                                name)));
-    EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the potential's force has the sign -1")));
-    EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the arm's elasticity is neither")));
-    EXPECT_THAT(notes, testing::Not(testing::Contains(StartsWith("third"))));
-  };
-  Quiet quiet;
-  const SafetyReport report = safety_with_dynamics(experiment, quiet);
-  is_told(report.caveats, report.notes);
-  EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
-  const RunResult result = run_experiment(experiment, make_new_folder(folder_.path() / "results"), quiet);
-  const auto lines = [&](const char* key) {
-    std::vector<std::string> texts;
-    for (const Node& line : *result.summary.find(key)->as<Node::Array>())
-      texts.push_back(*line.as<std::string>());
-    return texts;
-  };
-  is_told(lines("caveats"), lines("notes"));
-  EXPECT_THAT(result.reasons, ElementsAre("first: gravity is compensated to 50 %, not to 100 %"));
 }
 
 // Elasticity draws to a straight arm by itself, and is part of the potential then.

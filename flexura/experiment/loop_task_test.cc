@@ -14,6 +14,7 @@
 #include "flexura/experiment/calibrate_task.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
+#include "flexura/math/arrays.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
@@ -361,6 +362,9 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
             "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
             "task[0]: has no pose and no zooms with this method: expected none of these keys");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
+            "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
+            "no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
                                   "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
                                   rig)),
@@ -382,6 +386,18 @@ TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
     EXPECT_EQ(camera.tilt_zero, 0);
     EXPECT_EQ(camera.principal_point, 1);
     EXPECT_EQ(camera.focal, 0);
+  }
+}
+
+// Of the distance from what is looked at: the cylinder may stand far from the arm's base.
+TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
+  const CalibrationBench bench(etalon_rig("method = \"bundle-etalon\"\nguess.distance = 0.1\n", {}));
+  const Experiment& file = bench.experiment();
+  const RigModel believed = rig_model(file.arm.arm(), file.cameras());
+  const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), believed, file.stand);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Eigen::Vector3d from = vector(believed.cameras[i].mount.position);
+    EXPECT_NEAR(prior.cameras[i].position, 0.1 * (from - Eigen::Vector3d(0, 0.3, 0)).norm(), 1e-12);
   }
 }
 

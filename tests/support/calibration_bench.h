@@ -49,7 +49,7 @@ class CalibrationBench : public RigBench {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
     return calibrate_rig_in_session(
-        ports, believed, session_prior(task, believed),
+        ports, believed, session_prior(task, believed, experiment().stand),
         session_config(task, experiment().arm, experiment().cameras(), experiment().stand), watcher);
   }
   /// What truly remains where the cameras stand.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -10,6 +12,7 @@
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_quantities.h"
+#include "flexura/math/derivative_check.h"
 #include "tests/support/rig_trials.h"
 
 namespace flexura {
@@ -53,6 +56,21 @@ inline RigFigures figures_of(const RigTrial& trial, const RigProblem& problem, c
     figures.aim = std::max(figures.aim, std::hypot(a[0].value - b[0].value, a[1].value - b[1].value));
   }
   return figures;
+}
+
+/// The derivatives of one picture's rows at x, by the numbers that they depend on, as differences tell them.
+inline NumericalJacobian row_differences(RigProblem& problem, const Eigen::VectorXd& x, std::size_t image,
+                                         double step) {
+  EXPECT_TRUE(problem.linearise(x));
+  const std::vector<Eigen::Index> columns = problem.rows()[image].columns;
+  const auto residuals = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
+    Eigen::VectorXd there = x;
+    for (std::size_t i = 0; i < columns.size(); ++i) there[columns[i]] += part[static_cast<Eigen::Index>(i)];
+    EXPECT_TRUE(problem.linearise(there));
+    return problem.rows()[image].residuals;
+  };
+  return numerical_jacobian(residuals, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size())),
+                            step);
 }
 
 }  // namespace flexura

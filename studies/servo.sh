@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# an arm steered to random shapes by each law: ./dev study servo [TARGETS] [SEED]
+# an arm steered to random shapes by each law: ./dev study servo [TARGETS] [SEED] [TURNED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 targets=${1:-200}
 seed=${2:-1}
+turned=${3:-40} # Targets of the arm that is mounted a quarter turn round.
 page=docs/studies/servo.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -24,10 +25,11 @@ mkdir -p docs/studies build/studies
   echo "each axis other than believed, and zoom by 1 to 1.45."
   echo
   echo '```console'
-  echo "\$ ./dev study servo $targets $seed"
+  echo "\$ ./dev study servo $targets $seed $turned"
   echo '```'
   echo
-  "$build/bin/servo_study" "$targets" "$seed" "$(nproc)"
+  for part in calibrated wrong recorded; do "$build/bin/servo_study" "$targets" "$seed" "$(nproc)" "$part"; done
+  "$build/bin/servo_study" "$turned" "$seed" "$(nproc)" turned
 } >build/studies/servo.md
 mv build/studies/servo.md "$page"
 echo "wrote $page"

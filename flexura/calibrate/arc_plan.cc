@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/zoom_correlation.h"
 #include "flexura/math/arrays.h"
 #include "flexura/model/backbone.h"
+#include "flexura/vision/eight_bits.h"
 #include "flexura/vision/picture_file.h"
 
 namespace flexura {

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <utility>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/etalon_view.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_quantities.h"
 #include "flexura/camera/mount.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {

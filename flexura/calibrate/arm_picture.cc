@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <utility>
-#include <variant>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
 #include "flexura/vision/backbone_image.h"
-#include "flexura/vision/picture_file.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -69,15 +67,7 @@ MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::v
 }
 
 ArmFigure ArmPicture::look(const Picture& picture) {
-  const auto find = [&]<typename Value>(const Image<Value>& image) -> const ArmSighting& {
-    const Image<Value> gray = image.channels() == 1 ? image : gray_picture(image);
-    if constexpr (sizeof(Value) == 1) {
-      return finder_.find(gray);
-    } else {
-      return finder_.find(gray, config_.white);
-    }
-  };
-  const ArmSighting& arm = std::visit(find, picture);
+  const ArmSighting& arm = finder_.find(picture, config_.white);
   ArmFigure look;
   if (!arm.is_found()) {
     look.reason = arm.reason;

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "flexura/calibrate/eight_bits.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -68,7 +68,7 @@ EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const Ri
 
 bool EtalonEyes::look(std::size_t i, const Picture& picture) {
   const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
-  last_ = view_etalon(eight_bits(picture, (1 << camera.sensor.bits) - 1),
+  last_ = view_etalon(eight_bits(picture, white_of(camera.sensor.bits)),
                       Camera(camera).lens().at(Camera(camera).initial_head().zoom), config_.etalon->radius);
   return last_.reason.empty();
 }

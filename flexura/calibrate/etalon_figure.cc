@@ -83,23 +83,27 @@ double EtalonFigure::bearing(std::size_t number, const Eigen::Vector3d& p_WC) co
                         2 * std::numbers::pi);
 }
 
-std::optional<std::array<Eigen::Vector2d, 4>> EtalonFigure::corners(const View& view, double margin) const {
-  std::array<Eigen::Vector2d, 4> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto side = line(i < 2 ? EtalonPart::left_side : EtalonPart::right_side, 0, view.X_WC.position);
-    if (!side) return std::nullopt;
-    const double up = i % 2 == 0 ? 0 : height_;
-    const auto pixel = view.project(side->point + up * side->direction);
+std::optional<std::array<Eigen::Vector2d, 8>> EtalonFigure::outline(const View& view, double margin) const {
+  const Eigen::Vector3d p_EC = X_WE_.inverse() * view.X_WC.position;
+  const double distance = std::hypot(p_EC.x(), p_EC.z());
+  if (!(distance > radius_)) return std::nullopt;
+  const double towards = std::atan2(p_EC.x(), p_EC.z()), grazing = std::acos(radius_ / distance);
+  const std::array<double, 4> around = {towards - grazing, towards + grazing, towards,
+                                        towards + std::numbers::pi};
+  std::array<Eigen::Vector2d, 8> points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d rim = radius_ * outwards(around[i / 2]);
+    const auto pixel = view.project(X_WE_ * Eigen::Vector3d(rim.x(), i % 2 == 0 ? 0 : height_, rim.z()));
     if (!pixel || pixel->minCoeff() < margin || pixel->x() > view.width - 1 - margin ||
         pixel->y() > view.height - 1 - margin)
       return std::nullopt;
-    corners[i] = *pixel;
+    points[i] = *pixel;
   }
-  return corners;
+  return points;
 }
 
 std::optional<std::vector<EtalonPoint>> EtalonFigure::expected(const View& view, double margin) const {
-  if (!corners(view, margin)) return std::nullopt;
+  if (!outline(view, margin)) return std::nullopt;
   std::vector<EtalonPoint> points;
   const auto add = [&](EtalonPart part, std::size_t number, double share) {
     const auto known = line(part, number, view.X_WC.position);

@@ -53,8 +53,9 @@ class EtalonFigure {
   /// camera faces within 60 degrees, one of each rim. None where it does not show all of the cylinder,
   /// `margin` px from its border at least.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
-  /// The four ends of its sides in the picture, left ones first; none likewise.
-  [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 4>> corners(const View& view, double margin) const;
+  /// What bounds it in the picture, at its lower and its upper rim each: where the left side meets them,
+  /// where the right one does, their points nearest to the camera and farthest from it. None likewise.
+  [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 8>> outline(const View& view, double margin) const;
   /// The angle by which a red line lies to the right of where the camera stands around the cylinder, rad.
   [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -134,6 +135,38 @@ RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, d
     }
   }
   return seen;
+}
+
+// Seen from far above or below a rim's near or far side is beyond the sides' ends.
+TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
+  for_random_cases(200, [](TestRandom& random) {
+    EtalonConfig etalon = random_etalon(random);
+    etalon.rotation = {1, 0, 0, 0};
+    const EtalonFigure figure(etalon);
+    const double bearing = random.uniform(-3, 3);
+    const Eigen::Vector3d from =
+        figure.middle() + random.uniform(1, 2) * Eigen::Vector3d(std::sin(bearing), 0, std::cos(bearing)) +
+        Eigen::Vector3d(0, random.uniform(-1, 1), 0);
+    MountConfig mount;
+    const Eigen::Vector3d middle = figure.middle();
+    mount.position = {from.x(), from.y(), from.z()}, mount.look_at = {{middle.x(), middle.y(), middle.z()}};
+    const View view{Lens({.fx = 400, .fy = 400, .cx = 319.5, .cy = 239.5, .distortion = {}}), mount.pose(),
+                    640, 480};
+    const auto outline = figure.outline(view, 0);
+    ASSERT_TRUE(outline);
+    Eigen::AlignedBox2d told, drawn;
+    for (const Eigen::Vector2d& point : *outline) told.extend(point);
+    for (const double height : {0.0, etalon.height})
+      for (int i = 0; i < 1000; ++i) {
+        const double angle = 2e-3 * std::numbers::pi * i;
+        drawn.extend(
+            *view.project(vector(etalon.position) + Eigen::Vector3d(etalon.radius * std::sin(angle), height,
+                                                                    etalon.radius * std::cos(angle))));
+      }
+    EXPECT_LT((told.min() - drawn.min()).norm(), 0.5);
+    EXPECT_LT((told.max() - drawn.max()).norm(), 0.5);
+    EXPECT_FALSE(figure.outline(view, told.min().minCoeff() + 1));
+  });
 }
 
 TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {

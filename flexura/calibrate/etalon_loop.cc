@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/offset_steps.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/pose.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/etalon_loop.h"
 #include "flexura/calibrate/offset_steps.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 

@@ -4,6 +4,7 @@
 
 #include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/calibrate/rig_sights.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -18,7 +19,7 @@ class ArmEyes : public RigEyes {
         sights_(believed.arm, config.picture, config.cameras) {
     for (const std::size_t camera : config.cameras) {
       ArmPictureConfig picture = config.picture;
-      picture.white = (1 << believed.cameras.at(camera).sensor.bits) - 1;
+      picture.white = white_of(believed.cameras.at(camera).sensor.bits);
       pictures_.emplace_back(std::move(picture));
     }
   }

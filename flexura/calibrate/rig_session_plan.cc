@@ -95,7 +95,7 @@ std::vector<RigSessionPlan::EtalonZoom> RigSessionPlan::etalon_zooms(const RigMo
     stance.head.zoom = zoom_at(optics, ratio);
     stance.head = aimed(model.cameras[camera], stance, etalon.middle());
     const View view = view_of(model, stance);
-    const auto points = etalon.corners(view, margin);
+    const auto points = etalon.outline(view, margin);
     if (!points) return std::nullopt;
     const Eigen::Vector2d half(0.5 * view.width, 0.5 * view.height);
     Eigen::Vector2d reach(0, 0);

@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "flexura/estimate/correspondence.h"
+#include "flexura/math/direction.h"
 
 namespace flexura {
 namespace {
 
-using std::numbers::pi;
-
 // The azimuth's sine and cosine above which the planes' reading is singular: 80 degrees.
 constexpr double singular_cosine = 0.17364817766693033;
-
-// An angle moved by whole turns to within half a turn of another one.
-double near(double angle, double other) { return angle - 2 * pi * std::round((angle - other) / (2 * pi)); }
 
 // The direction in which a curve's image goes on at point i, in W, as a parallel projection shows it.
 Eigen::Vector3d image_direction(const Sighting& seen, std::size_t i) {
@@ -37,8 +32,9 @@ std::vector<DirectionAngles> direction_angles(const Backbone& backbone, std::siz
     const double across = std::hypot(e.x(), e.y());
     const double before = i > 0 ? angles[i - 1].azimuth : 0;
     // Along Z the azimuth is whatever it was.
-    angles[i].azimuth = across > 1e-12 ? near(std::atan2(e.x(), e.y()), before) : before;
-    angles[i].elevation = std::atan2(e.z(), across);
+    const Eigen::Vector2d own = angles_of_direction(e);
+    angles[i].azimuth = across > 1e-12 ? nearest_turn(own[0], before) : before;
+    angles[i].elevation = own[1];
     angles[i].is_singular = std::abs(std::cos(angles[i].azimuth)) < singular_cosine;
   }
   return angles;
@@ -64,7 +60,7 @@ std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting&
     const Eigen::Vector3d d1 = image_direction(front, point.seen[0]),
                           d2 = image_direction(side, point.seen[1]);
     seen[i] = angles_of_planes(std::atan2(d1.x(), d1.y()), std::atan2(d2.z(), d2.y()));
-    if (i > 0) seen[i].azimuth = near(seen[i].azimuth, seen[i - 1].azimuth);
+    if (i > 0) seen[i].azimuth = nearest_turn(seen[i].azimuth, seen[i - 1].azimuth);
   }
   std::vector<DirectionAngles> angles(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -7,11 +7,10 @@
 #include <variant>
 
 #include "flexura/base/bytes.h"
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/loop_chapter.h"
-#include "flexura/picture/image_file.h"
+#include "flexura/experiment/photograph.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
@@ -85,23 +84,15 @@ NamedDrawing sigmas(const CalibrationRun& run, std::size_t number) {
       .drawing(number);
 }
 
-ImageOutline::Line cross(const Eigen::Vector2d& at, double size) {
-  const Eigen::Vector2d x(size, 0), y(0, size);
-  return {{at - x, at + x, at, at - y, at + y}, ""};
-}
-
 // A picture with what was seen in it, and the optical axis as it was found.
-NamedDrawing photograph(const CalibrationRun& run, std::size_t camera, bool is_after, std::size_t number) {
+NamedDrawing calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
+                                    std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
   const CameraConfig& believed = run.believed.cameras[sight.stance.camera];
-  const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << believed.sensor.bits) - 1);
-  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"),
-                 .legend = "",
-                 .width = picture.width(),
-                 .height = picture.height(),
-                 .outlines = {},
-                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
-  const double size = 0.012 * picture.width();
+  ImagePlot plot =
+      photograph(*sight.frame.picture, believed.sensor,
+                 fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"));
+  const double size = 0.012 * plot.width;
   const bool is_arm = run.result.etalon_points == 0;
   ImageOutline backbone{is_arm ? "backbone" : "silhouette", "s2", {}},
       markers{is_arm ? "markers" : "red lines", "s1", {}}, axis{"optical axis", "s5", {}};
@@ -176,8 +167,8 @@ Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
   if (run.loop) return loop_chapter(run, number);
   Chapter chapter{"Calibration: " + run.name, text_of(run), {}, points_of(run), false};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (run.result.before[i]) chapter.drawings.push_back(photograph(run, i, false, number));
-    if (run.result.is_done) chapter.drawings.push_back(photograph(run, i, true, number));
+    if (run.result.before[i]) chapter.drawings.push_back(calibration_photograph(run, i, false, number));
+    if (run.result.is_done) chapter.drawings.push_back(calibration_photograph(run, i, true, number));
   }
   const bool is_known = std::ranges::any_of(run.result.steps, &RigStep::is_found);
   if (is_known) {

@@ -11,6 +11,7 @@
 #include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -290,7 +291,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
     config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
   config.prior = session_prior(task, rig_model(arm.arm(), cameras), stand);
   config.etalon = stand.etalon.value_or(EtalonConfig{});
-  for (std::size_t i = 0; i < 2; ++i) config.white[i] = (1 << cameras.at(config.cameras[i]).sensor.bits) - 1;
+  for (std::size_t i = 0; i < 2; ++i) config.white[i] = white_of(cameras.at(config.cameras[i]).sensor.bits);
   config.move_duration = task.move_duration;
   config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
   return config;

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/text_file.h"
+#include "flexura/vision/eight_bits.h"
 #include "flexura/vision/etalon_finder.h"
 #include "flexura/vision/picture_file.h"
 #include "tests/support/calibration_bench.h"

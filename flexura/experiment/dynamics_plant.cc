@@ -9,24 +9,11 @@
 
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/direction.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
-
-Eigen::Vector2d angles_of(const Eigen::Vector3d& direction) {
-  return {std::atan2(direction.x(), direction.y()), std::asin(std::clamp(direction.z(), -1.0, 1.0))};
-}
-
-Eigen::Vector3d direction_of(const Eigen::Vector2d& angles) {
-  return {std::sin(angles[0]) * std::cos(angles[1]), std::cos(angles[0]) * std::cos(angles[1]),
-          std::sin(angles[1])};
-}
-
-// The angle that is `angle` but for whole turns and nearest to another one.
-double nearest_turn(double angle, double other) {
-  return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
-}
 
 // Given azimuths, less the whole turns by which the first is not the base's own.
 std::vector<double> continued(double base, std::vector<double> azimuths) {
@@ -74,7 +61,7 @@ DistributedArmModel model_of(const DynamicsTask& task, const Arm& arm, const Arm
                             .points = 8};
   for (std::size_t i = 0; i < arm.sections.size(); ++i)
     model.lengths.push_back(arm.sections[i].length * (task.variable_lengths ? 1 : from.stretches[i]));
-  const Eigen::Vector2d base = angles_of(arm.X_WB.rotation.col(2));
+  const Eigen::Vector2d base = angles_of_direction(arm.X_WB.rotation.col(2));
   model.clamp = {base[0], base[1]};
   // At least as many points as numbers, and some more for products of two shape functions.
   if (task.basis == AngleBasis::polynomial) model.points = std::max(model.points, model.nodes + 2);
@@ -86,7 +73,7 @@ DistributedArmModel model_of(const DynamicsTask& task, const Arm& arm, const Arm
 AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone_(arm, state) {
   constexpr double step = 0.05;  // rad of bend
   const Eigen::Vector3d base = arm.X_WB.rotation.col(2);
-  double before = angles_of(base)[0];
+  double before = angles_of_direction(base)[0];
   Eigen::Vector2d level = base.head<2>();  // cos q of its length
   double least_level = level.norm();
   for (const Arc& arc : backbone_.arcs()) {
@@ -94,7 +81,7 @@ AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone
     auto& azimuths = azimuths_.emplace_back();
     for (int i = 0; i <= count; ++i) {
       const Eigen::Vector3d direction = arc.pose(arc.length * i / count).rotation.col(2);
-      before = nearest_turn(angles_of(direction)[0], before);
+      before = nearest_turn(angles_of_direction(direction)[0], before);
       azimuths.push_back(before);
       least_level = std::min(least_level, distance_to_way(level, direction.head<2>()));
       level = direction.head<2>();
@@ -106,7 +93,7 @@ AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone
 Eigen::Vector2d AnglesAlongArm::at(std::size_t section, double share) const {
   const Arc& arc = backbone_.arcs()[section];
   const std::vector<double>& azimuths = azimuths_[section];
-  Eigen::Vector2d angles = angles_of(arc.pose(share * arc.length).rotation.col(2));
+  Eigen::Vector2d angles = angles_of_direction(arc.pose(share * arc.length).rotation.col(2));
   const auto near = static_cast<std::size_t>(std::round(share * static_cast<double>(azimuths.size() - 1)));
   angles[0] = nearest_turn(angles[0], azimuths[near]);
   return angles;
@@ -201,7 +188,7 @@ ArmState DynamicsPlant::state(const Eigen::VectorXd& x, const ArmState& before) 
   Eigen::Matrix3d R_WS = arm_.X_WB.rotation;
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const auto section = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d tangent = R_WS.transpose() * direction_of(ends.col(section));
+    const Eigen::Vector3d tangent = R_WS.transpose() * direction_of_angles(ends.col(section));
     const double across = tangent.head<2>().norm(), turn = std::atan2(across, tangent.z());
     const Eigen::Vector2d old = before.bends[i];
     Eigen::Vector2d side = Eigen::Vector2d::UnitX();

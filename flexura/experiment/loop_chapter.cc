@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "flexura/base/bytes.h"
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/experiment/calibrate_results.h"
-#include "flexura/picture/image_file.h"
+#include "flexura/experiment/photograph.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
@@ -61,23 +60,13 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
 NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
   const RigSight& sight = is_after ? *run.loop->after[i] : *run.loop->before[i];
   const char* when = is_after ? "after" : "before";
-  const std::int64_t bits = run.believed.cameras[sight.stance.camera].sensor.bits;
-  const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, (1 << bits) - 1);
-  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
-                 .legend = "",
-                 .width = picture.width(),
-                 .height = picture.height(),
-                 .outlines = {},
-                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
-  const auto plus = [](const Eigen::Vector2d& at, double size) {
-    const Eigen::Vector2d x(size, 0), y(0, size);
-    return ImageOutline::Line{{at - x, at + x, at, at - y, at + y}, ""};
-  };
-  const double size = 0.01 * picture.width();
+  ImagePlot plot = photograph(*sight.frame.picture, run.believed.cameras[sight.stance.camera].sensor,
+                              fmt::format("camera {}, {}", run.cameras[i], when));
+  const double size = 0.01 * plot.width;
   ImageOutline seen{"measured", "s2", {}}, middle{"picture's middle", "s5", {}};
-  for (const CurvePoint& point : sight.seen.points) seen.lines.push_back(plus(point.pixel, size));
-  for (const SeenMarker& marker : sight.seen.markers) seen.lines.push_back(plus(marker.pixel, size));
-  middle.lines.push_back(plus({0.5 * (picture.width() - 1), 0.5 * (picture.height() - 1)}, 3 * size));
+  for (const CurvePoint& point : sight.seen.points) seen.lines.push_back(cross(point.pixel, size));
+  for (const SeenMarker& marker : sight.seen.markers) seen.lines.push_back(cross(marker.pixel, size));
+  middle.lines.push_back(cross({0.5 * (plot.width - 1), 0.5 * (plot.height - 1)}, 3 * size));
   plot.outlines = {seen, middle};
   return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
 }

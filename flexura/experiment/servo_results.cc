@@ -9,10 +9,9 @@
 #include <utility>
 
 #include "flexura/base/bytes.h"
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/experiment/messages.h"
+#include "flexura/experiment/photograph.h"
 #include "flexura/model/backbone.h"
-#include "flexura/picture/image_file.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
@@ -91,13 +90,8 @@ NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, 
   const char* when = is_last ? "last" : "first";
   const auto found = std::ranges::find_if(
       run.believed.cameras, [&](const CameraConfig& camera) { return camera.name == run.cameras[i]; });
-  const Image<std::uint8_t> picture = eight_bits(*sight.frames[i].picture, (1 << found->sensor.bits) - 1);
-  ImagePlot plot{.heading = fmt::format("camera {}, {}", run.cameras[i], when),
-                 .legend = "",
-                 .width = picture.width(),
-                 .height = picture.height(),
-                 .outlines = {},
-                 .background = "data:image/jpeg;base64," + base64(jpeg(picture))};
+  ImagePlot plot =
+      photograph(*sight.frames[i].picture, found->sensor, fmt::format("camera {}, {}", run.cameras[i], when));
   ImageOutline seen{"seen", "s2", {}}, wanted{"wanted", "s1", {}};
   auto& axis = seen.lines.emplace_back();
   for (const CurvePoint& point : sight.seen[i].points) axis.points.push_back(point.pixel);

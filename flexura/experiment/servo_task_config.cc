@@ -12,6 +12,7 @@
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/direction.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
 
@@ -31,11 +32,10 @@ std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths
   for (std::size_t i = 0; i < spans; ++i) {
     for (int k = 0; k < pieces; ++k) {
       const double share = (k + 0.5) / pieces;
-      const double theta = azimuths[i] + share * (azimuths[i + 1] - azimuths[i]),
-                   q = elevations[i] + share * (elevations[i + 1] - elevations[i]);
-      const Eigen::Vector3d e(std::sin(theta) * std::cos(q), std::cos(theta) * std::cos(q), std::sin(q));
+      const Eigen::Vector2d angles(azimuths[i] + share * (azimuths[i + 1] - azimuths[i]),
+                                   elevations[i] + share * (elevations[i + 1] - elevations[i]));
       const Eigen::Vector3d before = points.back();
-      points.emplace_back(before + length * e);
+      points.emplace_back(before + length * direction_of_angles(angles));
     }
   }
   return points;

@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/servo/measured_places.h"
+#include "flexura/vision/eight_bits.h"
 #include "flexura/vision/picture_file.h"
 
 namespace flexura {

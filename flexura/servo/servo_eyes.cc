@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "flexura/calibrate/eight_bits.h"
 #include "flexura/estimate/picture_sighting.h"
-#include "flexura/vision/picture_file.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -34,7 +33,7 @@ ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>&
       doubt_(doubt),
       prior_(prior_of(believed.arm, std::move(markers))),
       tracker_(prior_, patient_estimator(doubt)) {
-  for (std::size_t i = 0; i < 2; ++i) whites_[i] = (1 << believed.cameras.at(cameras[i]).sensor.bits) - 1;
+  for (std::size_t i = 0; i < 2; ++i) whites_[i] = white_of(believed.cameras.at(cameras[i]).sensor.bits);
 }
 
 Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& view, std::string& reason) {
@@ -46,16 +45,7 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
     config.base = base;
     finders_[i].emplace(Finder{base, ArmFinder(config)});
   }
-  const auto find = [&]<typename Value>(const Image<Value>& image) -> const ArmSighting& {
-    ArmFinder& finder = finders_[i]->finder;
-    if constexpr (sizeof(Value) == 1) {
-      return image.channels() == 1 ? finder.find(image) : finder.find(gray_picture(image));
-    } else {
-      return image.channels() == 1 ? finder.find(image, whites_[i])
-                                   : finder.find(gray_picture(image), whites_[i]);
-    }
-  };
-  const ArmSighting& found = std::visit(find, picture);
+  const ArmSighting& found = finders_[i]->finder.find(picture, whites_[i]);
   reason = found.reason;
   const bool has_bands = has_markers_ && found.is_found();
   Sighting seen =

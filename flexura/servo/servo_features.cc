@@ -10,6 +10,7 @@
 #include "flexura/control/shape_features.h"
 #include "flexura/servo/flow_features.h"
 #include "flexura/servo/measured_places.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -132,7 +133,7 @@ std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const R
                                                    : plane_features(believed.arm, config.points);
   std::array<int, 2> whites{};
   for (std::size_t i = 0; i < 2; ++i)
-    whites[i] = (1 << believed.cameras.at(config.cameras[i]).sensor.bits) - 1;
+    whites[i] = white_of(believed.cameras.at(config.cameras[i]).sensor.bits);
   return std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites);
 }
 

@@ -9,6 +9,7 @@
 #include "flexura/picture/image_file.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/state_message.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -40,7 +41,7 @@ struct PictureRoom::Tools {
   static const std::string& file(Taken& taken, int quality) {
     std::string& file = taken.files[quality];
     if (file.empty())
-      file = jpeg(for_eyes(*taken.picture, taken.shot.shot.sensor->bits), {.quality = quality});
+      file = jpeg(eight_bits(*taken.picture, white_of(taken.shot.shot.sensor->bits)), {.quality = quality});
     return file;
   }
   ViewAnswer pixel(const Shown& shown, int u, int v) {

@@ -94,19 +94,4 @@ Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::in
           {}};
 }
 
-Image<std::uint8_t> for_eyes(const Picture& picture, std::int64_t bits) {
-  const auto* bytes = std::get_if<Image<std::uint8_t>>(&picture);
-  if (bytes != nullptr && bits == 8) return *bytes;
-  return std::visit(
-      [&](const auto& image) {
-        Image<std::uint8_t> shown(image.width(), image.height(), image.channels());
-        const double scale = 255.0 / static_cast<double>((std::int64_t{1} << bits) - 1);
-        for (std::size_t i = 0; i < shown.values().size(); ++i)
-          shown.values()[i] =
-              static_cast<std::uint8_t>(std::min(255.0, std::round(scale * image.values()[i])));
-        return shown;
-      },
-      picture);
-}
-
 }  // namespace flexura

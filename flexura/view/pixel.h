@@ -41,7 +41,4 @@ class PixelEye {
 [[nodiscard]] Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::int64_t number,
                               const std::optional<SeenPixel>& seen);
 
-/// The picture in 8 bits a value, for eyes; itself where it has 8.
-[[nodiscard]] Image<std::uint8_t> for_eyes(const Picture& picture, std::int64_t bits);
-
 }  // namespace flexura

@@ -17,6 +17,7 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/series.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -247,7 +248,7 @@ PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
   return [key, place, recording = recording_] {
     const Recording::LoggedImage image = recording->image(key.camera, static_cast<std::size_t>(place));
     const ViewedRig& rig = *recording->rig();
-    return SeenPicture{key.camera, place, rig.sensors[key.camera].bits,
+    return SeenPicture{key.camera, place, white_of(rig.sensors[key.camera].bits),
                        std::make_shared<const Picture>(read_png(image.png)),
                        rig.reading(key.camera, recording->stance(key.camera, image.time))};
   };

@@ -6,17 +6,16 @@
 #include <cmath>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "flexura/base/image.h"
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/view/answers.h"
-#include "flexura/view/pixel.h"
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/conic.h"
+#include "flexura/vision/eight_bits.h"
 #include "flexura/vision/markers.h"
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/runs.h"
@@ -38,14 +37,11 @@ struct FoundArm {
 };
 
 FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
-  FoundArm found{for_eyes(*seen.picture, seen.bits), rig.believed_view(seen.camera, seen.reading), {}};
+  FoundArm found{eight_bits(*seen.picture, seen.white), rig.believed_view(seen.camera, seen.reading), {}};
   ArmFinderConfig config;
   config.base = found.view.project(rig.model.X_WB.position);
   ArmFinder finder(config);
-  const auto* words = std::get_if<Image<std::uint16_t>>(seen.picture.get());
-  const int white = (1 << seen.bits) - 1;
-  found.arm =
-      words != nullptr ? finder.find(gray_picture(*words), white) : finder.find(gray_picture(found.bytes));
+  found.arm = finder.find(*seen.picture, seen.white);
   return found;
 }
 

@@ -20,8 +20,8 @@ namespace flexura {
 /// A picture, and how the camera that took it was believed to stand.
 struct SeenPicture {
   std::size_t camera = 0;
-  std::int64_t number = 0;  ///< As the client knows it.
-  std::int64_t bits = 8;
+  std::int64_t number = 0;                 ///< As the client knows it.
+  int white = 255;                         ///< The picture's largest value.
   std::shared_ptr<const Picture> picture;  ///< Never null.
   CameraReading reading;                   ///< In the middle of its exposure.
 };

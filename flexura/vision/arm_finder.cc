@@ -12,10 +12,13 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "flexura/vision/axis_curve.h"
 #include "flexura/vision/border.h"
+#include "flexura/vision/eight_bits.h"
+#include "flexura/vision/picture_file.h"
 #include "flexura/vision/runs.h"
 #include "flexura/vision/tube_seeds.h"
 #include "flexura/vision/tube_tracker.h"
@@ -326,15 +329,21 @@ const ArmSighting& ArmFinder::find(const Image<std::uint8_t>& gray) {
 const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
   if (white < 1) throw std::invalid_argument(fmt::format("white at {}: expected at least 1", white));
   Work& work = *work_;
-  work.bytes = Image<std::uint8_t>(gray.width(), gray.height(), gray.channels());
-  const auto from = gray.values();
-  auto to = work.bytes.values();
-  for (std::size_t i = 0; i < from.size(); ++i)
-    to[i] = static_cast<std::uint8_t>(std::min(255, (from[i] * 255 + white / 2) / white));
+  work.bytes = eight_bits(gray, white);
   work.segment(work.bytes);
   if (work.seen.reason.empty()) work.find_axis(gray, scale_of(gray, white));
   work.add_unexplained(work.bytes);
   return work.seen;
+}
+
+const ArmSighting& ArmFinder::find(const Picture& picture, int white) {
+  const auto* words = std::get_if<Image<std::uint16_t>>(&picture);
+  if (words != nullptr)
+    return words->channels() == 1 ? find(*words, white) : find(gray_picture(*words), white);
+  const auto& bytes = std::get<Image<std::uint8_t>>(picture);
+  if (bytes.channels() == 1 && white == 255) return find(bytes);
+  const Image<std::uint8_t> scaled = eight_bits(picture, white);
+  return scaled.channels() == 1 ? find(scaled) : find(gray_picture(scaled));
 }
 
 }  // namespace flexura

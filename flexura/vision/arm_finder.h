@@ -85,6 +85,8 @@ class ArmFinder {
   const ArmSighting& find(const Image<std::uint8_t>& gray);
   /// Of one with more than 8 bits; brightness counts from 0 to `white`.
   const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
+  /// Of any, gray or in colour, whose largest value is `white`.
+  const ArmSighting& find(const Picture& picture, int white);
 
  private:
   struct Work;

@@ -1,0 +1,21 @@
+#include "flexura/math/direction.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace flexura {
+
+Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& e) {
+  return {std::atan2(e.x(), e.y()), std::atan2(e.z(), std::hypot(e.x(), e.y()))};
+}
+
+Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& angles) {
+  return {std::sin(angles[0]) * std::cos(angles[1]), std::cos(angles[0]) * std::cos(angles[1]),
+          std::sin(angles[1])};
+}
+
+double nearest_turn(double angle, double other) {
+  return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
+}
+
+}  // namespace flexura

@@ -239,31 +239,6 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
   });
 }
 
-// A head that says it stands where it was sent, and from its first turn on stands elsewhere.
-class SlippedPan : public HeadPort {
- public:
-  SlippedPan(HeadPort& head, double slip) : head_(head), slip_(slip) {}
-  CommandOutcome command(const HeadState& state) override {
-    is_slipped_ = is_slipped_ || state.pan != 0;
-    HeadState reached = state;
-    if (is_slipped_) reached.pan += slip_;
-    return head_.command(reached);
-  }
-  CommandOutcome halt() override { return head_.halt(); }
-  Outcome<HeadReading> read() override {
-    auto reading = head_.read();
-    if (reading.fault() || !is_slipped_) return reading;
-    HeadReading told = reading.value();
-    told.state.pan -= slip_;
-    return told;
-  }
-
- private:
-  HeadPort& head_;
-  double slip_ = 0;
-  bool is_slipped_ = false;
-};
-
 // A small slip can be made up for by more pictures from where the head stands then.
 TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
   for (const double slip : {0.8 * a_degree, 4 * a_degree}) {

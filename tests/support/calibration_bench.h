@@ -112,4 +112,35 @@ class StuckPan : public HeadPort {
   HeadPort& head_;
 };
 
+/// A head that says it stands where it was sent, and stands elsewhere: from its first turn on, or from when it
+/// is pushed.
+class SlippedPan : public HeadPort {
+ public:
+  enum class Since { first_turn, push };
+
+  SlippedPan(HeadPort& head, double slip, Since since = Since::first_turn)
+      : head_(head), slip_(slip), since_(since) {}
+  void push() { is_slipped_ = true; }
+  CommandOutcome command(const HeadState& state) override {
+    if (since_ == Since::first_turn && state.pan != 0) is_slipped_ = true;
+    HeadState reached = state;
+    if (is_slipped_) reached.pan += slip_;
+    return head_.command(reached);
+  }
+  CommandOutcome halt() override { return head_.halt(); }
+  Outcome<HeadReading> read() override {
+    auto reading = head_.read();
+    if (reading.fault() || !is_slipped_) return reading;
+    HeadReading told = reading.value();
+    told.state.pan -= slip_;
+    return told;
+  }
+
+ private:
+  HeadPort& head_;
+  double slip_ = 0;
+  Since since_;
+  bool is_slipped_ = false;
+};
+
 }  // namespace flexura

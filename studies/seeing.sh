@@ -41,7 +41,8 @@ wait $!
   echo "the answer, and *within 50 %, 95 %* how often the true bends lie in the region that the covariance expects so often"
   echo "(a chi-square test), both of the trusted ones. Quantiles are by nearest rank. The second table has the aims, % of the"
   echo "length, and whether they are met, as the program finds. That of the covariance is that the true bends' regions lie"
-  echo "evenly from 0 to 100 %: chi^2 of ten equal parts, at the bound that even ones exceed once in a thousand."
+  echo "evenly from 0 to 100 %: chi^2 of ten equal parts, at the bound that even ones exceed once in a thousand. The last"
+  echo "table has these regions of the known arm by the noise of the pictures."
   echo
   cat "$parts/shapes"
 } >build/studies/seeing.md

@@ -20,9 +20,13 @@
 namespace flexura {
 namespace {
 
+// The pictures' noise is drawn from 0 to 4 of 255: in steps of 1.
+constexpr std::size_t noise_steps = 4;
+
 struct Tally {
   std::string name;
   std::vector<double> errors, flagged_errors, ratios, shares;
+  std::array<std::vector<double>, noise_steps> shares_by_noise;
 
   void add(const ShapeEstimate& found, const SeenShape& one, bool has_bends) {
     if (!found.is_found) return;
@@ -33,7 +37,9 @@ struct Tally {
     double squares = 0;
     for (const double sigma : found.sigma) squares += sigma * sigma / static_cast<double>(found.sigma.size());
     ratios.push_back(error * truth.length() / std::sqrt(squares));
-    if (has_bends) shares.push_back(expected_share(found, one.bent.state));
+    if (!has_bends) return;
+    shares.push_back(expected_share(found, one.bent.state));
+    shares_by_noise[std::min(static_cast<std::size_t>(one.noise), noise_steps - 1)].push_back(shares.back());
   }
 };
 
@@ -80,6 +86,20 @@ void print_verdicts(const Tally& tally) {
              told(quantile(tally.errors, 0.999), aimed_most, 100, 4), told(square, rare_unevenness, 1, 0));
 }
 
+// What is not known of the model of a border does not fall with the noise, and counts for most where there is
+// little.
+void print_by_noise(const Tally& tally) {
+  fmt::print(
+      "\n| noise, of 255 | trusted | within 50 %, % | within 95 %, % | chi^2 |\n| --- | --- | --- | --- | "
+      "--- "
+      "|\n");
+  for (std::size_t k = 0; k < noise_steps; ++k) {
+    const std::vector<double>& shares = tally.shares_by_noise[k];
+    fmt::print("| {} to {} | {} | {} | {} | {} |\n", k, k + 1, shares.size(), within(shares, 0.5),
+               within(shares, 0.95), shares.empty() ? "" : number(unevenness(shares), 0));
+  }
+}
+
 int study(int cases, std::uint64_t seed) {
   std::array<Tally, 5> tallies;
   constexpr std::array names = {"the arm is known", "base and length are known", "the base is known",
@@ -98,15 +118,15 @@ int study(int cases, std::uint64_t seed) {
         unknown_arm({}, truth.length()),
         unknown_arm({}, {}),
     };
+    std::vector<Sighting> sightings;
+    for (std::size_t j = 0; j < 2; ++j) {
+      ArmFinderConfig config;
+      // Which end is the base is told: an unknown arm may lie with it upwards.
+      config.base = one.views[j].project(base);
+      ArmFinder finder(config);
+      sightings.push_back(sighting_of(finder.find(one.pictures[j]), one.views[j]));
+    }
     for (std::size_t k = 0; k < tallies.size(); ++k) {
-      std::vector<Sighting> sightings;
-      for (std::size_t j = 0; j < 2; ++j) {
-        ArmFinderConfig config;
-        // Which end is the base is told: an unknown arm may lie with it upwards.
-        config.base = one.views[j].project(base);
-        ArmFinder finder(config);
-        sightings.push_back(sighting_of(finder.find(one.pictures[j]), one.views[j]));
-      }
       ShapeEstimator estimator(priors[k]);
       const ShapeEstimate found = estimator.estimate(sightings);
       tallies[k].add(found, one, k == 0);
@@ -129,6 +149,7 @@ int study(int cases, std::uint64_t seed) {
       "|\n",
       100 * aimed_rms, 100 * aimed_rms, 100 * aimed_most, rare_unevenness);
   for (const Tally& tally : tallies) print_verdicts(tally);
+  print_by_noise(tallies.front());
   return 0;
 }
 

@@ -25,8 +25,8 @@ EtalonFigure::EtalonFigure(const EtalonConfig& etalon)
       // The middle of what is seen of a line that is wide lies a little deeper than the line's own.
       red_radius_(etalon.radius * std::cos(0.5 * etalon.line_width / etalon.radius)) {}
 
-std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number,
-                                             const Eigen::Vector3d& p_WC) const {
+std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number, const Eigen::Vector3d& p_WC,
+                                             RimHalf half) const {
   const Eigen::Vector3d p_EC = X_WE_.inverse() * p_WC;
   const double distance = std::hypot(p_EC.x(), p_EC.z());
   if (!(distance > radius_)) return std::nullopt;
@@ -34,11 +34,10 @@ std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number
   const auto along = [&](double angle, double radius) {
     return EtalonLine{X_WE_ * (radius * outwards(angle)), up()};
   };
-  // Of a rim at this height the near half ends the silhouette as long as the camera does not see the end's
-  // face, else the far one. Where it is measured, a quarter of the width beside the middle, it is as far
-  // around the rim to either side; halfway between these two places lies what their mean shows.
-  const auto rim = [&](double height, bool is_near) {
-    const double side = is_near ? 1 : -1;
+  // Where a rim is measured, a quarter of the width beside the middle, it is as far around the rim to either
+  // side; halfway between these two places lies what their mean shows.
+  const auto rim = [&](double height) {
+    const double side = (half == RimHalf::seen ? half_seen(part, p_WC) : half) == RimHalf::near ? 1 : -1;
     double around = std::numbers::pi / 6;
     for (int i = 0; i < 20; ++i)
       around = std::asin(std::clamp(0.5 * (distance - side * radius_ * std::cos(around)) /
@@ -54,17 +53,24 @@ std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number
     case EtalonPart::right_side:
       return along(towards + grazing, radius_);
     case EtalonPart::upper_rim:
-      return rim(height_, p_EC.y() < height_);
+      return rim(height_);
     case EtalonPart::lower_rim:
-      return rim(0, p_EC.y() > 0);
+      return rim(0);
     case EtalonPart::red_line:
       break;
   }
   return along(quarter * static_cast<double>(number), red_radius_);
 }
 
+RimHalf EtalonFigure::half_seen(EtalonPart part, const Eigen::Vector3d& p_WC) const {
+  const double up = (X_WE_.inverse() * p_WC).y();
+  if (part == EtalonPart::upper_rim) return up < height_ ? RimHalf::near : RimHalf::far;
+  if (part == EtalonPart::lower_rim) return up > 0 ? RimHalf::near : RimHalf::far;
+  return RimHalf::seen;
+}
+
 std::optional<Eigen::Vector3d> EtalonFigure::nearest(const EtalonPoint& seen, const View& view) const {
-  const auto known = line(seen.part, seen.number, view.X_WC.position);
+  const auto known = line(seen.part, seen.number, view.X_WC.position, seen.half);
   const auto ray = view.lens.unproject(seen.pixel);
   if (!known || !ray) return std::nullopt;
   // The shortest way between the line and the ray of sight.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -21,13 +22,23 @@ enum class EtalonPart {
   red_line,
 };
 
+/// Which half of a rim ends the silhouette: the one nearer to the camera as long as this does not see the
+/// end's face. Where a camera passes the height of a rim, it is the other from then on, and how the
+/// silhouette moves with the camera jumps: by as much as the two halves' distances differ.
+enum class RimHalf : std::uint8_t {
+  seen,  ///< The one that a camera sees from where it is.
+  near,
+  far,
+};
+
 /// A point of a picture at which a part of the cylinder is seen. It lies on the part's image, nobody knows
 /// where along it.
 struct EtalonPoint {
   EtalonPart part = EtalonPart::left_side;
   std::size_t number = 0;  ///< Of a red line: 0 lies towards E's +Z, 1 towards +X, and so on.
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double sigma = 0;  ///< Across the part's image, px.
+  double sigma = 0;              ///< Across the part's image, px.
+  RimHalf half = RimHalf::seen;  ///< Of a rim, against which the point is held.
 };
 
 /// A line of W that a camera sees where it sees a part.
@@ -42,9 +53,13 @@ class EtalonFigure {
 
   /// The line that a camera at p_WC sees of a part. As the camera moves, sides and rims wander along the
   /// cylinder's surface, which sight grazes there: to first order that moves nothing in the picture, so that
-  /// the line may be taken to rest. None for a camera within the cylinder's radius.
+  /// the line may be taken to rest. None for a camera within the cylinder's radius. `half` says of which half
+  /// of a rim; of other parts nothing.
   [[nodiscard]] std::optional<EtalonLine> line(EtalonPart part, std::size_t number,
-                                               const Eigen::Vector3d& p_WC) const;
+                                               const Eigen::Vector3d& p_WC,
+                                               RimHalf half = RimHalf::seen) const;
+  /// The half of a rim, near or far, that a camera at p_WC sees; `seen` for other parts, which have none.
+  [[nodiscard]] RimHalf half_seen(EtalonPart part, const Eigen::Vector3d& p_WC) const;
   /// The point of that line (of a rim: of its tangent) nearest to the ray of sight through the pixel. None
   /// likewise, or where the lens sees nothing there.
   [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const EtalonPoint& seen, const View& view) const;

@@ -196,6 +196,7 @@ RigCalibration calibrate_rig(RigProblem& problem, const RigCalibrationConfig& co
     if (result.starts == 1 || found.cost < best.cost) best = std::move(found);
     if (is_last) break;
   }
+  (void)problem.choose_rims(best.x);
   (void)problem.linearise(best.x);
   best = without_doubtful(problem, std::move(best), config);
   result.x = best.x, result.doubts = problem.doubts();

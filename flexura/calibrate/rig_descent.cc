@@ -82,8 +82,6 @@ class Descent {
   RigProblem& problem_;
   const RigDescentConfig& config_;
   double damping_ = 1e-4;
-  double promised_ =
-      std::numeric_limits<double>::infinity();  // By how much the last step would lower the cost.
   Eigen::VectorXd gradient_, move_, there_;
   Eigen::MatrixXd normal_, damped_;
 };
@@ -91,7 +89,20 @@ class Descent {
 }  // namespace
 
 RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start, const RigDescentConfig& config) {
-  return Descent(problem, config).run(start);
+  // A camera at the height of a rim sees now this half of it, now that one; were they changed within a
+  // descent, its steps would be torn to and fro. Where they still change in the end it stands at that very
+  // height.
+  constexpr int most_rounds = 3;
+  RigDescent result{.x = start};
+  int iterations = 0;
+  for (int round = 0; round < most_rounds; ++round) {
+    const bool is_changed = problem.choose_rims(result.x);
+    if (round > 0 && !is_changed) break;
+    result = Descent(problem, config).run(result.x);
+    iterations += result.iterations;
+  }
+  result.iterations = iterations;
+  return result;
 }
 
 }  // namespace flexura

@@ -3,11 +3,30 @@
 #include <cmath>
 #include <utility>
 
+#include "flexura/calibrate/etalon_figure.h"
+
 namespace flexura {
 
 RigProblem::RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen)
     : prior_(prior), variables_(guess, prior, seen), seen_(std::move(seen)), rows_(seen_.images.size()) {
   for (const RigImage& image : seen_.images) is_doubted_.emplace_back(image.things(), false);
+}
+
+bool RigProblem::choose_rims(const Eigen::VectorXd& x) {
+  if (!seen_.etalon || !variables_.is_rig(x)) return false;
+  const EtalonFigure figure(*seen_.etalon);
+  const RigProjector projector(variables_, x);
+  bool is_changed = false;
+  for (RigImage& image : seen_.images) {
+    if (image.etalon.empty()) continue;
+    const Eigen::Vector3d p_WC = projector.view(image.stance).X_WC.position;
+    for (EtalonPoint& point : image.etalon) {
+      const RimHalf half = figure.half_seen(point.part, p_WC);
+      is_changed |= half != point.half;
+      point.half = half;
+    }
+  }
+  return is_changed;
 }
 
 bool RigProblem::linearise(const Eigen::VectorXd& x) {

@@ -29,6 +29,9 @@ class RigProblem {
   [[nodiscard]] const RigPrior& prior() const { return prior_; }
   [[nodiscard]] const RigObservations& observations() const { return seen_; }
 
+  /// From now on points of the cylinder's rims are held against the halves of these that the cameras of the
+  /// rig at x see (RimHalf), wherever a camera stands then. Whether this changed anything.
+  bool choose_rims(const Eigen::VectorXd& x);
   /// Linearised at x. False where the rig would not show what was seen.
   [[nodiscard]] bool linearise(const Eigen::VectorXd& x);
   [[nodiscard]] const std::vector<RigRows>& rows() const { return rows_; }

@@ -208,7 +208,7 @@ bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
     if (!projection) return false;
     shown.pixel = projection->pixel;
     add_camera_slots(*projection, image.stance, shown);
-    const auto line = etalon_->line(seen.part, seen.number, view.X_WC.position);
+    const auto line = etalon_->line(seen.part, seen.number, view.X_WC.position, seen.half);
     const Eigen::Vector2d along = (projection->by_point * line->direction).normalized();
     set_row(row++, shown, {-along.y(), along.x()}, seen.pixel, seen.sigma, rows);
     rows.sizes.push_back(1);

@@ -19,13 +19,14 @@ struct SeenShape {
   BentArm bent;
   std::array<View, 2> views;
   std::array<Image<std::uint8_t>, 2> pictures;
+  double noise = 0;  ///< Of the pictures, standard deviation in values of 8 bits.
 };
 
 inline SeenShape random_seen_shape(TestRandom& random) {
   SeenArmOptions options;
   options.noise = random.uniform(0, 4), options.psf = random.uniform(0.5, 1.2);
   RandomArm arm = random_arm(random, options);
-  SeenShape result{arm.bent, {}, {}};
+  SeenShape result{arm.bent, {}, {}, options.noise};
   const Backbone backbone = arm.bent.backbone();
   const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
   const double turn = random.uniform(0, 2 * std::numbers::pi);

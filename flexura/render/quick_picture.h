@@ -67,15 +67,30 @@ class QuickPicture {
     struct Edge {
       double value = 0, by_u = 0, by_v = 0, margin = 0;
     } edges[4];
+    // One over the depth of what is seen x and y px from (u0, v0). In double precision: where two screens
+    // cross at a small angle it is their difference that counts.
+    struct Nearness {
+      double value = 0, by_u = 0, by_v = 0;
+      [[nodiscard]] double at(double x, double y) const { return value + by_u * x + by_v * y; }
+    } nearness;
     std::vector<float> light;  // A row of its light, if that is plain.
   };
 
-  // A pixel of the current row that one edge of a screen divides: the other part's area and centroid (from
-  // the pixel's middle).
+  // Of a pixel: its share, and its centroid from the pixel's middle.
+  struct PixelPart {
+    double area = 0;
+    Eigen::Vector2d centroid = {0, 0};
+    [[nodiscard]] PixelPart rest() const {
+      if (!(area < 1)) return {};
+      return {1 - area, -area / (1 - area) * centroid};
+    }
+  };
+
+  // A pixel of the current row that one edge of a screen divides, and its other part.
   struct ScreenEdge {
     int u = 0;
-    double nearness = 0, rest_area = 0;
-    Eigen::Vector2d rest = {0, 0};
+    double nearness = 0;
+    PixelPart rest;
     bool is_full = false;           // A screen is seen in that part.
     bool is_before_screen = false;  // One that is drawn later than this one: `light` is what both make.
     float light[3];
@@ -121,8 +136,11 @@ class QuickPicture {
   void draw_around_crossing(const PixelRange& inner, SpanRow& row);
   void lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
                         const SpanRow& row);
-  void light_of(const SpanScreen& screen, double x, double y, float (&light)[3]) const;
-  void draw_edge(const Panel& panel, int u, SpanRow& row);
+  [[nodiscard]] bool lay_behind(ScreenEdge& edge, const Panel& panel, bool is_within, const SpanRow& row);
+  [[nodiscard]] static PixelPart part_above(const Eigen::Vector2d& slope, double value);
+  void light_of(const Panel& panel, double x, double y, float (&light)[3]) const;
+  void mix(const Panel& panel, int u, const PixelPart& part, const Panel* behind, SpanRow& row) const;
+  void draw_edge(std::size_t index, int u, SpanRow& row);
 
   void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
   void divide(const Skin& skin);

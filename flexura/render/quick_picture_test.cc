@@ -206,6 +206,87 @@ TEST(QuickPicture, DrawsScreensThatOverlap) {
   });
 }
 
+// The two ways' pictures of screens, whose light may differ by `most`.
+void expect_agreement_on(const Scene& scene, const View& view, double most) {
+  Renderer renderer;
+  LightImage exact, quick;
+  renderer.render(scene, view, PixelKind::gray, exact, true);
+  renderer.render(scene, view, PixelKind::gray, quick);
+  EXPECT_LT(compare(exact, quick).worst, most);
+  EXPECT_EQ(compare(exact, quick).bad_depths, 0);
+}
+
+Screen gray_screen(const Eigen::Vector3d& position, const std::array<double, 2>& size, double brightness) {
+  Screen screen;
+  screen.X_WS.position = position, screen.size = size, screen.brightness = Color::Constant(brightness);
+  screen.gradient = {0, 0}, screen.falloff = 0;
+  return screen;
+}
+
+// What a third screen's edge leaves of a pixel in which two cross is no one's mean.
+TEST(QuickPicture, DrawsAThirdScreenBeforeTwoThatCross) {
+  const View view = pinhole_view(look_at({0, 0, 2}, {0, 0, 0}), 160, 120, 200);
+  for_random_cases(40, [&](TestRandom& random) {
+    Scene scene;
+    scene.screens = {gray_screen({0, 0, 0}, {0.8, 0.8}, 0), gray_screen({0, 0, 0}, {0.8, 0.8}, 1),
+                     gray_screen({0, 0, 0.8}, {0.3, 0.1}, random.uniform(0, 1))};
+    scene.screens[1].X_WS.rotation = so3_exp({random.uniform(-0.1, 0.1), random.uniform(0.3, 1.2), 0});
+    // One of its edges along the crossing, or across.
+    scene.screens[2].X_WS.position.x() = random.uniform(-0.01, 0.01) + (random.integer(0, 1) == 1 ? 0.15 : 0);
+    expect_agreement_on(scene, view, 0.002);
+  });
+}
+
+TEST(QuickPicture, DrawsScreensOfOnePlane) {
+  for (const double distance : {1.2, 1.5, 2.0, 2.5, 3.0, 3.1, 3.7, 4.0})
+    for (const double turn : {0.0, 1e-17, 1e-12, 1e-9}) {
+      const View view = pinhole_view(look_at({0, 0, distance}, {0, 0, 0}), 80, 60, 60 * distance);
+      Scene scene;
+      scene.screens = {gray_screen({0, 0, 0}, {0.8, 0.4}, 0.3), gray_screen({0.1, 0.05, 0}, {0.2, 0.8}, 1)};
+      scene.screens[1].X_WS.rotation = so3_exp({0, turn, 0});
+      SCOPED_TRACE(testing::Message() << distance << " m, " << turn);
+      expect_agreement_on(scene, view, 0.002);
+    }
+}
+
+// The line is where doubles have it.
+TEST(QuickPicture, DrawsScreensThatCrossAtASmallAngle) {
+  for_random_cases(40, [&](TestRandom& random) {
+    const View view = pinhole_view(look_at(Eigen::Vector3d(0, 0, 2) + random.vector<3>(-0.3, 0.3), {0, 0, 0}),
+                                   160, 120, 800);
+    Scene scene;
+    scene.screens = {gray_screen({0, 0, 0}, {0.8, 0.8}, 0), gray_screen({0, 0, 0}, {0.8, 0.8}, 1)};
+    scene.screens[1].X_WS.rotation = so3_exp({0, random.uniform(0.001, 0.05), random.uniform(-0.5, 0.5)});
+    expect_agreement_on(scene, view, 0.002);
+  });
+}
+
+// Light that changes by a tenth of full scale from pixel to pixel is taken at each part's centroid.
+TEST(QuickPicture, TakesLightWhereThePartsOfAPixelAre) {
+  const View view = pinhole_view(look_at({0, 0, 2}, {0, 0, 0}), 80, 60, 50);
+  for_random_cases(40, [&](TestRandom& random) {
+    Scene scene;
+    scene.screens = {gray_screen({0, 0, -0.3}, {0.9, 0.9}, 0.5), gray_screen({0, 0, 0}, {0.9, 0.5}, 0.5)};
+    for (Screen& screen : scene.screens) {
+      screen.X_WS.rotation = so3_exp(random.vector<3>(-0.5, 0.5));
+      screen.gradient = {random.uniform(-1, 1), random.uniform(-1, 1)};
+    }
+    expect_agreement_on(scene, view, 0.002);
+  });
+}
+
+// Whose plane the camera is in: it shows nothing of itself, and is compared with nothing.
+TEST(QuickPicture, DrawsScreensBesideOneSeenFromItsEdge) {
+  const View view = pinhole_view(look_at({0, 0, 2}, {0, 0, 0}), 80, 60, 100);
+  for (const bool is_first : {false, true}) {
+    Scene scene;
+    scene.screens = {gray_screen({0, 0, 0}, {0.8, 0.8}, 1), gray_screen({0, 0, 0.5}, {0.8, 0.8}, 0.5)};
+    scene.screens[is_first ? 0 : 1].X_WS.rotation.col(0) = Eigen::Vector3d::UnitZ();
+    scene.screens[is_first ? 0 : 1].X_WS.rotation.col(2) = -Eigen::Vector3d::UnitX();
+    expect_agreement_on(scene, view, 0.002);
+  }
+}
+
 // A disk on the joint of two sections leaves these to the quick way.
 TEST(QuickPicture, DrawsSectionsBesideDisks) {
   Arm arm;

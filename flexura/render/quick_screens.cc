@@ -25,12 +25,17 @@ void QuickPicture::plan_screens(const Stage& stage) {
     if (panel_count_ == panels_.size()) panels_.emplace_back();
     Panel& panel = panels_[panel_count_++];
     fill_panel(stage, part, panel);
-    const Linear& nearness = panel.screen.nearness;
-    // Within a pixel of a line where two screens meet their nearness differs by less than both change.
-    const auto change = static_cast<float>(1.2 * pixel_ * std::max(intrinsics_.fx, intrinsics_.fy)) *
-                        std::hypot(nearness.by_u, nearness.by_v);
-    panel.screen.least_distance = change + steepest;
-    steepest = std::max(steepest, change);
+    const Panel::Nearness& nearness = panel.nearness;
+    // Within a pixel of a line where two screens meet their nearness differs by less than both change. Depths
+    // are kept in single precision.
+    const double change =
+        1.2 * pixel_ * std::max(intrinsics_.fx, intrinsics_.fy) * std::hypot(nearness.by_u, nearness.by_v);
+    const double largest = std::abs(nearness.value) + std::abs(nearness.by_u) * width_ +
+                           std::abs(nearness.by_v) * static_cast<double>(height_);
+    constexpr double rounding = 1e-6;
+    const auto uncertain = static_cast<float>(change + rounding * largest);
+    panel.screen.least_distance = uncertain + steepest;
+    steepest = std::max(steepest, uncertain);
   }
 }
 
@@ -46,13 +51,16 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
     return {static_cast<float>(by.dot(straight_ray(intrinsics_, u0, v0).direction)),
             static_cast<float>(by.x() / intrinsics_.fx), static_cast<float>(by.y() / intrinsics_.fy)};
   };
-  screen.nearness = linear(face.normal / face.normal.dot(face.corners[0]));
+  const Eigen::Vector3d by = face.normal / face.normal.dot(face.corners[0]);
+  screen.nearness = linear(by);
+  panel.nearness = {by.dot(straight_ray(intrinsics_, u0, v0).direction), by.x() / intrinsics_.fx,
+                    by.y() / intrinsics_.fy};
   const Eigen::Vector3d middle = 0.5 * (face.corners[0] + face.corners[2]);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Eigen::Vector3d way = 0.5 * (face.corners[axis == 0 ? 1 : 3] - face.corners[0]);
-    const Eigen::Vector3d by = way / way.squaredNorm();
-    screen.place[axis] = linear(by);
-    screen.middle[axis] = static_cast<float>(by.dot(middle));
+    const Eigen::Vector3d along = way / way.squaredNorm();
+    screen.place[axis] = linear(along);
+    screen.middle[axis] = static_cast<float>(along.dot(middle));
     screen.gradient[axis] = static_cast<float>(look.gradient[axis]);
   }
   screen.falloff = static_cast<float>(look.falloff);
@@ -114,8 +122,8 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
     clear(inner.end, width_, row);
   }
   lay_behind_edges(panel, outer, inner, row);
-  for (int u = outer.begin; u < inner.begin; ++u) draw_edge(panel, u, row);
-  for (int u = inner.end; u < outer.end; ++u) draw_edge(panel, u, row);
+  for (int u = outer.begin; u < inner.begin; ++u) draw_edge(index, u, row);
+  for (int u = inner.end; u < outer.end; ++u) draw_edge(index, u, row);
   if (inner.begin == inner.end) return;
   const Linear& nearness = panel.screen.nearness;
   const float here = nearness.value + nearness.by_v * (static_cast<float>(row.v) - panel.screen.v0);
@@ -143,12 +151,18 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
 
 // The second panel. Where it meets the first one nearness is as large: a straight line.
 void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
-  const SpanScreen &screen = panels_[1].screen, &other = panels_[0].screen;
+  const Panel &panel = panels_[1], &other = panels_[0];
+  const SpanScreen& screen = panel.screen;
   const double y = row.v - static_cast<double>(screen.v0), middle = static_cast<double>(screen.u0);
-  const double value = value_at(screen.nearness, 0, y) - value_at(other.nearness, 0, y),
-               by_u = static_cast<double>(screen.nearness.by_u) - static_cast<double>(other.nearness.by_u),
-               by_v = static_cast<double>(screen.nearness.by_v) - static_cast<double>(other.nearness.by_v);
+  const double value = panel.nearness.at(0, y) - other.nearness.at(0, y),
+               by_u = panel.nearness.by_u - other.nearness.by_u,
+               by_v = panel.nearness.by_v - other.nearness.by_v;
   const auto margin = static_cast<double>(screen.least_distance);
+  const double slope = std::hypot(by_u, by_v);
+  if (!std::isfinite(value + slope + margin)) {  // The other one is seen from its edge.
+    for (int u = inner.begin; u < inner.end; ++u) leave(u, row.v);
+    return;
+  }
   const double side = margin / std::abs(by_u), at = middle - value / by_u;
   PixelRange crossing = by_u == 0
                             ? PixelRange{inner.begin, std::abs(value) < margin ? inner.end : inner.begin}
@@ -157,65 +171,89 @@ void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
   crossing.end = std::clamp(crossing.end, crossing.begin, inner.end);
   kernels_->screen(screen, inner.begin, crossing.begin, false, row);
   kernels_->screen(screen, crossing.end, inner.end, false, row);
-  const Eigen::Vector2d slope(by_u, by_v);
+  // Screens that stand in one plane, but for rounding, meet everywhere.
+  constexpr double rounding = 1e-9;
+  const bool is_one_plane = slope <= rounding * panel.nearness.at(0, y);
   for (int u = crossing.begin; u < crossing.end; ++u) {
     std::uint8_t& what = state(u, row.v);
     if ((what & (state_exact | state_edge)) != 0) continue;
     const double x = u - middle, here = value + by_u * x;
     constexpr double corner = 0.75;  // px from the middle, and more.
     const bool is_first_there = !std::isinf(row.depth[u]),
-               is_divided = std::abs(here) < corner * slope.norm();
-    SquarePart part;
-    part.area = here > 0 || !is_first_there ? 1 : 0;
-    if (is_first_there && is_divided) part = part_beyond(0.5, slope.normalized(), -here / slope.norm());
-    if (here == 0 && is_first_there && !is_divided) {
+               is_divided = is_first_there && std::abs(here) < corner * slope;
+    if (is_first_there && (is_one_plane || (here == 0 && !is_divided))) {
       leave(u, row.v);
       continue;
     }
+    PixelPart part{here > 0 || !is_first_there ? 1.0 : 0.0};
+    if (is_divided) part = part_above({by_u, by_v}, here);
     if (part.area > 0 && part.area < 1)
       what = static_cast<std::uint8_t>(what | state_edge), row.has_edge = true;
-    if (here > 0 || part.area == 1) row.depth[u] = static_cast<float>(1 / value_at(screen.nearness, x, y));
-    if (!(part.area > 0)) continue;
-    float seen[3];
-    light_of(screen, x + part.centroid.x(), y + part.centroid.y(), seen);
-    float* const light = row.light + static_cast<std::size_t>(u) * channels_;
-    for (std::size_t c = 0; c < channels_; ++c)
-      light[c] += static_cast<float>(part.area) * (seen[c] - light[c]);
+    if (here > 0 || part.area == 1) row.depth[u] = static_cast<float>(1 / panel.nearness.at(x, y));
+    if (part.area > 0) mix(panel, u, part, is_first_there ? &other : nullptr, row);
   }
 }
 
-// What of the panel is seen beside the edges of those before it. One edge before one panel, that is: other
-// pixels are left.
+// Where a linear function of the image, which is `value` in a pixel's middle, is above 0 in the pixel.
+QuickPicture::PixelPart QuickPicture::part_above(const Eigen::Vector2d& slope, double value) {
+  const SquarePart part = part_beyond(0.5, slope.normalized(), -value / slope.norm());
+  return {part.area, part.centroid};
+}
+
+// Lays the panel's part of a pixel over what is there: one panel's light all over it, or nothing's.
+void QuickPicture::mix(const Panel& panel, int u, const PixelPart& part, const Panel* behind,
+                       SpanRow& row) const {
+  const double x = u - static_cast<double>(panel.screen.u0), y = row.v - static_cast<double>(panel.screen.v0);
+  const PixelPart rest = part.rest();
+  float* const light = row.light + static_cast<std::size_t>(u) * channels_;
+  float seen[3], left[3] = {light[0], light[channels_ > 1 ? 1 : 0], light[channels_ > 2 ? 2 : 0]};
+  light_of(panel, x + part.centroid.x(), y + part.centroid.y(), seen);
+  if (behind != nullptr && rest.area > 0)
+    light_of(*behind, x + rest.centroid.x(), y + rest.centroid.y(), left);
+  for (std::size_t c = 0; c < channels_; ++c)
+    light[c] = left[c] + static_cast<float>(part.area) * (seen[c] - left[c]);
+}
+
+// What of the panel is seen beside the edges of those before it.
 void QuickPicture::lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
                                     const SpanRow& row) {
-  std::erase_if(screen_edges_, [&](ScreenEdge& edge) {
-    if (edge.u < outer.begin || edge.u >= outer.end) return false;
-    const SpanScreen& screen = panel.screen;
-    const double x = edge.u - static_cast<double>(screen.u0), y = row.v - static_cast<double>(screen.v0);
-    const double before = edge.nearness - value_at(screen.nearness, x, y);
+  std::size_t kept = 0;
+  for (ScreenEdge& edge : screen_edges_) {
     const bool is_within = edge.u >= inner.begin && edge.u < inner.end;
-    if (!is_within || edge.is_full || std::abs(before) < static_cast<double>(screen.least_distance)) {
-      leave(edge.u, row.v);
-      return true;
-    }
-    std::uint8_t& what = state(edge.u, row.v);
-    if (before < 0) {
-      what = static_cast<std::uint8_t>(what & ~state_edge);
-      return true;
-    }
-    float light[3];
-    light_of(screen, x + edge.rest.x(), y + edge.rest.y(), light);
-    const float* const here = &picture_->light.at(edge.u, row.v);
-    for (std::size_t c = 0; c < channels_; ++c)
-      edge.light[c] = here[c] + static_cast<float>(edge.rest_area) * (light[c] - background_[c]);
-    edge.is_before_screen = edge.is_full = true;
+    if (edge.u < outer.begin || edge.u >= outer.end || lay_behind(edge, panel, is_within, row))
+      screen_edges_[kept++] = edge;
+  }
+  screen_edges_.resize(kept);
+}
+
+// Beside one edge, of a panel that is seen in all of its pixel or not at all; other pixels are left. Whether
+// the edge is still seen.
+bool QuickPicture::lay_behind(ScreenEdge& edge, const Panel& panel, bool is_within, const SpanRow& row) {
+  const double x = edge.u - static_cast<double>(panel.screen.u0),
+               y = row.v - static_cast<double>(panel.screen.v0);
+  const double before = edge.nearness - panel.nearness.at(x, y);
+  if (!is_within || edge.is_full || !(std::abs(before) >= static_cast<double>(panel.screen.least_distance))) {
+    leave(edge.u, row.v);
     return false;
-  });
+  }
+  if (before < 0) {
+    std::uint8_t& what = state(edge.u, row.v);
+    what = static_cast<std::uint8_t>(what & ~state_edge);
+    return false;
+  }
+  float light[3];
+  light_of(panel, x + edge.rest.centroid.x(), y + edge.rest.centroid.y(), light);
+  const float* const here = &picture_->light.at(edge.u, row.v);
+  for (std::size_t c = 0; c < channels_; ++c)
+    edge.light[c] = here[c] + static_cast<float>(edge.rest.area) * (light[c] - background_[c]);
+  edge.is_before_screen = edge.is_full = true;
+  return true;
 }
 
 // The panel's light x and y px from its (u0, v0).
-void QuickPicture::light_of(const SpanScreen& screen, double x, double y, float (&light)[3]) const {
-  const double depth = 1 / value_at(screen.nearness, x, y);
+void QuickPicture::light_of(const Panel& panel, double x, double y, float (&light)[3]) const {
+  const SpanScreen& screen = panel.screen;
+  const double depth = 1 / panel.nearness.at(x, y);
   double rise = 1, square = 0;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double place =
@@ -227,11 +265,12 @@ void QuickPicture::light_of(const SpanScreen& screen, double x, double y, float 
   for (std::size_t c = 0; c < channels_; ++c) light[c] = screen.brightness[c] * static_cast<float>(factor);
 }
 
-// A pixel that one edge divides, before nothing or before one panel; any other is left.
-void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
+// A pixel that one edge divides, before nothing or, of the second panel, before the first; any other is left.
+void QuickPicture::draw_edge(std::size_t index, int u, SpanRow& row) {
+  const Panel& panel = panels_[index];
   const Panel::Edge* here = nullptr;
   double value_here = 0;
-  bool is_one = (state(u, row.v) & state_exact) == 0;
+  bool is_one = (state(u, row.v) & (state_exact | state_edge)) == 0;
   for (const Panel::Edge& edge : panel.edges) {
     const double value = edge.value + edge.by_v * row.v + edge.by_u * u;
     if (value >= edge.margin) continue;
@@ -241,20 +280,18 @@ void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   }
   const SpanScreen& screen = panel.screen;
   const double x = u - static_cast<double>(screen.u0), y = row.v - static_cast<double>(screen.v0);
-  const double nearness = value_at(screen.nearness, x, y);
+  const double nearness = panel.nearness.at(x, y);
   const bool is_before_nothing = std::isinf(row.depth[u]);
   const double before = nearness - 1 / static_cast<double>(row.depth[u]);
   const bool is_clear = is_before_nothing || std::abs(before) > static_cast<double>(screen.least_distance);
-  if (!is_one || here == nullptr || !(nearness > 0) || !is_clear) {
+  if (!is_one || here == nullptr || !(nearness > 0) || !std::isfinite(nearness) || !is_clear) {
     leave(u, row.v);
     return;
   }
   if (!is_before_nothing && before < 0) return;
-  const Eigen::Vector2d slope(here->by_u, here->by_v);
-  const SquarePart part = part_beyond(0.5, slope.normalized(), -value_here / slope.norm());
-  const double right = x + part.centroid.x(), down = y + part.centroid.y();
-  const double depth = 1 / value_at(screen.nearness, right, down);
-  if (!(depth > 0) || !std::isfinite(depth)) {
+  const PixelPart part = part_above({here->by_u, here->by_v}, value_here);
+  const double there = panel.nearness.at(x + part.centroid.x(), y + part.centroid.y());
+  if (!(there > 0) || !std::isfinite(1 / there) || (!is_before_nothing && index > 1)) {
     leave(u, row.v);
     return;
   }
@@ -262,15 +299,9 @@ void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   what = static_cast<std::uint8_t>(what | state_edge);
   row.has_edge = true;
   ScreenEdge& edge = screen_edges_.emplace_back();
-  edge.u = u, edge.nearness = nearness, edge.is_full = !is_before_nothing, edge.rest_area = 1 - part.area;
-  if (edge.rest_area > 0) edge.rest = -part.area / edge.rest_area * part.centroid;
+  edge.u = u, edge.nearness = nearness, edge.is_full = !is_before_nothing, edge.rest = part.rest();
   if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
-  if (!(part.area > 0)) return;
-  float seen[3];
-  light_of(screen, right, down, seen);
-  float* const light = row.light + static_cast<std::size_t>(u) * channels_;
-  for (std::size_t c = 0; c < channels_; ++c)
-    light[c] += static_cast<float>(part.area) * (seen[c] - light[c]);
+  if (part.area > 0) mix(panel, u, part, is_before_nothing ? nullptr : &panels_[0], row);
 }
 
 }  // namespace flexura

@@ -92,13 +92,26 @@ void add_arm(Bytes& bytes, Scene& scene) {
   if (bytes.choice(3) == 0) scene.arm.tip = TipKind::round;
 }
 
-void add_stand(Bytes& bytes, Scene& scene) {
-  if (bytes.choice(2) == 0) {
-    Screen screen;
-    screen.X_WS = {so3_exp(bytes.vector(-2, 2)), bytes.vector(-2, 2)};
-    screen.size = {bytes.number(0.1, 3), bytes.number(0.1, 3)};
-    scene.screens.push_back(screen);
+void add_screen(Bytes& bytes, Scene& scene) {
+  Screen& screen = scene.screens.emplace_back();
+  screen.X_WS = {so3_exp(bytes.vector(-2, 2)), bytes.vector(-2, 2)};
+  screen.size = {bytes.number(0.1, 3), bytes.number(0.1, 3)};
+}
+
+// Before or behind others, across them, in their plane.
+void add_more_screens(Bytes& bytes, Scene& scene) {
+  for (int count = bytes.choice(8) - 4; count > 0; --count) {
+    add_screen(bytes, scene);
+    Screen& screen = scene.screens.back();
+    screen.brightness = Color::Constant(bytes.choice(256) / 255.0);
+    for (double& gradient : screen.gradient) gradient = bytes.choice(201) / 100.0 - 1;
+    if (bytes.choice(4) == 0) screen.X_WS.rotation = scene.screens.front().X_WS.rotation;
+    if (bytes.choice(4) == 0) screen.X_WS.position = scene.screens.front().X_WS.position;
   }
+}
+
+void add_stand(Bytes& bytes, Scene& scene) {
+  if (bytes.choice(2) == 0) add_screen(bytes, scene);
   if (bytes.choice(3) == 0) {
     Etalon etalon;
     etalon.X_WE = {so3_exp(bytes.vector(-2, 2)), bytes.vector(-1, 1)};
@@ -125,6 +138,7 @@ void add_stand(Bytes& bytes, Scene& scene) {
     }
   }
   scene.light.shadow = bytes.choice(4) == 0 ? 0.5 : 0;
+  add_more_screens(bytes, scene);
 }
 
 // Somewhere on the arm, or in the middle of what else stands there.
@@ -165,7 +179,10 @@ View view_from(Bytes& bytes, const Scene& scene) {
 // No surface can be brighter than this.
 double brightest(const Scene& scene) {
   double result = scene.background.maxCoeff();
-  for (const Screen& screen : scene.screens) result = std::max(result, screen.brightness.maxCoeff());
+  for (const Screen& screen : scene.screens) {
+    const double rise = std::abs(screen.gradient[0]) + std::abs(screen.gradient[1]);
+    result = std::max(result, (1 + rise) * screen.brightness.maxCoeff());
+  }
   double albedo = std::max(scene.arm.albedo.maxCoeff(), scene.arm.disk_albedo.maxCoeff());
   for (const MarkerRing& ring : scene.arm.markers) albedo = std::max(albedo, ring.albedo.maxCoeff());
   if (scene.etalon)

@@ -21,7 +21,7 @@ enum PixelState : std::uint8_t {
   state_exact = 4,   ///< To be drawn by the exact way.
   state_base = 8,    ///< The rim of the arm's base may be seen in it;
   state_tip = 16,    ///< that of its tip.
-  state_edge = 32,   ///< A screen's edge runs through it.
+  state_edge = 32,   ///< A screen's edge runs through it, or the line where two cross.
 };
 
 /// A function of the image that is linear: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion

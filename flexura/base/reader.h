@@ -51,7 +51,7 @@ class Reader {
   /// Throws every problem as one InputError, if there are any.
   void throw_if_any() const;
 
-  // --- used by the codecs (codec.h) ---
+  // --- used by the codecs (table.h) ---
 
   /// The unit in which the current field is written.
   UnitSpelling spelling = {"", 1.0, ""};

@@ -89,16 +89,14 @@ double EtalonFigure::bearing(std::size_t number, const Eigen::Vector3d& p_WC) co
                         2 * std::numbers::pi);
 }
 
-std::optional<std::array<Eigen::Vector2d, 8>> EtalonFigure::outline(const View& view, double margin) const {
+std::optional<std::array<Eigen::Vector2d, 2 * EtalonFigure::rim_points>> EtalonFigure::outline(
+    const View& view, double margin) const {
   const Eigen::Vector3d p_EC = X_WE_.inverse() * view.X_WC.position;
-  const double distance = std::hypot(p_EC.x(), p_EC.z());
-  if (!(distance > radius_)) return std::nullopt;
-  const double towards = std::atan2(p_EC.x(), p_EC.z()), grazing = std::acos(radius_ / distance);
-  const std::array<double, 4> around = {towards - grazing, towards + grazing, towards,
-                                        towards + std::numbers::pi};
-  std::array<Eigen::Vector2d, 8> points;
+  if (!(std::hypot(p_EC.x(), p_EC.z()) > radius_)) return std::nullopt;
+  const double towards = std::atan2(p_EC.x(), p_EC.z()), step = 2 * std::numbers::pi / rim_points;
+  std::array<Eigen::Vector2d, 2 * rim_points> points;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d rim = radius_ * outwards(around[i / 2]);
+    const Eigen::Vector3d rim = radius_ * outwards(towards + step * static_cast<double>(i / 2));
     const auto pixel = view.project(X_WE_ * Eigen::Vector3d(rim.x(), i % 2 == 0 ? 0 : height_, rim.z()));
     if (!pixel || pixel->minCoeff() < margin || pixel->x() > view.width - 1 - margin ||
         pixel->y() > view.height - 1 - margin)

@@ -68,9 +68,11 @@ class EtalonFigure {
   /// camera faces within 60 degrees, one of each rim. None where it does not show all of the cylinder,
   /// `margin` px from its border at least.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
-  /// What bounds it in the picture, at its lower and its upper rim each: where the left side meets them,
-  /// where the right one does, their points nearest to the camera and farthest from it. None likewise.
-  [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 8>> outline(const View& view, double margin) const;
+  /// Points of its two rims, as many of each, evenly around from where the camera stands: nothing of it is
+  /// seen beyond what bounds these by more than half a hundredth of a rim's width. None likewise.
+  static constexpr std::size_t rim_points = 32;
+  [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 2 * rim_points>> outline(const View& view,
+                                                                                   double margin) const;
   /// The angle by which a red line lies to the right of where the camera stands around the cylinder, rad.
   [[nodiscard]] double bearing(std::size_t number, const Eigen::Vector3d& p_WC) const;
 

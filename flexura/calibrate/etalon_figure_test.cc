@@ -13,6 +13,7 @@
 
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_quantities.h"
+#include "flexura/math/arrays.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rig_figures.h"
@@ -141,15 +142,15 @@ RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, d
 TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
   for_random_cases(200, [](TestRandom& random) {
     EtalonConfig etalon = random_etalon(random);
-    etalon.rotation = {1, 0, 0, 0};
     const EtalonFigure figure(etalon);
     const double bearing = random.uniform(-3, 3);
     const Eigen::Vector3d from =
         figure.middle() + random.uniform(1, 2) * Eigen::Vector3d(std::sin(bearing), 0, std::cos(bearing)) +
         Eigen::Vector3d(0, random.uniform(-1, 1), 0);
     MountConfig mount;
-    const Eigen::Vector3d middle = figure.middle();
-    mount.position = {from.x(), from.y(), from.z()}, mount.look_at = {{middle.x(), middle.y(), middle.z()}};
+    const Eigen::Vector3d at = figure.middle() + random.vector<3>(-0.1, 0.1);
+    mount.position = {from.x(), from.y(), from.z()}, mount.look_at = {{at.x(), at.y(), at.z()}};
+    mount.roll = random.uniform(-0.8, 0.8);
     const View view{Lens({.fx = 400, .fy = 400, .cx = 319.5, .cy = 239.5, .distortion = {}}), mount.pose(),
                     640, 480};
     const auto outline = figure.outline(view, 0);
@@ -159,13 +160,45 @@ TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
     for (const double height : {0.0, etalon.height})
       for (int i = 0; i < 1000; ++i) {
         const double angle = 2e-3 * std::numbers::pi * i;
-        drawn.extend(
-            *view.project(vector(etalon.position) + Eigen::Vector3d(etalon.radius * std::sin(angle), height,
-                                                                    etalon.radius * std::cos(angle))));
+        drawn.extend(*view.project(
+            vector(etalon.position) +
+            rotation_of(etalon.rotation) *
+                Eigen::Vector3d(etalon.radius * std::sin(angle), height, etalon.radius * std::cos(angle))));
       }
     EXPECT_LT((told.min() - drawn.min()).norm(), 0.5);
     EXPECT_LT((told.max() - drawn.max()).norm(), 0.5);
     EXPECT_FALSE(figure.outline(view, told.min().minCoeff() + 1));
+  });
+}
+
+// At a rim's height its near and its far half are one line, before and beyond it either goes on smoothly.
+TEST(EtalonFigure, HalvesOfARimMeetAtTheCamerasHeight) {
+  for_random_cases(50, [](TestRandom& random) {
+    EtalonConfig etalon = random_etalon(random);
+    etalon.rotation = {1, 0, 0, 0};
+    const EtalonFigure figure(etalon);
+    const auto is_upper = random.integer(0, 1) == 1;
+    const EtalonPart part = is_upper ? EtalonPart::upper_rim : EtalonPart::lower_rim;
+    const double bearing = random.uniform(-3, 3), rim = is_upper ? etalon.height : 0;
+    const auto from = [&](double above) -> Eigen::Vector3d {
+      return vector(etalon.position) +
+             Eigen::Vector3d(1.5 * std::sin(bearing), rim + above, 1.5 * std::cos(bearing));
+    };
+    // Elevations of both halves, seen from so far above the rim.
+    const auto elevation = [&](double above, RimHalf half) {
+      const Eigen::Vector3d to = figure.line(part, 0, from(above), half)->point - from(above);
+      return std::atan2(to.y(), std::hypot(to.x(), to.z()));
+    };
+    EXPECT_NEAR(elevation(0, RimHalf::near), elevation(0, RimHalf::far), 1e-12);
+    constexpr double little = 1e-3;
+    for (const double above : {-little, little}) {
+      const RimHalf seen = figure.half_seen(part, from(above));
+      EXPECT_EQ(seen, (above < 0) == is_upper ? RimHalf::near : RimHalf::far);
+      // Of the upper rim the higher of both ends the silhouette, of the lower one the lower one.
+      const RimHalf hidden = seen == RimHalf::near ? RimHalf::far : RimHalf::near;
+      EXPECT_EQ(elevation(above, seen) > elevation(above, hidden), is_upper);
+      EXPECT_EQ(elevation(above, seen), elevation(above, RimHalf::seen));
+    }
   });
 }
 

@@ -22,6 +22,7 @@ namespace flexura {
 /// The stage's offset, m, that brings the camera's pupil to a point of W, its head standing as in `stance`.
 /// Not drawn to the stage's limits or steps. With a mount whose turn is wrong by R it brings the pupil from
 /// an offset e to (I - R) e: closer where R is less than 60 degrees (docs/calibration-paper.md).
+/// std::out_of_range: a zoom beyond the ends of the lens's table.
 [[nodiscard]] Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
                                             const Eigen::Vector3d& p_WC);
 

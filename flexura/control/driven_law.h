@@ -10,7 +10,7 @@
 // drives").
 namespace flexura {
 
-/// G, size() x 4 (or 5) a section: drives that turn a section as a whole. Column 2k is the torque on theta
+/// G, size() rows, 2 columns a section and then one for each length that varies: drives that turn a section as a whole. Column 2k is the torque on theta
 /// alike along section k, 2k + 1 that on q (N m a length), all sections; then the forces (N) that change
 /// their lengths, where these vary. Its own numbers are y = G^T x: the integrals of the angles over a
 /// section.

@@ -80,5 +80,24 @@ TEST(BadServo, PicturesOfAnotherSize) {
   }
 }
 
+TEST(BadServo, PicturesOfAnotherDepth) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.pgm", "b.pgm"}) {
+    std::ofstream file(folder.path() / name);
+    file << "P2 320 240 65535\n";
+    for (int i = 0; i < 320 * 240; ++i) file << 7 * i % 65536 << '\n';
+  }
+  const auto file = folder.path() / "x.toml";
+  std::ofstream(file) << servo_file("target = [{pictures = [\"a.pgm\", \"b.pgm\"]}]\n");
+  try {
+    (void)load_experiment(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("16 bits a value: expected 8, as camera front takes them"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace flexura

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <variant>
 
-#include "flexura/base/bytes.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/loop_chapter.h"

@@ -85,11 +85,11 @@ const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
                  {.meaning = "Of how a mount is turned, about each axis.",
                   .unit = Unit::radian,
                   .range = above_up_to(0, 1)})
-          .field(
-              "distance", &CalibrateGuessConfig::distance,
-              {.meaning =
-                   "Of where a mount is, in each direction, as a share of its distance from the arm's base.",
-               .range = above_up_to(0, 1)})
+          .field("distance", &CalibrateGuessConfig::distance,
+                 {.meaning = "Of where a mount is, in each direction, as a share of its distance from the "
+                             "arm's base, or "
+                             "from the cylinder before which it is calibrated.",
+                  .range = above_up_to(0, 1)})
           .field("focal", &CalibrateGuessConfig::focal,
                  {.meaning = "Of the focal length, a share.", .range = between(0, 1)})
           .field("principal_point", &CalibrateGuessConfig::principal_point,
@@ -299,7 +299,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
 
 RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, const StandConfig& stand) {
   std::optional<Eigen::Vector3d> seen;
-  if (is_before_etalon(task)) seen = vector(stand.etalon.value_or(EtalonConfig{}).position);
+  if (is_before_etalon(task)) seen = EtalonFigure(stand.etalon.value_or(EtalonConfig{})).middle();
   RigPrior prior = rough_prior(believed, task.guess.distance, seen);
   // The cylinder tells nothing of the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};

@@ -201,6 +201,7 @@ TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
     for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.01) << backlash;
   }
   EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, 6);
 }
 
 // Without stages too few places tell a focal length as well as is wanted; it says how well it is known.

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/base/bytes.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
 #include "flexura/report/chart.h"

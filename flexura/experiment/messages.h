@@ -187,8 +187,8 @@ struct ServoStepMessage {
   std::optional<std::vector<double>> true_lengths;
   std::optional<double> rms, most, tip;                 ///< From seen to desired, shares of the length.
   std::optional<double> true_rms, true_most, true_tip;  ///< Likewise, of the simulated truth.
-  double potential = 0;                                 ///< Half the square of the law's error.
-  bool fresh = false;                                   ///< The pictures are new.
+  double potential = 0;                ///< Half the square of the law's error, rad^2 or px^2.
+  bool fresh = false;                  ///< The pictures are new.
   bool singular = false;               ///< Some motion of the arm shows in nothing that is seen.
   std::optional<std::string> limited;  ///< What held the law back.
 };

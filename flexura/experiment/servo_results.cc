@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "flexura/base/bytes.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/photograph.h"
 #include "flexura/model/backbone.h"

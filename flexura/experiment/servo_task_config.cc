@@ -245,6 +245,9 @@ RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<C
     if (sensor.bits > 8 && photograph.words.values().empty())
       throw input_error(path.string(), fmt::format("8 bits a value: expected {}, as camera {} takes them",
                                                    sensor.bits, cameras[i].name));
+    if (sensor.bits <= 8 && !photograph.words.values().empty())
+      throw input_error(path.string(),
+                        fmt::format("16 bits a value: expected 8, as camera {} takes them", cameras[i].name));
     if (sensor.bits > 8) {
       views[i] = photograph.words;
     } else {

@@ -23,8 +23,8 @@ class ArmVariables {
     bool is_spatial;      ///< bend_y varies.
     bool is_stretchable;  ///< The stretch varies.
     /// Where the stretch stands in x.
-    /// The part's own numbers out of x, rad and factor; what does not vary has its one value.
     [[nodiscard]] Eigen::Index stretch_at() const { return at + (is_spatial ? 2 : 1); }
+    /// The part's own numbers out of x, rad and factor; what does not vary has its one value.
     [[nodiscard]] Eigen::Vector2d bend(const Eigen::VectorXd& x) const {
       return {x[at], is_spatial ? x[at + 1] : 0.0};
     }

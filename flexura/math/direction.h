@@ -8,9 +8,9 @@ namespace flexura {
 ///   e = (sin azimuth cos elevation, cos azimuth cos elevation, sin elevation):
 /// both zero along +Y, azimuth positive towards +X, elevation towards +Z.
 /// Of a direction of any length but 0: the azimuth from -pi to pi, the elevation from -pi/2 to pi/2. Along Z
-/// the azimuth is 0.
+/// any azimuth is right, and one of them is given.
 [[nodiscard]] Eigen::Vector2d angles_of_direction(const Eigen::Vector3d& e);
-/// A unit vector.
+/// The unit vector of W with these angles.
 [[nodiscard]] Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& angles);
 
 /// An angle moved by whole turns to within half a turn of another one, rad.

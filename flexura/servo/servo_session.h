@@ -48,7 +48,7 @@ struct ServoStep {
   ArmState believed;  ///< What the drives say.
   ArmState sent;      ///< To the drives, by the limiter.
   /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
-  /// law's own units (rad^2, px^2, share of the length squared).
+  /// law's own units: rad^2 of `shape` and `potential`, px^2 otherwise (docs/servo.md).
   double potential = 0;
   bool is_fresh = false;     ///< The sight is new.
   bool is_singular = false;  ///< Of the law: some motion shows in nothing that is seen.

@@ -341,9 +341,8 @@ const ArmSighting& ArmFinder::find(const Picture& picture, int white) {
   if (words != nullptr)
     return words->channels() == 1 ? find(*words, white) : find(gray_picture(*words), white);
   const auto& bytes = std::get<Image<std::uint8_t>>(picture);
-  if (bytes.channels() == 1 && white == 255) return find(bytes);
-  const Image<std::uint8_t> scaled = eight_bits(picture, white);
-  return scaled.channels() == 1 ? find(scaled) : find(gray_picture(scaled));
+  if (white != 255) return find(eight_bits(picture, white), 255);
+  return bytes.channels() == 1 ? find(bytes) : find(gray_picture(bytes));
 }
 
 }  // namespace flexura

@@ -85,7 +85,7 @@ class ArmFinder {
   const ArmSighting& find(const Image<std::uint8_t>& gray);
   /// Of one with more than 8 bits; brightness counts from 0 to `white`.
   const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
-  /// Of any, gray or in colour, whose largest value is `white`.
+  /// Of any, gray or in colour, whose largest value is `white`. std::invalid_argument: that is below 1.
   const ArmSighting& find(const Picture& picture, int white);
 
  private:

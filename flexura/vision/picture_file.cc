@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "flexura/picture/image_file.h"
+#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -79,20 +80,12 @@ Image<std::uint8_t> softened_mask(const Image<std::uint8_t>& mask) {
 }
 
 // Sensors of 10 or 12 bits write their values as they are; a few hot pixels do not tell of how many.
-int white_of(const Image<std::uint16_t>& words) {
+int white_found_in(const Image<std::uint16_t>& words) {
   constexpr std::size_t hot = 10000;  // One of so many may be.
   std::vector<std::uint16_t> values(words.values().begin(), words.values().end());
   const auto place = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / hot);
   std::ranges::nth_element(values, place);
   return std::max(255, static_cast<int>(std::bit_ceil(*place + 1U)) - 1);
-}
-
-Image<std::uint8_t> bytes_of(const Image<std::uint16_t>& words, int white) {
-  Image<std::uint8_t> bytes(words.width(), words.height(), words.channels());
-  std::ranges::transform(words.values(), bytes.values().begin(), [&](std::uint16_t value) {
-    return static_cast<std::uint8_t>(std::min(255, (value * 255 + white / 2) / white));
-  });
-  return bytes;
 }
 
 }  // namespace
@@ -104,8 +97,8 @@ Photograph decode_picture(std::span<const std::uint8_t> file, const std::string&
     photograph.bytes = std::move(*bytes);
   } else {
     photograph.words = std::move(std::get<Image<std::uint16_t>>(picture));
-    photograph.white = white_of(photograph.words);
-    photograph.bytes = bytes_of(photograph.words, photograph.white);
+    photograph.white = white_found_in(photograph.words);
+    photograph.bytes = eight_bits(photograph.words, photograph.white);
   }
   const Image<std::uint8_t> gray = without_colors(photograph.bytes);
   photograph.is_mask = has_two_values(gray);

@@ -64,8 +64,8 @@ struct RigPrior {
 };
 
 /// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from what it
-/// looks at (`seen` in W, m; the arm's base when left out), 10 % of its focal length, its principal point 10 px off,
-/// the zeros of its tilt axis, and of its pan axis where its stage can move, 2 degrees.
+/// looks at (`seen` in W, m; the arm's base when left out), 10 % of its focal length, its principal point 10
+/// px off, the zeros of its tilt axis, and of its pan axis where its stage can move, 2 degrees.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

@@ -10,10 +10,10 @@
 // drives").
 namespace flexura {
 
-/// G, size() rows, 2 columns a section and then one for each length that varies: drives that turn a section as a whole. Column 2k is the torque on theta
-/// alike along section k, 2k + 1 that on q (N m a length), all sections; then the forces (N) that change
-/// their lengths, where these vary. Its own numbers are y = G^T x: the integrals of the angles over a
-/// section.
+/// G, size() rows, 2 columns a section and then one for each length that varies: drives that turn a section
+/// as a whole. Column 2k is the torque on theta alike along section k, 2k + 1 that on q (N m a length), all
+/// sections; then the forces (N) that change their lengths, where these vary. Its own numbers are y = G^T x:
+/// the integrals of the angles over a section.
 [[nodiscard]] Eigen::MatrixXd section_torques(const DistributedArm& arm);
 
 /// G of drives that bend: column 2k is the moment (N m) on the change of theta from section k's base to its

@@ -366,13 +366,15 @@ TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
 
 // Of the distance from what is looked at: the cylinder may stand far from the arm's base.
 TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
-  const CalibrationBench bench(etalon_rig("method = \"bundle-etalon\"\nguess.distance = 0.1\n", {}, "height = 0.4\n"));
+  const CalibrationBench bench(
+      etalon_rig("method = \"bundle-etalon\"\nguess.distance = 0.1\n", {}, "height = 0.4\n"));
   const Experiment& file = bench.experiment();
   const RigModel believed = rig_model(file.arm.arm(), file.cameras());
   const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), believed, file.stand);
   for (std::size_t i = 0; i < 2; ++i) {
     const Eigen::Vector3d from = vector(believed.cameras[i].mount.position);
-    EXPECT_NEAR(prior.cameras[i].position, 0.1 * (from - Eigen::Vector3d(0, 0.3 + 0.5 * 0.4, 0)).norm(), 1e-12);
+    EXPECT_NEAR(prior.cameras[i].position, 0.1 * (from - Eigen::Vector3d(0, 0.3 + 0.5 * 0.4, 0)).norm(),
+                1e-12);
   }
 }
 

@@ -68,7 +68,8 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
   for (const ServoStep& step : result.steps) {
     if (!step.is_fresh) continue;
     if (before > 1e299) first = step.potential;
-    // Of what is that small, pictures of 320 x 240 tell little more: a chord of 30 px to a hundredth of a rad.
+    // Of what is that small, pictures of 320 x 240 tell little more: a chord of 30 px to a hundredth of a
+    // rad.
     const bool is_told = before > 3e-3 * first;
     if (is_told) {
       EXPECT_LT(step.potential, before) << "at " << step.time << " s";

@@ -112,8 +112,8 @@ class StuckPan : public HeadPort {
   HeadPort& head_;
 };
 
-/// A head that says it stands where it was sent, and stands elsewhere: from its first turn on, or from when it
-/// is pushed.
+/// A head that says it stands where it was sent, and stands elsewhere: from its first turn on, or from when
+/// it is pushed.
 class SlippedPan : public HeadPort {
  public:
   enum class Since { first_turn, push };

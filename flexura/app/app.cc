@@ -5,6 +5,7 @@
 // Only this file sees CLI11 (docs/architecture.md, "Heavy headers").
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -59,10 +60,7 @@ void add_run(CLI::App& app, Command& chosen) {
   CLI::App* run = app.add_subcommand("run", "Run an experiment and write its results into a new folder");
   run->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML)")->required();
   run->add_option("--out", arguments->out, "Folder to make for the results (default: results/NAME)")
-      ->type_name("DIR")
-      ->check([](const std::string& name) {
-        return name.empty() ? std::string("expected the name of a folder") : std::string();
-      });
+      ->type_name("DIR");
   run->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -149,9 +147,8 @@ void add_schema(CLI::App& app, Command& chosen) {
 }
 
 void add_threshold_options(CLI::App& command, ThresholdArguments& threshold) {
-  command.add_option("--threshold", threshold.method, "otsu, two_mode, by_block or fixed")
-      ->type_name("METHOD")
-      ->capture_default_str();
+  command.add_option("--threshold", threshold.method, "otsu (default), two_mode, by_block or fixed")
+      ->type_name("METHOD");
   command.add_option("--level", threshold.level, "The fixed threshold, 0 to 255")->type_name("LEVEL");
   command.add_option("--figure", threshold.figure, "dark or bright (default: what is not at the border)")
       ->type_name("SIDE");
@@ -262,7 +259,12 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
 
 // CLI11 would only say that it misses a command. Tells it on stderr.
 bool is_unknown_command(const CLI::App& app, std::string_view word) {
-  if (word.starts_with('-')) return false;
+  if (word.starts_with('-')) {
+    if (app.get_option_no_throw(std::string(word)) != nullptr) return false;
+    std::cerr << fmt::format("flexura: there is no option {} before a command (see flexura --help)\n",
+                             Node{std::string(word), {}}.brief());
+    return true;
+  }
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::ranges::count(names, word) > 0) return false;
@@ -271,6 +273,15 @@ bool is_unknown_command(const CLI::App& app, std::string_view word) {
                            Node{std::string(word), {}}.brief(),
                            near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
   return true;
+}
+
+// What a script gives whose variable is not set. CLI11 would take it for nothing, or for 0.
+std::string refuse_empty(const std::string& value) { return value.empty() ? "expected no empty text" : ""; }
+
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({}))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() > 0) option->check(refuse_empty);
 }
 
 int parse_and_run(int argc, const char* const* argv) {
@@ -292,6 +303,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_intrinsics(app, chosen);
   add_export(app, chosen);
   add_schema(app, chosen);
+  refuse_empty_values(app);
   if (argc > 1 && is_unknown_command(app, argv[1])) return exit_bad_input;
   try {
     app.parse(argc, argv);
@@ -304,6 +316,8 @@ int parse_and_run(int argc, const char* const* argv) {
 }  // namespace
 
 int run_app(int argc, const char* const* argv) noexcept {
+  // A limit of the size of files is told as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int status = parse_and_run(argc, argv);
     std::cout.flush();

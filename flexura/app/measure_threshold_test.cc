@@ -69,9 +69,9 @@ TEST_F(MeasureBy, EachThresholdFindsTheSameAxisAndNamesItself) {
          {ThresholdArguments{}, ThresholdArguments{.method = "two_mode"},
           ThresholdArguments{.method = "by_block"}, ThresholdArguments{.method = "fixed", .level = level},
           ThresholdArguments{.level = level}}) {
-      SCOPED_TRACE(how.method);
+      SCOPED_TRACE(how.method.value_or(""));
       const Node answer = measured_by(picture, how);
-      EXPECT_EQ(word(answer, "method"), how.level ? "fixed" : how.method);
+      EXPECT_EQ(word(answer, "method"), how.level ? "fixed" : how.method.value_or("otsu"));
       EXPECT_EQ(word(answer, "figure"), "dark");
       const double told = *answer.find("threshold")->as<double>();
       // Between the arm's 30 and the ground's 220, with their noise.
@@ -134,11 +134,12 @@ TEST_F(MeasureBy, RefusesThresholdsThatSayNothing) {
   const Image<std::uint8_t> picture = gray_arm([](double) { return 100.0; }, 12, random);
   for (const ThresholdArguments& how :
        {ThresholdArguments{.method = "otsi"}, ThresholdArguments{.method = "fixed"},
+        ThresholdArguments{.method = "otsu", .level = 100},
         ThresholdArguments{.method = "two_mode", .level = 100},
         ThresholdArguments{.method = "by_block", .level = 100}, ThresholdArguments{.level = 256},
         ThresholdArguments{.level = -1}, ThresholdArguments{.level = NAN},
         ThresholdArguments{.figure = "gray"}}) {
-    SCOPED_TRACE(how.method + how.figure);
+    SCOPED_TRACE(how.method.value_or("") + how.figure);
     EXPECT_THROW((void)measured_by(picture, how), InputError);
   }
 }

@@ -113,6 +113,20 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
                                 "view --address nowhere --no-browser",
                                 "view --address 127.0.0.1.5 --no-browser",
                                 "run x.toml --no-browser",
+                                "--verson",
+                                "-x check none.toml",
+                                "view '' --no-browser",
+                                "measure x.png --level ''",
+                                "measure x.png --radius ''",
+                                "measure x.png --figure ''",
+                                "measure x.png --overlay ''",
+                                "measure x.png --camera ''",
+                                "measure x.png --threshold otsu --level 100",
+                                "estimate a.png b.png --cameras c.toml --length ''",
+                                "estimate a.png b.png --cameras c.toml --arm ''",
+                                "intrinsics a.png --board 9x6 --square 0.02 --distortion ''",
+                                "intrinsics a.png --board 9x6 --square 0.02 --out ''",
+                                "render x.toml --camera front --out a.png --time ''",
                                 "run x.toml --out ''"}) {
     const Ended ended = run(arguments);
     EXPECT_EQ(ended.status, 2) << arguments;
@@ -122,8 +136,24 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
   EXPECT_THAT(run("chek x.toml").err, HasSubstr("there is no command \"chek\"; did you mean \"check\"?"));
   EXPECT_THAT(run("view --address nowhere --no-browser").err,
               HasSubstr("--address: \"nowhere\": expected an IP address of this machine"));
+  EXPECT_THAT(run("--verson").err, HasSubstr("there is no option \"--verson\""));
+  EXPECT_THAT(run("measure x.png --level ''").err, HasSubstr("--level: expected no empty text"));
+  EXPECT_THAT(run("measure x.png --threshold otsu --level 100").err,
+              HasSubstr("goes with --threshold fixed: \"otsu\" finds its own level"));
   EXPECT_EQ(run("run " + paper_file + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
+}
+
+// A viewer that cannot tell its address, and a limit of the size of files, end like a full disk.
+TEST_F(Program, WhatCannotBeWrittenEndsItWithAReason) {
+  EXPECT_EQ(run("--version").status, 0);
+  const Ended deaf = wait(start("view --no-browser --port 0", "/dev/full"));
+  EXPECT_EQ(deaf.status, 3);
+  EXPECT_THAT(deaf.err, HasSubstr("cannot write to the standard output"));
+  before_ = "ulimit -f 8 && ";
+  const Ended limited = run("run " + paper_file + " --out limited");
+  EXPECT_EQ(limited.status, 3) << limited.err;
+  EXPECT_THAT(limited.err, HasSubstr("cannot write"));
 }
 
 // A terminal that a program can be started at, and what appeared on it.

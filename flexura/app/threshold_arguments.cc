@@ -11,7 +11,7 @@ namespace flexura {
 
 ThresholdConfig threshold_config(const ThresholdArguments& arguments) {
   ThresholdConfig config;
-  config.method = named<ThresholdMethod>("--threshold", arguments.method);
+  config.method = named<ThresholdMethod>("--threshold", arguments.method.value_or("otsu"));
   if (!arguments.figure.empty()) config.figure = named<Figure>("--figure", arguments.figure);
   if (!arguments.level) {
     if (config.method == ThresholdMethod::fixed)
@@ -20,9 +20,9 @@ ThresholdConfig threshold_config(const ThresholdArguments& arguments) {
   }
   const bool is_level = *arguments.level >= 0 && *arguments.level <= 255;
   if (!is_level) throw input_error("--level", fmt::format("{}: expected 0 to 255", *arguments.level));
-  if (config.method != ThresholdMethod::fixed && config.method != ThresholdMethod::otsu)
+  if (arguments.method && config.method != ThresholdMethod::fixed)
     throw input_error(
-        "--level", fmt::format("goes with --threshold fixed: \"{}\" finds its own level", arguments.method));
+        "--level", fmt::format("goes with --threshold fixed: \"{}\" finds its own level", *arguments.method));
   config.method = ThresholdMethod::fixed;
   config.level = *arguments.level;
   return config;

@@ -114,6 +114,8 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   if (assets.empty()) assets = {&parts_->no_page_asset, 1};
   parts_->server = serve(start, arguments, assets);
   out << "viewer: " << parts_->server->url() << '\n' << std::flush;
+  // Nobody could learn where it is.
+  if (!out) throw std::runtime_error("cannot write to the standard output");
   if (listens_everywhere(arguments.address))
     out << "it can be called by every address of this machine; by a name of it once --name says so\n"
         << std::flush;

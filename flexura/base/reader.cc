@@ -244,7 +244,8 @@ std::string missing(const FieldInfo& field) {
   if (field.type.kind == Type::Kind::number) expected = bounds.empty() ? "a number" : "a number " + bounds;
   if (field.type.kind == Type::Kind::table) expected = "a table";
   if (field.type.kind == Type::Kind::array) expected = "an array";
-  return fmt::format("missing: expected {} ({})", expected, field.spec.meaning);
+  const std::string meaning = field.spec.meaning.empty() ? "" : fmt::format(" ({})", field.spec.meaning);
+  return fmt::format("missing: expected {}{}", expected, meaning);
 }
 
 }  // namespace

@@ -96,7 +96,8 @@ std::optional<std::array<Eigen::Vector2d, 2 * EtalonFigure::rim_points>> EtalonF
   const double towards = std::atan2(p_EC.x(), p_EC.z()), step = 2 * std::numbers::pi / rim_points;
   std::array<Eigen::Vector2d, 2 * rim_points> points;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d rim = radius_ * outwards(towards + step * static_cast<double>(i / 2));
+    const std::size_t place = i / 2;
+    const Eigen::Vector3d rim = radius_ * outwards(towards + step * static_cast<double>(place));
     const auto pixel = view.project(X_WE_ * Eigen::Vector3d(rim.x(), i % 2 == 0 ? 0 : height_, rim.z()));
     if (!pixel || pixel->minCoeff() < margin || pixel->x() > view.width - 1 - margin ||
         pixel->y() > view.height - 1 - margin)

@@ -162,7 +162,7 @@ class PushesBeforeTheMove : public NobodyWatches {
  public:
   explicit PushesBeforeTheMove(SlippedPan& pan) : pan_(pan) {}
   void known(const RigStep& step) override {
-    if (step.next.find("the move") == 0) pan_.push();
+    if (step.next.starts_with("the move")) pan_.push();
   }
 
  private:

@@ -93,7 +93,7 @@ class QuickPicture {
     PixelPart rest;
     bool is_full = false;           // A screen is seen in that part.
     bool is_before_screen = false;  // One that is drawn later than this one: `light` is what both make.
-    float light[3];
+    float light[3] = {0, 0, 0};
   };
 
   void start(const Stage& stage);

@@ -301,7 +301,7 @@ void QuickPicture::draw_edge(std::size_t index, int u, SpanRow& row) {
   ScreenEdge& edge = screen_edges_.emplace_back();
   edge.u = u, edge.nearness = nearness, edge.is_full = !is_before_nothing, edge.rest = part.rest();
   if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
-  if (part.area > 0) mix(panel, u, part, is_before_nothing ? nullptr : &panels_[0], row);
+  if (part.area > 0) mix(panel, u, part, is_before_nothing ? nullptr : panels_.data(), row);
 }
 
 }  // namespace flexura

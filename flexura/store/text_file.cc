@@ -64,11 +64,15 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
   return folder / name;
 }
 
-void write_new_file(const std::filesystem::path& file, std::string_view text) {
+namespace {
+
+// `called`: what it is called in words.
+void write_fresh_file(const std::filesystem::path& file, std::string_view text,
+                      const std::filesystem::path& called) {
   const auto fail = [&](bool is_begun) {
     const int reason = errno;
     if (is_begun) ::unlink(file.c_str());  // A piece of a file is none.
-    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), std::strerror(reason)));
+    throw std::runtime_error(fmt::format("cannot write {}: {}", called.string(), std::strerror(reason)));
   };
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (descriptor < 0) fail(false);
@@ -84,11 +88,25 @@ void write_new_file(const std::filesystem::path& file, std::string_view text) {
   if (::close(descriptor) != 0) fail(true);
 }
 
-void replace_file(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path beside = file.string() + ".new";
+// A name in that folder that nothing bears; short, for the file's own may be as long as names can be.
+std::filesystem::path unused_name(const std::filesystem::path& folder) {
   std::error_code error;
-  std::filesystem::remove(beside, error);  // of a program that was killed
-  write_new_file(beside, text);
+  for (int number = 0;; ++number) {
+    std::filesystem::path name = folder / fmt::format(".flexura-{}-{}", ::getpid(), number);
+    if (!std::filesystem::exists(std::filesystem::symlink_status(name, error))) return name;
+  }
+}
+
+}  // namespace
+
+void write_new_file(const std::filesystem::path& file, std::string_view text) {
+  write_fresh_file(file, text, file);
+}
+
+void replace_file(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path beside = unused_name(file.parent_path());
+  write_fresh_file(beside, text, file);
+  std::error_code error;
   std::filesystem::rename(beside, file, error);
   if (!error) return;
   std::error_code ignored;

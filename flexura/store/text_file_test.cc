@@ -1,8 +1,11 @@
 #include "flexura/store/text_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -69,11 +72,27 @@ TEST_F(TextFileTest, LeavesNoPieceOfAFileWhenTheDiskIsFull) {
     EXPECT_THROW(replace_file(folder_.path() / "kept", std::string(3000, 'x')), std::runtime_error);
   }
   EXPECT_TRUE(is_missing(file));
-  EXPECT_TRUE(is_missing(folder_.path() / "kept.new"));
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_.path())), 1);
   EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
   // What was there before is nobody's piece.
   EXPECT_THROW(write_new_file(folder_.path() / "kept", "new"), std::runtime_error);
   EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
+}
+
+// Nothing that is not the program's own is taken away, whatever it is called.
+TEST_F(TextFileTest, ReplacingLeavesAllOtherFilesAsTheyAre) {
+  write_new_file(folder_.path() / "a.png.new", "precious");
+  write_new_file(folder_.path() / fmt::format(".flexura-{}-0", ::getpid()), "precious too");
+  const std::string longest(255, 'n');
+  for (const std::string& name : {std::string("a.png"), longest}) {
+    for (const char* text : {"one", "two"}) {
+      replace_file(folder_.path() / name, text);
+      EXPECT_EQ(read_text_file(folder_.path() / name, 100), text);
+    }
+  }
+  EXPECT_EQ(read_text_file(folder_.path() / "a.png.new", 100), "precious");
+  EXPECT_EQ(read_text_file(folder_.path() / fmt::format(".flexura-{}-0", ::getpid()), 100), "precious too");
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_.path())), 4);
 }
 
 }  // namespace

@@ -116,7 +116,13 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
 Node read_with_includes(const std::filesystem::path& file, Including& including) {
   Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string(), including.repeated);
   including.open.push_back(place_of(file));
-  lay_upon_includes(document, file, including);
+  const std::size_t depth = including.open.size();
+  try {
+    lay_upon_includes(document, file, including);
+  } catch (...) {
+    including.open.resize(depth - 1);
+    throw;
+  }
   including.open.pop_back();
   return document;
 }
@@ -162,7 +168,10 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
       check_is_new(included, name, including);
       merge(below, read_with_includes(included, including));
     } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+      // Two ways to one file have the same wrong with it.
+      for (const Problem& problem : error.problems())
+        if (std::ranges::find(problems, problem.text(), &Problem::text) == problems.end())
+          problems.push_back(problem);
     }
   }
   if (!problems.empty()) throw InputError(std::move(problems));

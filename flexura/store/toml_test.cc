@@ -171,6 +171,17 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   write("folder.toml", "include = ['.']");
   EXPECT_THAT(error("circle.toml"), HasSubstr("circle.toml:1:12: include: circle.toml includes itself"));
   EXPECT_EQ(error("circle.toml").find("by way of"), std::string::npos);
+  // A file that is wrong is not being read any more: the next one to include it does not close a circle, and
+  // what is wrong with it is said once.
+  write("broken.toml", "x = 1\ny = ");
+  write("again.toml", "include = ['broken.toml', 'broken.toml']");
+  EXPECT_EQ(error("again.toml").find("includes itself"), std::string::npos) << error("again.toml");
+  EXPECT_EQ(std::ranges::count(error("again.toml"), '\n'), 0) << error("again.toml");
+  write("left.toml", "include = ['missing.toml']");
+  write("right.toml", "include = ['missing.toml']");
+  write("diamond.toml", "include = ['left.toml', 'right.toml']");
+  EXPECT_THAT(error("diamond.toml"), HasSubstr("missing.toml:1:12: include: no file \"nothing.toml\""));
+  EXPECT_EQ(std::ranges::count(error("diamond.toml"), '\n'), 0) << error("diamond.toml");
   write("a.toml", "x = 1\ninclude = ['b.toml']");
   write("b.toml", "include = ['leaf.toml', './c.toml']");
   write("c.toml", "include = ['a.toml']");

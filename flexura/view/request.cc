@@ -85,7 +85,8 @@ std::string read(Node document, Request& request) {
     request.id = *number;
   const Node name = taken(*table, "do");
   const auto* text = name.as<std::string>();
-  if (text == nullptr) return "do is missing: expected what to do";
+  if (name.empty()) return "do is missing: expected what to do";
+  if (text == nullptr) return fmt::format("do = {}: expected what to do in quotes", name.brief());
   if (!request.id && !id.empty())
     return fmt::format("id = {}: expected a whole number from -2^53 to 2^53", id.brief());
   if (!request.id && *text != "ack") return "id is missing: expected a whole number";

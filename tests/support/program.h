@@ -36,8 +36,8 @@ class Program : public ::testing::Test {
   pid_t start(const std::string& arguments, const std::string& out, const std::string& err) {
     const pid_t child = fork();
     if (child == 0) {
-      const std::string command = "cd " + folder_.path().string() + " && exec " + program + " " + arguments +
-                                  " >" + out + " 2>" + err + " </dev/null";
+      const std::string command = "cd " + folder_.path().string() + " && " + before_ + "exec " + program +
+                                  " " + arguments + " >" + out + " 2>" + err + " </dev/null";
       execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
       _exit(127);
     }
@@ -53,6 +53,7 @@ class Program : public ::testing::Test {
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 
   TemporaryFolder folder_;
+  std::string before_;  ///< What the shell does before it becomes the program: "ulimit -f 8 && ".
 };
 
 /// What a file says once it says something.

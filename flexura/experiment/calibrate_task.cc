@@ -19,10 +19,9 @@ std::array<double, 3> array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(),
 // Tells the log of everything.
 class LoggedSession : public RigSessionWatcher {
  public:
-  LoggedSession(const Experiment& experiment, std::string name, const RigModel& believed, std::size_t images,
-                Witness& witness, Progress& progress, CommandedMotion& motion)
-      : keeps_images_(experiment.record.cameras),
-        name_(std::move(name)),
+  LoggedSession(std::string name, const RigModel& believed, std::size_t images, Witness& witness,
+                Progress& progress, CommandedMotion& motion)
+      : name_(std::move(name)),
         believed_(believed),
         images_(images),
         witness_(witness),
@@ -43,13 +42,12 @@ class LoggedSession : public RigSessionWatcher {
     witness_.recorder().calibration(message);
   }
   void seen(const RigSight& sight) override {
-    if (keeps_images_) {
-      const std::string& camera = name_of(sight.stance.camera);
-      witness_.image(camera, sight.frame, logged_image(camera, sight.frame));
-    }
+    // With or without record.cameras: what a calibration decides is only as good as what it looked at.
+    const std::string& camera = name_of(sight.stance.camera);
+    witness_.image(camera, sight.frame, logged_image(camera, sight.frame));
     CalibrationSightingMessage message;
     message.time = sight.frame.time, message.look = static_cast<std::int64_t>(sight.look);
-    message.camera = name_of(sight.stance.camera), message.frame = sight.frame.number;
+    message.camera = camera, message.frame = sight.frame.number;
     message.pan = sight.stance.head.pan, message.tilt = sight.stance.head.tilt;
     message.zoom = sight.stance.head.zoom, message.stage = array_of(sight.stance.stage.offset);
     message.bends = bends_of(sight.pose);
@@ -99,7 +97,6 @@ class LoggedSession : public RigSessionWatcher {
   [[nodiscard]] const std::string& name_of(std::size_t camera) const {
     return believed_.cameras.at(camera).name;
   }
-  bool keeps_images_;
   std::string name_;
   const RigModel& believed_;
   std::size_t images_;
@@ -123,7 +120,7 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
   CommandedMotion motion(ports.clock->now(), ports.arm->read().value().state);
   RecordedClock clock(*ports.clock, record_steps, motion);
   ports.clock = &clock;
-  LoggedSession log(experiment, run.name, run.believed, session.images, witness, progress, motion);
+  LoggedSession log(run.name, run.believed, session.images, witness, progress, motion);
   if (is_loop(config)) {
     LoopConfig loop = loop_config(config, experiment.arm, cameras, experiment.stand);
     loop.draw = ideal_pictures(experiment);

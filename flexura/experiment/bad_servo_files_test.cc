@@ -56,6 +56,9 @@ TEST(BadServo, EachIsOneClearLine) {
             "task[0].measure: \"flow\" carries the angles of chords"},
            {"law = \"chords\"\nmeasure = \"flow\"\nanchor = 0\ntarget = [{" + bends + "}]\n",
             "task[0].anchor = 0: expected a number above 0"},
+           {"settle = 5\ntimeout = 4\ntarget = [{" + bends + "}]\n",
+            "task[0].timeout: 4 s: expected more than settle, 5 s"},
+           {"target = [{curve = [[0, 0, 0], [0, 1e-300, 0]]}]\n", "target[0].curve: has no length"},
            {"lost = 0.1\ntarget = [{" + bends + "}]\n", "task[0].lost: 0.1 s: expected more than blind"},
            {"targets = 3\ntarget = [{" + bends + "}]\n", "did you mean \"target\""},
        }) {

@@ -62,7 +62,7 @@ void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& t
 // With those of its targets of which the nearest shape of the arm stays farther away than it may.
 void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
   const auto shapes = servo_target_shapes(servo, arm_, from);
-  add(servo, known ? known : servo_motion(shapes, from));
+  add(servo, known ? known : servo_motion(shapes, arm_, from));
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
     const auto& position = servo.target[i].position;

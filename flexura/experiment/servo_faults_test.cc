@@ -317,5 +317,89 @@ TEST(ServoFaults, TheLogHasWhatHeadsAndStretchesWereSentTo) {
   EXPECT_GT(heads, 0u);
 }
 
+// What is wanted goes on at once, the arm at its sections' rates: it is left behind, and comes after.
+TEST(ServoFaults, AnArmThatIsLeftBehindByItsTargetIsNotDiverging) {
+  ServoSetup slow;
+  slow.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 30";
+  for (const ServoSetup& rig : {ServoSetup{}, slow}) {
+    ServoBench bench(
+        servo_file("timeout = 15\n[[task.target]]\ntime = 3\nbends = [[0.8, 0.3], [-0.7, 0.9], [1.0, -0.6]]\n"
+                   "[[task.target]]\ntime = 3.1\nbends = [[-0.8, -0.3], [0.7, -0.9], [-1.0, 0.6]]\n",
+                   rig));
+    const ServoResult result = bench.servo();
+    EXPECT_TRUE(result.is_done) << result.reason;
+  }
+}
+
+// The way that is judged beforehand is as slow as the arm.
+TEST(ServoFaults, SlowSectionsAreNotUnsafe) {
+  ServoSetup rig;
+  rig.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 5";
+  ServoBench bench(servo_file(servo_target, rig));
+  const Arm arm = bench.experiment().arm.arm();
+  const MotionPtr motion = task_motion(bench.experiment().task.front(), arm, ArmState::straight(3));
+  constexpr double step = 0.01;
+  for (double time = 0; time < motion->duration(); time += step)
+    for (std::size_t i = 0; i < 3; ++i)
+      ASSERT_LE((motion->at(time + step).bends[i] - motion->at(time).bends[i]).norm(),
+                step * arm.sections[i].max_bend_rate);
+}
+
+// Between two pictures of a slow camera the arm is not unseen.
+TEST(ServoFaults, SettlesByCamerasThatAreSlowerThanItsSteps) {
+  std::string file = servo_file("step = 0.05\ntimeout = 20\n" + servo_target);
+  for (std::size_t at = 0; (at = file.find("frame_rate = 30", at)) != std::string::npos; ++at)
+    file.replace(at, 15, "frame_rate = 2");
+  ServoBench bench(file);
+  const ServoResult result = bench.servo();
+  EXPECT_TRUE(result.is_done) << result.reason;
+}
+
+// Exposures of 2 and 30 ms: the pictures' middles are 14 ms apart, more than a step's half.
+TEST(ServoFaults, PairsPicturesByTheCamerasPeriodAndNotByItsStep) {
+  std::string file = servo_file("step = 0.02\n" + servo_target);
+  file.replace(file.rfind("exposure = 0.002"), 16, "exposure = 0.030");
+  ServoBench bench(file);
+  const ServoResult result = bench.servo();
+  EXPECT_TRUE(result.is_done) << result.reason;
+}
+
+TEST(ServoFaults, ArrivesWhereFramesAreDropped) {
+  ServoSetup rig;
+  rig.sensor = "read_noise = 1, delay = 0.06, exposure = 0.002, drop = 0.4";
+  ServoBench bench(servo_file(servo_target, rig));
+  const ServoResult result = bench.servo();
+  EXPECT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+}
+
+// A log that is full throws at every step from then on.
+TEST(ServoFaults, AWatcherThatFailsLeavesTheArmAtRestAndIsTheReason) {
+  class Failing : public ServoNotes {
+   public:
+    int failures = 0;
+    void stepped(const ServoStep& step) override {
+      if (step.time < 0.5) return;
+      throw std::runtime_error(++failures == 1 ? "cannot write the log: no space" : "the log is closed");
+    }
+    void told(double, const std::string&) override {
+      if (failures > 0) throw std::runtime_error("the log is closed");
+    }
+  };
+  ServoBench bench(servo_file(servo_target));
+  Failing notes;
+  try {
+    (void)bench.servo(bench.ports(), notes);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "cannot write the log: no space");
+  }
+  const auto bends = [&] { return bench.ports().arm->read().value().state.bends; };
+  bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
+  const auto before = bends();
+  bench.rig().clock().wait_until(bench.rig().clock().now() + 1);
+  EXPECT_EQ(bends(), before);
+}
+
 }  // namespace
 }  // namespace flexura

@@ -163,7 +163,10 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   config.step = task.step.value_or(1 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
   if (experiment.drive) config.drive = experiment.drive->drive();
   config.obstacles = obstacles(experiment.obstacle);
-  config.patience = {.blind = task.blind, .lost = task.lost, .timeout = task.timeout};
+  // Between two pictures of a slow camera nobody is blind.
+  const double blind =
+      std::max(task.blind, 1.5 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
+  config.patience = {.blind = blind, .lost = std::max(task.lost, 2 * blind), .timeout = task.timeout};
   return config;
 }
 

@@ -298,9 +298,10 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
     reader.problem_at(path,
                       "has azimuths and elevations that do not belong together: expected as many of each");
   if (target.curve) {
-    const auto& first = target.curve->front();
-    if (std::ranges::all_of(*target.curve, [&](const auto& point) { return point == first; }))
-      reader.problem_at(path + ".curve", "has no length: expected points that differ");
+    double length = 0;
+    for (std::size_t i = 1; i < target.curve->size(); ++i)
+      length += (vector((*target.curve)[i]) - vector((*target.curve)[i - 1])).norm();
+    if (!(length > 0)) reader.problem_at(path + ".curve", "has no length: expected points that differ");
   }
 }
 
@@ -312,6 +313,9 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
   if (!(task.lost > task.blind))
     reader.problem_at(path + ".lost",
                       fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
+  if (!(task.timeout > task.settle))
+    reader.problem_at(path + ".timeout",
+                      fmt::format("{} s: expected more than settle, {} s", task.timeout, task.settle));
   check_planes(task, cameras, path, reader);
   if (task.measure == ServoMeasure::flow && !has_chords(task.law))
     reader.problem_at(path + ".measure",

@@ -102,8 +102,9 @@ void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, cons
 
 /// The motion that a task (checked by check_task) is, for an arm that stands in `from`.
 [[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from);
-/// Of a servo with targets of these shapes: what is to be expected of it before it is done.
+/// Of a servo of the arm with targets of these shapes: what is to be expected of it before it is done. As
+/// slow as the sections' rates ask for.
 [[nodiscard]] MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes,
-                                     const ArmState& from);
+                                     const Arm& arm, const ArmState& from);
 
 }  // namespace flexura

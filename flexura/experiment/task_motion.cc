@@ -70,7 +70,7 @@ MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& f
 }
 
 MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from) {
-  return servo_motion(servo_target_shapes(task, arm, from), from);
+  return servo_motion(servo_target_shapes(task, arm, from), arm, from);
 }
 
 // The shape that a move goes to. The search for one starts from where the arm is.
@@ -184,13 +184,24 @@ MotionPtr motion_of(const ExpressionTask& task, const Arm& arm, const ArmState& 
 }  // namespace
 
 // The straight way to each target, slowly.
-MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes, const ArmState& from) {
-  constexpr double slow = 10;  // s a target
+MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes, const Arm& arm,
+                       const ArmState& from) {
+  // s a target, and more where sections are slower: the limiter obeys their rates. A smooth way is at most
+  // three times as fast as its mean.
+  constexpr double slow = 10, faster = 3;
+  const auto lasts = [&](const ArmState& a, const ArmState& b) {
+    double duration = slow;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const double way = (b.bends[i] - a.bends[i]).norm();
+      duration = std::max(duration, faster * way / arm.sections[i].max_bend_rate);
+    }
+    return duration;
+  };
   std::vector<double> times = {0};
   std::vector<ArmState> states = {from};
   for (const auto& shape : shapes) {
     if (!shape) continue;  // Nobody knows yet.
-    times.push_back(times.back() + slow);
+    times.push_back(times.back() + lasts(states.back(), shape->state));
     states.push_back(shape->state);
   }
   if (times.size() < 2) return hold_motion(from, 0);

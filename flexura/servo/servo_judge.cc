@@ -29,6 +29,14 @@ ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& de
   return servo_error(Backbone(arm, shape), Backbone(arm, desired), arm.length());
 }
 
+namespace {
+
+bool is_elsewhere(const ArmState& a, const ArmState& b) {
+  return a.bends != b.bends || a.stretches != b.stretches;
+}
+
+}  // namespace
+
 void ServoJudge::add(const ServoStep& step) {
   // How long it was held back, lately: what is let go is forgotten as fast.
   limited_for_ = std::clamp(limited_for_ + (step.limited.empty() ? -1 : 1) * config_.step, 0.0, 1.0);
@@ -55,6 +63,10 @@ void ServoJudge::add_error(const ServoStep& step) {
     below_since_ = time;
   }
   is_done_ = below_since_ && time - *below_since_ >= config_.settle;
+  // What is wanted may go on faster than the arm may.
+  const bool is_left_behind = !step.limited.empty() && is_elsewhere(step.desired, desired_);
+  desired_ = step.desired;
+  if (is_left_behind) best_ = latest_, worse_since_.reset();
   best_ = std::min(best_, latest_);
   constexpr double much = 3, far = 0.05, patience = 1;  // Times the best, share of the length, s.
   if (!(latest_ > std::max(much * best_, best_ + far))) {

@@ -36,6 +36,7 @@ class ServoJudge {
   std::optional<double> below_since_, worse_since_;
   double seen_at_ = -1e300;           // When a new sight was last gone by, s.
   double best_ = 1e300, latest_ = 0;  // Shares of the length.
+  ArmState desired_;                  // Of the sight before.
   double limited_for_ = 0;            // s, of late
   std::string limited_by_;
   bool is_singular_ = false;

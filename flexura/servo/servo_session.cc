@@ -41,6 +41,10 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
   require(config.measure == ServoMeasure::picture || has_chords(config.law),
           "flow carries the angles of the laws chords and potential alone");
   require(config.anchor > 0, "a servo's anchor is above 0");
+  const ServoPatience& patience = config.patience;
+  require(config.settle >= 0 && patience.blind > 0 && patience.lost > patience.blind &&
+              patience.timeout > config.settle,
+          "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step are above 0");
 }
@@ -54,13 +58,21 @@ LimiterSettings limiter_settings(const ServoConfig& config) {
   return settings;
 }
 
+// Of the slower camera, s: within that each takes a picture.
+double frame_period(const RigModel& believed, const ServoConfig& config) {
+  double slowest = 0;
+  for (const std::size_t camera : config.cameras)
+    slowest = std::max(slowest, 1 / believed.cameras[camera].sensor.frame_rate);
+  return slowest;
+}
+
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config, ServoWatcher& watcher)
       : model_(believed),
         config_(config),
         watcher_(watcher),
-        rig_(ports, believed, config.cameras, longest_delay, 0.6 * config.step),
+        rig_(ports, believed, config.cameras, longest_delay, 0.6 * frame_period(believed, config)),
         eyes_(believed, config.cameras, config.markers, config.camera_doubt),
         features_(servo_features(config, believed)),
         law_(believed.arm, config, *features_),
@@ -72,12 +84,22 @@ class Session {
       result_.reason = std::move(*trouble);
       return std::move(result_);
     }
+    std::exception_ptr first;
     try {
       while (!is_over()) step();
     } catch (const std::exception& error) {
-      fault(error.what());  // Whatever it is, the arm shall not go on.
+      first = std::current_exception();
+      limiter_->fault(error.what());  // Whatever it is, the arm shall not go on.
     }
-    come_to_rest();
+    try {
+      if (first) watcher_.told(rig_.now(), limiter_->fault()->reason);
+      come_to_rest();
+    } catch (...) {
+      // Who watches cannot: a log that is full. What came first is the reason.
+      (void)rig_.ports().arm->halt();
+      if (first) std::rethrow_exception(first);
+      throw;
+    }
     if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
     result_.fault = limiter_->fault();

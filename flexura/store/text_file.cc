@@ -66,15 +66,15 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
 
 namespace {
 
-// `called`: what it is called in words.
-void write_fresh_file(const std::filesystem::path& file, std::string_view text,
-                      const std::filesystem::path& called) {
+// At a place of its own; `name` is what it is called in words.
+void write_fresh_file(const std::filesystem::path& place, std::string_view text,
+                      const std::filesystem::path& name) {
   const auto fail = [&](bool is_begun) {
     const int reason = errno;
-    if (is_begun) ::unlink(file.c_str());  // A piece of a file is none.
-    throw std::runtime_error(fmt::format("cannot write {}: {}", called.string(), std::strerror(reason)));
+    if (is_begun) ::unlink(place.c_str());  // A piece of a file is none.
+    throw std::runtime_error(fmt::format("cannot write {}: {}", name.string(), std::strerror(reason)));
   };
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  const int descriptor = ::open(place.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (descriptor < 0) fail(false);
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());

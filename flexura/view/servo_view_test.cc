@@ -238,7 +238,8 @@ TEST_F(ServoView, WritesTheSameBytesWhenItIsWatched) {
 class HurriedServo : public LiveSessionTest {
  protected:
   HurriedServo()
-      : LiveSessionTest(servo_file("name = \"hurry\"\ntolerance = 1e-5\ntimeout = 0.5\n" + servo_target)) {}
+      : LiveSessionTest(
+            servo_file("name = \"hurry\"\ntolerance = 1e-5\nsettle = 0.2\ntimeout = 0.5\n" + servo_target)) {}
 };
 
 TEST_F(HurriedServo, SaysWhyItEndedAndLeavesARecording) {

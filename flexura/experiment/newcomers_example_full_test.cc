@@ -1,0 +1,32 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/run.h"
+#include "tests/support/quiet.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+// Cameras that are wrong are calibrated, then the arm is steered through three shapes and along a way.
+TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
+  const std::filesystem::path file =
+      std::filesystem::path(FLEXURA_SOURCE_DIR) / "examples/06_shape_servo/experiment.toml";
+  const TemporaryFolder folder;
+  Quiet quiet;
+  const RunResult result = run_experiment(load_experiment(file), folder.path(), quiet);
+  ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+  const Node::Array& servos = *result.summary.find("servos")->as<Node::Array>();
+  ASSERT_EQ(servos.size(), 3U);
+  for (const Node& servo : servos) {
+    EXPECT_TRUE(*servo.find("done")->as<bool>());
+    // Of the length, as the simulated truth has it.
+    EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.002);
+  }
+}
+
+}  // namespace
+}  // namespace flexura

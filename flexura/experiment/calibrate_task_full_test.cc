@@ -172,7 +172,8 @@ class PushesBeforeTheMove : public NobodyWatches {
 TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
   CalibrationBench bench(etalon_rig("method = \"bundle-etalon\"\n", {}));
   RigPorts ports = bench.ports();
-  SlippedPan pan(*ports.cameras[0].head, 0.5 * degree, SlippedPan::Since::push);
+  // By whole steps of the head.
+  SlippedPan pan(*ports.cameras[0].head, 7 * 0.075 * degree, SlippedPan::Since::push);
   ports.cameras[0].head = &pan;
   PushesBeforeTheMove watcher(pan);
   const RigSessionResult result = bench.calibrate_bundle(ports, watcher);
@@ -180,6 +181,7 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
   EXPECT_NE(result.reason.find("from where it was foretold after the move"), std::string::npos)
       << result.reason;
   EXPECT_GT(result.verified[0], 4);  // Half a degree of 800 px is 7.
+  CalibrationBench::expect_back(ports);
 }
 
 // What play leads to hangs on the sides that heads come from: pictures that it spoils are left out.

@@ -116,11 +116,10 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
 Node read_with_includes(const std::filesystem::path& file, Including& including) {
   Node document = parse_toml(read_text_file(file, max_toml_bytes), file.string(), including.repeated);
   including.open.push_back(place_of(file));
-  const std::size_t depth = including.open.size();
   try {
     lay_upon_includes(document, file, including);
   } catch (...) {
-    including.open.resize(depth - 1);
+    including.open.pop_back();
     throw;
   }
   including.open.pop_back();

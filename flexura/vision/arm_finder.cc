@@ -327,7 +327,6 @@ const ArmSighting& ArmFinder::find(const Image<std::uint8_t>& gray) {
 }
 
 const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
-  if (white < 1) throw std::invalid_argument(fmt::format("white at {}: expected at least 1", white));
   Work& work = *work_;
   work.bytes = eight_bits(gray, white);
   work.segment(work.bytes);

@@ -62,13 +62,14 @@ class CalibrationBench : public RigBench {
       stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
     return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, target);
   }
-  /// Whether heads and stages are where the file starts them.
-  void expect_back() {
-    for (std::size_t i = 0; i < rig().camera_count(); ++i) {
-      const auto head = rig().camera(i).head().read().value().state;
+  /// Whether heads and stages say that they are where the file starts them.
+  void expect_back() { expect_back(ports()); }
+  static void expect_back(const RigPorts& ports) {
+    for (const CameraPorts& camera : ports.cameras) {
+      const auto head = camera.head->read().value().state;
       EXPECT_NEAR(head.pan, 0, 1e-9);
       EXPECT_NEAR(head.tilt, 0, 1e-9);
-      EXPECT_NEAR(rig().camera(i).stage().read().value().state.offset.norm(), 0, 1e-9);
+      EXPECT_NEAR(camera.stage->read().value().state.offset.norm(), 0, 1e-9);
     }
   }
 };

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "flexura/base/one_line.h"
+
 namespace flexura {
 namespace {
 
@@ -53,7 +55,7 @@ std::string SourcePosition::text() const {
 
 std::string Problem::text() const {
   const std::string place = where.text();
-  return place.empty() ? what : place + ": " + what;
+  return one_line(place.empty() ? what : place + ": " + what);
 }
 
 InputError::InputError(std::vector<Problem> problems)

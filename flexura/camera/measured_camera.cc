@@ -21,6 +21,7 @@ constexpr double largest_error = 2e-3;
 
 // As of the cameras of experiments, px.
 constexpr NumberRange focal_lengths = {.min = 1e-3, .max = 1e7};
+constexpr NumberRange principal_points = {.min = -1e7, .max = 1e7};
 
 Eigen::Matrix3d matrix_of(const Rows& rows) {
   Eigen::Matrix3d matrix;
@@ -36,6 +37,14 @@ void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
                                   "matrix or a quaternion [w, x, y, z] of norm 1",
                                   camera.rotation.error()));
   }
+}
+
+void check_names(const MeasuredCameras& cameras, Reader& reader) {
+  for (std::size_t i = 0; i < cameras.camera.size(); ++i)
+    for (std::size_t k = 0; k < i && !cameras.camera[i].name.empty(); ++k)
+      if (cameras.camera[k].name == cameras.camera[i].name)
+        reader.problem_at(fmt::format("camera[{}].name", i),
+                          fmt::format("is that of camera[{}], too: expected another", k));
 }
 
 }  // namespace
@@ -110,8 +119,10 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
                  {.meaning = "The same along v, px.", .range = focal_lengths, .default_text = "fx"})
           .field("cx", &C::cx,
                  {.meaning = "Principal point, px; (0, 0) is the middle of the top left pixel.",
+                  .range = principal_points,
                   .required = true})
-          .field("cy", &C::cy, {.meaning = "The same along v, px.", .required = true})
+          .field("cy", &C::cy,
+                 {.meaning = "The same along v, px.", .range = principal_points, .required = true})
           .field("distortion", &C::distortion, {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order."})
           .field("position", &C::position,
                  {.meaning = "Of the entrance pupil in the world.", .unit = Unit::metre})
@@ -128,7 +139,8 @@ const Table<MeasuredCameras>& fields_of(const MeasuredCameras*) {
   static const Table<MeasuredCameras> table =
       Table<MeasuredCameras>("cameras", "Cameras as they were measured, one for each picture.")
           .field("camera", &MeasuredCameras::camera,
-                 {.meaning = "In the pictures' order.", .count = {1, 64}, .required = true});
+                 {.meaning = "In the pictures' order.", .count = {1, 64}, .required = true})
+          .check(check_names);
   return table;
 }
 

@@ -87,7 +87,9 @@ Image<Value> image_of(const PnmHeader& header, Next&& next) {
   Image<Value> image(header.width, header.height, header.channels);
   const bool is_scaled = sizeof(Value) == 1 && header.most != 255;
   for (Value& value : image.values()) {
-    const std::int64_t written = std::min<std::int64_t>(next(), header.most);
+    const std::int64_t written = next();
+    if (written > header.most)
+      throw damaged("PNM", fmt::format("a value of {}, and {} is white", written, header.most));
     value = is_scaled ? byte_of(written, header.most) : static_cast<Value>(written);
   }
   return image;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flexura/base/source.h"
+#include "flexura/base/utf8.h"
 
 namespace flexura {
 namespace {
@@ -23,6 +24,17 @@ SourcePosition position_of(std::string_view text, std::size_t byte,
   const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
   return {source, static_cast<int>(std::ranges::count(before, '\n')) + 1,
           static_cast<int>(at - line_start) + 1};
+}
+
+// The middle of a long number or text that is wrong tells nobody anything.
+std::string shortened(std::string_view what) {
+  constexpr std::size_t begin = 100, end = 60;
+  if (what.size() <= begin + end) return std::string(what);
+  std::string_view tail = what.substr(what.size() - end);
+  tail.remove_prefix(static_cast<std::size_t>(
+      std::ranges::find_if(tail, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }) -
+      tail.begin()));
+  return fmt::format("{}...{}", what.substr(0, utf8_length(what.substr(0, begin))), tail);
 }
 
 // Builds nodes from nlohmann's events, which, unlike its documents, show a key given twice. The events carry
@@ -58,8 +70,8 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
     for (const std::string_view before : {"] ", ": "}) {
       if (const auto at = what.find(before); at != std::string_view::npos) what.remove_prefix(at + 2);
     }
-    throw InputError(
-        {{position_of(text_, byte == 0 ? 0 : byte - 1, source_), fmt::format("not JSON: {}", what)}});
+    throw InputError({{position_of(text_, byte == 0 ? 0 : byte - 1, source_),
+                       fmt::format("not JSON: {}", shortened(what))}});
   }
 
   Node take() { return std::move(root_); }

@@ -59,7 +59,8 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
   if (from_root.empty() || *from_root.begin() == "..") {
     fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", name));
   }
-  if (!std::filesystem::exists(target, error)) fail(fmt::format("no file \"{}\"", name));
+  // By the way that is written: one by a missing folder and back leads nowhere, though its end is there.
+  if (!std::filesystem::exists(root / name, error)) fail(fmt::format("no file \"{}\"", name));
   if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("\"{}\" is no regular file", name));
   return folder / name;
 }

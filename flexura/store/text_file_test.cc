@@ -54,6 +54,17 @@ TEST_F(TextFileTest, LooksForNoFileInAFolderThatIsALinkToItself) {
   }
 }
 
+TEST_F(TextFileTest, FindsNoFileByAFolderThatIsNotThere) {
+  write_new_file(folder_.path() / "file", "here");
+  EXPECT_EQ(file_inside(folder_.path(), "./file"), folder_.path() / "./file");
+  try {
+    (void)file_inside(folder_.path(), "none/../file");
+    ADD_FAILURE() << "found";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "no file \"none/../file\"");
+  }
+}
+
 TEST_F(TextFileTest, FindsMissingOnlyWhatIsNotThere) {
   EXPECT_TRUE(is_missing(folder_.path() / "nothing"));
   EXPECT_FALSE(is_missing(folder_.path()));

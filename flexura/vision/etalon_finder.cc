@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "flexura/math/median.h"
 #include "flexura/vision/border.h"
 #include "flexura/vision/edge_finder.h"
 #include "flexura/vision/runs.h"
@@ -58,8 +60,7 @@ void add_peaks(const Image<std::uint8_t>& picture, int v, int first, int last, d
   for (int u = first; u < last; ++u) values.push_back(redness(picture, u, v));
   if (values.size() < 5) return;
   std::vector<double> sorted = values;
-  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-  const double ground = sorted[sorted.size() / 2];
+  const double ground = median(std::span(sorted));
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] - ground < bound) continue;
     std::size_t end = i;

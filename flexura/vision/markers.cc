@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "flexura/math/median.h"
+
 namespace flexura {
 namespace {
 
@@ -71,19 +73,12 @@ struct Skin {
   }
 };
 
-// Reorders them.
-double median(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 Vector3d median_color(const std::vector<Vector3d>& colors) {
   Vector3d result;
   std::vector<double> values(colors.size());
   for (int c = 0; c < 3; ++c) {
     std::ranges::transform(colors, values.begin(), [&](const Vector3d& color) { return color[c]; });
-    result[c] = median(values);
+    result[c] = median(std::span(values));
   }
   return result;
 }
@@ -184,7 +179,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   // The ground is in every pixel of a thinner arm.
   constexpr double thinnest = 4;  // px
   std::vector<double> half_widths = skin.half_widths;
-  const double thickness = 2 * median(half_widths);
+  const double thickness = 2 * median(std::span(half_widths));
   if (thickness < thinnest) {
     found.notes.push_back(fmt::format("the arm is {:.1f} px thick: no markers are looked for below {} px",
                                       thickness, thinnest));

@@ -9,6 +9,7 @@
 
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/backbone_image.h"
+#include "flexura/vision/picture_file.h"
 #include "flexura/vision/runs.h"
 #include "flexura/vision/threshold.h"
 #include "tests/support/seen_arms.h"
@@ -16,20 +17,26 @@
 namespace flexura {
 namespace {
 
+std::vector<SeenArm> random_arms(int columns, bool color) {
+  SeenArmOptions options;
+  options.width = columns, options.height = columns == 640 ? 480 : 1080, options.color = color;
+  std::vector<SeenArm> made;
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    TestRandom random(1000 + i);
+    made.push_back(random_seen_arm(random, options));
+  }
+  return made;
+}
+
 // A few pictures of random arms, the same every time; made once.
 const std::vector<SeenArm>& arms(int width) {
-  const auto make = [](int columns) {
-    SeenArmOptions options;
-    options.width = columns, options.height = columns == 640 ? 480 : 1080;
-    std::vector<SeenArm> made;
-    for (std::uint64_t i = 0; i < 8; ++i) {
-      TestRandom random(1000 + i);
-      made.push_back(random_seen_arm(random, options));
-    }
-    return made;
-  };
-  static const std::vector<SeenArm> small = make(640), large = make(1920);
+  static const std::vector<SeenArm> small = random_arms(640, false), large = random_arms(1920, false);
   return width == 640 ? small : large;
+}
+
+const std::vector<SeenArm>& arms_in_color() {
+  static const std::vector<SeenArm> made = random_arms(640, true);
+  return made;
 }
 
 void find_arm(benchmark::State& state) {
@@ -41,6 +48,16 @@ void find_arm(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(find_arm)->Arg(640)->Arg(1920)->Unit(benchmark::kMicrosecond);
+
+void find_arm_in_color(benchmark::State& state) {
+  const std::vector<SeenArm>& seen = arms_in_color();
+  ArmFinder finder;
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(finder.find(gray_picture(seen[i++ % seen.size()].picture)).axis.size());
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(find_arm_in_color)->Unit(benchmark::kMicrosecond);
 
 void find_backbone(benchmark::State& state) {
   const std::vector<SeenArm>& seen = arms(640);
@@ -70,25 +87,41 @@ void threshold_and_components(benchmark::State& state) {
 BENCHMARK(threshold_and_components)->Arg(640)->Arg(1920)->Unit(benchmark::kMicrosecond);
 
 // Otsu's threshold, components, contours and the distance transform: whole pixels, and no axis.
+void find_by_opencv(const cv::Mat& gray) {
+  cv::Mat mask, labels, stats, centroids, distance;
+  cv::threshold(gray, mask, 0, 255, cv::THRESH_BINARY_INV | cv::THRESH_OTSU);
+  cv::connectedComponentsWithStats(mask, labels, stats, centroids);
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::distanceTransform(mask, distance, cv::DIST_L2, 5);
+  benchmark::DoNotOptimize(distance.data);
+}
+
+cv::Mat matrix_of(const Image<std::uint8_t>& picture, int type) {
+  return {picture.height(), picture.width(), type, const_cast<std::uint8_t*>(picture.values().data())};
+}
+
 void opencv(benchmark::State& state) {
   cv::setNumThreads(1);
   const std::vector<SeenArm>& seen = arms(static_cast<int>(state.range(0)));
   std::size_t i = 0;
-  for (auto _ : state) {
-    const Image<std::uint8_t>& picture = seen[i++ % seen.size()].picture;
-    const cv::Mat gray(picture.height(), picture.width(), CV_8U,
-                       const_cast<std::uint8_t*>(picture.values().data()));
-    cv::Mat mask, labels, stats, centroids, distance;
-    cv::threshold(gray, mask, 0, 255, cv::THRESH_BINARY_INV | cv::THRESH_OTSU);
-    cv::connectedComponentsWithStats(mask, labels, stats, centroids);
-    std::vector<std::vector<cv::Point>> contours;
-    cv::findContours(mask, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
-    cv::distanceTransform(mask, distance, cv::DIST_L2, 5);
-    benchmark::DoNotOptimize(distance.data);
-  }
+  for (auto _ : state) find_by_opencv(matrix_of(seen[i++ % seen.size()].picture, CV_8U));
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(opencv)->Arg(640)->Arg(1920)->Unit(benchmark::kMicrosecond);
+
+void opencv_in_color(benchmark::State& state) {
+  cv::setNumThreads(1);
+  const std::vector<SeenArm>& seen = arms_in_color();
+  std::size_t i = 0;
+  cv::Mat gray;
+  for (auto _ : state) {
+    cv::cvtColor(matrix_of(seen[i++ % seen.size()].picture, CV_8UC3), gray, cv::COLOR_RGB2GRAY);
+    find_by_opencv(gray);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(opencv_in_color)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace flexura

@@ -23,10 +23,25 @@ namespace {
 // The pictures' noise is drawn from 0 to 4 of 255: in steps of 1.
 constexpr std::size_t noise_steps = 4;
 
+// Errors of bends against the covariance that came with them.
+struct Consistency {
+  std::vector<double> shares;       // expected_share()
+  double squares = 0, freedom = 0;  // Sums of error_square() and of its degrees of freedom.
+
+  void add(const ShapeEstimate& found, const ArmState& truth) {
+    shares.push_back(expected_share(found, truth));
+    squares += error_square(found, truth), freedom += static_cast<double>(2 * truth.bends.size());
+  }
+  // 1 where the covariance is right, give or take as much as one in a thousand exceeds by chance.
+  [[nodiscard]] double mean_square() const { return freedom > 0 ? squares / freedom : NAN; }
+  [[nodiscard]] double chance() const { return 3.29 * std::sqrt(2 / freedom); }
+};
+
 struct Tally {
   std::string name;
-  std::vector<double> errors, flagged_errors, ratios, shares;
-  std::array<std::vector<double>, noise_steps> shares_by_noise;
+  std::vector<double> errors, flagged_errors, ratios;
+  Consistency all;
+  std::array<Consistency, noise_steps> by_noise;
 
   void add(const ShapeEstimate& found, const SeenShape& one, bool has_bends) {
     if (!found.is_found) return;
@@ -38,8 +53,8 @@ struct Tally {
     for (const double sigma : found.sigma) squares += sigma * sigma / static_cast<double>(found.sigma.size());
     ratios.push_back(error * truth.length() / std::sqrt(squares));
     if (!has_bends) return;
-    shares.push_back(expected_share(found, one.bent.state));
-    shares_by_noise[std::min(static_cast<std::size_t>(one.noise), noise_steps - 1)].push_back(shares.back());
+    all.add(found, one.bent.state);
+    by_noise[std::min(static_cast<std::size_t>(one.noise), noise_steps - 1)].add(found, one.bent.state);
   }
 };
 
@@ -67,36 +82,43 @@ void print(const Tally& tally, int cases) {
              number(100 * root_mean_square(good), 4), number(100 * quantile(good, 0.999), 4),
              number(100 * quantile(bad, 0.5), 4), number(100 * root_mean_square(bad), 4),
              number(100 * quantile(bad, 0.999), 3), number(quantile(tally.ratios, 0.5), 2),
-             number(quantile(tally.ratios, 0.95), 2), within(tally.shares, 0.5), within(tally.shares, 0.95));
+             number(quantile(tally.ratios, 0.95), 2), within(tally.all.shares, 0.5),
+             within(tally.all.shares, 0.95));
 }
 
-// What is aimed at: errors as shares of the length, and shares that lie evenly (chi^2 that one in a thousand
-// exceeds by chance).
+// What is aimed at: errors as shares of the length; squares that are as large on average as the covariance
+// has them, and regions that are even (chi^2 that one in a thousand exceeds by chance).
 constexpr double aimed_rms = 2e-4, aimed_most = 5e-4, rare_unevenness = 27.88;
 
 void print_verdicts(const Tally& tally) {
-  const double square = tally.shares.empty() ? NAN : unevenness(tally.shares);
+  const double uneven = tally.all.shares.empty() ? NAN : unevenness(tally.all.shares);
   const auto told = [](double value, double most, double unit, int digits) {
     const std::string word = verdict(value, most);
     return std::isnan(value) ? word : fmt::format("{} ({:.{}f})", word, unit * value, digits);
   };
-  fmt::print("| {} | {} | {} | {} | {} |\n", tally.name,
+  const double mean = tally.all.mean_square();
+  const std::string squares = std::isnan(mean) ? verdict(mean, 0)
+                                               : fmt::format("{} ({:.3f}, bound {:.3f})",
+                                                             verdict(std::abs(mean - 1), tally.all.chance()),
+                                                             mean, tally.all.chance());
+  fmt::print("| {} | {} | {} | {} | {} | {} |\n", tally.name,
              told(root_mean_square(tally.errors), aimed_rms, 100, 4),
              told(root_mean_square(joined(tally.errors, tally.flagged_errors)), aimed_rms, 100, 4),
-             told(quantile(tally.errors, 0.999), aimed_most, 100, 4), told(square, rare_unevenness, 1, 0));
+             told(quantile(tally.errors, 0.999), aimed_most, 100, 4), squares,
+             told(uneven, rare_unevenness, 1, 0));
 }
 
 // What is not known of the model of a border does not fall with the noise, and counts for most where there is
 // little.
 void print_by_noise(const Tally& tally) {
   fmt::print(
-      "\n| noise, of 255 | trusted | within 50 %, % | within 95 %, % | chi^2 |\n| --- | --- | --- | --- | "
-      "--- "
-      "|\n");
+      "\n| noise, of 255 | trusted | squares over expected | within 50 %, % | within 95 %, % | chi^2 of the "
+      "regions |\n| --- | --- | --- | --- | --- | --- |\n");
   for (std::size_t k = 0; k < noise_steps; ++k) {
-    const std::vector<double>& shares = tally.shares_by_noise[k];
-    fmt::print("| {} to {} | {} | {} | {} | {} |\n", k, k + 1, shares.size(), within(shares, 0.5),
-               within(shares, 0.95), shares.empty() ? "" : number(unevenness(shares), 0));
+    const Consistency& one = tally.by_noise[k];
+    fmt::print("| {} to {} | {} | {} | {} | {} | {} |\n", k, k + 1, one.shares.size(),
+               number(one.mean_square(), 3), within(one.shares, 0.5), within(one.shares, 0.95),
+               one.shares.empty() ? "" : number(unevenness(one.shares), 0));
   }
 }
 
@@ -145,8 +167,8 @@ int study(int cases, std::uint64_t seed) {
   for (const Tally& tally : tallies) print(tally, cases);
   fmt::print(
       "\n| aim | rms of the trusted at most {} % | rms of all that were found at most {} % | 99.9 % of the "
-      "trusted within {} % | covariance: chi^2 of their regions at most {} |\n| --- | --- | --- | --- | --- "
-      "|\n",
+      "trusted within {} % | covariance: squares over expected within chance of 1 | chi^2 of its regions at "
+      "most {} |\n| --- | --- | --- | --- | --- | --- |\n",
       100 * aimed_rms, 100 * aimed_rms, 100 * aimed_most, rare_unevenness);
   for (const Tally& tally : tallies) print_verdicts(tally);
   print_by_noise(tallies.front());

@@ -9,6 +9,7 @@
 
 #include "flexura/estimate/curve_image.h"
 #include "flexura/estimate/space_curve.h"
+#include "flexura/math/median.h"
 
 namespace flexura {
 namespace {
@@ -44,8 +45,7 @@ double spacing(const Places& places, double length) {
   std::vector<double> gaps;
   gaps.reserve(places.size());
   for (std::size_t i = 1; i < places.size(); ++i) gaps.push_back(places[i].s - places[i - 1].s);
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2));
-  return gaps[gaps.size() / 2];
+  return median(std::span(gaps));
 }
 
 // What it costs to take two for the same: leaving both out costs 1.

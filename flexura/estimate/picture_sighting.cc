@@ -14,7 +14,7 @@ namespace flexura {
 namespace {
 
 // No axis is known better, px: lenses are not.
-constexpr double least_sigma = 0.01;
+constexpr double least_sigma = 0.007;
 // Of the silhouette: what explains less may end at a fold.
 constexpr double whole = 0.95;
 // Of a silhouette, px: a tube's is nearly as far from the backbone's image as its radius is large there.
@@ -25,10 +25,11 @@ constexpr double band_sigma = 0.2;
 // Over which axes are smoothed, px.
 constexpr double smoothed = 5.4;
 // Whole axes are off together, over more than a hundred pixels: the borders' model is not the picture's. As
-// measured against drawn arms (docs/estimation.md), px: of any tube, by its blur; of thin ones, whose borders
-// are one in the other's blur, by the square of blur over width; and of straight ones along rows or columns,
-// whose borders are at one place between two pixels all the way.
-constexpr double of_any = 0.002, of_thin = 0.4, of_locked = 0.011;
+// measured against drawn arms (docs/estimation.md), px: of any tube, by its blur and the root of blur over
+// width, for the light falls off at the border of a round one as the root of the distance does; of thin ones,
+// whose borders are one in the other's blur, by the square of blur over width; and of straight ones along
+// rows or columns, whose borders are at one place between two pixels all the way.
+constexpr double of_any = 0.0064, of_thin = 0.35, of_locked = 0.011;
 // Over how much of the axis the last is looked for, px.
 constexpr double stretch = 60;
 
@@ -39,9 +40,9 @@ double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
   const Eigen::Vector2d way = axis[after].pixel - axis[before].pixel;
   // The rows or columns that so much of it crosses, px.
   const double crossed = way.cwiseAbs().minCoeff() * stretch / std::max(way.norm(), 1.0);
-  const double locked = of_locked / (1 + 1.3 * crossed * crossed);
+  const double locked = of_locked / (1 + 5 * crossed * crossed);
   const double thin = arm.blur / std::max(axis[i].width, 1.0);
-  return std::hypot(of_any * arm.blur + of_thin * thin * thin, locked);
+  return std::hypot(of_any * arm.blur * std::sqrt(thin) + of_thin * thin * thin, locked);
 }
 
 // The way in which the axis goes on where it is nearest to a pixel.

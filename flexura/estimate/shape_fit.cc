@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "flexura/math/median.h"
+
 namespace flexura {
 namespace {
 
@@ -48,9 +50,7 @@ double ShapeDescent::cutoff(const ShapeProblem& problem) {
     if (problem.kind(i) == RowKind::point || problem.kind(i) == RowKind::marker)
       sizes_.push_back(std::abs(problem.residuals()[i]));
   if (sizes_.empty()) return doubtful;
-  const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
-  std::ranges::nth_element(sizes_, middle);
-  return doubtful * std::max(1.0, *middle / median_size);
+  return doubtful * std::max(1.0, median(std::span(sizes_)) / median_size);
 }
 
 double ShapeDescent::cost(const ShapeProblem& problem, double cutoff) {
@@ -187,7 +187,7 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
   // Of the residuals' squares the fit takes as many as it follows.
   const double freedom = std::max(1.0, weight - 2 * followed_.cwiseProduct(alike_).sum());
   // Axes are not known to be better than a floor: where they are, their residuals tell.
-  constexpr double least = 0.4;
+  constexpr double least = 0.8;
   const double factor =
       std::max(least, square / freedom) * std::max(1.0, correlation_factor(sizes_) / promised_);
   alike_ = factor * alike_ + std::max(1.0, factor) * apart_;

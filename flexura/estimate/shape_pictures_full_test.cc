@@ -11,13 +11,32 @@
 #include "flexura/estimate/shape_estimator.h"
 #include "tests/support/seen_shapes.h"
 #include "tests/support/sightings.h"
+#include "tests/support/study_numbers.h"
 
 namespace flexura {
 namespace {
 
+// Errors of bends against the covariances that came with them.
+struct Consistency {
+  std::vector<double> shares;
+  double squares = 0, freedom = 0;
+
+  void add(const ShapeEstimate& found, const ArmState& truth) {
+    shares.push_back(expected_share(found, truth));
+    squares += error_square(found, truth), freedom += static_cast<double>(2 * truth.bends.size());
+  }
+  // What one in a thousand exceeds by chance where the covariance is right.
+  [[nodiscard]] double chance() const { return 3.29 * std::sqrt(2 / freedom); }
+  [[nodiscard]] double within(double share) const {
+    const auto count = std::ranges::count_if(shares, [&](double value) { return value < share; });
+    return static_cast<double>(count) / static_cast<double>(shares.size());
+  }
+};
+
 TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   constexpr int cases = 240;
-  std::vector<double> errors, shares, thin;
+  std::vector<double> errors;
+  Consistency all, thin;
   for_random_cases(cases, [&](TestRandom& random) {
     const SeenShape one = random_seen_shape(random);
     std::vector<Sighting> seen;
@@ -28,27 +47,22 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
     const ShapeEstimate found = ShapeEstimator(ShapePrior{.arm = one.bent.arm}).estimate(seen);
     if (!found.is_found || !found.notes.empty()) return;
     errors.push_back(relative_shape_error(found.shape, one.bent.backbone()));
-    shares.push_back(expected_share(found, one.bent.state));
+    all.add(found, one.bent.state);
     if (one.bent.arm.sections.size() >= 3 && one.bent.arm.sections.front().radius[0] < 0.02)
-      thin.push_back(shares.back());
+      thin.add(found, one.bent.state);
   });
   EXPECT_GE(errors.size(), 0.8 * cases);
-  double squares = 0;
-  for (const double error : errors) squares += error * error / static_cast<double>(errors.size());
   // All of them together, those that are farthest off too.
-  EXPECT_LT(std::sqrt(squares), 1e-4);
+  EXPECT_LT(root_mean_square(errors), 1e-4);
   EXPECT_LT(std::ranges::max(errors), 5e-4);
-  const auto within = [](const std::vector<double>& all, double share) {
-    const auto count = std::ranges::count_if(all, [&](double value) { return value < share; });
-    return static_cast<double>(count) / static_cast<double>(all.size());
-  };
-  // Half of the errors lie in the region that holds half, and nearly all in that which holds 95 %; those of
-  // thin arms of many sections, which show most of what axes are off by, as well.
-  EXPECT_GT(within(shares, 0.5), 0.45);
-  EXPECT_LT(within(shares, 0.5), 0.74);
-  EXPECT_GT(within(shares, 0.95), 0.91);
-  EXPECT_GE(thin.size(), 30U);
-  EXPECT_GT(within(thin, 0.95), 0.84);
+  // The squares of the errors are what the covariances expect, and their regions hold as many as they should:
+  // chi^2 both. Thin arms of many sections show most of what axes are off by.
+  EXPECT_NEAR(all.squares / all.freedom, 1, all.chance());
+  EXPECT_LT(unevenness(all.shares), 27.88);
+  EXPECT_GT(all.within(0.95), 0.91);
+  EXPECT_GE(thin.shares.size(), 30U);
+  EXPECT_LT(thin.squares / thin.freedom, 1.5);
+  EXPECT_GT(thin.within(0.95), 0.84);
 }
 
 // Of which not even base and length are known: what is wrong is refused or told. The last seed's fit goes far

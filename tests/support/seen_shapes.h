@@ -49,16 +49,22 @@ inline double relative_shape_error(const Shape& shape, const Backbone& truth) {
   return shape_error(shape, truth) / truth.length();
 }
 
-/// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly
-/// from 0 to 1 where it is right. By E. B. Wilson's and M. M. Hilferty's cube root of chi^2, good to 0.01.
-inline double expected_share(const ShapeEstimate& found, const ArmState& truth) {
+/// The error of the bends, squared, by the covariance that came with them: where that is right, chi^2 of as
+/// many degrees of freedom as there are bends' components.
+inline double error_square(const ShapeEstimate& found, const ArmState& truth) {
   const auto count = static_cast<Eigen::Index>(2 * truth.bends.size());
   Eigen::VectorXd off(count);
   for (std::size_t i = 0; i < truth.bends.size(); ++i)
     off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - truth.bends[i];
-  const double square = off.dot(found.covariance.topLeftCorner(count, count).ldlt().solve(off));
-  const double spread = 2 / (9.0 * static_cast<double>(count));
-  const double normal = (std::cbrt(square / static_cast<double>(count)) - (1 - spread)) / std::sqrt(spread);
+  return off.dot(found.covariance.topLeftCorner(count, count).ldlt().solve(off));
+}
+
+/// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly
+/// from 0 to 1 where it is right. By E. B. Wilson's and M. M. Hilferty's cube root of chi^2, good to 0.01.
+inline double expected_share(const ShapeEstimate& found, const ArmState& truth) {
+  const auto count = static_cast<double>(2 * truth.bends.size());
+  const double spread = 2 / (9 * count);
+  const double normal = (std::cbrt(error_square(found, truth) / count) - (1 - spread)) / std::sqrt(spread);
   return 0.5 * std::erfc(-normal / std::numbers::sqrt2);
 }
 

@@ -72,7 +72,7 @@ void ContactWatch::for_each_chain_of(const ArmState& state, const Visit& visit) 
 Contact ContactWatch::contact(const ArmState& state, double cap) const {
   Contact nearest{.clearance = cap};
   for_each_chain_of(state, [&](const Chain& chain) {
-    const double now = clearance(chain, nearest.clearance);
+    const double now = clearance(chain, {.cap = nearest.clearance});
     if (!(now < nearest.clearance)) return;
     nearest = place_of(chain.first(), chain.last());
     nearest.clearance = now;
@@ -83,7 +83,7 @@ Contact ContactWatch::contact(const ArmState& state, double cap) const {
 std::vector<Contact> ContactWatch::contacts(const ArmState& state) const {
   std::vector<Contact> found;
   for_each_chain_of(state, [&](const Chain& chain) {
-    const double now = clearance(chain, deepest);
+    const double now = clearance(chain, {.cap = deepest});
     if (!(now < deepest)) return;
     found.push_back(place_of(chain.first(), chain.last()));
     found.back().clearance = now;
@@ -91,13 +91,12 @@ std::vector<Contact> ContactWatch::contacts(const ArmState& state) const {
   return found;
 }
 
-double ContactWatch::clearance(const Chain& chain, double cap) const {
-  if (obstacle_)
-    return obstacle_distance(chain.grown(1, share_), ignored_[chain.last()], *obstacle_, {.cap = cap});
+double ContactWatch::clearance(const Chain& chain, const DistanceWish& wish) const {
+  if (obstacle_) return obstacle_distance(chain.grown(1, share_), ignored_[chain.last()], *obstacle_, wish);
   const PairRule rule = chain.rule(-1);
-  if (!chain.has_pairs(rule) || chain.apart() - chain.moved() >= cap) return cap;
+  if (!chain.has_pairs(rule) || chain.apart() - chain.moved() >= wish.cap) return wish.cap;
   const double least = deepest_pair(chain.first_tube(), chain.last_tube());
-  return std::max(least, tube_distance(chain.first_tube(), chain.grown(1), rule, cap));
+  return std::max(least, tube_distance(chain.first_tube(), chain.grown(1), rule, wish));
 }
 
 QuantityBounds ContactWatch::bounds(const Chain& chain) const {
@@ -139,7 +138,7 @@ void ContactDepths::find_values(double time, std::span<const std::size_t> which,
   for (std::size_t k = 0; k < which.size(); ++k) {
     const Part& part = parts_[which[k]];
     chain.go_to(part.first, part.last);
-    values[k] = -watches_[part.watch].clearance(chain, deepest);
+    values[k] = -watches_[part.watch].clearance(chain, {deepest, deepest});
   }
 }
 
@@ -157,17 +156,15 @@ void ContactDepths::find_bounds(const Span& span, std::span<const std::size_t> w
 }
 
 WatchedQuantity ContactDepths::depth(std::size_t i) const {
-  const auto value = [this, i](double time) {
-    double found = 0;
-    find_values(time, {&i, 1}, {&found, 1});
-    return found;
-  };
-  const auto bounds = [this, part = parts_[i]](double start, double end) -> QuantityBounds {
-    const Swing swing(arm_, motion_, {start, end});
-    if (!swing.is_possible()) return undecided(0);
+  const auto depth_in = [this, part = parts_[i]](const Swing& swing) {
+    if (!swing.is_possible()) return contact_tolerance;
     Chain chain(swing, part.first);
     chain.go_to(part.first, part.last);
-    return {-no_distance, -watches_[part.watch].clearance(chain, deepest)};
+    return -watches_[part.watch].clearance(chain, {.cap = deepest});
+  };
+  const auto value = [this, depth_in](double time) { return depth_in(Swing(arm_, motion_.at(time))); };
+  const auto bounds = [this, depth_in](double start, double end) -> QuantityBounds {
+    return {-no_distance, depth_in(Swing(arm_, motion_, {start, end}))};
   };
   return {value, bounds};
 }

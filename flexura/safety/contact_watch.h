@@ -51,9 +51,9 @@ class ContactWatch {
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
   /// Whose contact the last section of a chain is.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
-  /// The least clearance that the last section may have anywhere in the chain's swing, m, where it is below
-  /// `cap`, otherwise `cap`. Of an arm at rest: the one that it has.
-  [[nodiscard]] double clearance(const Chain& chain, double cap) const;
+  /// The least clearance that the last section may have anywhere in the chain's swing, m, as it is wished
+  /// for. Of an arm at rest: the one that it has.
+  [[nodiscard]] double clearance(const Chain& chain, const DistanceWish& wish) const;
   /// Bounds on how deep the contact is in the chain's swing, m (`contact_tolerance` where there is none
   /// deeper). They say no more than whether it is surely free of contact or surely in contact; elsewhere the
   /// upper one is above `contact_tolerance` by what the section may move.
@@ -72,7 +72,9 @@ class ContactWatch {
 };
 
 /// How deep every section, or pair of sections, is in contact with each of the things watched, m
-/// (`contact_tolerance` where there is no contact deeper), in a motion that knows its rates.
+/// (`contact_tolerance` where there is no contact deeper), in a motion that knows its rates. Of many together
+/// only whether they are in contact counts: `find_values` gives any depth that occurs above the tolerance,
+/// which takes far less than to find the largest one.
 class ContactDepths : public WatchedQuantities {
  public:
   /// Watch number `watch`, and the chain from section `first` to `last`.

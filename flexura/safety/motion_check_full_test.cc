@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "tests/support/sampled_check.h"
 
 namespace flexura {
@@ -16,6 +18,22 @@ TEST(MotionCheckFull, MissesNothingThatDenseSamplingFinds) {
     EXPECT_EQ(result.overstated, 0U);
   });
   EXPECT_GE(result.motions, 60U);  // Planar arms have some more.
+}
+
+// Coils of which each touches many others all the time: whether they do is asked often, how deep seldom.
+TEST(MotionCheckFull, OfALongArmThatIsCoiledUpTakesNoMinutes) {
+  Arm arm;
+  arm.sections.assign(20, {.length = 0.1, .radius = {0.01, 0.01}});
+  const ArmState straight = ArmState::straight(20);
+  ArmState coiled = straight;
+  for (std::size_t i = 0; i < coiled.bends.size(); ++i) coiled.bends[i] = {10, 0.3 * static_cast<double>(i)};
+  const std::clock_t start = std::clock();
+  const MotionPtr motion = keyframe_motion({0, 10}, {straight, coiled}, Interpolation::linear);
+  const SafetyReport report = check_motions(arm, {}, straight, {{motion, 0, "coil"}}, 0.02);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  EXPECT_FALSE(report.is_safe());
+  RecordProperty("seconds", std::to_string(seconds));
+  EXPECT_LT(seconds, 40);
 }
 
 }  // namespace

@@ -243,6 +243,9 @@ TEST(MotionCheck, SaysWhatItOnlySampled) {
   EXPECT_TRUE(report.is_safe());
   EXPECT_THAT(report.caveats,
               testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: the law has no bound on its rates"));
+  EXPECT_THAT(check(short_section(), formula, 1000).caveats,
+              testing::ElementsAre(
+                  "0 s to 3 s: sampled at its start and its end alone: the law has no bound on its rates"));
   EXPECT_TRUE(check(short_section(), hold_motion(bent(0), 1)).caveats.empty());
 }
 

@@ -27,9 +27,11 @@ class SampledCheck {
         contacts_(checked.contacts.size()) {}
 
   void run() {
-    checked_.report.caveats.push_back(
-        fmt::format("{}: sampled every {:.6g} s: the law has no bound on its rates",
-                    span_text(checked_.whole(), checked_.timed.start), checked_.step));
+    const bool is_short = times_.size() <= 2;
+    checked_.report.caveats.push_back(fmt::format(
+        "{}: sampled {}: the law has no bound on its rates",
+        span_text(checked_.whole(), checked_.timed.start),
+        is_short ? "at its start and its end alone" : fmt::format("every {:.6g} s", checked_.step)));
     std::optional<double> last_possible;
     std::optional<ArmState> before;
     for (std::size_t k = 0; k < times_.size(); ++k) {

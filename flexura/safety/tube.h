@@ -55,13 +55,13 @@ struct DistanceWish {
 };
 
 /// The least distance between the surfaces of `a` and `b` (`a` nearer to the base, or the same arc), m,
-/// negative where they overlap, over the pairs of backbone points that count; `cap` when there are none, or
+/// negative where they overlap, over the pairs of backbone points that count; the cap when there are none, or
 /// none nearer.
 ///
 /// Branch and bound: a piece of an arc of length l that turns by psi stays within l min(psi/8, 1/2) of its
 /// chord, so the distance of two chords bounds that of the pieces, ever closer as they get shorter.
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
-                                   double cap = no_distance);
+                                   const DistanceWish& wish = {});
 
 /// Whether all these pairs are surely as far apart; false where it takes long to prove.
 [[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,

@@ -163,8 +163,9 @@ class PairSearch {
 
 }  // namespace
 
-double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule, double cap) {
-  PairSearch search(a, b, rule, {.cap = cap});
+double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
+                     const DistanceWish& wish) {
+  PairSearch search(a, b, rule, wish);
   (void)search.find(most_steps);
   return search.best();
 }

@@ -172,7 +172,8 @@ TEST(TubeDistance, StopsWhereItsQuestionIsAnswered) {
   const SectionTube a = tube_at({0, 0, 0}, {1, 0}, 1, 0.1);
   const SectionTube b = tube_at({0.7, 0.3, 0}, {-1, 2}, 1, 0.1);
   const double exact = tube_distance(a, b, {-100});
-  EXPECT_EQ(tube_distance(a, b, {-100}, exact - 1e-3), exact - 1e-3);
+  EXPECT_EQ(tube_distance(a, b, {-100}, {.cap = exact - 1e-3}), exact - 1e-3);
+  EXPECT_LT(tube_distance(a, b, {-100}, {.enough = exact + 1e-3}), exact + 1e-3);
   EXPECT_TRUE(stay_apart(a, b, {-100}, exact - 1e-5));
   EXPECT_FALSE(stay_apart(a, b, {-100}, exact + 1e-5));
   EXPECT_TRUE(come_within(a, b, {-100}, exact + 1e-5));

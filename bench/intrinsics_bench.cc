@@ -1,54 +1,108 @@
 // Calibrating cameras from the corners of boards, beside OpenCV; corners are found already. Thirteen views of
-// a 9 x 6 board with noise 0.15 px, as opencv-doc's pictures have them.
+// a 9 x 6 board: drawn ones with noise 0.15 px, and the pairs of pictures of Debian's package opencv-doc.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "flexura/calibrate/board_finder.h"
 #include "flexura/calibrate/board_target.h"
 #include "flexura/calibrate/intrinsics_fit.h"
 #include "flexura/math/so3.h"
+#include "flexura/vision/picture_file.h"
 #include "tests/support/boards.h"
 
 namespace flexura {
 namespace {
 
+using Views = std::vector<BoardView>;
+
 const BoardTarget board;
 const std::vector<Eigen::Vector2d> points = board.points();
 
-// What the first cameras of a pair see.
-std::vector<BoardView> views_of(std::size_t cameras) {
+// What a pair of cameras sees.
+Views drawn_pairs() {
   const Intrinsics lens{
       .fx = 533, .fy = 533, .cx = 342, .cy = 234, .distortion = {-0.28, 0.04, 0.001, 0, 0.02}};
   BoardBundle truth{{lens, lens}, {Pose{}, {so3_exp({0.01, 0.01, 0}), {0.083, 0, 0}}}, {}};
-  truth.lenses.resize(cameras), truth.cameras.resize(cameras);
   TestRandom random(1);
   for (int i = 0; i < 13; ++i) truth.boards.push_back(random_board(random, board, 0.4, 0.6, 0.1));
   return seen_boards(truth, points, 0.15, random);
 }
 
-void calibrate(benchmark::State& state) {
-  const auto cameras = static_cast<std::size_t>(state.range(0));
-  const std::vector<BoardView> views = views_of(cameras);
-  const std::vector<std::array<int, 2>> sizes(cameras, {640, 480});
-  IntrinsicsFit fit;
-  for (auto _ : state) fit = fit_intrinsics(points, views, sizes);
-  state.counters["rms_px"] = fit.rms;
+// None where a picture is not there or shows no board.
+Views real_pairs() {
+  const std::filesystem::path folder = "/usr/share/doc/opencv-doc/examples/data";
+  Views views;
+  for (int number = 1; number <= 14; ++number) {
+    if (number == 10) continue;
+    BoardView& view = views.emplace_back();
+    for (const char* side : {"left", "right"}) {
+      const std::string name = std::string(side) + (number < 10 ? "0" : "") + std::to_string(number) + ".jpg";
+      std::ifstream in(folder / name, std::ios::binary);
+      if (!in) return {};
+      const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
+      const BoardSighting seen = find_board(gray_picture(decode_picture(bytes, name).bytes), board);
+      if (!seen.is_found()) return {};
+      view.pixels.push_back(seen.pixels);
+    }
+  }
+  return views;
 }
-BENCHMARK(calibrate)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+const Views& pairs(bool are_real) {
+  static const Views drawn = drawn_pairs(), real = real_pairs();
+  return are_real ? real : drawn;
+}
+
+// What one camera of them sees.
+Views side(const Views& pairs, std::size_t camera) {
+  Views views;
+  for (const BoardView& pair : pairs) views.push_back({{pair.pixels[camera]}});
+  return views;
+}
+
+// The first camera alone; or each alone, and then both with the step between them.
+enum Cameras : std::uint8_t { one, each_and_both };
+
+void calibrate(benchmark::State& state, bool are_real, Cameras cameras) {
+  const Views& both = pairs(are_real);
+  if (both.empty()) return state.SkipWithError("the pictures of opencv-doc are not there");
+  const Views left = side(both, 0), right = side(both, 1);
+  constexpr std::array<std::array<int, 2>, 2> sizes = {{{640, 480}, {640, 480}}};
+  const std::span<const std::array<int, 2>> size(sizes.data(), 1);
+  double rms = 0;
+  for (auto _ : state) {
+    rms = fit_intrinsics(points, left, size).rms;
+    if (cameras == one) continue;
+    benchmark::DoNotOptimize(fit_intrinsics(points, right, size).rms);
+    rms = fit_intrinsics(points, both, sizes).rms;
+  }
+  state.counters["rms_px"] = rms;
+}
+BENCHMARK_CAPTURE(calibrate, drawn_one, false, one)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(calibrate, drawn_each_and_both, false, each_and_both)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(calibrate, real_one, true, one)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(calibrate, real_each_and_both, true, each_and_both)->Unit(benchmark::kMillisecond);
 
 struct OpenCvBoards {
   std::vector<std::vector<cv::Point3f>> there;
   std::vector<std::vector<cv::Point2f>> left, right;
 };
 
-OpenCvBoards opencv_boards() {
+OpenCvBoards opencv_boards(const Views& views) {
   OpenCvBoards boards;
-  for (const BoardView& view : views_of(2)) {
+  for (const BoardView& view : views) {
     auto& there = boards.there.emplace_back();
     auto &left = boards.left.emplace_back(), &right = boards.right.emplace_back();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -61,14 +115,15 @@ OpenCvBoards opencv_boards() {
   return boards;
 }
 
-void opencv_calibrates(benchmark::State& state) {
-  const OpenCvBoards boards = opencv_boards();
+void opencv_calibrates(benchmark::State& state, bool are_real, Cameras cameras) {
+  const OpenCvBoards boards = opencv_boards(pairs(are_real));
+  if (boards.there.empty()) return state.SkipWithError("the pictures of opencv-doc are not there");
   double rms = 0;
   for (auto _ : state) {
     cv::Mat K, distortion, other, other_distortion, R, t, E, F;
     std::vector<cv::Mat> rotations, positions;
     rms = cv::calibrateCamera(boards.there, boards.left, {640, 480}, K, distortion, rotations, positions);
-    if (state.range(0) == 1) continue;
+    if (cameras == one) continue;
     cv::calibrateCamera(boards.there, boards.right, {640, 480}, other, other_distortion, rotations,
                         positions);
     rms = cv::stereoCalibrate(boards.there, boards.left, boards.right, K, distortion, other, other_distortion,
@@ -76,7 +131,11 @@ void opencv_calibrates(benchmark::State& state) {
   }
   state.counters["rms_px"] = rms;
 }
-BENCHMARK(opencv_calibrates)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(opencv_calibrates, drawn_one, false, one)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(opencv_calibrates, drawn_each_and_both, false, each_and_both)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(opencv_calibrates, real_one, true, one)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(opencv_calibrates, real_each_and_both, true, each_and_both)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace flexura

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,14 @@ struct IntrinsicsArguments {
   std::string board;               ///< COLUMNSxROWS of points.
   double square = 0;               ///< m
   std::string pattern = "chessboard";
-  std::int64_t distortion = 5;     ///< How many of k1, k2, p1, p2, k3.
-  std::int64_t hold_out = 0;       ///< Every so-manieth view; 0: none.
-  std::vector<std::string> names;  ///< Of the cameras.
-  std::vector<double> position;    ///< p_WC of the first camera, three numbers; none: the origin.
-  std::vector<double> rotation;    ///< R_WC of the first camera as (w, x, y, z); none: the world's axes.
-  std::string out;                 ///< A file of measured cameras to write; "" for none.
-  std::string rig;                 ///< A file for experiments to include; "" for none.
-  std::string rig_from;            ///< An experiment whose cameras the rig file takes; "" for none.
+  std::int64_t distortion = 5;           ///< How many of k1, k2, p1, p2, k3.
+  std::optional<std::int64_t> hold_out;  ///< Every so-manieth view.
+  std::vector<std::string> names;        ///< Of the cameras.
+  std::vector<double> position;          ///< p_WC of the first camera, three numbers; none: the origin.
+  std::vector<double> rotation;  ///< R_WC of the first camera as (w, x, y, z); none: the world's axes.
+  std::string out;               ///< A file of measured cameras to write; "" for none.
+  std::string rig;               ///< A file for experiments to include; "" for none.
+  std::string rig_from;          ///< An experiment whose cameras the rig file takes; "" for none.
 };
 
 /// Calibrates cameras from pictures of a board and prints what is known then as one JSON document

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "flexura/math/median.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
@@ -77,13 +79,12 @@ void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector
   for (const auto& rms : fit.view_rms)
     if (rms) known.push_back(*rms);
   if (known.size() < 3) return;
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::ranges::nth_element(known, middle);
+  const double usual = median(std::span(known));
   constexpr double suspicious = 3;
   for (std::size_t i = 0; i < fit.view_rms.size(); ++i) {
-    if (!fit.view_rms[i] || *fit.view_rms[i] <= suspicious * *middle) continue;
+    if (!fit.view_rms[i] || *fit.view_rms[i] <= suspicious * usual) continue;
     notes.push_back(fmt::format("{} fits {:.1f} times worse than the middle one: look at it",
-                                pictures.names[i], *fit.view_rms[i] / *middle));
+                                pictures.names[i], *fit.view_rms[i] / usual));
   }
 }
 

@@ -124,8 +124,11 @@ BoardTarget board_of(const IntrinsicsArguments& arguments) {
         "--board", fmt::format("{}: expected COLUMNSxROWS of inner corners (or circles), each from {} to {}",
                                quoted(arguments.board), least, most));
   board.columns = *columns, board.rows = *rows;
-  if (!(arguments.square > 0) || !std::isfinite(arguments.square))
-    throw input_error("--square", fmt::format("{} m: expected a number above 0", arguments.square));
+  constexpr double smallest = 1e-6, largest = 1000;  // m
+  const bool is_a_side = arguments.square >= smallest && arguments.square <= largest;
+  if (!is_a_side)
+    throw input_error("--square", fmt::format("{} m: expected a number from {} to {}", arguments.square,
+                                              smallest, largest));
   board.square = arguments.square;
   const std::vector<std::string>& names = names_of(static_cast<const BoardPattern*>(nullptr));
   const auto found = std::ranges::find(names, arguments.pattern);
@@ -199,7 +202,7 @@ IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarg
   const std::vector<BoardView> views = views_of(pictures);
   return fit_intrinsics(board.points(), views, sizes,
                         {.distortion = static_cast<int>(arguments.distortion),
-                         .hold_out = static_cast<int>(arguments.hold_out)});
+                         .hold_out = static_cast<int>(arguments.hold_out.value_or(0))});
 }
 
 }  // namespace flexura

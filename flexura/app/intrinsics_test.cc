@@ -281,8 +281,8 @@ TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {
     EXPECT_THAT(refusal(), HasSubstr("--board")) << text;
   }
   arguments_ = good;
-  for (const double square :
-       {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double square : {0.0, -0.1, 1e300, 1e-300, std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::infinity()}) {
     arguments_.square = square;
     EXPECT_THAT(refusal(), HasSubstr("--square"));
   }
@@ -293,7 +293,7 @@ TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {
   };
   refuses("--pattern", [](auto& a) { a.pattern = "dots"; });
   refuses("--distortion", [](auto& a) { a.distortion = 6; });
-  refuses("--hold-out", [](auto& a) { a.hold_out = 1; });
+  for (const std::int64_t every : {-1, 0, 1}) refuses("--hold-out", [&](auto& a) { a.hold_out = every; });
   refuses("--position", [](auto& a) { a.position = {0, NAN, 0}; });
   refuses("--rotation", [](auto& a) { a.rotation = {0, 0, 0, 0}; });
   refuses("--out", [](auto& a) { a.out = "a.png"; });

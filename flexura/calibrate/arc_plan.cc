@@ -35,6 +35,9 @@ View view_along(const Camera& camera, double zoom, const Eigen::Vector3d& from,
   return view;
 }
 
+// In which the arc of a camera lies.
+const char* name_of_plane(std::size_t i) { return i == 0 ? "XOY" : "ZOY"; }
+
 // The smallest magnification that both cameras have, and something to spare for making it smaller still.
 double common_magnification(const LookLoop& loop, const std::array<double, 2>& depths) {
   constexpr double spare = 1.15;
@@ -65,7 +68,7 @@ std::optional<ArmState> arc_state(const Arm& arm, double bend, const Eigen::Vect
   return state;
 }
 
-std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers, ArcPlan& plan) {
+std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan) {
   const Arm& arm = loop.believed().arm;
   const double bend = loop.config().arc;
   plan.radius = arm.length() / bend;
@@ -80,7 +83,7 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
     const auto state = arc_state(arm, bend, towards[i]);
     if (!state)
       return fmt::format("the arm cannot be bent into an arc of {:.0f} deg in {}",
-                         bend * 180 / std::numbers::pi, i == 0 ? "XOY" : "ZOY");
+                         bend * 180 / std::numbers::pi, name_of_plane(i));
     plan.arcs[i] = *state;
     plan.centers[i] = center_of(arm, *state, bend, towards[i]);
     middles[i] = aims_at_centers ? plan.centers[i] : Backbone(arm, *state).pose(0.5 * arm.length()).position;
@@ -93,7 +96,7 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
       return fmt::format(
           "camera {} is believed to stand {:.3g} m from the plane {}: expected twice the arc's radius "
           "at least",
-          loop.name(i), distances[i], i == 0 ? "XOY" : "ZOY");
+          loop.name(i), distances[i], name_of_plane(i));
   }
   std::array<double, 2> depths{};
   for (std::size_t i = 0; i < 2; ++i)
@@ -106,6 +109,8 @@ std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers,
     const Eigen::Vector3d onto =
         plan.target - plan.normals[i].dot(plan.target - plan.centers[i]) * plan.normals[i];
     plan.ideal[i] = view_along(camera, plan.zoom[i], onto + distances[i] * plan.normals[i], -plan.normals[i]);
+    plan.pictures[i] = loop.config().draw(plan.ideal[i], plan.arcs[i]);
+    loop.plan(i, name_of_plane(i), plan.arcs[i], plan.ideal[i], plan.pictures[i]);
   }
   return std::nullopt;
 }
@@ -132,13 +137,12 @@ LookLoop::Trouble equalize_zooms(LookLoop& loop, const ArcPlan& plan) {
   std::array<double, 2> last = {1, 1};
   for (std::size_t i = 0; i < 2; ++i) {
     if (auto trouble = loop.show(plan.arcs[i])) return trouble;
-    const Image<std::uint8_t> ideal = loop.config().draw(plan.ideal[i], plan.arcs[i]);
     constexpr int rounds = 3;
     for (int round = 0; round < rounds; ++round) {
       ZoomCorrelation seen;
       auto trouble = loop.look(i, [&](RigSight& sight) {
         const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop.config().white[i]);
-        seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), ideal);
+        seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), plan.pictures[i]);
         sight.seen.reason = seen.reason;
         sight.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};
       });

@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "flexura/base/image.h"
 #include "flexura/calibrate/look_loop.h"
 #include "flexura/camera/view.h"
 #include "flexura/model/arm.h"
@@ -22,16 +24,17 @@ namespace flexura {
 struct ArcPlan {
   std::array<ArmState, 2> arcs;  ///< In XOY, for the first camera, and in ZOY.
   std::array<Eigen::Vector3d, 2> centers,
-      normals;                          ///< Of the arcs' circles, in W; the cameras look along -normal.
-  double radius = 0;                    ///< m
-  Eigen::Vector3d target;               ///< Where the axes shall meet.
-  std::array<View, 2> ideal;            ///< What the cameras shall be.
-  std::array<double, 2> zoom = {1, 1};  ///< Positions of the lenses for that.
+      normals;                ///< Of the arcs' circles, in W; the cameras look along -normal.
+  double radius = 0;          ///< m
+  Eigen::Vector3d target;     ///< Where the axes shall meet.
+  std::array<View, 2> ideal;  ///< What the cameras shall be,
+  std::array<Image<std::uint8_t>, 2> pictures;  ///< and would see each of its arc: the ideal images.
+  std::array<double, 2> zoom = {1, 1};          ///< Positions of the lenses for that.
 };
 
 /// The plan for cameras as they are believed to be; `aims_at_centers`: each at its circle's centre, or both
-/// at the middle of the space that the arcs take. Or why there is none.
-[[nodiscard]] std::optional<std::string> plan_arcs(const LookLoop& loop, bool aims_at_centers, ArcPlan& plan);
+/// at the middle of the space that the arcs take. Those who watch are told of it. Or why there is none.
+[[nodiscard]] std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan);
 
 /// Waits for rest; refuses cameras that are believed to look from one side.
 [[nodiscard]] LookLoop::Trouble begin_with_arm(LookLoop& loop);

@@ -31,7 +31,7 @@ LookLoop::Trouble ArcsPaperLoop::look(std::size_t i) {
     if (!sight.seen.points.empty()) sight.seen.reason.clear();  // Markers are not asked for.
     points_.clear();
     for (const CurvePoint& point : sight.seen.points) points_.push_back(point.pixel);
-    circle_ = fit_circle(points_);
+    sight.circle = circle_ = fit_circle(points_);
     if (!circle_) return;
     sight.values = {{"radius, px", circle_->radius},
                     {"rms, px", circle_->rms},
@@ -96,8 +96,10 @@ LookLoop::Trouble ArcsPaperLoop::go_around(std::size_t i, Orbit& orbit) {
   constexpr double steepest = 0.35;  // rad
   const double tilt = orbit.share * std::min(steepest, std::acos(std::clamp(ratio, 0.0, 1.0)));
   const double distance = loop_.lens(i).fx * plan_.radius / ellipse->semi_axes.x();
-  const Eigen::Vector3d way(-std::sin(ellipse->angle), std::cos(ellipse->angle),
-                            0);  // Along the shorter axis.
+  // Along the shorter axis, which has no sign of its own: the sides are those of the last time.
+  Eigen::Vector3d way(-std::sin(ellipse->angle), std::cos(ellipse->angle), 0);
+  if (way.dot(orbit.way) < 0) way = -way;
+  orbit.way = way;
   RigStance next = loop_.stance(i);
   const auto angles = Camera(loop_.model(i)).angles(next.head);
   const Eigen::Matrix3d R_MC = pan_rotation(angles[0]) * tilt_rotation(angles[1]);

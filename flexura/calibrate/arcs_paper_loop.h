@@ -26,6 +26,7 @@ class ArcsPaperLoop {
   using Trouble = LookLoop::Trouble;
   struct Orbit {
     double side = 1, share = 1, last_ratio = -1;
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();
   };
   [[nodiscard]] Trouble look(std::size_t i);
   [[nodiscard]] Trouble verify(std::size_t i);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "flexura/calibrate/board_start.h"
+#include "flexura/math/median.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -93,9 +94,7 @@ StepSpread step_spread(std::span<const CameraStep> steps) {
   const auto median_turn = [&](const CameraStep& from) {
     std::vector<double> turns;
     for (const CameraStep& to : steps) turns.push_back(turn(from, to));
-    const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
-    std::ranges::nth_element(turns, middle);
-    return *middle;
+    return median(std::span(turns));
   };
   const CameraStep& usual = *std::ranges::min_element(steps, {}, median_turn);
   const CameraStep& farthest =

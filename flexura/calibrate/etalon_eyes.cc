@@ -63,6 +63,22 @@ std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonF
   return points;
 }
 
+SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, const View& view) {
+  const EtalonFigure figure(etalon);
+  SeenArm drawn;
+  for (const EtalonPoint& point : etalon_points(seen, figure, view)) {
+    if (point.part != EtalonPart::red_line) continue;
+    const auto place = figure.nearest(point, view);
+    const double up = place ? (*place - figure.middle()).y() + 0.5 * etalon.height : 0;
+    drawn.markers.push_back({point.pixel, up, point.sigma});
+  }
+  if (drawn.markers.empty()) drawn.reason = "no red line is seen that can be told from the others";
+  for (const auto& [line, share] :
+       {std::pair{&seen.left, -0.5}, {&seen.left, 0.5}, {&seen.right, 0.5}, {&seen.right, -0.5}})
+    drawn.points.push_back({at(*line, seen, share), least_sigma});
+  return drawn;
+}
+
 EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config)
     : believed_(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
 
@@ -73,21 +89,6 @@ bool EtalonEyes::look(std::size_t i, const Picture& picture) {
   return last_.reason.empty();
 }
 
-SeenArm EtalonEyes::drawn(const EtalonSighting& seen, const View& view) const {
-  SeenArm drawn;
-  for (const EtalonPoint& point : etalon_points(seen, etalon_, view)) {
-    if (point.part != EtalonPart::red_line) continue;
-    const auto place = etalon_.nearest(point, view);
-    const double up = place ? (*place - etalon_.middle()).y() + 0.5 * config_.etalon->height : 0;
-    drawn.markers.push_back({point.pixel, up, point.sigma});
-  }
-  if (drawn.markers.empty()) drawn.reason = "no red line is seen that can be told from the others";
-  for (const auto& [line, share] :
-       {std::pair{&seen.left, -0.5}, {&seen.left, 0.5}, {&seen.right, 0.5}, {&seen.right, -0.5}})
-    drawn.points.push_back({at(*line, seen, share), least_sigma});
-  return drawn;
-}
-
 SeenArm EtalonEyes::unkept(const View& /*view*/) const {
   SeenArm nothing;
   nothing.reason = last_.reason;
@@ -96,7 +97,8 @@ SeenArm EtalonEyes::unkept(const View& /*view*/) const {
 
 SeenArm EtalonEyes::keep(std::size_t stance, std::size_t pose, const RigModel* found) {
   looks_.push_back({stance, pose, last_.sighting});
-  return drawn(last_.sighting, view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
+  return drawn_etalon(last_.sighting, *config_.etalon,
+                      view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
 }
 
 RigObservations EtalonEyes::observations(const RigModel& model) const {

@@ -17,8 +17,12 @@ namespace flexura {
 [[nodiscard]] std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
                                                      const View& view);
 
-/// The eyes of a session before the calibration cylinder. What they say of a picture has a marker for each
-/// point of a red line (its place: how high up), and of the silhouette its four corners as points.
+/// The same for the log and for eyes: a marker for each point of a red line (its place: how high up), and of
+/// the silhouette its four corners as points.
+[[nodiscard]] SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, const View& view);
+
+/// The eyes of a session before the calibration cylinder. What they say of a picture is as drawn_etalon has
+/// it.
 class EtalonEyes : public RigEyes {
  public:
   /// All outlive it; the configuration has an etalon.
@@ -40,7 +44,6 @@ class EtalonEyes : public RigEyes {
   };
   [[nodiscard]] RigObservations observations(const RigModel& model) const;
   [[nodiscard]] RigReading read_by(const RigModel& first) const;
-  [[nodiscard]] SeenArm drawn(const EtalonSighting& seen, const View& view) const;
 
   const RigModel& believed_;
   const RigPrior& prior_;

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/calibrate/offset_steps.h"
+#include "flexura/calibrate/rig_aim.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/pose.h"
 #include "flexura/vision/eight_bits.h"
@@ -20,24 +22,11 @@ namespace {
 using LoopTrouble = LookLoop::Trouble;
 constexpr double degrees = 180 / std::numbers::pi;
 
-// For the report: where sides, lines and ends were seen.
-void add_points(const EtalonSighting& seen, std::vector<CurvePoint>& points) {
-  constexpr double sigma = 0.05;
-  const double half = 0.4 * (seen.bottom - seen.top);
-  const auto add = [&](const UprightLine& line) {
-    for (const double v : {-half, 0.0, half})
-      points.push_back({{line.at + line.slope * v, seen.middle_row + v}, sigma});
-  };
-  add(seen.left), add(seen.right);
-  for (const UprightLine& line : seen.lines) add(line);
-  for (const auto& edge : {seen.upper_edge, seen.lower_edge})
-    if (edge) points.push_back({{seen.middle(*edge), *edge}, sigma});
-}
-
-void tell(const EtalonView& view, RigSight& sight) {
+void tell(const EtalonView& view, const LookLoop& loop, RigSight& sight) {
+  if (view.reason.empty())
+    sight.seen = drawn_etalon(view.sighting, loop.config().etalon, view_of(loop.believed(), sight.stance));
   sight.seen.reason = view.reason;
   if (!view.reason.empty()) return;
-  add_points(view.sighting, sight.seen.points);
   sight.values = {{"silhouette right of the middle, px", view.middle},
                   {"line right of the silhouette's middle, px", view.line},
                   {"silhouette below the middle, px", view.height},
@@ -98,7 +87,7 @@ LoopTrouble EtalonLoop::look(std::size_t i) {
   return loop_.look(i, [this, i](RigSight& sight) {
     views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]), loop_.lens(i),
                             loop_.config().etalon.radius);
-    tell(views_[i], sight);
+    tell(views_[i], loop_, sight);
   });
 }
 

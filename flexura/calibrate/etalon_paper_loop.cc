@@ -23,9 +23,21 @@ struct EtalonPaperLoop::Procedure {
 
 namespace {
 
-void tell_counts(const EtalonCounts& counts, RigSight& sight) {
+void tell_counts(const EtalonCounts& counts, const LookLoop& loop, RigSight& sight) {
   sight.seen.reason = counts.reason;
   if (!counts.reason.empty()) return;
+  // As drawn_etalon has them: what is counted bounds the silhouette, and an axis is a column.
+  constexpr double whole_pixel = 0.29;  // Of a place known to a pixel, the standard deviation, px.
+  const SensorConfig& sensor = loop.believed().cameras[sight.stance.camera].sensor;
+  const double left = counts.left, right = static_cast<double>(sensor.width - 1 - counts.right),
+               top = counts.above, bottom = static_cast<double>(sensor.height - 1 - counts.below);
+  for (const Eigen::Vector2d& corner :
+       {Eigen::Vector2d(left, top), {left, bottom}, {right, bottom}, {right, top}})
+    sight.seen.points.push_back({corner, whole_pixel});
+  for (const double axis : counts.axes)
+    for (const double share : {0.75, 0.25})
+      sight.seen.markers.push_back(
+          {{axis, bottom + share * (top - bottom)}, share * loop.config().etalon.height, whole_pixel});
   sight.values = {{"white left, px", static_cast<double>(counts.left)},
                   {"white right, px", static_cast<double>(counts.right)},
                   {"white above, px", static_cast<double>(counts.above)},
@@ -41,7 +53,7 @@ void tell_counts(const EtalonCounts& counts, RigSight& sight) {
 PaperTrouble EtalonPaperLoop::look(std::size_t i) {
   auto trouble = loop_.look(i, [this, i](RigSight& sight) {
     counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]));
-    tell_counts(counts_[i], sight);
+    tell_counts(counts_[i], loop_, sight);
   });
   if (trouble) return trouble;
   if (!counts_[i].reason.empty())

@@ -65,12 +65,18 @@ LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {
             .pose = std::get<ArmState>(arm),
             .frame = std::get<Frame>(taken),
             .seen = {},
-            .values = {}};
+            .values = {},
+            .circle = {}};
   measure(sight_);
   watcher_.seen(sight_);
   if (!result_.before[i]) result_.before[i] = sight_;
   result_.after[i] = sight_;
   return std::nullopt;
+}
+
+void LookLoop::plan(std::size_t i, const std::string& plane, const ArmState& arc, const View& ideal,
+                    const Image<std::uint8_t>& picture) {
+  watcher_.planned({hands_.now(), config_.cameras[i], plane, arc, ideal, picture});
 }
 
 void LookLoop::decide(std::size_t i, const std::string& step, double offset, double accepted,

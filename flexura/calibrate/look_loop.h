@@ -34,6 +34,9 @@ class LookLoop {
   [[nodiscard]] Trouble look_from_one_side() const;
   /// A fresh picture of what stands; trouble when there were too many.
   Trouble look(std::size_t i, const Measure& measure);
+  /// What the simulator has of a camera's arc.
+  void plan(std::size_t i, const std::string& plane, const ArmState& arc, const View& ideal,
+            const Image<std::uint8_t>& picture);
   /// What was made of a picture, and what follows.
   void decide(std::size_t i, const std::string& step, double offset, double accepted, const std::string& unit,
               const std::string& next);

@@ -8,10 +8,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include "flexura/calibrate/rig_descent.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/median.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -174,9 +176,7 @@ RigDescent without_doubtful(RigProblem& problem, RigDescent found, const RigCali
 bool is_clear(const RigProblem& problem, const RigDescent& found, const RigCalibrationConfig& config) {
   std::vector<double> sizes = problem.sizes();
   if (!std::isfinite(found.cost) || sizes.empty()) return false;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle < config.most_rms;
+  return median(std::span(sizes)) < config.most_rms;
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "flexura/math/median.h"
+
 namespace flexura {
 namespace {
 
@@ -15,9 +17,7 @@ double bound_of(const RigProblem& problem, const RigDescentConfig& config) {
   constexpr double spread = 2;
   std::vector<double> sizes = problem.sizes();
   if (sizes.empty()) return config.bound;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(config.bound, spread * *middle);
+  return std::max(config.bound, spread * median(std::span(sizes)));
 }
 
 void hold(const std::vector<bool>& is_free, Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) {

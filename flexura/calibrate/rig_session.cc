@@ -136,7 +136,8 @@ class Session {
               .pose = eyes_->poses().back(),
               .frame = frame,
               .seen = {},
-              .values = {}};
+              .values = {},
+              .circle = {}};
     sight_.seen = measure(i, *frame.picture);
     ++result_.pictures[i];
     const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;

@@ -3,17 +3,21 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "flexura/base/image.h"
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_hands.h"
 #include "flexura/calibrate/rig_observability.h"
+#include "flexura/camera/view.h"
 #include "flexura/model/stand.h"
 #include "flexura/port/rig_ports.h"
+#include "flexura/vision/conic.h"
 
 namespace flexura {
 
@@ -59,7 +63,8 @@ struct RigSight {
   ArmState pose;         ///< As the drives say.
   Frame frame;           ///< The picture, and when it was taken.
   SeenArm seen;
-  std::vector<SeenValue> values;  ///< What the methods of the paper measure (loop_session.h).
+  std::vector<SeenValue> values;    ///< What the methods of the paper measure (loop_session.h),
+  std::optional<CircleFit> circle;  ///< and the one of arcs as printed through the points.
 };
 
 /// What was known after a look.
@@ -90,6 +95,17 @@ struct LoopDecision {
   std::string next;                 ///< What is done, in words.
 };
 
+/// What the simulator has of an arc of the arm (steps 1, 2 and 7 of section 3.4): what a camera's pictures
+/// are compared with.
+struct IdealArc {
+  double time = 0;              ///< When it was worked out, s.
+  std::size_t camera = 0;       ///< Whose, a place among the rig's.
+  std::string plane;            ///< "XOY" or "ZOY".
+  ArmState state;               ///< The sections' bends, each with its rotation about their base's axis.
+  View view;                    ///< The ideal camera,
+  Image<std::uint8_t> picture;  ///< and what it sees: the ideal image, gray.
+};
+
 /// Sees a session as it goes. What it does with that changes nothing of the session.
 class RigSessionWatcher {
  public:
@@ -106,7 +122,8 @@ class RigSessionWatcher {
   virtual void seen(const RigSight& sight) = 0;
   /// What the least squares know after a look (calibrate_rig_in_session).
   virtual void known(const RigStep& step) = 0;
-  /// What a loop of the paper's decides (calibrate_by_loop).
+  /// What a loop of the paper's has the simulator work out beforehand, and decides (calibrate_by_loop).
+  virtual void planned(const IdealArc& /*arc*/) {}
   virtual void decided(const LoopDecision& /*decision*/) {}
   /// Whether the session shall end early.
   virtual bool is_cancelled() { return false; }

@@ -36,10 +36,9 @@ class CalibrationBench : public RigBench {
   }
   LoopResult calibrate(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
-    const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
     LoopConfig config = loop_config(task, experiment().arm, experiment().cameras(), experiment().stand);
     config.draw = ideal_pictures(experiment());
-    return calibrate_by_loop(ports, believed, config, watcher);
+    return calibrate_by_loop(ports, believed(), config, watcher);
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports) {
     NobodyWatches nobody;
@@ -47,20 +46,33 @@ class CalibrationBench : public RigBench {
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
-    const RigModel believed = rig_model(experiment().arm.arm(), experiment().cameras());
     return calibrate_rig_in_session(
-        ports, believed, session_prior(task, believed, experiment().stand),
+        ports, believed(), prior(),
         session_config(task, experiment().arm, experiment().cameras(), experiment().stand), watcher);
+  }
+  [[nodiscard]] RigModel believed() const {
+    return rig_model(experiment().arm.arm(), experiment().cameras());
+  }
+  /// Of a bundle.
+  [[nodiscard]] RigPrior prior() const {
+    return session_prior(std::get<CalibrateTask>(experiment().task.front()), believed(), experiment().stand);
   }
   /// What truly remains where the cameras stand.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }
   RigRemainder truth(const Eigen::Vector3d& target) {
+    return remainder(true_model(), true_stances(), target);
+  }
+  [[nodiscard]] RigModel true_model() const {
     const RigConfig truth = experiment().true_rig();
+    return rig_model(truth.arm.arm(), truth.cameras);
+  }
+  /// How the cameras truly stand now.
+  std::array<RigStance, 2> true_stances() {
     const double now = rig().clock().now();
     std::array<RigStance, 2> stances;
     for (std::size_t i = 0; i < 2; ++i)
       stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
-    return remainder(rig_model(truth.arm.arm(), truth.cameras), stances, target);
+    return stances;
   }
   /// Whether heads and stages say that they are where the file starts them.
   void expect_back() { expect_back(ports()); }

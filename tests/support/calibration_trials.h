@@ -14,10 +14,20 @@
 #include <string>
 #include <vector>
 
+#include "flexura/calibrate/rig_quantities.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
+#include "tests/support/rig_figures.h"
 
 namespace flexura {
+
+/// What a bundle says of the rig at its end, beside what is true of it.
+struct BundleFigures {
+  RigFigure angle;                          ///< Between the axes, rad.
+  std::array<RigFigure, 2> focal;           ///< Shares.
+  double rms = 0;                           ///< Of residuals, in units of what each is taken to be off.
+  std::array<double, 2> pictures = {0, 0};  ///< By camera.
+};
 
 /// One start of a calibration, and what came of it.
 struct CalibrationTrial {
@@ -28,6 +38,7 @@ struct CalibrationTrial {
   std::string reason = "done";          ///< In few words; see kind_of.
   double pictures = 0;                  ///< A camera.
   double angle = 0, aim = 0, zoom = 0;  ///< What remains if it is done: rad from 90 degrees, m, share.
+  BundleFigures bundle = {};            ///< Of a bundle that is done.
 };
 
 /// A reason without its numbers and names, to be counted.
@@ -51,6 +62,33 @@ inline std::string kind_of(const std::string& reason) {
   for (const std::string& kind : kinds)
     if (reason.find(kind) != std::string::npos) return kind;
   return reason.substr(0, reason.find(';'));
+}
+
+/// Of a session that is done.
+inline BundleFigures bundle_figures(CalibrationBench& bench, const RigSessionResult& result) {
+  const RigCalibration& found = result.found;
+  const std::array<RigStance, 2> stands = bench.true_stances();
+  const RigModel truth = bench.true_model();
+  // The session's variables, counted from how it found that arm and heads stood.
+  const RigVariables variables(bench.believed(), bench.prior(), {found.poses, found.stances, {}});
+  Eigen::VectorXd x = found.x;
+  x.tail(x.size() - variables.globals()).setZero();
+  BundleFigures figures;
+  figures.rms = found.rms;
+  std::vector<OpticalAxis> axes;
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::size_t last = found.stances.size();
+    while (found.stances.at(--last).camera != i) continue;
+    axes.push_back(optical_axis(variables, x, observed_stance(variables, last)));
+    const RigQuantity focal = log_focal(axes[i]);
+    const Intrinsics lens = view_of(truth, stands[i]).lens.intrinsics();
+    figures.focal[i] = {focal.value - 0.5 * std::log(lens.fx * lens.fy), focal.sigma(found.covariance)};
+    figures.pictures[i] = static_cast<double>(result.pictures[i]);
+  }
+  const RigQuantity angle = axes_angle(axes[0], axes[1]);
+  const double is = angle.value - std::numbers::pi / 2;
+  figures.angle = {is - bench.truth(result.target).angle, angle.sigma(found.covariance)};
+  return figures;
 }
 
 /// Calibrates the random rig number `index` of a seed by a method, pictures and all.
@@ -90,10 +128,13 @@ inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed,
     trial.angle = left.angle, trial.zoom = left.zoom_ratio - 1;
     trial.aim = std::max(left.aim[0].norm(), left.aim[1].norm());
   };
-  if (is_bundle)
-    end(bench.calibrate_bundle(ports));
-  else
+  if (!is_bundle) {
     end(bench.calibrate(ports));
+    return trial;
+  }
+  const RigSessionResult result = bench.calibrate_bundle(ports);
+  end(result);
+  if (result.is_done) trial.bundle = bundle_figures(bench, result);
   return trial;
 }
 
@@ -109,6 +150,7 @@ class TrialFile {
       int done = 0;
       words >> trial.index >> trial.turn >> trial.shift >> done >> trial.pictures >> trial.angle >>
           trial.aim >> trial.zoom;
+      for (double* number : numbers(trial.bundle)) words >> *number;
       std::getline(words >> std::ws, trial.reason);
       if (words.fail()) continue;  // It was cut off there.
       trial.is_done = done != 0;
@@ -124,8 +166,10 @@ class TrialFile {
   void add(const CalibrationTrial& trial) {
     const std::lock_guard lock(mutex_);
     trials_[trial.index] = trial;
-    file_ << fmt::format("{} {} {} {} {} {} {} {} {}\n", trial.index, trial.turn, trial.shift,
-                         trial.is_done ? 1 : 0, trial.pictures, trial.angle, trial.aim, trial.zoom,
+    std::string bundle;
+    for (const double* number : numbers(trials_[trial.index].bundle)) bundle += fmt::format(" {}", *number);
+    file_ << fmt::format("{} {} {} {} {} {} {} {}{} {}\n", trial.index, trial.turn, trial.shift,
+                         trial.is_done ? 1 : 0, trial.pictures, trial.angle, trial.aim, trial.zoom, bundle,
                          trial.reason)
           << std::flush;
   }
@@ -137,6 +181,12 @@ class TrialFile {
   }
 
  private:
+  // As a line has them. Lines of older programs have no such numbers, and are no trials.
+  static std::array<double*, 9> numbers(BundleFigures& of) {
+    return {&of.angle.error,    &of.angle.sigma, &of.focal[0].error, &of.focal[0].sigma, &of.focal[1].error,
+            &of.focal[1].sigma, &of.rms,         &of.pictures[0],    &of.pictures[1]};
+  }
+
   std::mutex mutex_;
   std::map<std::size_t, CalibrationTrial> trials_;
   std::ofstream file_;

@@ -24,7 +24,9 @@ status=0
   echo "24th of that time."
   echo
   echo "Errors are the simulated truth's at the time of the pictures, root mean square along the arm in % of its length: at"
-  echo "rest in the last second of each rest, where the phase is the same each time, and on the way. *Held back*: steps of which the limiter sent"
+  echo "rest in the last second of each rest, where the phase is the same each time, and on the way. The first row of the"
+  echo "first part has the one picture of the very first rest, too, in which the arm, straight at the start, is still on its way"
+  echo "to the first shape: its large error is of that picture alone. *Held back*: steps of which the limiter sent"
   echo "something else than the law asked for; *told*: lines that the servo had to say, faults among them. *Level*: the errors of"
   echo "the last quarter are no more than a tenth above those of the first one (less its first row); in the last quarter the"
   echo "heap grows by less than 4 bytes a step, where a number kept of each would be 8, and the resident memory by"

@@ -23,6 +23,7 @@
 #include "flexura/app/render.h"
 #include "flexura/app/view.h"
 #include "flexura/base/node.h"
+#include "flexura/base/one_line.h"
 #include "flexura/base/source.h"
 #include "flexura/base/version.h"
 
@@ -289,7 +290,7 @@ int parse_and_run(int argc, const char* const* argv) {
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("flexura: {} (see flexura --help)\n", error.what());
+    return fmt::format("flexura: {} (see flexura --help)\n", one_line(error.what()));
   });
   Command chosen;
   add_run(app, chosen);
@@ -328,7 +329,7 @@ int run_app(int argc, const char* const* argv) noexcept {
     std::cerr << error.what() << '\n';
     return exit_bad_input;
   } catch (const std::exception& error) {
-    std::cerr << "flexura: " << error.what() << '\n';
+    std::cerr << "flexura: " << one_line(error.what()) << '\n';
     return exit_system_failure;
   }
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -71,6 +72,22 @@ class WatchedRun {
   OpenViewer viewer_;
 };
 
+// A run that nobody looks at: told to stop it ends early, told again at once, as if it were killed.
+class UnwatchedRun {
+ public:
+  explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
+      : stop_([this, link] {
+          if (times_told_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
+          link->cancel();
+        }) {}
+  /// The signal that told it; 0: none did.
+  [[nodiscard]] int told() const { return stop_.come(); }
+
+ private:
+  int times_told_ = 0;  // Of the signals' thread.
+  StopSignal stop_;
+};
+
 }  // namespace
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
@@ -84,7 +101,12 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   TerminalProgress progress(err);
   const auto link = std::make_shared<RunLink>(&progress);
   std::optional<WatchedRun> watched;
-  if (arguments.viewer) watched.emplace(experiment, link, *arguments.viewer, arguments.json ? err : out);
+  std::optional<UnwatchedRun> unwatched;
+  if (arguments.viewer) {
+    watched.emplace(experiment, link, *arguments.viewer, arguments.json ? err : out);
+  } else {
+    unwatched.emplace(link);
+  }
   const RunResult result = run_experiment(experiment, folder, *link, link.get());
   progress.clear();
   // A film is an extra: a run without ffmpeg is as good.
@@ -106,6 +128,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   out.flush();
   link->finish({name_of(result.outcome), result.reasons.empty() ? "" : result.reasons.front(), folder});
   if (watched) watched->wait();
+  if (result.outcome == RunOutcome::cancelled && unwatched) return exit_of_signal(unwatched->told());
   return result.outcome == RunOutcome::done ? exit_done : exit_missed;
 }
 

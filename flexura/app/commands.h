@@ -12,6 +12,8 @@ namespace flexura {
 
 /// The program's exit statuses (docs/command-line.md).
 enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit_system_failure = 3 };
+/// What a shell says of a program that a signal has ended.
+[[nodiscard]] constexpr int exit_of_signal(int signal) { return 128 + signal; }
 
 /// What `flexura run` is told.
 struct RunArguments {

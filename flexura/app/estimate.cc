@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <ostream>
 #include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -53,16 +54,34 @@ void check(const EstimateArguments& arguments) {
     throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
 }
 
+// What a camera's table has at `key`, in whatever unit; null where it is left out.
+const Node* written_at(const Node& camera, std::string_view key) {
+  const auto& members = *camera.as<Node::Table>();
+  const auto found = std::ranges::find_if(
+      members, [&](const Node::Member& member) { return without_unit(member.key) == key; });
+  return found == members.end() ? nullptr : &found->node;
+}
+
 // A lens alone is enough to measure a picture, but not for two to meet.
-void check_poses(const Node& file) {
+void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
   std::vector<Problem> problems;
-  for (const Node& camera : *file.find("camera")->as<Node::Array>()) {
-    for (const std::string key : {"position", "rotation"}) {
-      const auto is_it = [&](const Node::Member& member) { return without_unit(member.key) == key; };
-      if (std::ranges::any_of(*camera.as<Node::Table>(), is_it)) continue;
+  const auto& tables = *file.find("camera")->as<Node::Array>();
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    for (const std::string_view key : {"position", "rotation"})
+      if (written_at(tables[i], key) == nullptr)
+        problems.push_back(
+            {tables[i].where,
+             fmt::format("camera[{}].{}: missing: expected where each camera stands", i, key)});
+    const Node* position = written_at(tables[i], "position");
+    if (position == nullptr) continue;
+    const Eigen::Vector3d p_WC = cameras[i].pose().position;
+    if (!(p_WC.cwiseAbs().maxCoeff() <= farthest_place))
       problems.push_back(
-          {camera.where, fmt::format("camera: {} is missing: expected where each camera stands", key)});
-    }
+          {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
+    else if (i > 0 && (p_WC - cameras[0].pose().position).norm() < 1e-6)
+      problems.push_back({position->where, fmt::format("camera[{}].position: camera[0] stands there: "
+                                                       "expected the position and rotation of each",
+                                                       i)});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -70,21 +89,11 @@ void check_poses(const Node& file) {
 std::vector<MeasuredCamera> cameras_of(const EstimateArguments& arguments) {
   const Node file = read_toml_file(arguments.cameras);
   auto cameras = read_as<MeasuredCameras>(file).camera;
-  check_poses(file);
-  if (cameras.size() != arguments.images.size()) {
-    throw input_error(arguments.cameras, fmt::format("{} cameras for {} pictures: expected one for each",
-                                                     cameras.size(), arguments.images.size()));
-  }
-  for (std::size_t i = 0; i < cameras.size(); ++i)
-    if (!(cameras[i].pose().position.cwiseAbs().maxCoeff() <= farthest_place))
-      throw input_error(arguments.cameras,
-                        fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place));
-  for (std::size_t i = 1; i < cameras.size(); ++i)
-    if ((cameras[i].pose().position - cameras[0].pose().position).norm() < 1e-6)
-      throw input_error(arguments.cameras,
-                        fmt::format("camera[0] and camera[{}] stand in the same place: expected the position "
-                                    "and rotation of each",
-                                    i));
+  check_poses(file, cameras);
+  if (cameras.size() != arguments.images.size())
+    throw InputError(
+        {{file.find("camera")->where, fmt::format("camera: {} for {} pictures: expected one for each",
+                                                  cameras.size(), arguments.images.size())}});
   return cameras;
 }
 

@@ -383,39 +383,5 @@ TEST_F(Estimate, DoubtsPicturesOfTheOtherCameraAndNoneElse) {
   EXPECT_NE(wrong.find(status == exit_done ? "notes" : "reason"), nullptr) << out.str();
 }
 
-TEST_F(Estimate, RefusesWhatItCannotUse) {
-  std::ostringstream out;
-  EstimateArguments bad = arguments_;
-  bad.images.pop_back();
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad = arguments_;
-  bad.images.push_back(bad.images.front());
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad = arguments_;
-  bad.length = -1;
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad = arguments_;
-  bad.base = {0, NAN, 0};
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad.base = {1e300, 0, 0};
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad = arguments_;
-  bad.length = 1e300;
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  bad = arguments_;
-  bad.cameras = (folder_.path() / "far.toml").string();
-  write_new_file(bad.cameras, replaced(cameras_text, "position = [", "position = [1e200, 0, 0]\n# ["));
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  for (const char* marker : {"x", "", "12%%", "0.3", "130%", "-1%", "nan%"}) {
-    bad = arguments_;
-    bad.markers = {marker};
-    EXPECT_THROW(estimate_command(bad, out), InputError) << marker;
-  }
-  bad = arguments_;
-  bad.images[0] = (folder_.path() / "cameras.toml").string();
-  EXPECT_THROW(estimate_command(bad, out), InputError);
-  EXPECT_EQ(out.str(), "");
-}
-
 }  // namespace
 }  // namespace flexura

@@ -120,6 +120,9 @@ TEST(AnswerForward, AnswersABadLineWithItsError) {
       {R"({"stretches":[0,1]})", "stretches[0] = 0: expected a number above 0"},
       {R"({"bend":[[0,0],[0,0]]})", "did you mean \\\"bends\\\"?"},
   };
+  const std::string many_digits = answer_forward(arm, "{\"at\":[" + std::string(5000, '9') + "]}");
+  EXPECT_THAT(many_digits, HasSubstr("number overflow parsing '99"));
+  EXPECT_LT(many_digits.size(), 250U);
   for (const auto& [line, error] : lines) {
     EXPECT_THAT(answer_forward(arm, line), HasSubstr(error)) << line;
     EXPECT_THAT(answer_forward(arm, line), ::testing::StartsWith("{\"error\":")) << line;

@@ -51,13 +51,12 @@ std::vector<std::optional<Lens>> lenses_of(const MeasureArguments& arguments) {
     if (arguments.radius) throw input_error("--radius", "needs --camera, a file of measured cameras");
     return lenses;
   }
-  const auto cameras = read_as<MeasuredCameras>(read_toml_file(arguments.camera)).camera;
-  if (cameras.size() != 1 && cameras.size() != lenses.size()) {
-    throw input_error(arguments.camera,
-                      fmt::format("{} cameras for {} pictures: expected one camera, or one for each "
-                                  "picture",
-                                  cameras.size(), lenses.size()));
-  }
+  const Node file = read_toml_file(arguments.camera);
+  const auto cameras = read_as<MeasuredCameras>(file).camera;
+  if (cameras.size() != 1 && cameras.size() != lenses.size())
+    throw InputError({{file.find("camera")->where,
+                       fmt::format("camera: {} for {} pictures: expected one, or one for each picture",
+                                   cameras.size(), lenses.size())}});
   for (std::size_t i = 0; i < lenses.size(); ++i) lenses[i] = cameras[cameras.size() == 1 ? 0 : i].lens();
   return lenses;
 }

@@ -15,9 +15,11 @@ StopSignal::StopSignal(std::function<void()> on_stop) {
   thread_ = std::thread([this, on_stop = std::move(on_stop)] {
     constexpr timespec a_while{0, 100'000'000};
     while (!is_over_) {
-      if (sigtimedwait(&signals_, nullptr, &a_while) < 0) continue;
-      has_come_ = true;
-      has_come_.notify_all();
+      const int signal = sigtimedwait(&signals_, nullptr, &a_while);
+      if (signal < 0) continue;
+      int none = 0;
+      come_.compare_exchange_strong(none, signal);
+      come_.notify_all();
       if (on_stop) on_stop();
     }
   });
@@ -29,6 +31,6 @@ StopSignal::~StopSignal() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
-void StopSignal::wait() const { has_come_.wait(false); }
+void StopSignal::wait() const { come_.wait(0); }
 
 }  // namespace flexura

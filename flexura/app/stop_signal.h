@@ -17,14 +17,15 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// Whether one has come.
-  [[nodiscard]] bool has_come() const { return has_come_; }
+  /// The first that has come; 0: none.
+  [[nodiscard]] int come() const { return come_; }
   /// Returns when one has come.
   void wait() const;
 
  private:
   sigset_t signals_{}, before_{};
-  std::atomic<bool> has_come_ = false, is_over_ = false;
+  std::atomic<int> come_ = 0;
+  std::atomic<bool> is_over_ = false;
   std::thread thread_;
 };
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -13,10 +15,10 @@
 namespace flexura {
 namespace {
 
-std::string complaint(const std::string& task) {
+std::string complaint_of(const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "x.toml";
-  std::ofstream(file) << servo_file(task);
+  std::ofstream(file) << text;
   try {
     (void)load_experiment(file);
   } catch (const InputError& error) {
@@ -26,6 +28,8 @@ std::string complaint(const std::string& task) {
   }
   return "";
 }
+
+std::string complaint(const std::string& task) { return complaint_of(servo_file(task)); }
 
 TEST(BadServo, EachIsOneClearLine) {
   const std::string bends = "bends = [[0, 0], [0, 0], [0, 0]]";
@@ -60,12 +64,56 @@ TEST(BadServo, EachIsOneClearLine) {
             "task[0].timeout: 4 s: expected more than settle, 5 s"},
            {"target = [{curve = [[0, 0, 0], [0, 1e-300, 0]]}]\n", "target[0].curve: has no length"},
            {"lost = 0.1\ntarget = [{" + bends + "}]\n", "task[0].lost: 0.1 s: expected more than blind"},
+           {"target = [{bends = [[0, 0], [0, 0], [0, 0], [0, 0]]}]\n",
+            "4 given: expected 3, one for each section"},
+           {"target = [{" + bends + ", stretches = [1]}]\n", "1 given: expected 3, one for each section"},
+           {"target = [{" + bends + ", missed = 0.1}]\n", "target[0].missed: unknown key"},
+           {"target = [{time = 1e300, " + bends + "}]\n", "expected a number from 0 s to 10000 s"},
+           {"timeout = inf\ntarget = [{" + bends + "}]\n", "task[0].timeout = inf"},
+           {"step = 1e-9\ntarget = [{" + bends + "}]\n",
+            "task[0].step = 1e-09: expected a number from 0.0001 s"},
+           {"step = 1e300\ntarget = [{" + bends + "}]\n", "task[0].step = 1e+300"},
            {"targets = 3\ntarget = [{" + bends + "}]\n", "did you mean \"target\""},
        }) {
     const std::string found = complaint(task);
     EXPECT_NE(found.find(words), std::string::npos) << task << " -> " << found;
   }
   EXPECT_EQ(complaint("target = [{" + bends + "}]\n"), "");
+}
+
+// Of the task's first line, once for both cameras.
+TEST(BadServo, CamerasThatNoStepCanFollow) {
+  struct Case {
+    std::string rate, task, words;
+  };
+  for (const Case& bad :
+       {Case{"1e-300", "", "task[0].step: not given, and a frame of the slower camera takes 1e+300 s"},
+        Case{"0.01", "", "takes 100 s: expected a step from 0.0001 s to 10 s"},
+        Case{"100000", "", "takes 1e-05 s"}, Case{"0.01", "step = 0.05\n", ""}}) {
+    std::string file = servo_file(bad.task + servo_target, {.sensor = "exposure = 1e-6"});
+    for (std::size_t at = 0; (at = file.find("frame_rate = 30", at)) != std::string::npos; ++at)
+      file.replace(at, 15, "frame_rate = " + bad.rate);
+    const std::string found = complaint_of(file);
+    EXPECT_NE(found.find(bad.words), std::string::npos) << found;
+    EXPECT_EQ(found.empty(), bad.words.empty()) << found;
+    EXPECT_LE(std::count(found.begin(), found.end(), '\n'), 0) << found;
+  }
+}
+
+TEST(BadServo, PicturesThatComeAfterItIsGivenUp) {
+  const auto late = [](const std::string& task, const std::string& delay) {
+    return complaint_of(servo_file(task + servo_target, {.sensor = "exposure = 0.002, delay = " + delay}));
+  };
+  EXPECT_NE(
+      late("", "100").find("task[0].lost: 3 s: expected more than the 100.002 s after which a picture of "
+                           "camera front comes"),
+      std::string::npos)
+      << late("", "100");
+  EXPECT_NE(late("", "2.999"), "");
+  EXPECT_EQ(late("", "2.99"), "");
+  EXPECT_EQ(late("lost = 40\n", "30"), "");
+  EXPECT_NE(late("lost = 100\n", "70").find("at most 60 s"), std::string::npos) << late("lost = 100\n", "70");
+  EXPECT_EQ(late("lost = 100\n", "59"), "");
 }
 
 // What is wrong with a target of two pictures that are this file.

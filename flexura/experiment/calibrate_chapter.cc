@@ -83,31 +83,29 @@ NamedDrawing sigmas(const CalibrationRun& run, std::size_t number) {
       .drawing(number);
 }
 
-// A picture with what was seen in it, and the optical axis as it was found.
+// With the optical axis as it was found.
 NamedDrawing calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
                                     std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
-  const CameraConfig& believed = run.believed.cameras[sight.stance.camera];
-  ImagePlot plot =
-      photograph(*sight.frame.picture, believed.sensor,
-                 fmt::format("camera {}, {}", run.cameras[camera], is_after ? "after" : "before"));
-  const double size = 0.012 * plot.width;
-  const bool is_arm = run.result.etalon_points == 0;
-  ImageOutline backbone{is_arm ? "backbone" : "silhouette", "s2", {}},
-      markers{is_arm ? "markers" : "red lines", "s1", {}}, axis{"optical axis", "s5", {}};
-  auto& line = backbone.lines.emplace_back();
-  for (const CurvePoint& point : sight.seen.points) line.points.push_back(point.pixel);
-  if (!is_arm && !line.points.empty()) line.points.push_back(line.points.front());
-  for (const SeenMarker& marker : sight.seen.markers) markers.lines.push_back(cross(marker.pixel, size));
-  plot.outlines = {backbone, markers};
+  const char* when = is_after ? "after" : "before";
+  ImagePlot plot = sight_picture(run, sight, fmt::format("camera {}, {}", run.cameras[camera], when));
   if (run.result.is_done) {
     const Intrinsics lens =
         Camera(run.result.found.model.cameras[sight.stance.camera]).lens().at(sight.stance.head.zoom);
-    axis.lines.push_back(cross({lens.cx, lens.cy}, 3 * size));
-    plot.outlines.push_back(axis);
+    plot.outlines.push_back({"optical axis", "s5", {cross({lens.cx, lens.cy}, 0.036 * plot.width)}});
   }
-  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[camera], is_after ? "after" : "before"),
-          image_picture(plot)};
+  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[camera], when), image_picture(plot)};
+}
+
+ImageOutline::Line circle_line(const CircleFit& circle) {
+  ImageOutline::Line line;
+  constexpr int sides = 72;
+  for (int i = 0; i <= sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    line.points.emplace_back(circle.center +
+                             circle.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return line;
 }
 
 std::string text_of(const CalibrationRun& run) {
@@ -115,7 +113,7 @@ std::string text_of(const CalibrationRun& run) {
   if (!result.is_done)
     return fmt::format("Not calibrated: {}. ({} looks, {} pictures.)", result.reason, result.looks,
                        result.pictures[0] + result.pictures[1]);
-  const bool is_arm = result.etalon_points == 0;
+  const bool is_arm = !run.is_before_etalon;
   const std::string measured =
       is_arm ? fmt::format("{} markers and {} points of the median axis", result.markers, result.points)
              : fmt::format("{} points of its borders and red lines", result.etalon_points);
@@ -152,6 +150,23 @@ std::vector<std::string> points_of(const CalibrationRun& run) {
 }
 
 }  // namespace
+
+ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::string heading) {
+  ImagePlot plot =
+      photograph(*sight.frame.picture, run.believed.cameras[sight.stance.camera].sensor, std::move(heading));
+  const bool is_arm = !run.is_before_etalon;
+  ImageOutline line{is_arm ? "backbone" : "silhouette", "s2", {{}}},
+      markers{is_arm ? "markers" : "red lines", "s1", {}};
+  for (const CurvePoint& point : sight.seen.points) line.lines[0].points.push_back(point.pixel);
+  if (!is_arm && !sight.seen.points.empty()) line.lines[0].points.push_back(sight.seen.points.front().pixel);
+  for (const SeenMarker& marker : sight.seen.markers)
+    markers.lines.push_back(cross(marker.pixel, 0.012 * plot.width));
+  plot.outlines = {line, markers};
+  if (sight.circle) plot.outlines.push_back({"circle", "s4", {circle_line(*sight.circle)}});
+  if (const auto ideal = ideal_axis(run, sight); !ideal.empty())
+    plot.outlines.push_back({"ideal axis", "s3", {{ideal, "dash1"}}});
+  return plot;
+}
 
 std::string remainder_text(const std::string& when, const RigRemainder& left) {
   return fmt::format(

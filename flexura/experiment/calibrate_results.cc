@@ -83,6 +83,26 @@ Node decision_nodes(const LoopResult& result, const CalibrationRun& run) {
   return {std::move(list), {}};
 }
 
+Node arc_nodes(const CalibrationRun& run) {
+  Node::Array list;
+  for (const CommandedArc& arc : run.arcs) {
+    Node::Array bends, rotations, positions;
+    for (const Eigen::Vector2d& bend : arc.ideal.state.bends)
+      bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
+    for (const double rotation : arc.rotations) rotations.push_back(number_node(rotation));
+    Node::Table entry{{"camera", {}, {run.believed.cameras[arc.ideal.camera].name, {}}},
+                      {"plane", {}, {arc.ideal.plane, {}}},
+                      {"bends", {}, {std::move(bends), {}}},
+                      {"rotations", {}, {std::move(rotations), {}}}};
+    if (arc.positions) {
+      for (const std::int64_t position : *arc.positions) positions.push_back({position, {}});
+      entry.push_back({"positions", {}, {std::move(positions), {}}});
+    }
+    list.push_back({std::move(entry), {}});
+  }
+  return {std::move(list), {}};
+}
+
 // Of one of the paper's methods.
 Node::Table loop_members(const CalibrationRun& run) {
   const LoopResult& result = *run.loop;
@@ -92,6 +112,7 @@ Node::Table loop_members(const CalibrationRun& run) {
       {"pictures", {}, {Node::Array{whole(result.pictures[0]), whole(result.pictures[1])}, {}}}};
   const auto add = [&](const char* key, Node node) { members.push_back({key, {}, std::move(node)}); };
   if (!result.is_done) add("reason", {result.reason, {}});
+  if (!run.arcs.empty()) add("arcs", arc_nodes(run));
   add("steps", decision_nodes(result, run));
   Node::Array notes;
   for (const std::string& note : result.notes) notes.push_back({note, {}});

@@ -8,6 +8,7 @@
 #include "flexura/base/node.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_task.h"
+#include "flexura/report/image_picture.h"
 #include "flexura/report/report.h"
 
 namespace flexura {
@@ -31,6 +32,9 @@ void write_rig_files(const Experiment& experiment, const std::vector<Calibration
 
 /// The list `calibrations` of a summary.
 [[nodiscard]] Node calibration_nodes(const std::vector<CalibrationRun>& runs);
+
+/// A picture with what was seen in it, and where the ideal camera would see the axis.
+[[nodiscard]] ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::string heading);
 
 /// What remains, in a sentence that begins with `when`.
 [[nodiscard]] std::string remainder_text(const std::string& when, const RigRemainder& left);

@@ -294,7 +294,7 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   }
   EXPECT_GT(counts["/calibration/moves"], 6);
   EXPECT_EQ(counts["/calibration/sightings"], 8);
-  EXPECT_EQ(counts["/calibration/decisions"], 2);
+  EXPECT_EQ(counts["/calibration/decisions"], 3);
   EXPECT_GE(counts["/camera/front"], 4);
   EXPECT_NEAR(static_cast<double>(last) * 1e-9, *result.summary.find("duration")->as<double>(), 1e-6);
 

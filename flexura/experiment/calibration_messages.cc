@@ -17,6 +17,34 @@ const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*) {
   return table;
 }
 
+const Table<CalibrationArcMessage>& fields_of(const CalibrationArcMessage*) {
+  using M = CalibrationArcMessage;
+  static const auto table =
+      Table<M>("flexura.CalibrationArc", "What the simulator has of an arc that a camera is to look at.")
+          .field("time", &M::time, {.meaning = "When it was worked out, since the experiment's start, s."})
+          .field("camera", &M::camera, {.meaning = "The camera's name."})
+          .field("plane", &M::plane, {.meaning = "In which the arc lies, \"XOY\" or \"ZOY\"."})
+          .field("bends", &M::bends, {.meaning = "Each section's bend, rad, base first."})
+          .field("rotations", &M::rotations,
+                 {.meaning = "How each bend is rotated about its section's base, from x towards y, rad."})
+          .field("positions", &M::positions,
+                 {.meaning = "The drives' commands: where each motor will be sent for it, microsteps."})
+          .field("pose", &M::pose, {.meaning = "Of the ideal camera, in the world."})
+          .field("focal", &M::focal, {.meaning = "Its focal length, px."});
+  return table;
+}
+
+const Table<CircleMessage>& fields_of(const CircleMessage*) {
+  using M = CircleMessage;
+  static const auto table =
+      Table<M>("flexura.Circle", "A circle through points of the median axis.")
+          .field("u", &M::u, {.meaning = "Its centre's column, px."})
+          .field("v", &M::v, {.meaning = "Its centre's row, px."})
+          .field("radius", &M::radius, {.meaning = "px."})
+          .field("verified", &M::verified, {.meaning = "Whether the points verify its equation."});
+  return table;
+}
+
 const Table<MarkerMessage>& fields_of(const MarkerMessage*) {
   using M = MarkerMessage;
   static const auto table = Table<M>("flexura.Marker", "A marker where it was seen.")
@@ -62,7 +90,11 @@ const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMess
           .field("points", &M::points, {.meaning = "Independent points of the median axis, base to tip."})
           .field("unknown", &M::unknown, {.meaning = "How many markers were not recognised."})
           .field("reason", &M::reason, {.meaning = "Why the picture is of no use."})
-          .field("values", &M::values, {.meaning = "What the paper's methods measured."});
+          .field("values", &M::values, {.meaning = "What the paper's methods measured."})
+          .field("circle", &M::circle, {.meaning = "Likewise: the circle through the points."})
+          .field(
+              "ideal", &M::ideal,
+              {.meaning = "Methods with arcs: where the ideal camera would see the axis, base to tip, px."});
   return table;
 }
 
@@ -89,7 +121,8 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("step", &M::step, {.meaning = "Likewise: the step that they are in."})
           .field("offset", &M::offset, {.meaning = "Likewise: how far off it is."})
           .field("accepted", &M::accepted, {.meaning = "Likewise: how far off it may be."})
-          .field("unit", &M::unit, {.meaning = "Of the last two."});
+          .field("unit", &M::unit, {.meaning = "Of the last two."})
+          .field("ended", &M::ended, {.meaning = "Whether it is over, as \"next\" says."});
   return table;
 }
 

@@ -50,6 +50,16 @@ void DriveCommands::step(double time, const ArmState& state, Recorder& recorder)
   if (rows_.text().size() >= piece) write_rows();
 }
 
+std::vector<std::int64_t> DriveCommands::positions_after(std::span<const ArmState> way) const {
+  std::optional<MotorCommander> commander = commander_;
+  for (const ArmState& state : way) {
+    const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
+    if (!commander) commander.emplace(drive_, wanted);
+    commander->follow(wanted);
+  }
+  return commander ? commander->positions() : std::vector<std::int64_t>{};
+}
+
 void DriveCommands::write_rows() {
   file_.append(std::as_bytes(std::span(rows_.text())));
   rows_ = {};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "flexura/experiment/recorder.h"
@@ -24,6 +25,8 @@ class DriveCommands {
 
   /// The arm's state that the motors are to reach by `time` s, later than the one before.
   void step(double time, const ArmState& state, Recorder& recorder);
+  /// The motors' positions after the arm has gone on through these states.
+  [[nodiscard]] std::vector<std::int64_t> positions_after(std::span<const ArmState> way) const;
   /// Completes the table.
   void close();
 

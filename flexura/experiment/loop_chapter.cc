@@ -1,6 +1,7 @@
 #include "flexura/experiment/loop_chapter.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
+#include "flexura/experiment/servo_run.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
@@ -56,24 +58,54 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
   return {fmt::format("calibration-{}-{}", number + 1, chart.name), chart_picture(chart, looks, {})};
 }
 
+NamedDrawing loop_drawing(const CalibrationRun& run, std::size_t i, const char* what, std::size_t number,
+                          ImagePlot plot) {
+  plot.outlines.push_back({"picture's middle",
+                           "s5",
+                           {cross({0.5 * (plot.width - 1), 0.5 * (plot.height - 1)}, 0.03 * plot.width)}});
+  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], what), image_picture(plot)};
+}
+
 NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
-  const RigSight& sight = is_after ? *run.loop->after[i] : *run.loop->before[i];
   const char* when = is_after ? "after" : "before";
-  ImagePlot plot = photograph(*sight.frame.picture, run.believed.cameras[sight.stance.camera].sensor,
-                              fmt::format("camera {}, {}", run.cameras[i], when));
-  const double size = 0.01 * plot.width;
-  ImageOutline seen{"measured", "s2", {}}, middle{"picture's middle", "s5", {}};
-  for (const CurvePoint& point : sight.seen.points) seen.lines.push_back(cross(point.pixel, size));
-  for (const SeenMarker& marker : sight.seen.markers) seen.lines.push_back(cross(marker.pixel, size));
-  middle.lines.push_back(cross({0.5 * (plot.width - 1), 0.5 * (plot.height - 1)}, 3 * size));
-  plot.outlines = {seen, middle};
-  return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
+  return loop_drawing(run, i, when, number,
+                      sight_picture(run, is_after ? *run.loop->after[i] : *run.loop->before[i],
+                                    fmt::format("camera {}, {}", run.cameras[i], when)));
+}
+
+// What the simulator has of a camera's arc.
+NamedDrawing ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
+  const IdealArc& ideal = run.arcs[i].ideal;
+  constexpr int count = 40;
+  ImagePlot plot = photograph(ideal.picture, {},
+                              fmt::format("camera {}, ideal: the arc in {}", run.cameras[i], ideal.plane));
+  plot.outlines = {
+      {"ideal axis", "s3", {{backbone_pixels(run.believed.arm, ideal.state, ideal.view, count), "dash1"}}}};
+  return loop_drawing(run, i, "ideal", number, std::move(plot));
+}
+
+// Its bends, rotations and drive commands.
+std::string arc_text(const CommandedArc& arc, const std::string& camera) {
+  // Degrees; no zero is negative.
+  const auto to_hundredths = [](double angle) {
+    return fmt::format("{:.2f}", std::round(angle * 18000 / std::numbers::pi) / 100 + 0.0);
+  };
+  std::vector<std::string> bends, rotations;
+  for (std::size_t i = 0; i < arc.rotations.size(); ++i) {
+    bends.push_back(to_hundredths(arc.ideal.state.bends[i].norm()));
+    rotations.push_back(to_hundredths(arc.rotations[i]));
+  }
+  return fmt::format(
+      "The arc in {}, for camera {}: sections bend by {} deg, rotated by {} deg{}.", arc.ideal.plane, camera,
+      fmt::join(bends, ", "), fmt::join(rotations, ", "),
+      arc.positions ? fmt::format("; motors at {} microsteps", fmt::join(*arc.positions, ", ")) : "");
 }
 
 std::vector<std::string> loop_points(const CalibrationRun& run) {
   constexpr double degrees = 180 / std::numbers::pi;
   const LoopResult& result = *run.loop;
   std::vector<std::string> points;
+  for (std::size_t i = 0; i < run.arcs.size(); ++i) points.push_back(arc_text(run.arcs[i], run.cameras[i]));
   if (result.angle)
     points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle * degrees));
   if (result.zoom_ratio)
@@ -105,6 +137,7 @@ Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
     if (result.before[i]) chapter.drawings.push_back(loop_photograph(run, i, false, number));
     if (result.after[i]) chapter.drawings.push_back(loop_photograph(run, i, true, number));
   }
+  for (std::size_t i = 0; i < run.arcs.size(); ++i) chapter.drawings.push_back(ideal_drawing(run, i, number));
   for (std::size_t i = 0; i < 2; ++i) {
     const bool has_steps = std::ranges::any_of(result.steps, [&](const LoopDecision& step) {
       return step.looks > 0 && run.believed.cameras[step.camera].name == run.cameras[i];

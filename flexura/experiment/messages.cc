@@ -128,6 +128,10 @@ const Table<ImageMessage>& fields_of(const ImageMessage*) {
 
 std::string image_topic(std::string_view camera) { return "/camera/" + std::string(camera); }
 
+std::string ideal_image_topic(std::string_view camera) {
+  return fmt::format("/calibration/ideal/{}", camera);
+}
+
 std::string head_topic(std::string_view camera) { return "/head/" + std::string(camera); }
 std::string stage_topic(std::string_view camera) { return "/stage/" + std::string(camera); }
 

@@ -108,6 +108,19 @@ struct CalibrationMoveMessage {
   std::optional<std::array<double, 3>> stage;               ///< m
 };
 
+/// flexura.CalibrationArc, on /calibration/arcs: what the simulator has of an arc that a camera is to look
+/// at.
+struct CalibrationArcMessage {
+  double time = 0;                                     ///< s
+  std::string camera;                                  ///< Whose.
+  std::string plane;                                   ///< "XOY" or "ZOY".
+  std::vector<std::array<double, 2>> bends;            ///< rad
+  std::vector<double> rotations;                       ///< Of the bends, rad.
+  std::optional<std::vector<std::int64_t>> positions;  ///< Of the motors, microsteps; arms with drives.
+  PoseMessage pose;                                    ///< Of the ideal camera,
+  double focal = 0;                                    ///< and its focal length, px.
+};
+
 /// A marker as it was measured in a picture.
 struct MarkerMessage {
   double s = 0;         ///< m along the unstretched arm.
@@ -127,6 +140,13 @@ struct SeenValueMessage {
   double value = 0;
 };
 
+/// A circle through such points.
+struct CircleMessage {
+  double u = 0, v = 0;  ///< Its centre, px.
+  double radius = 0;    ///< px
+  bool verified = false;
+};
+
 /// flexura.CalibrationSighting, on /calibration/sightings: what was measured in one picture.
 struct CalibrationSightingMessage {
   double time = 0;        ///< Middle of the exposure, s.
@@ -142,6 +162,9 @@ struct CalibrationSightingMessage {
   std::int64_t unknown = 0;                             ///< Markers seen that were not recognised.
   std::optional<std::string> reason;                    ///< Why the picture is of no use.
   std::optional<std::vector<SeenValueMessage>> values;  ///< Of the paper's methods.
+  std::optional<CircleMessage> circle;                  ///< Likewise.
+  /// Where the ideal camera would see the axis, from base to tip, px; methods with arcs.
+  std::optional<std::vector<std::array<double, 2>>> ideal;
 };
 
 /// flexura.CalibrationDecision, on /calibration/decisions: what is known after a look, and what follows.
@@ -161,6 +184,7 @@ struct CalibrationDecisionMessage {
   std::optional<std::string> camera, step;     ///< Of the paper's methods: whose offset, and in which step.
   std::optional<double> offset, accepted;      ///< Likewise: how large it is, and may be.
   std::optional<std::string> unit;             ///< Of both.
+  std::optional<bool> ended;                   ///< The last one: `next` says how it ended.
 };
 
 /// Where a camera's head was sent to.
@@ -193,6 +217,11 @@ struct ServoStepMessage {
   std::optional<std::string> limited;  ///< What held the law back.
 };
 
+/// Something that a servo's law compares in a picture: a pixel, or a line of some, px.
+struct FeatureMarkMessage {
+  std::vector<std::array<double, 2>> seen, wanted;
+};
+
 /// flexura.ServoSighting, on /servo/sightings: what a servo measured in one picture.
 struct ServoSightingMessage {
   double time = 0;  ///< Middle of the exposure, s.
@@ -201,7 +230,8 @@ struct ServoSightingMessage {
   std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
   /// Where the wanted shape would be seen, from base to tip, px; by the camera as it is believed to be.
   std::vector<std::array<double, 2>> wanted;
-  std::optional<std::string> reason;  ///< Why the picture shows no arm.
+  std::optional<std::vector<FeatureMarkMessage>> features;  ///< What the law compares.
+  std::optional<std::string> reason;                        ///< Why the picture shows no arm.
 };
 
 /// flexura.DynamicsSample, on /dynamics/samples: the distributed arm at one time.
@@ -233,6 +263,7 @@ inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
+inline constexpr std::string_view calibration_arcs_topic = "/calibration/arcs";
 inline constexpr std::string_view calibration_sightings_topic = "/calibration/sightings";
 inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
 inline constexpr std::string_view servo_steps_topic = "/servo/steps";
@@ -252,6 +283,8 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);
 const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);
+const Table<CalibrationArcMessage>& fields_of(const CalibrationArcMessage*);
+const Table<CircleMessage>& fields_of(const CircleMessage*);
 const Table<MarkerMessage>& fields_of(const MarkerMessage*);
 const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
@@ -259,11 +292,14 @@ const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMess
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 const Table<HeadCommandMessage>& fields_of(const HeadCommandMessage*);
 const Table<ServoStepMessage>& fields_of(const ServoStepMessage*);
+const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*);
 const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
 const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*);
 
-/// The topics of a camera's images, and of its head's and its stage's readings.
+/// The topics of a camera's images, of what the simulator has instead, and of its head's and its stage's
+/// readings.
 [[nodiscard]] std::string image_topic(std::string_view camera);
+[[nodiscard]] std::string ideal_image_topic(std::string_view camera);
 [[nodiscard]] std::string head_topic(std::string_view camera);
 [[nodiscard]] std::string stage_topic(std::string_view camera);
 

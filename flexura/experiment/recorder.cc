@@ -13,6 +13,19 @@
 #include "flexura/store/schema.h"
 
 namespace flexura {
+namespace {
+
+// An ImageMessage of a topic, as JSON.
+std::string image_text(const std::string& topic, double time, const Picture& picture) {
+  // A run waits for every frame: quickly made rather than small.
+  constexpr PngConfig quick{.level = 1};
+  const ImageMessage message{time_message(nanoseconds(time)),
+                             topic.substr(1),
+                             {std::visit([&](const auto& image) { return png(image, quick); }, picture)}};
+  return write_json(Codec<ImageMessage>::write(message));
+}
+
+}  // namespace
 
 struct Recorder::Channels {
   explicit Channels(const std::filesystem::path& file)
@@ -38,6 +51,11 @@ struct Recorder::Channels {
     if (!channel) channel = add<M>(topic);
     write(*channel, nanoseconds(time), message);
   }
+  void write_image(const std::string& topic, double time, std::string_view message) {
+    const auto [channel, is_new] = images.try_emplace(topic);
+    if (is_new) channel->second = add<ImageMessage>(topic);
+    log.write(channel->second, nanoseconds(time), message);
+  }
 
   McapWriter log;
   std::uint16_t state;
@@ -47,12 +65,13 @@ struct Recorder::Channels {
   std::optional<std::uint16_t> frames;
   std::optional<std::uint16_t> commands;
   std::optional<std::uint16_t> arm_reading;
-  std::optional<std::uint16_t> calibration_moves, calibration_sightings, calibration_decisions;
+  std::optional<std::uint16_t> calibration_moves, calibration_arcs, calibration_sightings,
+      calibration_decisions;
   std::optional<std::uint16_t> servo_steps, servo_sightings;
   std::optional<std::uint16_t> dynamics_samples;
   std::map<std::string, std::uint16_t> heads;   // by camera
   std::map<std::string, std::uint16_t> stages;  // by camera
-  std::map<std::string, std::uint16_t> images;  // by camera
+  std::map<std::string, std::uint16_t> images;  // by topic
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Arm& arm)
@@ -132,6 +151,12 @@ void Recorder::calibration(const CalibrationMoveMessage& message) {
   channels_->write(channels_->calibration_moves, calibration_moves_topic, message.time, message);
 }
 
+void Recorder::calibration(const CalibrationArcMessage& message, const Image<std::uint8_t>& ideal) {
+  channels_->write(channels_->calibration_arcs, calibration_arcs_topic, message.time, message);
+  const std::string topic = ideal_image_topic(message.camera);
+  channels_->write_image(topic, message.time, image_text(topic, message.time, ideal));
+}
+
 void Recorder::calibration(const CalibrationSightingMessage& message, double received) {
   channels_->write(channels_->calibration_sightings, calibration_sightings_topic, received, message);
 }
@@ -153,19 +178,11 @@ void Recorder::dynamics(const DynamicsSampleMessage& message) {
 }
 
 std::string logged_image(const std::string& camera, const Frame& frame) {
-  // A run waits for every frame: quickly made rather than small.
-  constexpr PngConfig quick{.level = 1};
-  const ImageMessage message{
-      time_message(nanoseconds(frame.time)),
-      image_topic(camera).substr(1),
-      {std::visit([&](const auto& image) { return png(image, quick); }, *frame.picture)}};
-  return write_json(Codec<ImageMessage>::write(message));
+  return image_text(image_topic(camera), frame.time, *frame.picture);
 }
 
 void Recorder::image(const std::string& camera, const Frame& frame, std::string_view message) {
-  const auto [channel, is_new] = channels_->images.try_emplace(camera);
-  if (is_new) channel->second = channels_->add<ImageMessage>(image_topic(camera));
-  channels_->log.write(channel->second, nanoseconds(frame.received), message);
+  channels_->write_image(image_topic(camera), frame.received, message);
 }
 
 void Recorder::close() { channels_->log.close(); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "flexura/base/image.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/scene_messages.h"
 #include "flexura/model/arm.h"
@@ -46,6 +47,7 @@ class Recorder {
 
   /// What a calibration does, sees and decides. The first message of each kind opens its channel.
   void calibration(const CalibrationMoveMessage& message);
+  void calibration(const CalibrationArcMessage& message, const Image<std::uint8_t>& ideal);
   void calibration(const CalibrationSightingMessage& message, double received);
   void calibration(const CalibrationDecisionMessage& message);
 

@@ -55,6 +55,11 @@ class RunWatcher {
   /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}
+  /// A command of a calibration, what it sees in a picture, and what it decides, as the log has them; the
+  /// last decision ends it.
+  virtual void calibration_moved(const CalibrationMoveMessage& /*move*/) {}
+  virtual void calibration_saw(const CalibrationSightingMessage& /*sighting*/) {}
+  virtual void calibration_decided(const CalibrationDecisionMessage& /*decision*/) {}
   /// What a servo sends, and what it sees in a picture, as the log has them; and that it has ended.
   virtual void servo_stepped(const ServoStepMessage& /*step*/) {}
   virtual void servo_saw(const ServoSightingMessage& /*sighting*/) {}

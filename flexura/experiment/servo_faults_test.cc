@@ -1,4 +1,4 @@
-// Servos whose devices answer with what is no number, late or in the wrong order, and what their log keeps.
+// Servos whose devices answer with what is no number, late or in the wrong order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <set>
@@ -14,15 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "tests/support/quiet.h"
+#include "flexura/experiment/task_config.h"
 #include "tests/support/servo_bench.h"
-#include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
@@ -285,37 +277,6 @@ TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
     EXPECT_EQ(notes.gone_by.contains(4), !is_one_lost);
     EXPECT_GE(notes.gone_by.size(), 6u);
   }
-}
-
-// Every command to a head that follows stands in the log, as every stretch does.
-TEST(ServoFaults, TheLogHasWhatHeadsAndStretchesWereSentTo) {
-  const TemporaryFolder temporary;
-  const auto folder = temporary.path() / "results";
-  std::filesystem::create_directory(folder);
-  Quiet quiet;
-  const std::string task =
-      "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n";
-  const RunResult result = run_experiment(
-      parse_experiment(servo_file(task, {.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002"}),
-                       "x.toml"),
-      folder, quiet);
-  EXPECT_EQ(result.outcome, RunOutcome::done);
-  std::size_t steps = 0, heads = 0;
-  const McapReader log(folder / log_file_name);
-  for (const McapMessage& message : log.messages()) {
-    if (message.channel->topic != servo_steps_topic) continue;
-    const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
-    ++steps;
-    EXPECT_EQ(step.sent_stretches, (std::vector<double>{1, 1, 1}));
-    if (!step.heads) continue;
-    heads += step.heads->size();
-    for (const HeadCommandMessage& head : *step.heads) {
-      EXPECT_TRUE(head.camera == "front" || head.camera == "side") << head.camera;
-      EXPECT_TRUE(head.pan != 0 || head.tilt != 0);
-    }
-  }
-  EXPECT_GT(steps, 20u);
-  EXPECT_GT(heads, 0u);
 }
 
 // At its last target, as it is truly.

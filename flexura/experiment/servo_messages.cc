@@ -50,6 +50,16 @@ const Table<ServoStepMessage>& fields_of(const ServoStepMessage*) {
   return table;
 }
 
+const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
+  using M = FeatureMarkMessage;
+  static const auto table =
+      Table<M>("flexura.FeatureMark",
+               "Something that a law compares in a picture: a pixel, or a line of some.")
+          .field("seen", &M::seen, {.meaning = "As measured, px."})
+          .field("wanted", &M::wanted, {.meaning = "As wanted, px."});
+  return table;
+}
+
 const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
   using M = ServoSightingMessage;
   static const auto table =
@@ -61,6 +71,10 @@ const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
           .field("wanted", &M::wanted,
                  {.meaning = "Where the camera, as it is believed to be, would see the wanted shape, base to "
                              "tip, px."})
+          .field("features", &M::features,
+                 {.meaning = "What the law compares in the picture: pixels of points and silhouettes; chords "
+                             "of chords and potential, the wanted ones turned about the middles of the "
+                             "measured ones; of moments the middle, and the ellipse of the second moments."})
           .field("reason", &M::reason, {.meaning = "Why the picture shows no arm."});
   return table;
 }

@@ -8,6 +8,7 @@
 
 #include "flexura/experiment/commanded_motion.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/servo/feature_marks.h"
 
 namespace flexura {
 namespace {
@@ -15,19 +16,21 @@ namespace {
 // Tells the log of everything, and compares with the truth.
 class LoggedServo : public ServoWatcher {
  public:
-  LoggedServo(const Experiment& experiment, ServoRun& run, Filming& filming, Witness& witness,
-              Progress& progress, CommandedMotion& motion)
+  LoggedServo(const Experiment& experiment, const ServoConfig& session, ServoRun& run, Filming& filming,
+              Witness& witness, Progress& progress, CommandedMotion& motion)
       : keeps_images_(experiment.record.cameras),
         run_(run),
         filming_(filming),
         witness_(witness),
         progress_(progress),
-        motion_(motion) {}
+        motion_(motion),
+        marker_(session.law, run.believed.arm, session.points) {}
 
   void arm_sent(double time, const ArmState& state, double duration) override {
     motion_.send(time, state, duration);
   }
   void seen(const ServoSight& sight) override {
+    const auto marks = marker_.of(sight);
     for (std::size_t i = 0; i < 2; ++i) {
       if (keeps_images_)
         witness_.image(run_.cameras[i], sight.frames[i], logged_image(run_.cameras[i], sight.frames[i]));
@@ -40,7 +43,10 @@ class LoggedServo : public ServoWatcher {
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
       for (const Eigen::Vector2d& pixel :
            backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))
-        message.wanted.push_back({to_hundredths(pixel.x()), to_hundredths(pixel.y())});
+        message.wanted.push_back(to_hundredths(pixel));
+      if (!marks[i].empty()) message.features.emplace();
+      for (const FeatureMark& mark : marks[i])
+        message.features->push_back({to_hundredths(mark.seen), to_hundredths(mark.wanted)});
       witness_.servo(message, sight.frames[i].received);
     }
   }
@@ -76,7 +82,14 @@ class LoggedServo : public ServoWatcher {
   static constexpr std::size_t most_points = 60;  // Of an axis in the log.
   static constexpr int wanted_points = 40;        // Of the wanted shape's image.
 
-  static double to_hundredths(double pixels) { return std::round(100 * pixels) / 100; }
+  static std::array<double, 2> to_hundredths(const Eigen::Vector2d& pixel) {
+    return {std::round(100 * pixel.x()) / 100, std::round(100 * pixel.y()) / 100};
+  }
+  static std::vector<std::array<double, 2>> to_hundredths(const std::vector<Eigen::Vector2d>& pixels) {
+    std::vector<std::array<double, 2>> rounded;
+    for (const Eigen::Vector2d& pixel : pixels) rounded.push_back(to_hundredths(pixel));
+    return rounded;
+  }
 
   // Of the time of the step's pictures.
   [[nodiscard]] ServoError add_truth(const ServoStep& step, ServoStepMessage& message) {
@@ -97,6 +110,7 @@ class LoggedServo : public ServoWatcher {
   Witness& witness_;
   Progress& progress_;
   CommandedMotion& motion_;
+  FeatureMarker marker_;
 };
 
 void add_true_remaining(ServoRun& run) {
@@ -183,7 +197,7 @@ ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigMode
   CommandedMotion motion(ports.clock->now(), from);
   RecordedClock clock(*ports.clock, record_steps, motion);
   ports.clock = &clock;
-  LoggedServo log(experiment, run, filming, witness, progress, motion);
+  LoggedServo log(experiment, session, run, filming, witness, progress, motion);
   run.result = servo_in_session(ports, run.believed, session, log);
   const double end = clock.now();
   record_steps(end, [&motion](double at) { return motion.at(at); });

@@ -8,18 +8,21 @@
 #include <utility>
 
 #include "flexura/camera/camera.h"
+#include "flexura/camera/sensor.h"
 #include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/direction.h"
+#include "flexura/servo/servo_session.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
 
 namespace flexura {
 namespace {
 
-constexpr double longest = 1e4;  // s
+constexpr double longest = 1e4;                            // s
+constexpr double shortest_step = 1e-4, longest_step = 10;  // s
 constexpr std::size_t most_targets = 10000, most_points = 10000;
 
 // A curve whose direction has these angles at equal shares of its length, linear in between.
@@ -193,7 +196,7 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field("step", &T::step,
                  {.meaning = "Time from one command to the next.",
                   .unit = Unit::second,
-                  .range = between(1e-4, 10),
+                  .range = between(shortest_step, longest_step),
                   .default_text = "a frame of the slower camera"});
   return table;
 }
@@ -282,6 +285,37 @@ void check_planes(const ServoTask& task, const std::vector<CameraConfig>& camera
                   cameras[front].name, cameras[side].name));
 }
 
+// Steps that follow the cameras, and pictures that come before the servo is given up.
+void check_frames(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
+                  Reader& reader) {
+  if (cameras.size() < 2) return;
+  const auto [front, side] = servo_cameras(task, cameras);
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  const double frame = 1 / std::min(cameras[front].sensor.frame_rate, cameras[side].sensor.frame_rate);
+  if (!task.step && (frame < shortest_step || frame > longest_step))
+    reader.problem_at(path + ".step",
+                      fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
+                                  "step from {} s to {} s",
+                                  frame, shortest_step, longest_step));
+  const double lost = std::max({task.lost, 2 * task.blind, 3 * frame});
+  for (const std::size_t i : {front, side}) {
+    const SensorConfig& sensor = cameras[i].sensor;
+    const double late = last_row_delay(sensor) + sensor.exposure + sensor.delay;
+    const std::string when =
+        fmt::format("the {:.6g} s after which a picture of camera {} comes", late, cameras[i].name);
+    if (late >= lost) {
+      reader.problem_at(path + ".lost", fmt::format("{} s: expected more than {}", task.lost, when));
+      return;
+    }
+    if (late > longest_delay) {
+      reader.problem_at(
+          path, fmt::format("has pictures that are too old: expected less than {}, at most {} s", when,
+                            longest_delay));
+      return;
+    }
+  }
+}
+
 void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const std::string& path,
                   Reader& reader) {
   check_shape(target, arm.kind, arm.section.size(), path, reader);
@@ -317,6 +351,7 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
     reader.problem_at(path + ".timeout",
                       fmt::format("{} s: expected more than settle, {} s", task.timeout, task.settle));
   check_planes(task, cameras, path, reader);
+  check_frames(task, cameras, path, reader);
   if (task.measure == ServoMeasure::flow && !has_chords(task.law))
     reader.problem_at(path + ".measure",
                       "\"flow\" carries the angles of chords: expected the law chords or potential");

@@ -5,12 +5,14 @@
 namespace flexura {
 namespace {
 
-constexpr double max_duration = 1e6;  // s
+constexpr double min_duration = 1e-9;  // s; of less no rates are numbers.
+constexpr double max_duration = 1e6;   // s
 constexpr std::size_t max_rows = 1'000'000;
 
 const Spec name_spec{.meaning = "What to call the task in results.", .default_text = "its kind"};
-const Spec duration_spec{
-    .meaning = "How long the task takes.", .unit = Unit::second, .range = above_up_to(0, max_duration)};
+const Spec duration_spec{.meaning = "How long the task takes.",
+                         .unit = Unit::second,
+                         .range = between(min_duration, max_duration)};
 
 }  // namespace
 
@@ -57,7 +59,7 @@ const Table<MoveTask>& fields_of(const MoveTask*) {
           .field("duration", &MoveTask::duration,
                  {.meaning = "How long the motion takes; a trapezoid finds its own.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, max_duration),
+                  .range = between(min_duration, max_duration),
                   .default_text = "1"})
           .field(
               "law", &MoveTask::law,

@@ -57,6 +57,25 @@ void Witness::image(const std::string& camera, const Frame& frame, std::string_v
   ++frames_[camera];
 }
 
+void Witness::calibration(const CalibrationMoveMessage& message) {
+  recorder_.calibration(message);
+  if (watcher_ != nullptr) watcher_->calibration_moved(message);
+}
+
+void Witness::calibration(const CalibrationArcMessage& message, const Image<std::uint8_t>& ideal) {
+  recorder_.calibration(message, ideal);
+}
+
+void Witness::calibration(const CalibrationSightingMessage& message, double received) {
+  recorder_.calibration(message, received);
+  if (watcher_ != nullptr) watcher_->calibration_saw(message);
+}
+
+void Witness::calibration(const CalibrationDecisionMessage& message) {
+  recorder_.calibration(message);
+  if (watcher_ != nullptr) watcher_->calibration_decided(message);
+}
+
 void Witness::servo(const ServoStepMessage& message) {
   recorder_.servo(message);
   if (watcher_ != nullptr) watcher_->servo_stepped(message);
@@ -89,6 +108,10 @@ void Witness::write_commands(const Drive& drive, const std::filesystem::path& fi
 
 void Witness::command(double time, const ArmState& state) {
   if (commands_) commands_->step(time, state, recorder_);
+}
+
+std::optional<std::vector<std::int64_t>> Witness::motors_after(std::span<const ArmState> way) const {
+  return commands_ ? std::optional(commands_->positions_after(way)) : std::nullopt;
 }
 
 void Witness::close() {

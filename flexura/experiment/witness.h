@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,7 @@ class RunWatcher;
 /// Everything that a run leaves behind while it plays: the log, and what the report will show.
 class Witness {
  public:
-  /// `watcher` is told what happens and what servos do; may be null.
+  /// `watcher` is told what happens and what calibrations and servos do; may be null.
   Witness(const std::filesystem::path& folder, const Arm& arm, RunWatcher* watcher = nullptr);
 
   /// Which step of the clock is the last one, as far as it is known: a task may take its own time.
@@ -36,6 +37,12 @@ class Witness {
   void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// What the devices of the rig say of themselves, once for each time of its clock.
   void readings(const RigPorts& rig);
+  /// What a calibration does, has the simulator work out, sees in a picture that came at `received` s, and
+  /// decides.
+  void calibration(const CalibrationMoveMessage& message);
+  void calibration(const CalibrationArcMessage& message, const Image<std::uint8_t>& ideal);
+  void calibration(const CalibrationSightingMessage& message, double received);
+  void calibration(const CalibrationDecisionMessage& message);
   /// What a servo sends, what it sees in a picture that came at `received` s, and that it has ended.
   void servo(const ServoStepMessage& message);
   void servo(const ServoSightingMessage& message, double received);
@@ -47,6 +54,8 @@ class Witness {
   void write_commands(const Drive& drive, const std::filesystem::path& file);
   /// Takes every step, logged or not: a command list has no gaps.
   void command(double time, const ArmState& state);
+  /// Where the motors come to be sent as the arm goes through these states; none without a command list.
+  [[nodiscard]] std::optional<std::vector<std::int64_t>> motors_after(std::span<const ArmState> way) const;
   [[nodiscard]] Recorder& recorder() { return recorder_; }
   void close();
 

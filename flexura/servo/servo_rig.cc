@@ -11,16 +11,23 @@
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {
+namespace {
+
+// By how much a device's clock may be ahead of the rig's, s.
+constexpr double ahead = 0.1;
+
+}  // namespace
+
 ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
-                   double span, double together)
+                   const Times& times)
     : ports_(ports),
       model_(believed),
       cameras_(cameras),
       optics_{Camera(believed.cameras.at(cameras[0])), Camera(believed.cameras.at(cameras[1]))},
-      together_(together),
-      arm_(span, &interpolate),
-      stands_{MotionHistory<Stand, StandBlend>(span, &between),
-              MotionHistory<Stand, StandBlend>(span, &between)} {}
+      times_(times),
+      arm_(times.span, &interpolate),
+      stands_{MotionHistory<Stand, StandBlend>(times.span, &between),
+              MotionHistory<Stand, StandBlend>(times.span, &between)} {}
 
 ServoRig::Stand ServoRig::between(const Stand& a, const Stand& b, double share) {
   const auto mixed = [share](double from, double to) { return from + share * (to - from); };
@@ -35,14 +42,33 @@ ServoRig::Trouble ServoRig::read() {
   auto arm = read_arm(*ports_.arm, model_.arm.sections.size());
   if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
   const auto& said = std::get<ArmReading>(arm);
+  if (auto why = odd_time("the arm", said.time)) return why;
   arm_.add(said.time, said.state);
   for (std::size_t i = 0; i < 2; ++i) {
     auto camera = read_camera(ports_.cameras[cameras_[i]], cameras_[i], optics_[i]);
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
     const auto& stands = std::get<StanceReading>(camera);
+    if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;
     stands_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
   }
   return std::nullopt;
+}
+
+ServoRig::Trouble ServoRig::odd_time(const std::string& device, double time) const {
+  const double age = now() - time;
+  if (age < -ahead) return fmt::format("{} tells of a time that is {:.4g} s from now", device, -age);
+  if (age > times_.silent) return fmt::format("{} tells of nothing since {:.4g} s ago", device, age);
+  return std::nullopt;
+}
+
+std::string ServoRig::odd_time(const Frame& frame, const std::deque<Frame>& before) const {
+  if (!std::isfinite(frame.time) || !std::isfinite(frame.received))
+    return "its picture tells of no time: a number is none";
+  if (frame.time > now() + ahead)
+    return fmt::format("its picture tells of a time that is {:.4g} s from now", frame.time - now());
+  if (!before.empty() && frame.time < before.back().time)
+    return fmt::format("its picture is {:.4g} s older than the one before", before.back().time - frame.time);
+  return "";
 }
 
 bool ServoRig::look() {
@@ -51,10 +77,8 @@ bool ServoRig::look() {
     const auto frame = ports_.cameras[cameras_[i]].camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
     if (frame.fault() || !frame.value()) continue;
-    if (!std::isfinite(frame.value()->time) || !std::isfinite(frame.value()->received)) {
-      silence_[i] = "its picture tells of no time: a number is none";
-      continue;
-    }
+    silence_[i] = odd_time(*frame.value(), recent_[i]);
+    if (!silence_[i].empty()) continue;
     recent_[i].push_back(*frame.value());
     if (recent_[i].size() > kept) recent_[i].pop_front();
   }
@@ -64,7 +88,7 @@ bool ServoRig::look() {
     const Frame* nearest = nullptr;
     for (const Frame& first : recent_[0]) {
       const double apart = std::abs(first.time - second->time);
-      if (first.time > paired_at_[0] && apart <= together_ &&
+      if (first.time > paired_at_[0] && apart <= times_.together &&
           (nearest == nullptr || apart < std::abs(nearest->time - second->time)))
         nearest = &first;
     }

@@ -17,16 +17,22 @@ namespace flexura {
 /// The devices of a rig as a servo reads them: what they said lately, and the newest pair of pictures.
 class ServoRig {
  public:
-  /// Readings are kept for `span` s; pictures of both cameras belong together when they were taken within
-  /// `together` s. `believed` outlives this.
+  struct Times {
+    double span = 0;      ///< Readings are kept for so long, s.
+    double together = 0;  ///< Pictures of both cameras that were taken within that belong together, s.
+    double silent = 0;    ///< What a device says of an earlier time than so long ago is no answer, s.
+  };
+  /// `believed` outlives this.
   ServoRig(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
-           double span, double together);
+           const Times& times);
 
   using Trouble = std::optional<std::string>;
-  /// Asks arm, heads and stages where they are; why it cannot be known is trouble (rig_readings.h).
+  /// Asks arm, heads and stages where they are; why it cannot be known is trouble (rig_readings.h), and so is
+  /// a time that is yet to come or long gone.
   [[nodiscard]] Trouble read();
-  /// Asks the cameras for pictures; true when there is a new pair. A camera that does not answer has none,
-  /// and `silence()` says why.
+  /// Asks the cameras for pictures; true when there is a new pair. A camera that does not answer, or whose
+  /// picture's time is none, is yet to come or before that of the one before, has none, and `silence()` says
+  /// why.
   [[nodiscard]] bool look();
   [[nodiscard]] const std::array<Frame, 2>& frames() const { return pair_; }
   /// Of each camera: why it gave no picture when it was last asked, "" otherwise.
@@ -53,13 +59,16 @@ class ServoRig {
   };
   using StateBlend = ArmState (*)(const ArmState&, const ArmState&, double);
   using StandBlend = Stand (*)(const Stand&, const Stand&, double);
+  // Of what a device says, and of a picture after those before it; none, "": nothing.
+  [[nodiscard]] Trouble odd_time(const std::string& device, double time) const;
+  [[nodiscard]] std::string odd_time(const Frame& frame, const std::deque<Frame>& before) const;
   static Stand between(const Stand& a, const Stand& b, double share);
 
   RigPorts ports_;
   const RigModel& model_;
   std::array<std::size_t, 2> cameras_;
   std::array<Camera, 2> optics_;  // As they are believed to be.
-  double together_;
+  Times times_;
   MotionHistory<ArmState, StateBlend> arm_;
   std::array<MotionHistory<Stand, StandBlend>, 2> stands_;
   std::array<std::deque<Frame>, 2> recent_;

@@ -49,9 +49,6 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
           "a servo's points, rate, tolerance and step are above 0");
 }
 
-// Pictures that are later than that are not gone by, s.
-constexpr double longest_delay = 60;
-
 LimiterSettings limiter_settings(const ServoConfig& config) {
   LimiterSettings settings;
   settings.step = config.step, settings.drive = config.drive, settings.obstacles = config.obstacles;
@@ -72,7 +69,10 @@ class Session {
       : model_(believed),
         config_(config),
         watcher_(watcher),
-        rig_(ports, believed, config.cameras, longest_delay, 0.6 * frame_period(believed, config)),
+        rig_(ports, believed, config.cameras,
+             {.span = longest_delay,
+              .together = 0.6 * frame_period(believed, config),
+              .silent = config.patience.blind}),
         eyes_(believed, config.cameras, config.markers, config.camera_doubt),
         features_(servo_features(config, believed)),
         law_(believed.arm, config, *features_),
@@ -151,7 +151,8 @@ class Session {
   void wake() {
     constexpr double rounding = 1e-6;
     double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
-    if (!std::isfinite(passed)) passed = 0, fault("the clock tells of no time: a number is none");
+    constexpr double most = 1e15;
+    if (!(passed < most)) passed = 0, fault("the clock tells of no time that a servo lasts for");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
       watcher_.told(rig_.now(),
@@ -197,7 +198,8 @@ class Session {
       const double time = 0.5 * (frames[0].time + frames[1].time);
       const std::array<View, 2> views = {rig_.view(0, frames[0].time), rig_.view(1, frames[1].time)};
       ServoSight sight = eyes_.look(frames, views, guess(time));
-      sight.desired = goals_->at(time - result_.start).state;
+      WantedShape wanted = goals_->at(time - result_.start);
+      sight.desired = std::move(wanted.state), sight.desired_offset = std::move(wanted.offset);
       watcher_.seen(sight);
       if (!result_.first) result_.first = sight;
       constexpr double unknown = 0.05;  // Of the length: such a shape is nothing to go by.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -27,8 +28,11 @@ struct ServoError {
 
 /// What two pictures of one instant told.
 struct ServoSight {
-  double time = 0;               ///< Middle of the exposures, s.
-  ArmState desired;              ///< Then.
+  double time = 0;   ///< Middle of the exposures, s.
+  ArmState desired;  ///< Then.
+  /// How far goals that are recorded pictures lie from what the cameras, as they are believed to be, would
+  /// see of that, in the law's own features; empty: nothing.
+  Eigen::VectorXd desired_offset;
   std::array<Frame, 2> frames;   ///< Of both cameras.
   std::array<Sighting, 2> seen;  ///< Axes, bands and borders, in the views as believed, less their errors.
   ShapeEstimate estimate;        ///< Of the arm's shape at that time.
@@ -78,6 +82,9 @@ class ServoWatcher {
   /// Whether the servo shall end early.
   virtual bool is_cancelled() { return false; }
 };
+
+/// Pictures that come later than that are not gone by, s.
+inline constexpr double longest_delay = 60;
 
 /// How a servo went.
 struct ServoResult {

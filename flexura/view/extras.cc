@@ -45,21 +45,51 @@ Node along_node(const Extras& extras) {
           {}};
 }
 
+// [[u, v], ...]
+Node pixels_node(const std::vector<Eigen::Vector2d>& pixels) {
+  const auto shown = [](double pixel) { return Node{std::round(100 * pixel) / 100, {}}; };
+  Node::Array list;
+  for (const Eigen::Vector2d& pixel : pixels)
+    list.push_back({Node::Array{shown(pixel.x()), shown(pixel.y())}, {}});
+  return {std::move(list), {}};
+}
+
+Node::Table marked(const LayerMark& mark, const char* kind) {
+  Node::Table table{{"id", {}, text_node(mark.id)},
+                    {"label", {}, text_node(mark.label)},
+                    {"kind", {}, text_node(kind)},
+                    {"color", {}, text_node(mark.color)}};
+  if (!mark.of.empty()) table.push_back({"of", {}, text_node(mark.of)});
+  return table;
+}
+
 }  // namespace
 
 Node line_layer(const std::string& id, const std::string& color, const std::vector<Eigen::Vector2d>& points,
                 bool is_dashed) {
-  const auto shown = [](double pixels) { return Node{std::round(100 * pixels) / 100, {}}; };
-  Node::Array list;
-  for (const Eigen::Vector2d& point : points)
-    list.push_back({Node::Array{shown(point.x()), shown(point.y())}, {}});
   return {Node::Table{{"id", {}, text_node(id)},
                       {"kind", {}, text_node("polyline")},
                       {"color", {}, text_node(color)},
-                      {"points", {}, {std::move(list), {}}},
+                      {"points", {}, pixels_node(points)},
                       {"closed", {}, {false, {}}},
                       {"dashed", {}, {is_dashed, {}}}},
           {}};
+}
+
+Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points) {
+  Node::Table table = marked(mark, "points");
+  table.push_back({"points", {}, pixels_node(points)});
+  return {std::move(table), {}};
+}
+
+Node lines_layer(const LayerMark& mark, const std::vector<std::vector<Eigen::Vector2d>>& lines,
+                 bool is_dashed) {
+  Node::Table table = marked(mark, "lines");
+  Node::Array list;
+  for (const auto& line : lines) list.push_back(pixels_node(line));
+  table.push_back({"lines", {}, {std::move(list), {}}});
+  table.push_back({"dashed", {}, {is_dashed, {}}});
+  return {std::move(table), {}};
 }
 
 std::string extras_message(const Extras& extras) {

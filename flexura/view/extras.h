@@ -53,6 +53,17 @@ struct Extras {
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
                               const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 
+/// What layers that belong to a thing with an eye of its own have in common.
+struct LayerMark {
+  std::string id, label;
+  std::string color;  ///< "#rrggbb"
+  std::string of;     ///< The ghost whose eye hides it, too; "": none.
+};
+/// Crosses upon a picture, or lines that do not hang together, to a hundredth of a pixel.
+[[nodiscard]] Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points);
+[[nodiscard]] Node lines_layer(const LayerMark& mark, const std::vector<std::vector<Eigen::Vector2d>>& lines,
+                               bool is_dashed = false);
+
 /// The stream of these messages to a client.
 inline constexpr std::uint32_t extras_stream = 0xffffffff;
 /// The binary message. Extras that hold nothing take away what was drawn before.

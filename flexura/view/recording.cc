@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "flexura/base/source.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/results_log.h"
+#include "flexura/math/median.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 
@@ -131,9 +133,7 @@ double Recording::interval_of(const Entries& entries) {
   std::vector<std::uint64_t> intervals;
   for (std::size_t i = 1; i < entries.size(); ++i) intervals.push_back(entries[i].time - entries[i - 1].time);
   if (intervals.empty()) return 0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::ranges::nth_element(intervals, middle);
-  return seconds(*middle);
+  return seconds(median(std::span(intervals)));
 }
 
 std::size_t Recording::state_at(double time) const { return place_at(states_, time); }

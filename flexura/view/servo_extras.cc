@@ -23,6 +23,7 @@ struct Named {
 constexpr Named wanted{"wanted", "Wanted", "#ff922b"};
 constexpr Named seen{"seen", "Seen", "#22b8cf"};
 constexpr Named truth{"truth", "True", "#51cf66"};
+constexpr Named features{"features", "Features", "#da77f2"};
 
 struct Shape {
   Arm arm;
@@ -80,6 +81,39 @@ AlongCurve distances(const Named& mark, const Shape& shape, const Shape& desired
   return curve;
 }
 
+using Pixels = std::vector<Eigen::Vector2d>;
+
+// What the law compares, as one of both sides has it: pixels as crosses, lines as such.
+void add_marks(const Named& side, bool is_dashed, const Pixels& crosses, const std::vector<Pixels>& lines,
+               Node::Array& layers) {
+  const LayerMark mark{features.id, features.label, side.color, side.id};
+  if (!crosses.empty()) layers.push_back(points_layer(mark, crosses));
+  if (!lines.empty()) layers.push_back(lines_layer(mark, lines, is_dashed));
+}
+
+// With a line from each pixel to where it is wanted.
+void add_features(const std::vector<FeatureMarkMessage>& marks, Node::Array& layers) {
+  const auto pixels_of = [](const std::vector<std::array<double, 2>>& list) {
+    Pixels pixels;
+    for (const auto& pixel : list) pixels.emplace_back(pixel[0], pixel[1]);
+    return pixels;
+  };
+  Pixels seen_at, wanted_at;
+  std::vector<Pixels> between, seen_lines, wanted_lines;
+  for (const FeatureMarkMessage& mark : marks) {
+    const Pixels is = pixels_of(mark.seen), shall = pixels_of(mark.wanted);
+    if (is.size() == 1 && shall.size() == 1) {
+      seen_at.push_back(is[0]), wanted_at.push_back(shall[0]), between.push_back({is[0], shall[0]});
+    } else {
+      seen_lines.push_back(is), wanted_lines.push_back(shall);
+    }
+  }
+  if (!between.empty())
+    layers.push_back(lines_layer({features.id, features.label, features.color, ""}, between));
+  add_marks(seen, false, seen_at, seen_lines, layers);
+  add_marks(wanted, true, wanted_at, wanted_lines, layers);
+}
+
 PictureLayers layers_of(const ServoPicture& picture) {
   const ServoSightingMessage& sighting = picture.sighting;
   PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
@@ -91,6 +125,7 @@ PictureLayers layers_of(const ServoPicture& picture) {
   // Upon that, dashed: both are seen where they are one.
   for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
   if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line, true));
+  if (sighting.features) add_features(*sighting.features, overlay.layers);
   return overlay;
 }
 

@@ -289,6 +289,29 @@ TEST(ServoExtras, MeasureDistancesAsServosDo) {
   }
 }
 
+TEST(ServoExtras, DrawWhatTheLawComparesWithLinesBetween) {
+  const ViewedRigPtr rig = viewed_rig(servo_file(servo_target));
+  TestRandom random(case_seed(0));
+  Arm arm = rig->model;
+  ArmState desired, seen;
+  ServoSightingMessage sighting;
+  sighting.camera = "front";
+  sighting.features.emplace();
+  sighting.features->push_back({{{1, 2}}, {{3, 4}}});
+  sighting.features->push_back({{{5, 6}, {7, 8}}, {{5, 8}, {7, 6}}});
+  const Extras extras = servo_extras(*rig, {random_step(random, desired, seen, arm), {{sighting, 1}}});
+  std::string drawn;
+  for (const Node& layer : extras.overlays.at(0).layers) drawn += write_json(layer) + "\n";
+  const std::string id = R"({"id":"features","label":"Features","kind":)";
+  EXPECT_EQ(drawn,
+            id + R"("lines","color":"#da77f2","lines":[[[1.0,2.0],[3.0,4.0]]],"dashed":false})" + "\n" + id +
+                R"("points","color":"#22b8cf","of":"seen","points":[[1.0,2.0]]})" + "\n" + id +
+                R"("lines","color":"#22b8cf","of":"seen","lines":[[[5.0,6.0],[7.0,8.0]]],"dashed":false})" +
+                "\n" + id + R"("points","color":"#ff922b","of":"wanted","points":[[3.0,4.0]]})" + "\n" + id +
+                R"("lines","color":"#ff922b","of":"wanted","lines":[[[5.0,8.0],[7.0,6.0]]],"dashed":true})" +
+                "\n");
+}
+
 TEST(ServoExtras, RefuseShapesOfAnotherArm) {
   const ViewedRigPtr rig = viewed_rig(servo_file(servo_target));
   TestRandom random(case_seed(0));

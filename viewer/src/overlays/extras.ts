@@ -17,6 +17,17 @@ export function extra_overlay(extras: Extras | null, camera: string, number: num
   return extras?.overlays.find((overlay) => overlay.camera === camera && (overlay.number === undefined || overlay.number === number));
 }
 
+/** Without those whose own eye, or that of what they belong to, is shut. */
 export function extra_layers(overlay: ExtraOverlay | undefined, hidden: string[]): Layer[] {
-  return (overlay?.layers ?? []).filter(({ id }) => !hidden.includes(eye_of(id)));
+  const is_shown = (id: unknown): boolean => typeof id !== 'string' || !hidden.includes(eye_of(id));
+  return (overlay?.layers ?? []).filter(({ id, of }) => is_shown(id) && is_shown(of));
+}
+
+/** What has an eye: ghosts, and what lies upon pictures alone, in the colour of its first layer. */
+export function eyes_of(extras: Extras): { id: string; label: string; color: string }[] {
+  const eyes = extras.ghosts.map(({ id, label, color }) => ({ id, label, color }));
+  for (const { id, label, color } of extras.overlays.flatMap(({ layers }) => layers)) {
+    if (label && !eyes.some((eye) => eye.id === id)) eyes.push({ id, label, color: color ?? '' });
+  }
+  return eyes;
 }

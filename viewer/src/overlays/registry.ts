@@ -1,12 +1,13 @@
 // Every kind of layer that can lie upon a camera's picture: a new one is one file and one line here.
 import type { Layer } from '../protocol/types';
 import { ellipse } from './ellipse';
+import { lines } from './lines';
 import type { Overlay } from './overlay';
 import { points } from './points';
 import { polyline } from './polyline';
 import { runs } from './runs';
 
-export const overlays: Overlay[] = [runs, polyline, ellipse, points];
+export const overlays: Overlay[] = [runs, polyline, lines, ellipse, points];
 
 const by_kind = new Map(overlays.map((overlay) => [overlay.kind, overlay]));
 

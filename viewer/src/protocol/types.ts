@@ -176,6 +176,8 @@ export interface Layer {
   id: string;
   kind: string;
   color?: string;
+  /** Beside its eye, of what is no ghost as well. */
+  label?: string;
   [key: string]: unknown;
 }
 

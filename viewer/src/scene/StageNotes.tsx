@@ -2,7 +2,7 @@
 import { angle, fixed, format_time, length_places, vector } from '../ui/format';
 import { obstruction } from '../state/commander';
 import { preferences, toggle_hidden } from '../state/preferences';
-import { eye_of } from '../overlays/extras';
+import { eye_of, eyes_of } from '../overlays/extras';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
 import { point_at } from '../math/arc';
@@ -57,7 +57,7 @@ function ExtrasLegend() {
     <aside class="extras" aria-label={`${extras.title}: what is drawn`}>
       <header><b>{extras.title}</b> <span>{extras.text}</span></header>
       <div class="chips" role="group" aria-label="Drawn beside the arm and upon the pictures">
-        {extras.ghosts.map(({ id, label, color }) => {
+        {eyes_of(extras).map(({ id, label, color }) => {
           const shown = !hidden.includes(eye_of(id));
           return (
             <button key={id} type="button" class="chip" aria-pressed={shown} aria-label={`Show: ${label}`} onClick={() => toggle_hidden(eye_of(id))}>

@@ -7,7 +7,7 @@ import { opened_before, started } from './opened';
 import { program } from './program';
 
 const file = fileURLToPath(new URL('servo.toml', import.meta.url));
-const [wanted, seen] = ['#ff922b', '#22b8cf'];
+const [wanted, seen, features] = ['#ff922b', '#22b8cf', '#da77f2'];
 
 describe.skipIf(!program)('a servo', () => {
   const opened = opened_before(() => started(file), 'live');
@@ -26,8 +26,8 @@ describe.skipIf(!program)('a servo', () => {
     await page.getByLabel('Which tasks run').selectOption({ label: '2: sway (servo)' });
     await page.getByRole('button', { name: 'Run tasks' }).click();
     await legend().waitFor();
-    await until(async () => (await legend().getByRole('button').count()) === 3, 15000, 'not all shapes came');
-    for (const label of ['Wanted', 'Seen', 'True']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
+    await until(async () => (await legend().getByRole('button').count()) === 4, 15000, 'not all shapes came');
+    for (const label of ['Wanted', 'Seen', 'True', 'Features']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
     await until(async () => /sway: [\d.]+ % of the length off/.test((await page.locator('.running-text').textContent()) ?? ''), 15000, 'no word');
   });
 
@@ -70,6 +70,18 @@ describe.skipIf(!program)('a servo', () => {
     for (const label of ['Wanted', 'Seen', 'True']) await eye(label).click();
     expect((await stage_at_rest(page)).equals(all)).toBe(false);
     await until(async () => !(await drawn(wanted)) && !(await drawn(seen)));
+    for (const label of ['Wanted', 'Seen', 'True']) await eye(label).click();
+    expect(opened.complaints).toEqual([]);
+  });
+
+  test('what the law compares lies upon the pictures of the way, with its eye', async () => {
+    await slide(page, '#scrub', 0.4);
+    const of_features = async () => (await colored(page, features)).count;
+    await until(async () => (await of_features()) > 40, 15000, 'no lines to where the points are wanted');
+    await eye('Features').click();
+    await until(async () => (await of_features()) === 0, 8000, 'they are not hidden');
+    await eye('Features').click();
+    await until(async () => (await of_features()) > 40);
     expect(opened.complaints).toEqual([]);
   });
 });

@@ -1,5 +1,5 @@
 import { expect, test, vi } from 'vitest';
-import { eye_of, extra_ghosts, extra_layers, extra_overlay } from '../../src/overlays/extras';
+import { eye_of, eyes_of, extra_ghosts, extra_layers, extra_overlay } from '../../src/overlays/extras';
 import { columns_of } from '../../src/plots/AlongPlot';
 import { can_be_along, groups_of, live_sources, short_names, shown_groups } from '../../src/plots/sources';
 import { decode_extras, kind_extras, kind_of, type State } from '../../src/protocol/state';
@@ -42,6 +42,19 @@ test('an eye hides a shape in the view and upon the pictures', () => {
   expect(extra_layers(overlay, []).map(({ id }) => id)).toEqual(['wanted', 'seen']);
   expect(extra_layers(overlay, [eye_of('seen')]).map(({ id }) => id)).toEqual(['wanted']);
   expect(extra_ghosts(null, [])).toEqual({});
+});
+
+test('features have an eye of their own, and go with what they are features of', () => {
+  const marks = ['', 'seen', 'wanted'].map((of, i) => ({ id: 'features', label: 'Features', kind: 'points', color: `#00000${i}`, ...(of && { of }) }));
+  const overlay = { camera: 'front', layers: [...extras.overlays[0].layers, ...marks] };
+  const shown = { ...extras, overlays: [overlay, { camera: 'side', layers: marks }] };
+  expect(eyes_of(shown).map(({ label, color }) => [label, color])).toEqual(
+    [['Wanted', '#ff922b'], ['Seen', '#22b8cf'], ['Features', '#000000']]);
+  expect(eyes_of(extras).map(({ id }) => id)).toEqual(['wanted', 'seen']);
+  const colors = (hidden: string[]) => extra_layers(overlay, hidden).map(({ id, color }) => color ?? id);
+  expect(colors([])).toEqual(['wanted', 'seen', '#000000', '#000001', '#000002']);
+  expect(colors([eye_of('features')])).toEqual(['wanted', 'seen']);
+  expect(colors([eye_of('seen')])).toEqual(['wanted', '#000000', '#000002']);
 });
 
 test('what belongs to one picture lies upon no other', () => {

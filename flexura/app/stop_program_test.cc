@@ -1,0 +1,98 @@
+// A run that is told to stop while nobody looks at it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/program.h"
+#include "tests/support/servo_files.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+class StoppedProgram : public Program {
+ protected:
+  // Starts a run and waits until its log has grown to a size.
+  pid_t running(const std::string& text, std::uintmax_t size) {
+    std::ofstream(path("long.toml")) << text;
+    const pid_t child = start("run long.toml --out long", path("out"));
+    const std::filesystem::path log = path("long/log.mcap");
+    for (int i = 0; i < 3000; ++i) {
+      if (std::filesystem::exists(log) && std::filesystem::file_size(log) > size) return child;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << "it does not run";
+    return child;
+  }
+  [[nodiscard]] std::string summary() const { return read_text_file(path("long/summary.json"), 1 << 24); }
+};
+
+const std::string endless = "[[arm.section]]\nlength = 1\n[[task]]\nkind = 'hold'\nduration = 19000\n";
+
+TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const pid_t child = running(endless, 1);
+    kill(child, signal);
+    const Ended ended = wait(child);
+    EXPECT_EQ(ended.status, 128 + signal);
+    EXPECT_EQ(ended.out, "results: long\n");
+    EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
+    const McapReader log(path("long/log.mcap"));
+    EXPECT_FALSE(log.truncated());
+    EXPECT_THAT(std::string(log.messages().back().text()), HasSubstr("cancelled"));
+    std::filesystem::remove_all(path("long"));
+  }
+}
+
+TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
+  const std::string task = "tolerance = 1e-9\ntimeout = 9000\n" + servo_target;
+  const pid_t child = running("[record]\nreport = false\n" + servo_file(task), 100'000);
+  kill(child, SIGINT);
+  EXPECT_EQ(wait(child).status, 128 + SIGINT);
+  EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
+  EXPECT_THAT(summary(), HasSubstr("\"reason\": \"cancelled\""));
+  const McapReader log(path("long/log.mcap"));
+  EXPECT_FALSE(log.truncated());
+  std::vector<ServoStepMessage> steps;
+  for (const McapMessage& message : log.messages())
+    if (message.channel->topic == servo_steps_topic)
+      steps.push_back(read_as<ServoStepMessage>(parse_json(message.text(), "log")));
+  ASSERT_GT(steps.size(), 3u);
+  EXPECT_NE(steps[0].sent, steps[2].sent);
+  const double rate = 90 * M_PI / 180;
+  // To rest along the limiter's way: no command leaps.
+  for (std::size_t k = 1; k < steps.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_LT(std::hypot(steps[k].sent[i][0] - steps[k - 1].sent[i][0],
+                           steps[k].sent[i][1] - steps[k - 1].sent[i][1]),
+                rate / 30 + 1e-9);
+}
+
+// The first is on its way while the run is held; the second does not wait for it.
+TEST_F(StoppedProgram, EndsAtOnceWhenItIsToldAgain) {
+  const pid_t child = running(endless, 1'500'000);
+  kill(child, SIGSTOP);
+  kill(child, SIGTERM);
+  kill(child, SIGCONT);
+  kill(child, SIGINT);
+  const int status = wait(child).status;
+  EXPECT_TRUE(status == 128 + SIGTERM || status == 128 + SIGINT) << status;
+  EXPECT_NO_THROW((void)McapReader(path("long/log.mcap")));
+}
+
+}  // namespace
+}  // namespace flexura

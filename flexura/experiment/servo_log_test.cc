@@ -1,0 +1,87 @@
+// What a servo's log keeps.
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/json.h"
+#include "flexura/store/mcap_reader.h"
+#include "tests/support/quiet.h"
+#include "tests/support/servo_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+// Every command to a head that follows stands in the log, as every stretch does.
+TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
+  const TemporaryFolder temporary;
+  const auto folder = temporary.path() / "results";
+  std::filesystem::create_directory(folder);
+  Quiet quiet;
+  const std::string task =
+      "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n";
+  const RunResult result = run_experiment(
+      parse_experiment(servo_file(task, {.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002"}),
+                       "x.toml"),
+      folder, quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
+  std::size_t steps = 0, heads = 0;
+  const McapReader log(folder / log_file_name);
+  for (const McapMessage& message : log.messages()) {
+    if (message.channel->topic != servo_steps_topic) continue;
+    const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
+    ++steps;
+    EXPECT_EQ(step.sent_stretches, (std::vector<double>{1, 1, 1}));
+    if (!step.heads) continue;
+    heads += step.heads->size();
+    for (const HeadCommandMessage& head : *step.heads) {
+      EXPECT_TRUE(head.camera == "front" || head.camera == "side") << head.camera;
+      EXPECT_TRUE(head.pan != 0 || head.tilt != 0);
+    }
+  }
+  EXPECT_GT(steps, 20u);
+  EXPECT_GT(heads, 0u);
+}
+
+// Mean distance, px, of the pixels that the law compares from where they shall be.
+double to_go(const ServoSightingMessage& sighting) {
+  double sum = 0;
+  for (const FeatureMarkMessage& mark : *sighting.features)
+    sum += (Eigen::Vector2d(mark.seen.at(0)[0], mark.seen.at(0)[1]) -
+            Eigen::Vector2d(mark.wanted.at(0)[0], mark.wanted.at(0)[1]))
+               .norm();
+  return sum / static_cast<double>(sighting.features->size());
+}
+
+TEST(ServoLog, HasWhatTheLawCompares) {
+  const TemporaryFolder temporary;
+  const auto folder = temporary.path() / "results";
+  std::filesystem::create_directory(folder);
+  Quiet quiet;
+  const RunResult result = run_experiment(
+      parse_experiment(servo_file("law = \"points\"\npoints = 9\n" + servo_target), "x.toml"), folder, quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
+  std::vector<ServoSightingMessage> sightings;
+  const McapReader log(folder / log_file_name);
+  for (const McapMessage& message : log.messages())
+    if (message.channel->topic == servo_sightings_topic)
+      sightings.push_back(read_as<ServoSightingMessage>(parse_json(message.text(), "log")));
+  ASSERT_GT(sightings.size(), 40u);
+  for (const ServoSightingMessage& sighting : sightings) {
+    ASSERT_TRUE(sighting.features);
+    EXPECT_EQ(sighting.features->size(), 9u);
+  }
+  EXPECT_GT(to_go(sightings.front()), 15);
+  EXPECT_LT(to_go(sightings.back()), 0.5);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,122 @@
+#include "flexura/servo/feature_marks.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "flexura/control/shape_features.h"
+#include "flexura/servo/measured_places.h"
+
+namespace flexura {
+namespace {
+
+// The points whose distances from the middle along every direction have the moments' standard deviation.
+std::vector<Eigen::Vector2d> ellipse_of(const Eigen::Ref<const Eigen::VectorXd>& moments) {
+  constexpr int corners = 32;
+  const double weight = FeatureSet::of_moments().moment_weight;
+  Eigen::Matrix2d second;
+  second << moments[3], moments[4], moments[4], moments[5];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(weight * second);
+  const Eigen::Vector2d sigma = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i <= corners; ++i) {
+    const double t = 2 * std::numbers::pi * i / corners;
+    points.emplace_back(moments.segment<2>(1) +
+                        axes.eigenvectors() * sigma.cwiseProduct(Eigen::Vector2d(std::cos(t), std::sin(t))));
+  }
+  return points;
+}
+
+// The way in a picture that the law `potential` reads as the angle `alpha` in its plane: XOY of the first
+// camera, ZOY of the second.
+Eigen::Vector2d way_in_plane(const View& view, std::size_t camera, double alpha) {
+  const Eigen::Vector3d way = camera == 0 ? Eigen::Vector3d(std::sin(alpha), std::cos(alpha), 0)
+                                          : Eigen::Vector3d(0, std::cos(alpha), std::sin(alpha));
+  const Eigen::Vector3d seen = view.X_WC.rotation.transpose() * way;
+  return {view.lens.intrinsics().fx * seen.x(), view.lens.intrinsics().fy * seen.y()};
+}
+
+}  // namespace
+
+FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, int points)
+    : law_(law), arm_(std::move(arm)), points_(points), features_(servo_features(law, arm_, points)) {
+  for (int k = 0; k <= points; ++k) corners_.push_back(static_cast<double>(k) / points);
+}
+
+std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoSight& sight) {
+  std::array<std::vector<FeatureMark>, 2> marks;
+  if (law_ == ServoLawKind::shape || !sight.estimate.is_found) return marks;
+  const std::array<View, 2> views = {sight.seen[0].view, sight.seen[1].view};
+  if (!features_->measured(sight.estimate.shape.state, sight.seen, seen_) ||
+      !features_->foreseen(sight.desired, views, wanted_))
+    return marks;
+  if (sight.desired_offset.size() == wanted_.size()) wanted_ += sight.desired_offset;
+  for (std::size_t i = 0; i < 2; ++i) {
+    switch (law_) {
+      case ServoLawKind::shape:
+        break;
+      case ServoLawKind::points:
+        marks[i] = points_in(i);
+        break;
+      case ServoLawKind::moments:
+        marks[i] = moments_in(i);
+        break;
+      case ServoLawKind::silhouettes:
+        marks[i] = edges_in(i);
+        break;
+      case ServoLawKind::chords:
+      case ServoLawKind::potential:
+        marks[i] = chords_in(i, sight);
+        break;
+    }
+  }
+  return marks;
+}
+
+std::vector<FeatureMark> FeatureMarker::points_in(std::size_t camera) const {
+  std::vector<FeatureMark> marks;
+  marks.reserve(static_cast<std::size_t>(points_));
+  const Eigen::Index first = 2 * points_ * static_cast<Eigen::Index>(camera);
+  for (Eigen::Index k = 0; k < points_; ++k)
+    marks.push_back({{seen_.segment<2>(first + 2 * k)}, {wanted_.segment<2>(first + 2 * k)}});
+  return marks;
+}
+
+// Of each camera the pixels right and left of each place, then as many normals.
+std::vector<FeatureMark> FeatureMarker::edges_in(std::size_t camera) const {
+  std::vector<FeatureMark> marks;
+  const Eigen::Index count = 2 * points_, first = 4 * count * static_cast<Eigen::Index>(camera);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Vector2d seen = seen_.segment<2>(first + 2 * k), wanted = wanted_.segment<2>(first + 2 * k);
+    if (seen.allFinite() && wanted.allFinite()) marks.push_back({{seen}, {wanted}});
+  }
+  return marks;
+}
+
+std::vector<FeatureMark> FeatureMarker::moments_in(std::size_t camera) const {
+  constexpr Eigen::Index rows = 6;
+  const auto first = rows * static_cast<Eigen::Index>(camera);
+  return {{{seen_.segment<2>(first + 1)}, {wanted_.segment<2>(first + 1)}},
+          {ellipse_of(seen_.segment<rows>(first)), ellipse_of(wanted_.segment<rows>(first))}};
+}
+
+std::vector<FeatureMark> FeatureMarker::chords_in(std::size_t camera, const ServoSight& sight) const {
+  std::vector<FeatureMark> marks;
+  const auto pixels = measured_pixels(arm_, sight.estimate.shape.state, sight.seen[camera], corners_);
+  if (!pixels) return marks;
+  const double weight = FeatureSet{}.angle_weight;
+  for (Eigen::Index k = 0; k < points_; ++k) {
+    const double angle = wanted_[points_ * static_cast<Eigen::Index>(camera) + k];
+    const Eigen::Vector2d way = law_ == ServoLawKind::chords
+                                    ? Eigen::Vector2d(std::cos(angle / weight), std::sin(angle / weight))
+                                    : way_in_plane(sight.seen[camera].view, camera, angle);
+    const Eigen::Vector2d from = pixels->col(k), to = pixels->col(k + 1), middle = 0.5 * (from + to),
+                          half = 0.5 * (to - from).norm() * way.normalized();
+    if (half.allFinite()) marks.push_back({{from, to}, {middle - half, middle + half}});
+  }
+  return marks;
+}
+
+}  // namespace flexura

@@ -8,7 +8,8 @@ form are checked. Each document has a scratch folder of its own, holding a copy 
 order:
   console    each line "$ COMMAND" is run there with BIN in PATH (a trailing \\ continues it). The lines after it, if
              any, are what it prints: "..." stands for any text, a line "..." for any lines. It has to succeed, or to
-             end as its comment "# exit status N" says. "./dev ..." is not run: the command has to exist.
+             end as its comment "# exit status N" says. "./dev ..." is not run: the command has to exist. With --view no
+             browser is opened, and SIGTERM ends the viewer once the results are there.
   cpp        a whole program is compiled against PREFIX and run; what it prints is in its comments "// prints: ..."
   any other  no check but these two, which hold for every language:
              a first line with "file: NAME" writes the block to NAME in the scratch folder;
@@ -22,6 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -129,6 +131,22 @@ class Runner:
                               check=False, **options)
         return done.returncode, done.stdout
 
+    def call_viewed(self, command):
+        """Likewise of a run that is looked at."""
+        headless = command.replace(" --view", " --view --no-browser --port 0", 1)
+        with subprocess.Popen(["bash", "-c", f"exec {headless}"], cwd=self.scratch, env=self.environment,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True) as process:
+            limit = threading.Timer(600, process.kill)
+            limit.start()
+            output = ""
+            for line in process.stdout:
+                output += line
+                if line.startswith("results: "):
+                    process.terminate()
+            limit.cancel()
+        return process.returncode, output
+
     def run(self, block):
         """Yields (line, what is wrong) for one block."""
         header = HEADER.match(block.lines[0]) if block.lines else None
@@ -162,7 +180,10 @@ class Runner:
             return
         if command.startswith(("git clone ", "cd ")):
             return
-        status, output = self.call(["bash", "-o", "pipefail", "-c", command])
+        if " --view" in command:
+            status, output = self.call_viewed(command)
+        else:
+            status, output = self.call(["bash", "-o", "pipefail", "-c", command])
         said = re.search(r"# exit status (\d+)", command)
         if status != (int(said[1]) if said else 0):
             yield number, f"exit status {status}: {command}\n{output}"

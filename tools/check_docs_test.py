@@ -49,6 +49,16 @@ class CheckDocs(unittest.TestCase):
     def test_a_command_may_go_on_over_lines(self):
         self.assertEqual(self.console("$ echo one \\\n    two\none two"), [])
 
+    def test_a_viewer_is_ended_once_the_results_are_there(self):
+        viewer = self.root / "viewer"
+        viewer.write_text("#!/bin/bash\necho \"viewer: $*\"\ntrap 'echo told; exit 0' TERM\necho results: here\n"
+                          "while true; do sleep 0.05; done\n")
+        viewer.chmod(0o755)
+        told = "viewer: --view --no-browser --port 0\nresults: here\ntold"
+        self.assertEqual(self.console(f"$ viewer --view\n{told}"), [])
+        viewer.write_text("#!/bin/bash\necho no results\nexit 1\n")
+        self.assertEqual(len(self.console("$ viewer --view")), 1)
+
     def test_commands_share_the_scratch_folder_with_the_examples_and_written_files(self):
         text = "```toml\n# file: mine/b.toml\nb = 1\n```\n```console\n$ cat mine/b.toml examples/arm.toml\n"
         self.assertEqual(self.problems(text + "b = 1\nlength = 2\n...\n```\n"), [])

@@ -84,10 +84,15 @@ function(flexura_test executable ctest_name label folder)
     return()
   endif()
   add_executable(${executable} ${ARGN})
+  if(NOT TARGET checkout)
+    add_library(checkout STATIC ${PROJECT_SOURCE_DIR}/tests/support/checkout.cc)
+    target_include_directories(checkout PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(checkout PRIVATE flexura_settings)
+    target_compile_definitions(checkout PRIVATE
+      FLEXURA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FLEXURA_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  endif()
   target_link_libraries(${executable} PRIVATE
-    flexura::${folder} flexura_settings Eigen3::Eigen GTest::gtest_main GTest::gmock)
-  target_compile_definitions(${executable} PRIVATE
-    FLEXURA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FLEXURA_BINARY_DIR="${CMAKE_BINARY_DIR}")
+    flexura::${folder} checkout flexura_settings Eigen3::Eigen GTest::gtest_main GTest::gmock)
   target_compile_options(${executable} PRIVATE ${FLEXURA_TEST_OPTIONS})
   flexura_use_pch(${executable} flexura_test_pch LINKS GTest::gmock OPTIONS ${FLEXURA_TEST_OPTIONS}
     HEADERS <gtest/gtest.h> <gmock/gmock.h> ${FLEXURA_PCH_HEADERS})

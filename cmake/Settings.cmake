@@ -11,9 +11,11 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # ccache sees through precompiled headers only with these two relaxations.
+  # ccache sees through precompiled headers only with these two relaxations; by the others what one checkout has compiled
+  # serves all.
   set(CMAKE_CXX_COMPILER_LAUNCHER
-      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
+      CCACHE_NOHASHDIR=true ${CCACHE})
 endif()
 
 add_library(flexura_settings INTERFACE)

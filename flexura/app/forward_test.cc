@@ -10,13 +10,14 @@
 #include "flexura/app/commands.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/store/json.h"
+#include "tests/support/checkout.h"
 
 namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
 
-const std::string paper_arm = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+const std::string paper_arm = checkout_file("examples/01_paper_arm/experiment.toml");
 
 Arm spatial_arm() {
   return parse_experiment("[arm]\nkind='spatial'\n[[arm.section]]\nlength=1\n[[arm.section]]\nlength=2\n",

@@ -10,6 +10,7 @@
 #include "flexura/app/forward.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/store/json.h"
+#include "tests/support/checkout.h"
 
 namespace flexura {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string paper_arm_file = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+const std::string paper_arm_file = checkout_file("examples/01_paper_arm/experiment.toml");
 
 Arm limited_arm(const std::string& limits = "max_bend_deg=120") {
   const std::string section = "[[arm.section]]\nlength=0.3\n" + limits + "\n";

@@ -19,6 +19,7 @@
 #include "flexura/base/version.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -240,7 +241,7 @@ TEST_F(Program, LeavesALogThatReadsWhenKilled) {
 }
 
 TEST_F(Program, ReferencePageIsTheOneItPrints) {
-  EXPECT_EQ(read_text_file(FLEXURA_SOURCE_DIR "/docs/experiment-file.md", 1 << 20),
+  EXPECT_EQ(read_text_file(checkout_file("docs/experiment-file.md"), 1 << 20),
             run("schema --format markdown").out)
       << "make it anew: flexura schema --format markdown >docs/experiment-file.md";
 }

@@ -24,6 +24,7 @@
 #include "tests/support/calibration_bench.h"
 #include "tests/support/calibration_files.h"
 #include "tests/support/calibration_trials.h"
+#include "tests/support/checkout.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
@@ -36,8 +37,7 @@ constexpr double degree = std::numbers::pi / 180;
 double number_at(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
 
 TEST(CalibrateTaskFully, BringsTheExamplesWrongCamerasToOrthogonalAxesWithinTheirHeadsSteps) {
-  const std::filesystem::path file =
-      std::filesystem::path(FLEXURA_SOURCE_DIR) / "examples/05_calibration/experiment.toml";
+  const std::filesystem::path file = checkout_file("examples/05_calibration/experiment.toml");
   const TemporaryFolder folder, again;
   Quiet quiet;
   const RunResult result = run_experiment(load_experiment(file), folder.path(), quiet);

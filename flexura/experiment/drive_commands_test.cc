@@ -20,6 +20,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
@@ -28,7 +29,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path laboratory_arm = FLEXURA_SOURCE_DIR "/examples/02_laboratory_arm/experiment.toml";
+const std::filesystem::path laboratory_arm = checkout_file("examples/02_laboratory_arm/experiment.toml");
 
 struct Row {
   double time = 0;

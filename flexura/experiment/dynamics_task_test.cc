@@ -18,6 +18,7 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/dynamics_files.h"
 #include "tests/support/dynamics_runs.h"
 #include "tests/support/experiment_files.h"
@@ -285,7 +286,7 @@ TEST_F(Dynamics, AnArmThatIsThereStaysThere) {
 
 TEST_F(Dynamics, TheExampleDoesWhatItSays) {
   Quiet quiet;
-  const std::filesystem::path file = FLEXURA_SOURCE_DIR "/examples/07_theory/experiment.toml";
+  const std::filesystem::path file = checkout_file("examples/07_theory/experiment.toml");
   const RunResult result =
       run_experiment(load_experiment(file), make_new_folder(folder_.path() / "results"), quiet);
   EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);

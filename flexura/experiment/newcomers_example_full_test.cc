@@ -5,6 +5,7 @@
 
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
+#include "tests/support/checkout.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
@@ -13,8 +14,7 @@ namespace {
 
 // Cameras that are wrong are calibrated, then the arm is steered through three shapes and along a way.
 TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
-  const std::filesystem::path file =
-      std::filesystem::path(FLEXURA_SOURCE_DIR) / "examples/06_shape_servo/experiment.toml";
+  const std::filesystem::path file = checkout_file("examples/06_shape_servo/experiment.toml");
   const TemporaryFolder folder;
   Quiet quiet;
   const RunResult result = run_experiment(load_experiment(file), folder.path(), quiet);

@@ -16,6 +16,7 @@
 #include "flexura/model/backbone.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -24,7 +25,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-const std::filesystem::path paper_arm = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+const std::filesystem::path paper_arm = checkout_file("examples/01_paper_arm/experiment.toml");
 
 class CountProgress : public Progress {
  public:
@@ -63,7 +64,7 @@ class Run : public ::testing::Test {
 
 TEST(ExperimentAsRun, OfEveryExampleIsReadBackAsItIs) {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(FLEXURA_SOURCE_DIR "/examples")) {
+  for (const auto& entry : std::filesystem::directory_iterator(checkout_file("examples"))) {
     const std::filesystem::path file = entry.path() / "experiment.toml";
     if (!std::filesystem::exists(file)) continue;
     const std::string written = experiment_toml(load_experiment(file));

@@ -11,6 +11,7 @@
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/store/json.h"
+#include "tests/support/checkout.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,14 +19,14 @@ namespace flexura {
 namespace {
 
 TEST(RunsLog, OpensElsewhereUnderFoxglovesNames) {
-  const std::filesystem::path reader = FLEXURA_SOURCE_DIR "/tests/node/read_mcap.mjs";
+  const std::filesystem::path reader = checkout_file("tests/node/read_mcap.mjs");
   const bool is_there = std::filesystem::exists(reader.parent_path() / "node_modules/@mcap/core") &&
                         std::system("node --version > /dev/null 2>&1") == 0;
   if (!is_there && std::getenv("FLEXURA_REQUIRE_NODE") == nullptr)
     GTEST_SKIP() << "needs node and `npm ci` in tests/node";
   const TemporaryFolder folder;
   Quiet quiet;
-  Experiment experiment = load_experiment(FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml");
+  Experiment experiment = load_experiment(checkout_file("examples/01_paper_arm/experiment.toml"));
   experiment.record.cameras = true;
   std::get<MoveTask>(experiment.task.front()).duration = 0.5;
   (void)run_experiment(experiment, folder.path(), quiet);

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "flexura/serve/server.h"
+#include "tests/support/checkout.h"
 
 namespace flexura {
 namespace {
@@ -45,7 +46,7 @@ TEST(Page, HoldsEachFileUnderItsPath) {
   for (std::size_t i = 0; i < page.size(); ++i) {
     EXPECT_EQ(page[i].path, expected[i].first);
     EXPECT_EQ(page[i].content_type, expected[i].second);
-    std::ifstream file(FLEXURA_SOURCE_DIR "/tests/page" + std::string(page[i].path), std::ios::binary);
+    std::ifstream file(checkout_file("tests/page" + std::string(page[i].path)), std::ios::binary);
     EXPECT_EQ(unpacked(page[i].gzip), std::string(std::istreambuf_iterator<char>(file), {}));
     // No name and no time of the file: the same bytes whenever it is built.
     EXPECT_TRUE(std::ranges::all_of(page[i].gzip.subspan(3, 5), [](std::uint8_t byte) { return byte == 0; }));

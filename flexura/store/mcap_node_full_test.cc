@@ -8,13 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/mcap_testing.h"
+#include "tests/support/checkout.h"
 
 namespace flexura {
 namespace {
 
 using nlohmann::json;
 
-const std::filesystem::path node_folder = FLEXURA_SOURCE_DIR "/tests/node";
+const std::filesystem::path node_folder = checkout_file("tests/node");
 
 /// What a command prints, or an empty text and a failed test when it fails.
 std::string output_of(const std::string& command) {

@@ -12,6 +12,7 @@
 #include "flexura/kinematics/spatial.h"
 #include "flexura/math/arrays.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/live_sessions.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
@@ -281,7 +282,7 @@ class LaboratoryArm : public LiveSessionTest {
  protected:
   LaboratoryArm()
       : LiveSessionTest(
-            read_text_file(FLEXURA_SOURCE_DIR "/examples/02_laboratory_arm/experiment.toml", 1 << 20)) {}
+            read_text_file(checkout_file("examples/02_laboratory_arm/experiment.toml"), 1 << 20)) {}
 };
 
 TEST_F(LaboratoryArm, IsMovedByItsTendonsToo) {

@@ -11,12 +11,13 @@
 #include <thread>
 
 #include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
 
-inline const std::string program = FLEXURA_BINARY_DIR "/bin/flexura";
-inline const std::string paper_file = FLEXURA_SOURCE_DIR "/examples/01_paper_arm/experiment.toml";
+inline const std::string program = built_file("bin/flexura");
+inline const std::string paper_file = checkout_file("examples/01_paper_arm/experiment.toml");
 
 /// How a program ended, and what it said.
 struct Ended {

@@ -20,8 +20,11 @@ struct BriefVisitor {
   std::string operator()(double value) const { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
   std::string operator()(const std::string& value) const {
     constexpr std::size_t longest = 40;
+    // No character is cut in two.
+    std::size_t end = std::min(longest, value.size());
+    while (end < value.size() && end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80) --end;
     std::string shown;
-    for (const char c : value.substr(0, longest)) shown += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    for (const char c : value.substr(0, end)) shown += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     return fmt::format("\"{}{}\"", shown, value.size() > longest ? "..." : "");
   }
   std::string operator()(const Node::Array& value) const {

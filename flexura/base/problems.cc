@@ -2,15 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
 namespace flexura {
 
 std::string joined(const std::vector<Problem>& problems) {
   std::string text;
-  for (const Problem& problem : problems) {
+  const std::size_t told = std::min(problems.size(), max_listed_problems);
+  for (const Problem& problem : std::span(problems).first(told)) {
     const std::string column =
         problem.where.column > 1 ? fmt::format("column {}: ", problem.where.column) : "";
     text += (text.empty() ? "" : "; ") + column + problem.what;
   }
+  if (problems.size() > told) text += fmt::format("; and {} more", problems.size() - told);
   return text;
 }
 

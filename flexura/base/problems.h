@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,7 +8,11 @@
 
 namespace flexura {
 
-/// The problems of one line of input, in one line; the place is the line itself, which the asker knows.
+/// So many of the problems of one input are told, for a hundred thousand would scroll the first away.
+inline constexpr std::size_t max_listed_problems = 20;
+
+/// The first problems of one line of input (max_listed_problems) and how many more there are, in one line; the
+/// place is the line itself, which the asker knows.
 [[nodiscard]] std::string joined(const std::vector<Problem>& problems);
 
 }  // namespace flexura

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "flexura/base/one_line.h"
+#include "flexura/base/problems.h"
 
 namespace flexura {
 namespace {
-
-// A file of a hundred thousand bad lines should not scroll its first error away.
-constexpr std::size_t max_listed_problems = 20;
 
 std::string listing(const std::vector<Problem>& problems) {
   std::string text;

@@ -56,11 +56,12 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool binary(nlohmann::json::binary_t&) override { return false; }
   bool start_object(std::size_t) override { return open(Node::Table{}); }
   bool start_array(std::size_t) override { return open(Node::Array{}); }
-  bool end_object() override { return close(); }
+  bool end_object() override {
+    check_keys(*open_.back()->as<Node::Table>());
+    return close();
+  }
   bool end_array() override { return close(); }
   bool key(std::string& name) override {
-    if (open_.back()->find(name) != nullptr)
-      throw InputError({{start(), fmt::format("key \"{}\" is given twice", name)}});
     open_.back()->as<Node::Table>()->push_back({std::move(name), start(), {}});
     return true;
   }
@@ -97,6 +98,17 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
     // Pointers to the open nodes stay valid: a container grows only while its last entry is complete.
     open_.push_back(place({std::move(value), start()}));
     return true;
+  }
+  // Sorted: each with all before it would take hours for a line that is all keys.
+  void check_keys(const Node::Table& members) const {
+    std::vector<const std::string*> names;
+    names.reserve(members.size());
+    for (const Node::Member& member : members) names.push_back(&member.key);
+    const auto value = [](const std::string* name) -> const std::string& { return *name; };
+    std::ranges::sort(names, {}, value);
+    const auto twice = std::ranges::adjacent_find(names, {}, value);
+    if (twice != names.end())
+      throw InputError({{start(), fmt::format("key {} is given twice", Node{**twice, {}}.brief())}});
   }
   bool close() {
     open_.pop_back();

@@ -1,5 +1,6 @@
 #include "flexura/store/json.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,6 +40,16 @@ TEST(ParseJson, SaysWhereAndWhyTextIsNoJson) {
 TEST(ParseJson, RefusesAKeyGivenTwice) {
   EXPECT_THAT(json_error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" is given twice"));
   EXPECT_EQ(json_error_of(R"({"a":{"a":1}})"), "");
+  EXPECT_LT(json_error_of("{\"" + std::string(1000, 'k') + "\":1,\"" + std::string(1000, 'k') + "\":2}").size(),
+            100U);
+}
+
+// Comparing each with all before it is slower than all the other tests together.
+TEST(ParseJson, TakesATextThatIsAllKeys) {
+  std::string text = "{";
+  for (int i = 0; i < 100000; ++i) text += fmt::format("\"{}\":0,", i);
+  EXPECT_EQ(json_error_of(text + "\"x\":0}"), "");
+  EXPECT_THAT(json_error_of(text + "\"77\":0}"), HasSubstr("key \"77\" is given twice"));
 }
 
 TEST(ParseJson, RefusesDeepNesting) {

@@ -1,6 +1,7 @@
 #include "flexura/app/inverse.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -73,9 +74,10 @@ void check_target(const InverseRequest& request, Reader& reader) {
       reader.problem_at("curve", "stands alone: direction, rotation and all are for a position");
     }
     const auto& points = *request.curve;
-    if (std::ranges::all_of(points, [&](const Triple& point) { return point == points.front(); })) {
-      reader.problem_at("curve", "has no length");
-    }
+    double length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      length += (vector(points[i]) - vector(points[i - 1])).norm();
+    if (!(length > 0)) reader.problem_at("curve", "has no length");
   }
   if (request.tolerance && !request.curve) reader.problem_at("tolerance", "is for a curve");
   if (request.direction && request.rotation) {

@@ -15,6 +15,7 @@
 #include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/app/view.h"
+#include "flexura/app/words.h"
 #include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"
@@ -53,7 +54,7 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   if (result.outcome == RunOutcome::done) {
     out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
   }
-  out << fmt::format("results: {}\n", result.folder.string());
+  tell(out, "results", result.folder.string());
 }
 
 // A run that people look at, while it goes on and then until somebody ends the program, which ends a run
@@ -114,14 +115,14 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     try {
       (void)export_mp4(folder);
     } catch (const std::exception& error) {
-      err << "no film: " << error.what() << '\n';
+      tell(err, "no film", error.what());
     }
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
-  for (const std::string& reason : result.reasons) err << name_of(result.outcome) << ": " << reason << '\n';
+  for (const std::string& reason : result.reasons) tell(err, name_of(result.outcome), reason);
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
-    err << "results: " << folder.string() << '\n';
+    tell(err, "results", folder.string());
   } else {
     print_result(experiment, result, out);
   }
@@ -142,9 +143,9 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {
-    for (const std::string& line : violation_lines(report)) out << "unsafe: " << line << '\n';
-    for (const std::string& caveat : report.caveats) out << "caveat: " << caveat << '\n';
-    for (const std::string& note : report.notes) out << "note: " << note << '\n';
+    for (const std::string& line : violation_lines(report)) tell(out, "unsafe", line);
+    for (const std::string& caveat : report.caveats) tell(out, "caveat", caveat);
+    for (const std::string& note : report.notes) tell(out, "note", note);
     if (report.is_safe()) out << "safe\n";
   }
   return report.is_safe() ? exit_done : exit_missed;
@@ -167,7 +168,7 @@ int export_command(const std::string& results, const std::string& format, std::o
   const ExportResult result = format == "csv" ? export_csv(results) : export_mp4(results);
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
-  out << (format == "csv" ? "tables: " : "films: ") << result.folder.string() << '\n';
+  tell(out, format == "csv" ? "tables" : "films", result.folder.string());
   return exit_done;
 }
 

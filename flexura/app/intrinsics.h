@@ -17,7 +17,7 @@ struct IntrinsicsArguments {
   double square = 0;               ///< m
   std::string pattern = "chessboard";
   std::int64_t distortion = 5;           ///< How many of k1, k2, p1, p2, k3.
-  std::optional<std::int64_t> hold_out;  ///< Every so-manieth view.
+  std::optional<std::int64_t> hold_out;  ///< Every Nth view is left out of the fit.
   std::vector<std::string> names;        ///< Of the cameras.
   std::vector<double> position;          ///< p_WC of the first camera, three numbers; none: the origin.
   std::vector<double> rotation;  ///< R_WC of the first camera as (w, x, y, z); none: the world's axes.

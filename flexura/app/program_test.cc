@@ -42,6 +42,17 @@ TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
   EXPECT_THAT(run("run " + paper_file).out, HasSubstr("results: results/01_paper_arm-2\n"));
 }
 
+TEST_F(Program, PrintsALineOfEachThingWhateverItIsCalled) {
+  const Ended ended = run("run " + paper_file + " --out 'two\nlines'");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, "end effector: (-10.738, 5.201)\nresults: two\\nlines\n");
+  EXPECT_TRUE(std::filesystem::exists(path("two\nlines/summary.json"))) << "the folder has the name itself";
+  const Ended unsafe = run("check " + paper_file +
+                           R"( --set 'task.0.name="bend\u009b2J\u2028"' --set 'task.0.to={position=[30,0,0]}')");
+  EXPECT_EQ(unsafe.status, 1);
+  EXPECT_THAT(unsafe.out, HasSubstr("bend\\xc2\\x9b2J\\xe2\\x80\\xa8: target outside the workspace"));
+}
+
 TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
   const Ended ended = run("run " + paper_file + " --json --out elsewhere --seed 5");
   EXPECT_EQ(ended.status, 0);

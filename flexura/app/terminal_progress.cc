@@ -7,6 +7,8 @@
 #include <ostream>
 #include <string>
 
+#include "flexura/base/one_line.h"
+
 namespace flexura {
 
 TerminalProgress::TerminalProgress(std::ostream& err) : err_(err), on_terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -24,7 +26,7 @@ void TerminalProgress::update(double fraction, std::string_view what) {
   const int filled = static_cast<int>(std::lround(fraction * width));
   err_ << fmt::format("\r\x1b[K{:3.0f} % [{}{}] {}", fraction * 100,
                       std::string(static_cast<std::size_t>(filled), '#'),
-                      std::string(static_cast<std::size_t>(width - filled), '.'), what)
+                      std::string(static_cast<std::size_t>(width - filled), '.'), one_line(what))
        << std::flush;
 }
 

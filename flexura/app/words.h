@@ -4,12 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "flexura/base/one_line.h"
 #include "flexura/base/source.h"
 
 namespace flexura {
+
+/// Prints "label: text" as one line, whatever names the text holds.
+inline void tell(std::ostream& out, std::string_view label, std::string_view text) {
+  out << label << ": " << one_line(text) << '\n';
+}
 
 /// The value of an enumeration that an option's word names. InputError, with all the words, for another.
 template <typename E>

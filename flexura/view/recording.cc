@@ -101,11 +101,18 @@ void Recording::read_marks() {
     marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
 }
 
-// The log says when something begins to be unsafe, the summary how long it lasts.
+// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk was
+// full, say) keeps nobody from looking at the log.
 void Recording::mark_violations() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
-  const Node summary = parse_json(read_text_file(file, largest_summary), file.string());
+  Node summary;
+  try {
+    summary = parse_json(read_text_file(file, largest_summary), file.string());
+  } catch (const InputError& error) {
+    marks_.push_back({0, 0, "warning", "summary", error.what()});
+    return;
+  }
   const Node* list = summary.find("violations");
   const auto* violations = list == nullptr ? nullptr : list->as<Node::Array>();
   if (violations == nullptr) return;

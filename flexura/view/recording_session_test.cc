@@ -354,6 +354,20 @@ TEST_F(RecordingSessionTest, OpensTheLogOfAKilledRun) {
   EXPECT_EQ(*ask(AtRequest{1e9}).result.find("time")->as<double>(), hello.duration);
 }
 
+// A disk that was full cut it short, or somebody edited it.
+TEST_F(RecordingSessionTest, OpensTheLogBesideADamagedSummary) {
+  record();
+  const auto summary = folder_.path() / summary_file_name;
+  std::filesystem::resize_file(summary, std::filesystem::file_size(summary) / 2);
+  open();
+  const Hello hello = session_->hello();
+  EXPECT_EQ(hello.duration, 1);
+  EXPECT_EQ(hello.marks.back().name, "summary");
+  EXPECT_EQ(hello.marks.back().level, "warning");
+  EXPECT_THAT(hello.marks.back().text, HasSubstr("summary.json:"));
+  EXPECT_THAT(hello.marks.back().text, HasSubstr("not JSON"));
+}
+
 TEST_F(RecordingSessionTest, RefusesWhatIsNoRecording) {
   const auto error = [&] {
     try {

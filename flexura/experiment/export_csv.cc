@@ -89,10 +89,33 @@ void add_row(CsvText& csv, const DynamicsSampleMessage& sample) {
   csv.end_row();
 }
 
+void name_servo_columns(CsvText& csv) {
+  for (const char* title : {"time", "seen_at", "rms", "most", "tip", "true_rms", "true_most", "true_tip",
+                            "potential", "limited"})
+    csv.cell(std::string_view(title));
+  csv.end_row();
+}
+
+// How far a servo's arm was from what is wanted; the shapes themselves are the log's to tell.
+void add_row(CsvText& csv, const ServoStepMessage& step) {
+  csv.cell(step.time);
+  for (const auto& value : {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most,
+                            step.true_tip}) {
+    if (value)
+      csv.cell(*value);
+    else
+      csv.cell(std::string_view());
+  }
+  csv.cell(step.potential);
+  csv.cell(step.limited ? std::string_view(*step.limited) : std::string_view());
+  csv.end_row();
+}
+
 struct Tables {
   CsvText states;
   CsvText events;
   std::optional<CsvText> dynamics;  // Of runs with such a task.
+  std::optional<CsvText> servo;     // Likewise.
 };
 
 Tables tables_of(const McapReader& log, const std::string& name) {
@@ -115,6 +138,9 @@ Tables tables_of(const McapReader& log, const std::string& name) {
     } else if (topic == dynamics_samples_topic) {
       if (!tables.dynamics) name_dynamics_columns(tables.dynamics.emplace());
       add_row(*tables.dynamics, read_as<DynamicsSampleMessage>(parse_json(message.text(), name)));
+    } else if (topic == servo_steps_topic) {
+      if (!tables.servo) name_servo_columns(tables.servo.emplace());
+      add_row(*tables.servo, read_as<ServoStepMessage>(parse_json(message.text(), name)));
     } else if (topic == events_topic) {
       const auto event = read_as<EventMessage>(parse_json(message.text(), name));
       tables.events.cell(static_cast<double>(message.log_time) * 1e-9);
@@ -140,6 +166,7 @@ ExportResult export_csv(const std::filesystem::path& results) {
   write_new_file(result.folder / "states.csv", tables.states.text());
   write_new_file(result.folder / "events.csv", tables.events.text());
   if (tables.dynamics) write_new_file(result.folder / "dynamics.csv", tables.dynamics->text());
+  if (tables.servo) write_new_file(result.folder / "servo.csv", tables.servo->text());
   return result;
 }
 

@@ -1,0 +1,46 @@
+#include "flexura/experiment/export_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/recorder.h"
+#include "flexura/experiment/results.h"
+#include "flexura/model/backbone.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+// A row a command; before the first pictures came there is nothing to say of the arm.
+TEST(ExportCsv, HasTheErrorsOfAServoOverTime) {
+  const TemporaryFolder folder;
+  Arm arm;
+  arm.sections = {{.length = 0.3}};
+  {
+    Recorder recorder(folder.path() / log_file_name, arm);
+    recorder.state(0, ArmState::straight(1), Backbone(arm, ArmState::straight(1)));
+    ServoStepMessage step;
+    step.desired = step.sent = {std::array{0.5, 0.0}};
+    step.desired_stretches = step.sent_stretches = {1.0};
+    step.lengths = {0.3};
+    recorder.servo(step);
+    step.time = 0.25, step.seen_at = 0.125, step.rms = 0.5, step.most = 1.5, step.tip = 1;
+    step.true_rms = 0.75, step.true_most = 2, step.true_tip = 1.75, step.potential = 0.0625;
+    step.limited = "section 1, a bend";
+    recorder.servo(step);
+    recorder.close();
+  }
+  const ExportResult exported = export_csv(folder.path());
+  EXPECT_EQ(read_text_file(exported.folder / "servo.csv", 1 << 20),
+            "time,seen_at,rms,most,tip,true_rms,true_most,true_tip,potential,limited\n"
+            "0,,,,,,,,0,\n"
+            "0.25,0.125,0.5,1.5,1,0.75,2,1.75,0.0625,\"section 1, a bend\"\n");
+  EXPECT_FALSE(std::filesystem::exists(exported.folder / "dynamics.csv"));
+}
+
+}  // namespace
+}  // namespace flexura

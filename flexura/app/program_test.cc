@@ -47,8 +47,8 @@ TEST_F(Program, PrintsALineOfEachThingWhateverItIsCalled) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.out, "end effector: (-10.738, 5.201)\nresults: two\\nlines\n");
   EXPECT_TRUE(std::filesystem::exists(path("two\nlines/summary.json"))) << "the folder has the name itself";
-  const Ended unsafe = run("check " + paper_file +
-                           R"( --set 'task.0.name="bend\u009b2J\u2028"' --set 'task.0.to={position=[30,0,0]}')");
+  const std::string name = R"( --set 'task.0.name="bend\u009b2J\u2028"')";
+  const Ended unsafe = run("check " + paper_file + name + " --set 'task.0.to={position=[30,0,0]}'");
   EXPECT_EQ(unsafe.status, 1);
   EXPECT_THAT(unsafe.out, HasSubstr("bend\\xc2\\x9b2J\\xe2\\x80\\xa8: target outside the workspace"));
 }

@@ -40,8 +40,8 @@ TEST(ParseJson, SaysWhereAndWhyTextIsNoJson) {
 TEST(ParseJson, RefusesAKeyGivenTwice) {
   EXPECT_THAT(json_error_of(R"({"a":1,"b":2,"a":3})"), HasSubstr("key \"a\" is given twice"));
   EXPECT_EQ(json_error_of(R"({"a":{"a":1}})"), "");
-  EXPECT_LT(json_error_of("{\"" + std::string(1000, 'k') + "\":1,\"" + std::string(1000, 'k') + "\":2}").size(),
-            100U);
+  const std::string long_key = std::string(1000, 'k');
+  EXPECT_LT(json_error_of(fmt::format(R"({{"{}":1,"{}":2}})", long_key, long_key)).size(), 100U);
 }
 
 // Comparing each with all before it is slower than all the other tests together.

@@ -101,8 +101,8 @@ void Recording::read_marks() {
     marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
 }
 
-// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk was
-// full, say) keeps nobody from looking at the log.
+// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk
+// was full, say) keeps nobody from looking at the log.
 void Recording::mark_violations() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "flexura/experiment/dynamics_plant.h"
@@ -90,6 +91,19 @@ MotionPtr motion_of(const DynamicsTask& task, const Arm& arm, const ArmState& fr
                          Interpolation::linear);
 }
 
+// Of the laws that take the task's duration. Without a default, so that the compiler asks for a new law's.
+Profile profile_of(MoveLaw law, double duration) {
+  switch (law) {
+    case MoveLaw::linear:
+      return Profile::linear(duration);
+    case MoveLaw::minimum_jerk:
+      return Profile::minimum_jerk(duration);
+    case MoveLaw::trapezoid:
+      break;
+  }
+  throw std::logic_error("a trapezoid finds its own duration");
+}
+
 MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const ArmState to = state_to_reach(task, arm, from);
   if (task.law.front() == MoveLaw::trapezoid) {
@@ -98,11 +112,9 @@ MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) 
     return point_to_point_motion(from, to, std::vector<Profile>(arm.sections.size(), *trapezoid));
   }
   std::vector<Profile> profiles;
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    const double duration = task.duration.value_or(1.0);
-    const bool is_linear = of_section(task.law, i) == MoveLaw::linear;
-    profiles.push_back(is_linear ? Profile::linear(duration) : Profile::minimum_jerk(duration));
-  }
+  profiles.reserve(arm.sections.size());
+  for (std::size_t i = 0; i < arm.sections.size(); ++i)
+    profiles.push_back(profile_of(of_section(task.law, i), task.duration.value_or(1.0)));
   // With one law for all, cords and bends both go on straight lines.
   if (task.to.cord_angles && task.law.size() > 1) {
     std::vector<double> changes = *task.to.cord_angles;

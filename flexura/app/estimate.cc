@@ -86,17 +86,6 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-std::vector<MeasuredCamera> cameras_of(const EstimateArguments& arguments) {
-  const Node file = read_toml_file(arguments.cameras);
-  auto cameras = read_as<MeasuredCameras>(file).camera;
-  check_poses(file, cameras);
-  if (cameras.size() != arguments.images.size())
-    throw InputError(
-        {{file.find("camera")->where, fmt::format("camera: {} for {} pictures: expected one for each",
-                                                  cameras.size(), arguments.images.size())}});
-  return cameras;
-}
-
 std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
   if (arguments.base.empty()) return std::nullopt;
   return Eigen::Vector3d(arguments.base.data());
@@ -132,11 +121,16 @@ double marker_place(const std::string& word, const ShapePrior& prior) {
   return s;
 }
 
-ShapePrior prior_of(const EstimateArguments& arguments) {
-  ShapePrior prior = arm_of(arguments);
-  for (const std::string& word : arguments.markers) prior.markers.push_back(marker_place(word, prior));
-  std::ranges::sort(prior.markers);
-  return prior;
+EstimateSettings settings_of(const EstimateArguments& arguments) {
+  EstimateSettings settings;
+  settings.prior = arm_of(arguments);
+  auto& markers = settings.prior.markers;
+  for (const std::string& word : arguments.markers) markers.push_back(marker_place(word, settings.prior));
+  std::ranges::sort(markers);
+  settings.threshold = threshold_config(arguments.threshold);
+  settings.points = static_cast<std::size_t>(arguments.points);
+  settings.has_bends = !arguments.arm.empty();
+  return settings;
 }
 
 // One picture: what it shows of the arm.
@@ -155,15 +149,15 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
   return finder.find(gray_picture(photograph.bytes));
 }
 
-Look look_at(const std::string& name, const MeasuredCamera& camera, const ShapePrior& prior,
-             const ThresholdConfig& threshold) {
+Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateSettings& settings) {
   Look look;
-  const std::string file = read_text_file(name, most_picture_bytes);
+  const auto& [name, file] = picture;
+  const ShapePrior& prior = settings.prior;
   const Photograph photograph =
       decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
   ArmFinderConfig config;
-  config.threshold = threshold;
+  config.threshold = settings.threshold;
   if (photograph.is_mask) config.least_sigma = mask_sigma;
   if (prior.is_base_position_known) config.base = view.project(prior.arm.X_WB.position);
   ArmFinder finder(config);
@@ -253,15 +247,15 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
 }
 
 void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
-               const EstimateArguments& arguments, Node::Table& answer) {
+               const EstimateSettings& settings, Node::Table& answer) {
   const Backbone backbone(found.shape.arm, found.shape.state);
+  const std::size_t count = settings.points;
   Node::Array points;
-  for (std::int64_t i = 0; i < arguments.points; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(arguments.points - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
     points.push_back(vector(backbone.pose(share * backbone.length()).position));
   }
   answer.push_back({"backbone", {}, {std::move(points), {}}});
-  const auto count = static_cast<std::size_t>(arguments.points);
   add_angles(direction_angles(backbone, count), "", answer);
   add_plane_angles(sightings, count, answer);
   answer.push_back({"length", {}, number_node(backbone.length())});
@@ -269,7 +263,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
   answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
   answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);
-  if (arguments.arm.empty()) return;
+  if (!settings.has_bends) return;
   Node::Array bends;
   for (const Eigen::Vector2d& bend : found.shape.state.bends)
     bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
@@ -278,19 +272,26 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
 
 }  // namespace
 
-int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
-  check(arguments);
-  const std::vector<MeasuredCamera> cameras = cameras_of(arguments);
-  const ShapePrior prior = prior_of(arguments);
-  const ThresholdConfig threshold = threshold_config(arguments.threshold);
+std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count) {
+  auto cameras = read_as<MeasuredCameras>(file).camera;
+  check_poses(file, cameras);
+  if (cameras.size() != count)
+    throw InputError(
+        {{file.find("camera")->where,
+          fmt::format("camera: {} for {} pictures: expected one for each", cameras.size(), count)}});
+  return cameras;
+}
+
+ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vector<MeasuredCamera>& cameras,
+                           const EstimateSettings& settings) {
   std::vector<Look> looks;
   std::vector<Sighting> sightings;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    looks.push_back(look_at(arguments.images[i], cameras[i], prior, threshold));
+    looks.push_back(look_at(pictures[i], cameras[i], settings));
     sightings.push_back(looks.back().sighting);
   }
-  ShapeEstimate found = ShapeEstimator(prior).estimate(sightings);
-  if (found.is_found && !prior.is_base_position_known)
+  ShapeEstimate found = ShapeEstimator(settings.prior).estimate(sightings);
+  if (found.is_found && !settings.prior.is_base_position_known)
     found.notes.emplace_back(
         "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
         "one; --base tells");
@@ -298,16 +299,27 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     std::optional<ViewError> error;
     if (found.is_found && sightings[i].doubt.is_any()) error = found.shape.views.at(i);
-    images.push_back(image_node(arguments.images[i], cameras[i], looks[i], error));
+    images.push_back(image_node(pictures[i].name, cameras[i], looks[i], error));
   }
   Node::Table answer{{"found", {}, {found.is_found, {}}}, {"trusted", {}, {found.is_trusted(), {}}}};
   if (found.is_found)
-    add_shape(found, sightings, arguments, answer);
+    add_shape(found, sightings, settings, answer);
   else
     answer.push_back({"reason", {}, text_node(found.reason)});
   if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});
   answer.push_back({"images", {}, {std::move(images), {}}});
-  out << write_json({std::move(answer), {}}, 2) << '\n';
+  return {{std::move(answer), {}}, found.is_found};
+}
+
+int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
+  check(arguments);
+  const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
+  const EstimateSettings settings = settings_of(arguments);
+  std::vector<PictureFile> pictures;
+  for (const std::string& name : arguments.images)
+    pictures.push_back({name, read_text_file(name, most_picture_bytes)});
+  const ShapeAnswer found = estimate_shape(pictures, cameras, settings);
+  out << write_json(found.answer, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;
 }
 

@@ -1,14 +1,50 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <iosfwd>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "flexura/app/threshold_arguments.h"
+#include "flexura/base/node.h"
+#include "flexura/camera/measured_camera.h"
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/vision/threshold.h"
 
 namespace flexura {
+
+/// A picture's file.
+struct PictureFile {
+  std::string name;   ///< For messages.
+  std::string bytes;  ///< Of whatever kind (docs/vision.md, "Kinds of pictures").
+};
+
+/// How a shape is looked for.
+struct EstimateSettings {
+  ShapePrior prior;  ///< What is known of the arm.
+  ThresholdConfig threshold;
+  std::size_t points = 101;  ///< Of the backbone, as it is told; at least 2.
+  bool has_bends = false;    ///< Whether the bends of the prior's sections are told: they are the arm's.
+};
+
+/// What the pictures show of the arm.
+struct ShapeAnswer {
+  Node answer;  ///< docs/estimation.md, "flexura estimate".
+  bool is_found = false;
+};
+
+/// The cameras of a file, checked for two to meet. InputError: no such file, a camera without a place or at
+/// the first one's, other than `count` of them.
+[[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
+
+/// The shape in as many pictures as there are cameras, in their order. InputError: not a picture that can be
+/// read.
+[[nodiscard]] ShapeAnswer estimate_shape(std::span<const PictureFile> pictures,
+                                         const std::vector<MeasuredCamera>& cameras,
+                                         const EstimateSettings& settings);
 
 /// What `flexura estimate` is told.
 struct EstimateArguments {

@@ -1,0 +1,109 @@
+// A file of cameras, then behind a zero byte how the arm is looked for, and the pictures' files, each behind
+// the mark below; pictures that are left out are of a bent tube. A problem in words, or one document of JSON
+// without holes where a shape was found, and the same one when asked again.
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexura/app/estimate.h"
+#include "flexura/base/source.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/store/json.h"
+#include "flexura/store/toml.h"
+
+namespace {
+
+constexpr std::string_view mark = "\n--\n";
+
+// A PGM file of 48 x 40 px: a dark arc 6 px wide that the lower border cuts and that ends in the picture.
+std::string bent_tube() {
+  constexpr int width = 48, height = 40;
+  std::string file = "P5\n48 40\n255\n";
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const double beside = std::abs(std::hypot(u - 52, v - 42) - 30) - 3,
+                   share = u > 40 ? 0 : std::clamp(0.5 - beside, 0.0, 1.0);
+      file += static_cast<char>(static_cast<std::uint8_t>(220 - 190 * share));
+    }
+  }
+  return file;
+}
+
+// What stands before `end`, or all; it and the end are taken.
+std::string_view take(std::string_view& text, std::string_view end) {
+  const std::size_t at = text.find(end);
+  const std::string_view piece = text.substr(0, at);
+  text.remove_prefix(at == std::string_view::npos ? text.size() : at + end.size());
+  return piece;
+}
+
+struct Asked {
+  std::string cameras;
+  std::vector<flexura::PictureFile> pictures;
+  flexura::EstimateSettings settings;
+};
+
+// Bits of `ways`: a known base, a known length, known sections, thresholds by block, markers.
+flexura::EstimateSettings settings_of(unsigned ways) {
+  flexura::EstimateSettings settings;
+  std::optional<Eigen::Vector3d> base;
+  std::optional<double> length;
+  if (ways & 1U) base = Eigen::Vector3d::Zero();
+  if (ways & 2U) length = 1;
+  settings.has_bends = (ways & 4U) != 0;
+  if (settings.has_bends)
+    settings.prior.arm.sections.resize(2, {.length = 0.5, .radius = {0.02, 0.02}});
+  else
+    settings.prior = flexura::unknown_arm(base, length, 6);
+  if (ways & 8U) settings.threshold.method = flexura::ThresholdMethod::by_block;
+  if (ways & 16U) settings.prior.markers = {0.25, 0.5};
+  settings.points = 5;
+  return settings;
+}
+
+Asked asked(std::string_view input) {
+  static const std::string tube = bent_tube();
+  Asked result;
+  result.cameras = take(input, std::string_view("\0", 1));
+  const std::string_view ways = take(input, mark);
+  result.settings = settings_of(ways.empty() ? 3U : static_cast<unsigned char>(ways[0]));
+  constexpr std::size_t most = 3;
+  while (!input.empty() && result.pictures.size() < most)
+    result.pictures.push_back({"picture", std::string(take(input, mark))});
+  while (result.pictures.size() < 2) result.pictures.push_back({"tube", tube});
+  return result;
+}
+
+std::string answer(const Asked& asked) {
+  try {
+    const flexura::Node file = flexura::parse_toml(asked.cameras, "cameras.toml");
+    const auto cameras = flexura::standing_cameras(file, asked.pictures.size());
+    const auto found = flexura::estimate_shape(asked.pictures, cameras, asked.settings);
+    const bool has_shape = found.answer.find("backbone") != nullptr;
+    if (found.is_found != has_shape || has_shape == (found.answer.find("reason") != nullptr)) std::abort();
+    const std::string text = flexura::write_json(found.answer);
+    if (has_shape && text.find("null") != std::string::npos) std::abort();
+    return text;
+  } catch (const flexura::InputError& error) {
+    return std::string("\"") + (error.problems().empty() ? "" : "problem") + "\"";
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size > 20000) return 0;
+  const std::string_view input(reinterpret_cast<const char*>(data), size);
+  const Asked what = asked(input);
+  const std::string once = answer(what);
+  (void)flexura::parse_json(once, "answer");
+  if (size % 16 == 0 && once != answer(what)) std::abort();
+  return 0;
+}

@@ -99,6 +99,13 @@ std::vector<Stretch> stretches(const std::vector<Vector3d>& colors, const Vector
   return result;
 }
 
+// At an end of the arm the ground is in the last pixels, by the picture's blur.
+bool is_ground(const Stretch& stretch, std::size_t size) {
+  constexpr std::size_t most = 3;
+  return (stretch.first == 0 && stretch.last <= most) ||
+         (stretch.last == size && stretch.first + most >= size);
+}
+
 // A line's part of a marker: its middle and length by the moments of how much it differs from the skin around
 // it.
 struct Part {
@@ -189,6 +196,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   const double bound = std::max(least_difference, 5 * arm.noise);
   std::size_t dropped = 0;
   for (const Stretch& stretch : stretches(skin.colors[middle_line], own, bound)) {
+    if (is_ground(stretch, skin.size())) continue;
     const std::size_t middle = (stretch.first + stretch.last) / 2;
     const Vector3d color = skin.colors[middle_line][middle], direction = (color - own).normalized();
     std::array<std::optional<Part>, skin_lines.size()> parts;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "flexura/vision/backbone_image.h"
@@ -132,6 +133,22 @@ TEST(Markers, WhatIsBesideTheArmIsNone) {
 }
 
 TEST(Markers, APlainArmHasNone) { EXPECT_TRUE(BandedPicture({}).found().markers.empty()); }
+
+// The axis ends on the silhouette's border, half-way between arm and ground.
+TEST(Markers, TheGroundBehindAnEndIsNoSpotOfAnotherColour) {
+  Image<std::uint8_t> picture(320, 240, 1, 220);
+  for (int v = 40; v < 200; ++v)
+    for (int u = 150; u < 166; ++u) picture.at(u, v) = 20;
+  ArmFinder finder;
+  const ArmSighting& arm = finder.find(picture);
+  ASSERT_TRUE(arm.is_found()) << arm.reason;
+  EXPECT_THAT(find_markers(picture, arm).notes, testing::IsEmpty());
+  // One that lies on the arm is.
+  for (int v = 100; v < 103; ++v)
+    for (int u = 157; u < 159; ++u) picture.at(u, v) = 120;
+  EXPECT_THAT(find_markers(picture, finder.find(picture)).notes,
+              testing::ElementsAre(HasSubstr("1 spot of another colour")));
+}
 
 }  // namespace
 }  // namespace flexura

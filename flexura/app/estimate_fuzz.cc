@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "flexura/app/estimate.h"
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/store/json.h"
 #include "flexura/store/toml.h"
+#include "flexura/vision/threshold.h"
 
 namespace {
 
@@ -55,15 +57,15 @@ flexura::EstimateSettings settings_of(unsigned ways) {
   flexura::EstimateSettings settings;
   std::optional<Eigen::Vector3d> base;
   std::optional<double> length;
-  if (ways & 1U) base = Eigen::Vector3d::Zero();
-  if (ways & 2U) length = 1;
+  if ((ways & 1U) != 0) base = Eigen::Vector3d::Zero();
+  if ((ways & 2U) != 0) length = 1;
   settings.has_bends = (ways & 4U) != 0;
   if (settings.has_bends)
     settings.prior.arm.sections.resize(2, {.length = 0.5, .radius = {0.02, 0.02}});
   else
     settings.prior = flexura::unknown_arm(base, length, 6);
-  if (ways & 8U) settings.threshold.method = flexura::ThresholdMethod::by_block;
-  if (ways & 16U) settings.prior.markers = {0.25, 0.5};
+  if ((ways & 8U) != 0) settings.threshold.method = flexura::ThresholdMethod::by_block;
+  if ((ways & 16U) != 0) settings.prior.markers = {0.25, 0.5};
   settings.points = 5;
   return settings;
 }

@@ -45,6 +45,22 @@ double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
   return std::hypot(of_any * arm.blur * std::sqrt(thin) + of_thin * thin * thin, locked);
 }
 
+// Whether samples tell where the axis is: those that are seen, but for a few between two stretches that it
+// bridges. There borders of something else were taken for the tube's, pixels off.
+std::vector<bool> telling(const std::vector<AxisSample>& axis) {
+  std::vector<bool> tells(axis.size());
+  for (std::size_t first = 0, last = 0; first < axis.size(); first = last + 1) {
+    last = first;
+    double length = 0;
+    for (; last < axis.size() && axis[last].is_seen; ++last)
+      if (last > first) length += (axis[last].pixel - axis[last - 1].pixel).norm();
+    const bool is_between = first > 0 && last < axis.size();
+    if (is_between && length < 0.5 * axis[first].width) continue;
+    for (std::size_t i = first; i < last; ++i) tells[i] = true;
+  }
+  return tells;
+}
+
 // The way in which the axis goes on where it is nearest to a pixel.
 Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vector2d& pixel) {
   const auto nearest = std::ranges::min_element(
@@ -60,11 +76,13 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
   seen.reach.sigma = smoothed;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   std::vector<AxisSample> axis = arm.axis;
+  const std::vector<bool> tells = telling(axis);
   // The axis lies half-way between the borders: each is known by the root of two worse.
-  for (const AxisSample& sample : axis) {
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    if (!tells[i]) continue;
+    const AxisSample& sample = axis[i];
     const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
     const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
-    if (!sample.is_seen) continue;
     seen.edges[0].push_back({sample.pixel + half, sigma});
     seen.edges[1].push_back({sample.pixel - half, sigma});
   }
@@ -72,7 +90,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
   const auto samples = static_cast<std::size_t>(
       axis.size() < 2 ? 0.0 : stretch / std::max((axis[1].pixel - axis[0].pixel).norm(), 0.5));
   for (std::size_t i = 0; i < axis.size(); ++i)
-    if (axis[i].is_seen)
+    if (tells[i])
       seen.points.push_back(
           {axis[i].pixel, std::max(axis[i].sigma, least_sigma), offset_at(arm, i, samples)});
   if (arm.covered < whole) return seen;

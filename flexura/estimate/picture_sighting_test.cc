@@ -1,0 +1,38 @@
+#include "flexura/estimate/picture_sighting.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "flexura/camera/view.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+namespace {
+
+// A straight axis along a row, 10 px wide, bridged from 40 to 60 px but for `chance` samples in the middle.
+ArmSighting bridged_axis(std::size_t chance) {
+  ArmSighting arm;
+  arm.blur = 0.8, arm.covered = 1;
+  for (std::size_t i = 0; i < 100; ++i) {
+    AxisSample& sample = arm.axis.emplace_back();
+    sample.pixel = {100.0 + static_cast<double>(i), 200}, sample.normal = {0, 1};
+    sample.width = 10, sample.sigma = 0.01;
+    sample.is_seen = i < 40 || i >= 60 || (i >= 50 && i < 50 + chance);
+  }
+  return arm;
+}
+
+// A foreshortened arm's axis may meet something like a tube for a pixel or two, far from where the arm is.
+TEST(PictureSighting, LeavesOutWhatIsSeenByChanceBetweenTwoBridges) {
+  EXPECT_EQ(sighting_of(bridged_axis(0), View{}).points.size(), 80U);
+  const Sighting few = sighting_of(bridged_axis(3), View{});
+  EXPECT_EQ(few.points.size(), 80U);
+  EXPECT_EQ(few.edges[0].size(), 80U);
+  EXPECT_EQ(few.edges[1].size(), 80U);
+  EXPECT_EQ(sighting_of(bridged_axis(8), View{}).points.size(), 88U);
+}
+
+}  // namespace
+}  // namespace flexura

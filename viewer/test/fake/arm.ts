@@ -1,5 +1,5 @@
 // The fake rig's arm: bends that follow their targets at a rate, and inverse kinematics by damped least squares.
-import { sample_arm } from '../../src/math/forward';
+import { sample_arm } from './forward';
 import type { RigDescription } from './rigs';
 
 export type Bends = [number, number][];

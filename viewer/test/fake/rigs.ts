@@ -1,7 +1,7 @@
 // Two rigs to play: the paper's planar arm and a spatial one with tendons.
-import type { Controls, Pose, Scene } from '../../src/protocol/types';
-import { upright } from '../../src/math/forward';
 import { archings_of, paper_cord_angles, paper_lengths } from '../../src/math/planar';
+import type { Controls, Pose, Scene } from '../../src/protocol/types';
+import { upright } from './forward';
 
 export interface RigDescription {
   title: string;

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { Arc, locate, new_pose, point_at, sinc } from '../../src/math/arc';
-import { sample_arm, upright } from '../../src/math/forward';
+import { sample_arm, upright } from '../fake/forward';
 
 const bent = [
   { length: 0.3, bend_x: 1.1, bend_y: -0.4, stretch: 1 },

@@ -1,10 +1,10 @@
 import { expect, test } from 'vitest';
-import { upright } from '../../src/math/forward';
 import { archings_of, paper_cord_angles } from '../../src/math/planar';
 import { changed, command_of, modes_of, reach_of, slots_of, span_of, start_tangent, values_of } from '../../src/panels/arm_model';
 import { pull, tendon_reach } from '../../src/panels/tendons';
 import type { State } from '../../src/protocol/state';
 import { FakeArm } from '../fake/arm';
+import { upright } from '../fake/forward';
 import { planar_rig, spatial_rig } from '../fake/rigs';
 
 const planar = planar_rig();

@@ -1,9 +1,9 @@
 import { expect, test } from 'vitest';
 import { point_at } from '../../src/math/arc';
-import { sample_arm, upright } from '../../src/math/forward';
 import {
   archings_of, cord_angles_of, paper_cord_angles, paper_lengths, planar_point, planar_rows,
 } from '../../src/math/planar';
+import { sample_arm, upright } from '../fake/forward';
 
 function paper(f: number) {
   // All cord angles from those of the straight arm to the paper's, linearly.

@@ -1,19 +1,19 @@
 import { type Group, type InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Vector3 } from 'three';
 import { expect, test, vi } from 'vitest';
 import { point_at } from '../../src/math/arc';
-import { sample_arm } from '../../src/math/forward';
 import type { State } from '../../src/protocol/state';
 import type { Pose } from '../../src/protocol/types';
 import { see_through } from '../../src/scene/camera_view';
 import { Orbit } from '../../src/scene/orbit';
 import { make_arm } from '../../src/scene/parts/arm';
 import { gap_between, make_cameras } from '../../src/scene/parts/cameras';
-import { nearest_point } from '../../src/scene/pick';
-import { make_ghosts, samples_of } from '../../src/scene/parts/ghosts';
 import { grid_step } from '../../src/scene/parts/floor';
+import { make_ghosts, samples_of } from '../../src/scene/parts/ghosts';
+import { nearest_point } from '../../src/scene/pick';
 import { medium, painter, plan_rings, radius_at, total_length } from '../../src/scene/rings';
 import { Tube } from '../../src/scene/tube';
 import { FakeArm } from '../fake/arm';
+import { sample_arm } from '../fake/forward';
 import { planar_rig, spatial_rig } from '../fake/rigs';
 
 const rig = spatial_rig();

@@ -1,6 +1,6 @@
-// Sections bent by constant curvature, laid end to end: for the teaching page's arm, ghosts and the tests' own server.
-import { sample_stride } from '../protocol/state';
-import { rotate, sinc } from './arc';
+// Sections bent by constant curvature, laid end to end: for the tests' own server and what tests compare with.
+import { rotate, sinc } from '../../src/math/arc';
+import { sample_stride } from '../../src/protocol/state';
 
 export interface SectionShape {
   length: number;

@@ -10,10 +10,13 @@ order:
              any, are what it prints: "..." stands for any text, a line "..." for any lines. It has to succeed, or to
              end as its comment "# exit status N" says. "./dev ..." is not run: the command has to exist. With --view no
              browser is opened, and SIGTERM ends the viewer once the results are there.
+  cmake      is how the programs after it are built: one program, of main.cc
   cpp        a whole program is compiled against PREFIX and run; what it prints is in its comments "// prints: ..."
   any other  no check but these two, which hold for every language:
              a first line with "file: NAME" writes the block to NAME in the scratch folder;
              a first line with "from: PATH" says that the rest stands in PATH, word for word.
+
+The version is looked at as well: CMakeLists.txt, the newest heading of CHANGELOG.md and viewer/package.json agree.
 """
 
 import argparse
@@ -30,10 +33,11 @@ from pathlib import Path
 FENCE = re.compile(r"^(\s*)```(\w*)\s*$")
 LINK = re.compile(r'\]\(([^)\s]+)(?:\s+"[^"]*")?\)|<img[^>]*\bsrc="([^"]+)"')
 HEADER = re.compile(r"^(?:#|//|<!--|--)\s*(file|from):\s*(\S+)")
-PROGRAM = """cmake_minimum_required(VERSION 3.25)
+PROJECT = """cmake_minimum_required(VERSION 3.25)
 project(program LANGUAGES CXX)
-find_package(flexura REQUIRED)
-add_executable(program program.cc)
+"""
+PROGRAM = """find_package(flexura REQUIRED)
+add_executable(program main.cc)
 target_link_libraries(program PRIVATE flexura::flexura)
 """
 
@@ -113,7 +117,7 @@ class Runner:
     """Runs one document's blocks in a scratch folder."""
 
     def __init__(self, root, scratch, programs, prefix):
-        self.root, self.scratch, self.prefix = root, scratch, prefix
+        self.root, self.scratch, self.prefix, self.program = root, scratch, prefix, PROGRAM
         self.environment = {
             **os.environ,
             "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
@@ -159,6 +163,8 @@ class Runner:
         elif block.language == "console":
             for number, command, expected in commands(block):
                 yield from self.run_command(number, command, expected)
+        elif block.language == "cmake":
+            self.program = "\n".join(block.lines) + "\n"
         elif block.language == "cpp":
             yield from self.run_program(block)
         elif block.language in ("sh", "bash", "shell"):
@@ -197,17 +203,37 @@ class Runner:
             return
         folder = self.scratch / f".program-{block.line}"
         folder.mkdir()
-        (folder / "CMakeLists.txt").write_text(PROGRAM)
-        (folder / "program.cc").write_text(text)
+        (folder / "CMakeLists.txt").write_text(PROJECT + self.program)
+        (folder / "main.cc").write_text(text)
         build = f"cmake -S {folder} -B {folder}/build && cmake --build {folder}/build"
         status, output = self.call(["bash", "-c", build])
         if status != 0:
             yield block.line, f"this does not compile\n{output}"
             return
-        status, output = self.call([folder / "build/program"])
+        name = re.search(r"add_executable\((\w+) main\.cc\)", self.program)
+        if name is None:
+            yield block.line, "the cmake block before it makes no program of main.cc"
+            return
+        status, output = self.call([folder / "build" / name[1]])
         expected = re.findall(r"// prints: (.*)", text)
         if status != 0 or (expected and not matches(expected, output)):
             yield block.line, f"this is printed instead (exit status {status})\n{output}"
+
+
+def version_problems(root):
+    """Where a version is another than that of the CMake project."""
+    project = root / "CMakeLists.txt"
+    version = project.exists() and re.search(r"project\(\w+ VERSION (\S+)", project.read_text())
+    if not version:
+        return
+    said = {
+        "CHANGELOG.md": r"^## (\d\S*) - \d{4}-\d\d-\d\d$",
+        "viewer/package.json": r'^  "version": "([^"]+)"',
+    }
+    for name, pattern in said.items():
+        found = re.search(pattern, (root / name).read_text(), re.MULTILINE)
+        if not found or found[1] != version[1]:
+            yield f"{name}: the version is {found[1] if found else 'not said'}, that of CMakeLists.txt {version[1]}"
 
 
 def documents(root):
@@ -216,6 +242,7 @@ def documents(root):
 
 def problems(root, programs, prefix):
     """What is wrong in the documents at `root`, one text each."""
+    yield from version_problems(root)
     for document in documents(root):
         found = list(broken_links(document))
         if programs:

@@ -76,6 +76,29 @@ class CheckDocs(unittest.TestCase):
         self.assertEqual(len(self.problems("```bash\nls\n```\n")), 1)
         self.assertEqual(len(self.problems("```cpp\nint a;\n```\n")), 1)
 
+    def test_a_program_is_built_as_the_cmake_block_before_it_says(self):
+        program = "```cpp\n#include <cstdio>\nint main() { std::puts(WORD); }\n// prints: yes\n```\n"
+        build = ("```cmake\nadd_executable(my_arm main.cc)\n"
+                 "{}target_compile_definitions(my_arm PRIVATE WORD=\"{}\")\n```\n")
+        self.assertEqual(self.problems(build.format("", "yes") + program), [])
+        found = self.problems(build.format("", "no") + program)
+        self.assertEqual(len(found), 1)
+        self.assertIn("this is printed instead (exit status 0)\nno", found[0])
+        self.assertIn("this does not compile", self.problems(build.format("no_command()\n", "yes") + program)[0])
+        misspelt = program.replace("puts", "put")
+        self.assertIn("this does not compile", self.problems(build.format("", "yes") + misspelt)[0])
+
+    def test_versions_agree(self):
+        (self.root / "CMakeLists.txt").write_text("project(flexura VERSION 1.2.3 LANGUAGES CXX)\n")
+        (self.root / "viewer").mkdir()
+        (self.root / "viewer/package.json").write_text('{\n  "version": "1.2.3"\n}\n')
+        newest = "# Changes\n\n## Unreleased\n\n## 1.2.3 - 2026-11-24\n\n## 1.2.2 - 2026-01-01\n"
+        self.assertEqual(self.problems(newest, "CHANGELOG.md"), [])
+        self.assertEqual(self.problems(newest.replace("1.2.3 - 2026-11-24", "1.2.4 - unreleased"), "CHANGELOG.md"),
+                         ["CHANGELOG.md: the version is 1.2.2, that of CMakeLists.txt 1.2.3"])
+        (self.root / "viewer/package.json").write_text('{\n  "version": "1.2.2"\n}\n')
+        self.assertEqual(len(self.problems(newest, "CHANGELOG.md")), 1)
+
     def test_a_link_has_to_lead_to_a_file_and_a_heading(self):
         good = "# The `arm`, moved\n[a](examples/arm.toml) [b](#the-arm-moved) [c](https://example.org/x)\n"
         self.assertEqual(self.problems(good), [])

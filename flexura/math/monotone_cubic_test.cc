@@ -66,6 +66,30 @@ TEST(MonotoneCubic, ItsSlopeIsItsDerivativeAndContinuous) {
   });
 }
 
+// Away from corners of the slopes' rule, where they are taken to stay.
+TEST(MonotoneCubic, FollowsEachOfItsPointsAsItSays) {
+  for_random_cases(100, [](TestRandom& random) {
+    std::vector<double> x = {random.uniform(-5, 5)}, y = {random.uniform(-3, 3)};
+    for (int count = random.integer(1, 6); count > 0; --count) {
+      x.push_back(x.back() + random.uniform(0.5, 1.5));
+      // Rising, falling, and turning; never nearly level, nor near to where an end's slope is cut.
+      const double rise = random.uniform(0.7, 1) * (x.back() - x[x.size() - 2]);
+      y.push_back(y.back() + (random.integer(0, 3) == 0 ? -rise : rise));
+    }
+    const MonotoneCubic curve(x, y);
+    const double at = random.uniform(x.front(), x.back());
+    const auto value = [&](const Eigen::VectorXd& points) -> Eigen::VectorXd {
+      const std::vector<double> moved(points.begin(), points.end());
+      return Eigen::VectorXd::Constant(1, MonotoneCubic(x, moved).value(at));
+    };
+    const auto numeric = numerical_jacobian(
+        value, Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size())), 0.02);
+    for (std::size_t i = 0; i < y.size(); ++i)
+      EXPECT_NEAR(curve.by_point(at, i), numeric.value(0, static_cast<Eigen::Index>(i)), 1e-8)
+          << at << ' ' << i;
+  });
+}
+
 TEST(MonotoneCubic, DrawsALineThroughPointsOfALine) {
   const MonotoneCubic line({-1, 0.5, 0.7, 4}, {-2, 1, 1.4, 8});
   for (double x = -1; x <= 4; x += 0.01) {

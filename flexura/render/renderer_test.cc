@@ -82,6 +82,40 @@ TEST(Renderer, AllocatesHardlyAnythingForAnArmThatMoves) {
   EXPECT_LE(allocations - before, 4);
 }
 
+// What it keeps from one picture for the next is of the same lens and size.
+TEST(Renderer, DrawsTheSameWhateverWasDrawnBefore) {
+  TestRandom random(3);
+  const BentArm bent = random_bent_arm(random, 0.003, 0.003);
+  Scene scene;
+  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  scene.background = {0.9, 0.9, 0.9};
+  View view = random_view_of(random, bent.backbone());
+  view = pinhole_view(view.X_WC, 24, 18, 30);
+  Renderer renderer;
+  LightImage picture, alone;
+  const auto expect_as_alone = [&](const char* what) {
+    for (const bool is_exact : {true, false}) {
+      renderer.render(scene, view, PixelKind::gray, picture, is_exact);
+      Renderer().render(scene, view, PixelKind::gray, alone, is_exact);
+      EXPECT_EQ(picture.light, alone.light) << what << ' ' << is_exact;
+    }
+  };
+  expect_as_alone("the first");
+  Intrinsics intrinsics = view.lens.intrinsics();
+  for (double* number : {&intrinsics.distortion[0], &intrinsics.distortion[2], &intrinsics.distortion[4]}) {
+    *number += 0.1, view.lens = Lens(intrinsics);
+    expect_as_alone("another distortion");
+  }
+  for (double* number : {&intrinsics.fx, &intrinsics.fy, &intrinsics.cx, &intrinsics.cy}) {
+    *number += 3, view.lens = Lens(intrinsics);
+    expect_as_alone("another pinhole");
+  }
+  view.width = 18, view.height = 24;
+  expect_as_alone("another size");
+  view.X_WC.position += 0.1 * view.X_WC.rotation.col(0);
+  expect_as_alone("another place");
+}
+
 TEST(Renderer, DrawsTheSameInSeveralThreadsAtOnce) {
   for (const bool is_exact : {true, false}) {
     TestRandom random(5);

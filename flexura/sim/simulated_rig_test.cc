@@ -243,6 +243,26 @@ TEST_F(SimulatedCameraTest, FilmsWhatIsNotLostHoweverManyAreLostInARow) {
   EXPECT_NEAR(static_cast<double>(count) / 1000, 0.05, 0.021);  // three standard deviations
 }
 
+// Of the frames that come after one, so many may be lost, and no more, for it to be the newest.
+TEST_F(SimulatedCameraTest, LooksBackAsFarAsItSaysAndNoFarther) {
+  start(100, 0, 0, 0.95);
+  clock().wait_until(60);
+  std::vector<std::int64_t> kept;
+  for (const Frame& frame : rig_->camera(0).camera().all_new()) kept.push_back(frame.number);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
+    if (kept[i + 1] - kept[i] <= frames_kept) continue;
+    ++count;
+    for (const int lost : {frames_kept - 1, frames_kept}) {
+      start(100, 0, 0, 0.95);
+      clock().wait_until((static_cast<double>(kept[i] + lost) + 0.5) / 100);
+      const auto newest = camera().newest().value();
+      EXPECT_EQ(newest ? newest->number : -1, lost < frames_kept ? kept[i] : -1);
+    }
+  }
+  EXPECT_GT(count, 10);
+}
+
 TEST_F(SimulatedCameraTest, RefusesToWaitForATimeThatIsNotFinite) {
   start(10, 0, 0, 1);
   for (const double timeout : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {

@@ -90,6 +90,12 @@ TEST_F(TextFileTest, LeavesNoPieceOfAFileWhenTheDiskIsFull) {
   EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
 }
 
+TEST_F(TextFileTest, AFileThatCannotBeReplacedLeavesNothingBesideIt) {
+  std::filesystem::create_directories(folder_.path() / "taken" / "by a folder");
+  EXPECT_THROW(replace_file(folder_.path() / "taken", "new"), std::runtime_error);
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_.path())), 1);
+}
+
 // Nothing that is not the program's own is taken away, whatever it is called.
 TEST_F(TextFileTest, ReplacingLeavesAllOtherFilesAsTheyAre) {
   write_new_file(folder_.path() / "a.png.new", "precious");

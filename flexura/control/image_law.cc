@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "flexura/kinematics/plus_way.h"
+
 namespace flexura {
 namespace {
 
@@ -164,12 +166,7 @@ ArmState shape_step(const ArmState& sent, const ArmState& seen, const ArmState& 
     if (state->bends.size() != count || state->stretches.size() != count)
       throw std::invalid_argument("the law on shapes needs states of one arm");
   const double share = 1 - std::exp(-rate * dt);
-  ArmState asked = sent;
-  for (std::size_t i = 0; i < count; ++i) {
-    asked.bends[i] += share * (desired.bends[i] - seen.bends[i]);
-    asked.stretches[i] += share * (desired.stretches[i] - seen.stretches[i]);
-  }
-  return asked;
+  return plus_way(sent, seen, desired, share);
 }
 
 }  // namespace flexura

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "flexura/kinematics/plus_way.h"
+
 namespace flexura {
 
 bool fits(const Arm& arm, const ArmState& state) {
@@ -14,25 +16,13 @@ bool are_equal(const ArmState& a, const ArmState& b) {
   return a.bends == b.bends && a.stretches == b.stretches;
 }
 
-ArmState between(const ArmState& a, const ArmState& b, double share) {
-  ArmState state = a;
-  for (std::size_t i = 0; i < a.bends.size(); ++i) {
-    state.bends[i] += share * (b.bends[i] - a.bends[i]);
-    state.stretches[i] += share * (b.stretches[i] - a.stretches[i]);
-  }
-  return state;
-}
+ArmState between(const ArmState& a, const ArmState& b, double share) { return plus_way(a, a, b, share); }
 
 std::vector<ArmState> way_of(const ArmState& now, const ArmState& next, int count) {
   std::vector<ArmState> way{next};
   for (int k = 1; k < count; ++k) {
-    ArmState state = way.back();
     const double share = static_cast<double>(count - k) / count;
-    for (std::size_t i = 0; i < state.bends.size(); ++i) {
-      state.bends[i] += share * (next.bends[i] - now.bends[i]);
-      state.stretches[i] += share * (next.stretches[i] - now.stretches[i]);
-    }
-    way.push_back(std::move(state));
+    way.push_back(plus_way(way.back(), now, next, share));
   }
   return way;
 }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "flexura/kinematics/plus_way.h"
+
 namespace flexura {
 
 CommandedMotion::CommandedMotion(double start, ArmState state) : start_(start) {
@@ -24,12 +26,7 @@ ArmState CommandedMotion::at(double time) const {
   if (after == times_.begin()) return states_.front();
   const auto i = static_cast<std::size_t>(after - times_.begin());
   const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
-  ArmState state = states_[i - 1];
-  for (std::size_t j = 0; j < state.bends.size(); ++j) {
-    state.bends[j] += share * (states_[i].bends[j] - state.bends[j]);
-    state.stretches[j] += share * (states_[i].stretches[j] - state.stretches[j]);
-  }
-  return state;
+  return plus_way(states_[i - 1], states_[i - 1], states_[i], share);
 }
 
 MotionPtr CommandedMotion::motion(double time) const {

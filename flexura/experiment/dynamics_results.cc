@@ -5,25 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/report/chart.h"
 
 namespace flexura {
 namespace {
 
-double in_degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
 double lyapunov_value(const DynamicsSample& sample) {
   return sample.energies.kinetic + sample.energies.potential;
-}
-
-Node text_nodes(const std::vector<std::string>& texts) {
-  Node::Array list;
-  for (const std::string& text : texts) list.push_back({text, {}});
-  return {std::move(list), {}};
 }
 
 // The shares and reasons are those of a law with exact angles.
@@ -37,7 +29,7 @@ Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
     members.push_back({"gravity_share", {}, number_node(verdict.gravity_share)});
     members.push_back({"elastic_share", {}, number_node(verdict.elastic_share)});
     members.push_back({"potential_share", {}, number_node(verdict.potential_share)});
-    members.push_back({"reasons", {}, text_nodes(verdict.reasons)});
+    members.push_back({"reasons", {}, texts_node(verdict.reasons)});
   }
   return {std::move(members), {}};
 }
@@ -103,8 +95,8 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
                    {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
                    {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
       charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
-                  {{"theta", [&](const DynamicsSample& at) { return in_degrees(run.error(at).azimuth); }},
-                   {"q", [&](const DynamicsSample& at) { return in_degrees(run.error(at).elevation); }}})};
+                  {{"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
+                   {"q", [&](const DynamicsSample& at) { return run.error(at).elevation / degree; }}})};
 }
 
 const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
@@ -135,14 +127,14 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   points.push_back(fmt::format(
       "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
       "{:.3g} mm.",
-      in_degrees(run.remaining.azimuth), in_degrees(run.remaining.elevation), 1e3 * run.remaining.tip));
+      run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
   const double off = std::max(run.plant.start_off(), run.plant.target_off());
   constexpr double shows = 1e-3;  // rad
   if (off > shows)
     points.push_back(fmt::format(
         "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
         "target as it was said, root mean square along the arm.",
-        in_degrees(run.plant.start_off()), in_degrees(run.plant.target_off())));
+        run.plant.start_off() / degree, run.plant.target_off() / degree));
   points.push_back(fmt::format(
       "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "
       "{:.2g} mm from theirs.",
@@ -159,11 +151,11 @@ Node dynamics_nodes(const std::vector<DynamicsRun>& runs) {
     Node::Table members{
         {"name", {}, {run.name, {}}},
         {"done", {}, {run.is_done(), {}}},
-        {"reasons", {}, text_nodes(run.reasons)},
+        {"reasons", {}, texts_node(run.reasons)},
         {"start", {}, number_node(run.start)},
         {"duration", {}, number_node(last.energies.time)},
         {"measured", {}, {run.is_measured, {}}},
-        {"violations", {}, text_nodes(run.violations)},
+        {"violations", {}, texts_node(run.violations)},
         {"lyapunov",
          {},
          {Node::Array{number_node(lyapunov_value(run.samples.front())), number_node(lyapunov_value(last))},

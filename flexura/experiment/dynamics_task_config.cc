@@ -1,6 +1,6 @@
 #include "flexura/experiment/dynamics_task_config.h"
 
-#include <string_view>
+#include "flexura/experiment/shape_fields.h"
 
 namespace flexura {
 namespace {
@@ -23,20 +23,12 @@ const std::vector<std::string>& names_of(const AngleBasis*) {
 }
 
 const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
-  const auto of_shape = [](std::string_view name) {
-    return fields_of(static_cast<const ShapeConfig*>(nullptr)).info().find(name)->spec;
-  };
   using Target = DynamicsTargetConfig;
-  using Angles = std::optional<std::vector<double>> Target::*;
-  using Bends = std::optional<std::vector<std::array<double, 2>>> Target::*;
   static const auto table =
-      Table<Target>("target",
-                    "The shape that the law leads to, said in one way: by its bends, or by the two angles of "
-                    "the arm's direction.")
-          .field("cord_angles", Angles(&ShapeConfig::cord_angles), of_shape("cord_angles"))
-          .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
-          .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
-          .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
+      with_shape_fields(
+          Table<Target>("target",
+                        "The shape that the law leads to, said in one way: by its bends, or by the two "
+                        "angles of the arm's direction."))
           .field("azimuths", &Target::azimuths,
                  {.meaning =
                       "theta: the direction's angle from +Y towards +X, at equal shares of the length, "

@@ -46,12 +46,6 @@ Node task_nodes(const Experiment& experiment, const Arm& arm, const Schedule& sc
   return {std::move(tasks), {}};
 }
 
-Node reason_nodes(const std::vector<std::string>& reasons) {
-  Node::Array lines;
-  for (const std::string& reason : reasons) lines.push_back({reason, {}});
-  return {std::move(lines), {}};
-}
-
 // Each camera, what it gave, and how it is turned about its optical axis: a head cannot correct that.
 Node camera_nodes(const std::vector<CameraConfig>& cameras,
                   const std::map<std::string, std::int64_t>& frames) {
@@ -75,7 +69,7 @@ Node summary_of(const Experiment& experiment, const Arm& arm, const Player& play
       {"flexura", {}, {experiment.flexura, {}}},
       {"title", {}, {experiment.title, {}}},
       {"outcome", {}, {std::string(name_of(result.outcome)), {}}},
-      {"reasons", {}, reason_nodes(result.reasons)},
+      {"reasons", {}, texts_node(result.reasons)},
       {"seed", {}, {experiment.seed, {}}},
       {"duration", {}, {played.time, {}}},
       {"steps", {}, {static_cast<std::int64_t>(std::max<std::size_t>(played.states, 1) - 1), {}}},

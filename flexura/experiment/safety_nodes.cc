@@ -51,12 +51,6 @@ Node group_node(const SafetyReport& report, const ViolationGroup& group) {
   return {std::move(table), {}};
 }
 
-Node lines_node(const std::vector<std::string>& lines) {
-  Node::Array nodes;
-  for (const std::string& line : lines) nodes.push_back({line, {}});
-  return {std::move(nodes), {}};
-}
-
 }  // namespace
 
 Node safety_node(const SafetyReport& report) {
@@ -72,8 +66,8 @@ Node safety_node(const SafetyReport& report) {
                       {"violation_count", {}, {static_cast<std::int64_t>(report.violations.size()), {}}},
                       {"groups", {}, {std::move(groups), {}}},
                       {"violations", {}, {std::move(violations), {}}},
-                      {"caveats", {}, lines_node(report.caveats)},
-                      {"notes", {}, lines_node(report.notes)}},
+                      {"caveats", {}, texts_node(report.caveats)},
+                      {"notes", {}, texts_node(report.notes)}},
           {}};
 }
 

@@ -10,6 +10,7 @@
 #include "flexura/camera/camera.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/experiment/camera_names.h"
+#include "flexura/experiment/shape_fields.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
@@ -54,28 +55,18 @@ ServoTargetShape along(const Arm& arm, std::vector<Eigen::Vector3d> points, cons
 }  // namespace
 
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
-  const auto of_shape = [](std::string_view name) {
-    return fields_of(static_cast<const ShapeConfig*>(nullptr)).info().find(name)->spec;
-  };
   using Target = ServoTargetConfig;
-  using Angles = std::optional<std::vector<double>> Target::*;
-  using Bends = std::optional<std::vector<std::array<double, 2>>> Target::*;
   static const auto table =
-      Table<Target>(
-          "target",
-          "A wanted shape, said in one way: by its bends; by a place for the tip; as a curve in "
-          "space, along which the whole backbone shall lie; by the angles of its direction; or by two "
-          "pictures of the arm in it.")
-          .field("time", &Target::time,
-                 {.meaning =
-                      "When it is wanted, from the task's start; in between, what is wanted goes from one "
-                      "target to the next in straight lines.",
-                  .unit = Unit::second,
-                  .range = between(0, longest)})
-          .field("cord_angles", Angles(&ShapeConfig::cord_angles), of_shape("cord_angles"))
-          .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
-          .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
-          .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
+      with_shape_fields(
+          Table<Target>("target",
+                        "A wanted shape, said in one way: by its bends; by a place for the tip; as a curve "
+                        "in space, along which the whole backbone shall lie; by the angles of its "
+                        "direction; or by two pictures of the arm in it.")
+              .field("time", &Target::time,
+                     {.meaning = "When it is wanted, from the task's start; in between, what is wanted goes "
+                                 "from one target to the next in straight lines.",
+                      .unit = Unit::second,
+                      .range = between(0, longest)}))
           .field("position", &Target::position,
                  {.meaning = "Where the tip shall be in the world.",
                   .unit = Unit::metre,

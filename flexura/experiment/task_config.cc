@@ -2,6 +2,8 @@
 
 #include <type_traits>
 
+#include "flexura/experiment/shape_fields.h"
+
 namespace flexura {
 namespace {
 
@@ -27,19 +29,11 @@ const std::vector<std::string>& names_of(const Interpolation*) {
 }
 
 const Table<MoveTarget>& fields_of(const MoveTarget*) {
-  const auto of_shape = [](std::string_view name) {
-    return fields_of(static_cast<const ShapeConfig*>(nullptr)).info().find(name)->spec;
-  };
-  using Angles = std::optional<std::vector<double>> MoveTarget::*;
-  using Bends = std::optional<std::vector<std::array<double, 2>>> MoveTarget::*;
   static const auto table =
-      Table<MoveTarget>("target",
-                        "A shape of the arm, as above; or a place for its tip, for which a shape is found "
-                        "within the limits of the arm, starting from where it is.")
-          .field("cord_angles", Angles(&ShapeConfig::cord_angles), of_shape("cord_angles"))
-          .field("archings", Angles(&ShapeConfig::archings), of_shape("archings"))
-          .field("bends", Bends(&ShapeConfig::bends), of_shape("bends"))
-          .field("stretches", Angles(&ShapeConfig::stretches), of_shape("stretches"))
+      with_shape_fields(
+          Table<MoveTarget>("target",
+                            "A shape of the arm, as above; or a place for its tip, for which a shape is "
+                            "found within the limits of the arm, starting from where it is."))
           .field("position", &MoveTarget::position,
                  {.meaning = "Where the tip shall be in the world, instead of a shape.",
                   .unit = Unit::metre,

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
+#include "flexura/kinematics/plus_way.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
@@ -240,11 +241,7 @@ class Session {
 
   // A shape that was seen when the drives stood for `then`, after they went on to `now`.
   [[nodiscard]] static ArmState moved(const ArmState& seen, const ArmState& then, ArmState now) {
-    for (std::size_t i = 0; i < now.bends.size(); ++i) {
-      now.bends[i] += seen.bends[i] - then.bends[i];
-      now.stretches[i] += seen.stretches[i] - then.stretches[i];
-    }
-    return now;
+    return plus_way(std::move(now), then, seen);
   }
 
   // The shape in which the arm is expected at a time: as it was seen last, moved by what the drives did.

@@ -130,6 +130,38 @@ void show_as_arcs(DynamicsRun& run, const Arm& arm, const ArmState& from, Progre
                                  : keyframe_motion(std::move(times), states, Interpolation::linear);
 }
 
+// Says what the check of this schedule does not tell: of runs where the arcs that it judges are farther from
+// the arm than the arm is thick, and of tasks that were not simulated, why. Which conditions of the theory
+// those violate is known all the same, and noted.
+void add_caveats(const Experiment& experiment, const Schedule& schedule, const std::vector<DynamicsRun>& runs,
+                 SafetyReport& report) {
+  const Arm arm = experiment.arm.arm();
+  double thickness = 0;
+  for (const Section& section : arm.sections)
+    thickness = std::max({thickness, 2 * section.radius[0], 2 * section.radius[1]});
+  for (const DynamicsRun& run : runs)
+    if (run.apart > thickness)
+      report.caveats.push_back(
+          fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend so "
+                      "far out of a plane are no arcs",
+                      run.name, run.apart));
+  const std::string why =
+      runs.empty() || runs.back().is_done()
+          ? "it is simulated when the tasks before it are done"
+          : fmt::format("it is not simulated, for the run ends with {}", runs.back().name);
+  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
+    const auto* task = std::get_if<DynamicsTask>(&experiment.task[i]);
+    if (task == nullptr || std::ranges::find(runs, i, &DynamicsRun::task) != runs.end()) continue;
+    const Leg& leg = schedule.legs()[i];
+    report.caveats.push_back(fmt::format("{}: judged by the straight way only: {}", leg.name, why));
+    const ArmState from = leg.motion->at(0);
+    if (!is_possible(from)) continue;
+    const DynamicsPlant plant(*task, arm, from);
+    for (const std::string& violation : law_of(*task, plant).violations())
+      report.notes.push_back(fmt::format("{}: {}", leg.name, violation));
+  }
+}
+
 }  // namespace
 
 std::string DynamicsRun::reason() const { return fmt::format("{}", fmt::join(reasons, "; ")); }
@@ -228,33 +260,11 @@ void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, Moti
   }
 }
 
-void add_caveats(const Experiment& experiment, const Schedule& schedule, const std::vector<DynamicsRun>& runs,
-                 SafetyReport& report) {
-  const Arm arm = experiment.arm.arm();
-  double thickness = 0;
-  for (const Section& section : arm.sections)
-    thickness = std::max({thickness, 2 * section.radius[0], 2 * section.radius[1]});
-  for (const DynamicsRun& run : runs)
-    if (run.apart > thickness)
-      report.caveats.push_back(
-          fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend so "
-                      "far out of a plane are no arcs",
-                      run.name, run.apart));
-  const std::string why =
-      runs.empty() || runs.back().is_done()
-          ? "it is simulated when the tasks before it are done"
-          : fmt::format("it is not simulated, for the run ends with {}", runs.back().name);
-  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
-    const auto* task = std::get_if<DynamicsTask>(&experiment.task[i]);
-    if (task == nullptr || std::ranges::find(runs, i, &DynamicsRun::task) != runs.end()) continue;
-    const Leg& leg = schedule.legs()[i];
-    report.caveats.push_back(fmt::format("{}: judged by the straight way only: {}", leg.name, why));
-    const ArmState from = leg.motion->at(0);
-    if (!is_possible(from)) continue;
-    const DynamicsPlant plant(*task, arm, from);
-    for (const std::string& violation : law_of(*task, plant).violations())
-      report.notes.push_back(fmt::format("{}: {}", leg.name, violation));
-  }
+SafetyReport checked(const Experiment& experiment, const Schedule& schedule,
+                     const std::vector<DynamicsRun>& runs, Progress* progress) {
+  SafetyReport report = schedule.check(progress);
+  add_caveats(experiment, schedule, runs, report);
+  return report;
 }
 
 SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress) {
@@ -262,10 +272,9 @@ SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progre
   std::vector<DynamicsRun> runs;
   run_known_dynamics(experiment, performed, runs, progress);
   const Schedule schedule(experiment, performed);
-  SafetyReport report = schedule.check(&progress);
-  for (const DynamicsRun& run : runs)
-    if (!run.is_done()) report.notes.push_back(fmt::format("{}: {}", run.name, run.reason()));
-  add_caveats(experiment, schedule, runs, report);
+  SafetyReport report = checked(experiment, schedule, runs, &progress);
+  if (!runs.empty() && !runs.back().is_done())
+    report.notes.insert(report.notes.begin(), fmt::format("{}: {}", runs.back().name, runs.back().reason()));
   return report;
 }
 

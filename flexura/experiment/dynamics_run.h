@@ -67,14 +67,14 @@ struct DynamicsRun {
 void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, MotionPtr>& performed,
                         std::vector<DynamicsRun>& runs, Progress& progress);
 
-/// Says what the check of this schedule, which has what these runs did, does not tell: of runs where the arcs
-/// that it judges are farther from the arm than the arm is thick, and of tasks that were not simulated, why.
-/// Which conditions of the theory those violate is known all the same, and noted.
-void add_caveats(const Experiment& experiment, const Schedule& schedule, const std::vector<DynamicsRun>& runs,
-                 SafetyReport& report);
+/// What the motions of this schedule, which has what these runs did, would harm (Schedule::check). Caveats say
+/// of which runs the arcs that are judged are farther from the arm than the arm is thick, and which tasks were
+/// not simulated, and why; what those violate of the theory's conditions is noted.
+[[nodiscard]] SafetyReport checked(const Experiment& experiment, const Schedule& schedule,
+                                   const std::vector<DynamicsRun>& runs, Progress* progress = nullptr);
 
-/// What the motions of an experiment would harm (Schedule::check), with those of run_known_dynamics. Why one
-/// is not as the theory has it is a note.
+/// The same of an experiment as it stands, with the runs of run_known_dynamics. Why the last of these is not
+/// as the theory has it is a note, the first one.
 [[nodiscard]] SafetyReport safety_with_dynamics(const Experiment& experiment, Progress& progress);
 
 }  // namespace flexura

@@ -30,11 +30,6 @@ class Aside : public Progress {
   std::string_view verb_;
 };
 
-SafetyReport checked(const Schedule& schedule, Progress& run) {
-  Aside progress(run, 0, "checking");
-  return schedule.check(&progress);
-}
-
 }  // namespace
 
 Player::Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher)
@@ -43,10 +38,9 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       progress_(progress),
       watcher_(watcher),
       schedule_(scheduled(0)),
-      safety_(checked(schedule_, progress)),
+      safety_(judged()),
       believed_(rig_model(experiment.arm.arm(), experiment.cameras())),
       played_{0, 0, schedule_.initial(), false, ""} {
-  add_caveats(experiment, schedule_, dynamics_, safety_);
   if (experiment.record.cameras || std::ranges::any_of(experiment.task, is_for_rig))
     filming_.emplace(experiment);
   plan(0);
@@ -57,6 +51,11 @@ Schedule Player::scheduled(double played) {
   Aside progress(progress_, played, "simulating");
   run_known_dynamics(experiment_, performed_, dynamics_, progress);
   return Schedule(experiment_, performed_);
+}
+
+SafetyReport Player::judged() {
+  Aside progress(progress_, 0, "checking");
+  return checked(experiment_, schedule_, dynamics_, &progress);
 }
 
 // What is to be told from that time on; violations and the starts of tasks at one time in this order of
@@ -205,8 +204,7 @@ bool Player::perform(std::size_t task) {
   performed_[task] = done.motion;
   const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
   schedule_ = done.failure.empty() ? scheduled(played) : Schedule(experiment_, performed_);
-  safety_ = schedule_.check();
-  add_caveats(experiment_, schedule_, dynamics_, safety_);
+  safety_ = checked(experiment_, schedule_, dynamics_);
   plan(schedule_.legs()[task].end());
   filming_->skip_to_now();
   if (done.failure.empty()) return true;

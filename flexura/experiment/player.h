@@ -52,6 +52,7 @@ class Player {
     std::string name, text;
   };
   [[nodiscard]] Schedule scheduled(double played);
+  [[nodiscard]] SafetyReport judged();
   void plan(double from);
   void tell_up_to(double time);
   void step(double time, const ArmState& state);

@@ -10,38 +10,23 @@
 #include "flexura/app/estimate.h"
 #include "flexura/base/source.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
 
-constexpr const char* two_cameras = R"([[camera]]
-name = "front"
-fx = 800.0
-cx = 319.5
-cy = 239.5
-position = [0.0, 0.45, 1.9]
-rotation = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
-[[camera]]
-name = "side"
-fx = 800.0
-cx = 319.5
-cy = 239.5
-position = [-1.9, 0.45, 0.0]
-rotation = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]
-)";
-
 class EstimateInput : public testing::Test {
  protected:
   void SetUp() override {
     arguments_.cameras = (folder_.path() / "cameras.toml").string();
     arguments_.images = {"front.png", "side.png"};
-    write_new_file(arguments_.cameras, two_cameras);
+    write_new_file(arguments_.cameras, two_measured_cameras);
   }
   // What is said of a file of cameras, after its folder.
   std::string refusal(const std::string& from, const std::string& to) {
-    replace_file(arguments_.cameras, replaced(two_cameras, from, to));
+    replace_file(arguments_.cameras, replaced(two_measured_cameras, from, to));
     std::ostringstream out;
     try {
       estimate_command(arguments_, out);
@@ -94,7 +79,8 @@ TEST_F(EstimateInput, RefusesWhatItCannotUse) {
   EXPECT_THROW(estimate_command(bad, out), InputError);
   bad = arguments_;
   bad.cameras = (folder_.path() / "far.toml").string();
-  write_new_file(bad.cameras, replaced(two_cameras, "position = [", "position = [1e200, 0, 0]\n# ["));
+  write_new_file(bad.cameras,
+                 replaced(two_measured_cameras, "position = [", "position = [1e200, 0, 0]\n# ["));
   EXPECT_THROW(estimate_command(bad, out), InputError);
   for (const char* marker : {"x", "", "12%%", "0.3", "130%", "-1%", "nan%"}) {
     bad = arguments_;

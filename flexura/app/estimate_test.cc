@@ -25,6 +25,7 @@
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -56,28 +57,12 @@ kind = "hold"
 duration = 1
 )";
 
-constexpr const char* cameras_text = R"([[camera]]
-name = "front"
-fx = 800.0
-cx = 319.5
-cy = 239.5
-position = [0.0, 0.45, 1.9]
-rotation = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
-[[camera]]
-name = "side"
-fx = 800.0
-cx = 319.5
-cy = 239.5
-position = [-1.9, 0.45, 0.0]
-rotation = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]
-)";
-
 // Pictures of the arm by both cameras, as a laboratory has them.
 class Estimate : public testing::Test {
  protected:
   void SetUp() override {
     write_new_file(folder_.path() / "arm.toml", arm_text);
-    write_new_file(folder_.path() / "cameras.toml", cameras_text);
+    write_new_file(folder_.path() / "cameras.toml", two_measured_cameras);
     arguments_.cameras = (folder_.path() / "cameras.toml").string();
     arguments_.images = {photographed("arm", "front"), photographed("arm", "side")};
   }
@@ -178,7 +163,8 @@ TEST_F(Estimate, FindsWhatIsWrongWithACameraThatIsDoubted) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const std::string turned =
       "rotation = [[0.0087265, 0, 0.99996192], [0, -1, 0], [0.99996192, 0, -0.0087265]]";
-  const std::string wrong = replaced(cameras_text, "rotation = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]", turned);
+  const std::string wrong =
+      replaced(two_measured_cameras, "rotation = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]", turned);
   arguments_.cameras = (folder_.path() / "wrong.toml").string();
   write_new_file(arguments_.cameras, wrong);
   EXPECT_NE(answer(exit_done).find("notes"), nullptr);
@@ -207,7 +193,7 @@ TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
                  replaced_everywhere(arm_text, "sensor =", "lens = { " + distortion + " }\nsensor ="));
   arguments_.images = {photographed("bent", "front"), photographed("bent", "side")};
   const std::string untold = arguments_.cameras, told = (folder_.path() / "lenses.toml").string();
-  write_new_file(told, replaced_everywhere(cameras_text, "fx = 800.0", "fx = 800.0\n" + distortion));
+  write_new_file(told, replaced_everywhere(two_measured_cameras, "fx = 800.0", "fx = 800.0\n" + distortion));
   const auto expect_right_where_told = [&](double most) {
     arguments_.cameras = untold;
     const Node wrong = answer(exit_done);
@@ -250,8 +236,8 @@ TEST_F(Estimate, HasEveryKeyThatIsDocumentedInItsShape) {
   arguments_.arm = (folder_.path() / "banded.toml").string();
   arguments_.points = points;
   arguments_.markers = {"0.2", "0.5", "0.8"};
-  write_new_file(folder_.path() / "doubted.toml",
-                 replaced(cameras_text, "name = \"side\"", "name = \"side\"\ndoubt = { turn_deg = 0.1 }"));
+  write_new_file(folder_.path() / "doubted.toml", replaced(two_measured_cameras, "name = \"side\"",
+                                                           "name = \"side\"\ndoubt = { turn_deg = 0.1 }"));
   arguments_.cameras = (folder_.path() / "doubted.toml").string();
   const Node found = answer(exit_done);
   EXPECT_TRUE(*found.find("found")->as<bool>());

@@ -12,6 +12,7 @@
 
 #include "flexura/view/view_server.h"
 #include "tests/support/raw_client.h"
+#include "tests/support/view_client.h"
 #include "tests/support/view_fakes.h"
 
 namespace flexura {
@@ -32,12 +33,7 @@ std::size_t resident_bytes() {
 
 // A client that has asked for both cameras' pictures.
 RawClient watching(const ViewServer& server, int receive_buffer = 0) {
-  RawClient client(server.port(), receive_buffer);
-  client.send("GET /socket HTTP/1.1\r\nHost: localhost:" + std::to_string(server.port()) +
-              "\r\nAuthorization: Bearer " + server.token() +
-              "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
-  EXPECT_EQ(client.read_answer().status, 101);
+  RawClient client = connected(server, receive_buffer);
   for (const char* camera : {"front", "side"})
     client.say(std::string(R"({"id":1,"do":"images","rate":30,"quality":95,"camera":")") + camera + "\"}");
   return client;

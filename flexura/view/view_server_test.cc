@@ -11,20 +11,11 @@
 #include <utility>
 
 #include "tests/support/raw_client.h"
+#include "tests/support/view_client.h"
 #include "tests/support/view_fakes.h"
 
 namespace flexura {
 namespace {
-
-RawClient connected(const ViewServer& server, int receive_buffer = 0) {
-  RawClient client(server.port(), receive_buffer);
-  client.send("GET /socket HTTP/1.1\r\nHost: localhost:" + std::to_string(server.port()) +
-              "\r\nAuthorization: Bearer " + server.token() +
-              "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
-  EXPECT_EQ(client.read_answer().status, 101);
-  return client;
-}
 
 struct Replies {
   int results = 0, refusals = 0;

@@ -26,6 +26,7 @@ struct NumberRange {
   [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
 };
 
+/// Ranges by their bounds, in base units: open where "above" says so, closed otherwise.
 [[nodiscard]] inline NumberRange above(double min) { return {.min = min, .open_min = true}; }
 [[nodiscard]] inline NumberRange at_least(double min) { return {.min = min}; }
 [[nodiscard]] inline NumberRange between(double min, double max) { return {.min = min, .max = max}; }

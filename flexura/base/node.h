@@ -38,7 +38,7 @@ struct Node {
   /// Nothing is written here. Empty texts, arrays and tables are something.
   [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value); }
 
-  /// The value under `key` of a table; null when there is none or this is no table.
+  /// The value under `key` of a table; null when there is none or this is no table. Points into this node.
   [[nodiscard]] const Node* find(std::string_view key) const;
   [[nodiscard]] Node* find(std::string_view key);
 

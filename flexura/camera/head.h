@@ -16,14 +16,14 @@ namespace flexura {
 struct PanConfig : AxisConfig {
   PanConfig();
 
-  double zero = 0;  ///< Where the axis stands when the head says 0.
+  double zero = 0;  ///< Where the axis stands when the head says 0, rad.
 };
 
 /// The tilt axis of a head: rad, positive upwards.
 struct TiltConfig : AxisConfig {
   TiltConfig();
 
-  double zero = 0;  ///< Where the axis stands when the head says 0.
+  double zero = 0;  ///< Where the axis stands when the head says 0, rad.
 };
 
 /// The zoom of a head, in positions of the lens's table: ratios, or motor counts.
@@ -35,7 +35,7 @@ struct ZoomConfig {
   double resolution = 0;
   double backlash = 0;
 
-  /// What moves the zoom of this lens.
+  /// What moves the zoom of this lens, in positions of its table.
   [[nodiscard]] AxisConfig axis(const ZoomTable& lens) const;
 };
 
@@ -69,9 +69,9 @@ struct HeadGeometry {
   Eigen::Vector3d pupil = Eigen::Vector3d::Zero();      ///< At the zoom as it stands, m.
 };
 
-/// R_pan, about M's -y: turns M's z (forward) towards its -x (left).
+/// R_pan, about M's -y by `pan` rad: turns M's z (forward) towards its -x (left).
 [[nodiscard]] Eigen::Matrix3d pan_rotation(double pan);
-/// R_tilt, about x: turns z (forward) towards -y (up).
+/// R_tilt, about x by `tilt` rad: turns z (forward) towards -y (up).
 [[nodiscard]] Eigen::Matrix3d tilt_rotation(double tilt);
 
 /// X_MC = pan about M's vertical axis, the way to the tilt axis, tilt, the way to the pupil:

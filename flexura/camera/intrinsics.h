@@ -28,15 +28,15 @@ inline constexpr int intrinsics_count = 9;
 
 /// A pixel (u, v) and how it changes.
 struct Projection {
-  Eigen::Vector2d pixel;
+  Eigen::Vector2d pixel;                                     ///< px
   Eigen::Matrix<double, 2, 3> by_point;                      ///< Along the point in C, px/m.
   Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< In the order above.
 };
 
 /// The same without what cameras are calibrated by.
 struct PointProjection {
-  Eigen::Vector2d pixel = {0, 0};
-  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< px/m
+  Eigen::Vector2d pixel = {0, 0};                                              ///< px
+  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< px/m in C.
 };
 
 /// A lens as it stands, ready to project: intrinsics, and the field within which they are one to one.
@@ -51,7 +51,7 @@ class Lens {
   /// polynomial folds the image over itself and no real lens is described. Infinite without distortion.
   [[nodiscard]] double largest_radius() const { return largest_radius_; }
 
-  /// The pixel of a point in C; none behind the camera (z <= 0) or outside the largest radius.
+  /// The pixel of a point in C, m; none behind the camera (z <= 0) or outside the largest radius.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_CP) const;
 
   /// The same with derivatives.

@@ -16,7 +16,7 @@ struct View {
   int width = 640;   ///< px
   int height = 480;  ///< px
 
-  /// The pixel of a point in W, inside the image or not; none where the lens shows it nowhere.
+  /// The pixel of a point in W, m, inside the image or not; none where the lens shows it nowhere.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_WP) const {
     return lens.project(X_WC.inverse() * p_WP);
   }

@@ -305,13 +305,15 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);
+/// The same time as whole seconds and what is beyond them.
 [[nodiscard]] TimeMessage time_message(std::uint64_t nanoseconds);
+/// A pose in the world: its position, m, and its unit quaternion, w >= 0.
 [[nodiscard]] PoseMessage pose_message(const Pose& X_WP);
 
 /// Each section's bend, rad.
 [[nodiscard]] std::vector<std::array<double, 2>> bends_of(const ArmState& state);
 
-/// [x, y, z].
+/// [x, y, z], m in the world.
 [[nodiscard]] Node point_node(const Eigen::Vector3d& p);
 /// {"position": [x, y, z], "rotation": [w, x, y, z]}: a pose as summaries and the command line print it.
 [[nodiscard]] Node pose_node(const Pose& X_WP);

@@ -13,7 +13,7 @@ namespace flexura {
 /// folder's for a file called experiment.toml.
 [[nodiscard]] std::filesystem::path default_results_folder(const std::filesystem::path& experiment_file);
 
-// What a run writes into its folder.
+// What a run writes into its folder (docs/results.md); the last two are folders.
 inline constexpr const char* experiment_file_name = "experiment.toml";
 inline constexpr const char* log_file_name = "log.mcap";
 inline constexpr const char* commands_file_name = "commands.csv";

@@ -17,7 +17,8 @@ namespace flexura {
                                                    std::vector<Profile> profiles);
 
 /// cord_i(t) = cord_i(0) + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)) of a planar arm: one
-/// amplitude (rad) and phase (rad) a section, else std::invalid_argument.
+/// amplitude (rad) and phase (rad) a section, else std::invalid_argument. The period, above 0, and the
+/// duration in s.
 [[nodiscard]] MotionPtr cord_sine_motion(ArmState from, const std::vector<double>& amplitudes,
                                          const std::vector<double>& phases, double period, double duration);
 

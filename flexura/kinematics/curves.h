@@ -17,7 +17,7 @@ struct CubicBezier {
 
   /// Its point, in W, m. u outside [0, 1] goes on along the cubic.
   [[nodiscard]] Eigen::Vector3d at(double u) const;
-  /// d/du.
+  /// d/du, in W, m for a unit of u.
   [[nodiscard]] Eigen::Vector3d velocity(double u) const;
 };
 
@@ -41,7 +41,8 @@ struct CubicBezier {
 /// or one tangent-exact cubic a section.
 enum class CurveKind : std::uint8_t { arcs, catmull_rom, bezier };
 
-/// The cubics of a kind; none for `arcs`, which are drawn as they are. `tension` is the spline's.
+/// The cubics of a kind, in W, m, from the base on; none for `arcs`, which are drawn as they are. `tension`
+/// is the spline's.
 [[nodiscard]] std::vector<CubicBezier> drawn_curve(const Backbone& backbone, CurveKind kind, double tension);
 
 /// How a drawn curve differs from the backbone.

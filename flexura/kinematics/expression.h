@@ -30,7 +30,8 @@ class Expression {
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
 
-  /// Its value; not finite where the formula has none there (1/0, sqrt(-1)).
+  /// Its value at t s of a task of T s for a section counted from 1; not finite where the formula has none
+  /// there (1/0, sqrt(-1)).
   [[nodiscard]] double value(double t, double T, std::size_t section_number) const;
 
  private:

@@ -29,7 +29,7 @@ class BackboneJacobian {
     double rest_length;     ///< Not stretched, m.
     double stretch;         ///< The factor on rest_length.
     Columns V_end;          ///< Twist of its end at its own rates, in W.
-    Eigen::Vector3d p_end;  ///< Its end, in W.
+    Eigen::Vector3d p_end;  ///< Its end, in W, m.
   };
 
   BackboneJacobian() = default;
@@ -41,10 +41,11 @@ class BackboneJacobian {
   /// One a section, base first.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
-  /// X_WS at `point`.
+  /// X_WS at `point`, whose section is one of the arm's: that is not checked.
   [[nodiscard]] Pose pose(const MaterialPoint& point) const;
   // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// Writes the Jacobian of `point` into J, 6 x 3n (else std::invalid_argument).
+  /// Writes the Jacobian of `point` into J, 6 x 3n. std::invalid_argument: J of another size, a section that
+  /// the arm has not.
   void at(const MaterialPoint& point, Eigen::Ref<Jacobian> J) const;
   /// Writes the Jacobian of the tip into J.
   void tip(Eigen::Ref<Jacobian> J) const { at({parts_.size() - 1, 1.0}, J); }
@@ -57,10 +58,10 @@ class BackboneJacobian {
   std::vector<Part> parts_;
 };
 
-/// The tip's Jacobian, 6 x 3n.
+/// The tip's Jacobian, 6 x 3n. `state` must fit the arm, else std::invalid_argument.
 [[nodiscard]] Jacobian tip_jacobian(const Arm& arm, const ArmState& state);
 
-/// The whole backbone's: one Jacobian a point, in the order given.
+/// The whole backbone's: one Jacobian, 6 x 3n, a point, in the order given. The same error, and that of at().
 [[nodiscard]] std::vector<Jacobian> backbone_jacobians(const Arm& arm, const ArmState& state,
                                                        std::span<const MaterialPoint> points);
 

@@ -37,15 +37,16 @@ class Motion {
 /// Shared by who plays it and who checks it.
 using MotionPtr = std::shared_ptr<const Motion>;
 
-/// The arm stays in `state`.
+/// The arm stays in `state` for `duration` s.
 [[nodiscard]] MotionPtr hold_motion(ArmState state, double duration);
 
 /// From one state to another, every section on a straight line in bend and stretch, each with its own time
 /// profile (one a section, all of one duration; else std::invalid_argument).
 [[nodiscard]] MotionPtr point_to_point_motion(ArmState from, ArmState to, std::vector<Profile> profiles);
 
-/// bend_i(t) = from_i + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)): starts where the arm is.
-/// One amplitude (rad) and phase (rad) a section.
+/// bend_i(t) = from_i + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)) for `duration` s: starts
+/// where the arm is. One amplitude (rad) and phase (rad) a section, else std::invalid_argument; the period,
+/// s, is above 0.
 [[nodiscard]] MotionPtr sine_motion(ArmState from, std::vector<Eigen::Vector2d> amplitudes,
                                     std::vector<double> phases, double period, double duration);
 
@@ -57,7 +58,8 @@ enum class Interpolation { linear, smooth };
 [[nodiscard]] MotionPtr keyframe_motion(std::vector<double> times, const std::vector<ArmState>& states,
                                         Interpolation interpolation);
 
-/// Any function of time, such as an expression a user wrote; it may do anything, so no rates are known.
+/// Any function of the time from 0 to `duration`, s, such as an expression a user wrote; it may do anything,
+/// so no rates are known.
 [[nodiscard]] MotionPtr function_motion(double duration, std::function<ArmState(double time)> state_at);
 
 }  // namespace flexura

@@ -11,7 +11,7 @@
 // pulling in.
 namespace flexura {
 
-/// Turns of the spool that pull in `pulled` m.
+/// Turns of the spool that pull in `pulled` m; negative where cable is let out.
 [[nodiscard]] double spool_turns(const Axis& axis, double pulled);
 
 /// Each motor's position for these displacements, not rounded, without regard to play.
@@ -54,10 +54,11 @@ class MotorCommander {
 /// while the motor turns through it (the play operator).
 class PlayModel {
  public:
-  /// The motors at `positions` with the play taken up for pulling in.
+  /// The motors at `positions`, microsteps, with the play taken up for pulling in. std::invalid_argument when
+  /// there is not one an axis.
   PlayModel(const Drive& drive, std::span<const std::int64_t> positions);
 
-  /// How far each tendon is pulled in now, by its spool and not by its motor.
+  /// How far each tendon is pulled in now, m, by its spool and not by its motor.
   [[nodiscard]] TendonDisplacements displacements() const;
   /// The motors go to `positions` (one an axis, else std::invalid_argument), each straight there.
   void follow(std::span<const std::int64_t> positions);
@@ -79,7 +80,8 @@ struct MotorPeaks {
 class MotorWatch {
  public:
   explicit MotorWatch(const Drive& drive);
-  /// std::invalid_argument: not one position an axis, or a time not after the last one.
+  /// The positions, microsteps, at `time`, s. std::invalid_argument: not one position an axis, or a time not
+  /// after the last one.
   void add(double time, std::span<const double> positions);
   /// One an axis; 0 until there are samples enough: two for a rate, three for an acceleration.
   [[nodiscard]] const std::vector<MotorPeaks>& peaks() const { return peaks_; }

@@ -11,7 +11,8 @@
 namespace flexura {
 
 /// Forward kinematics without allocation: `frames` (one more than the sections, else std::invalid_argument)
-/// receives each section's base frame X_WS and, last, the tip X_WT. `state` must fit the arm.
+/// receives each section's base frame X_WS and, last, the tip X_WT. `state` must fit the arm, here and below;
+/// std::invalid_argument otherwise.
 void section_frames(const Arm& arm, const ArmState& state, std::span<Pose> frames);
 
 /// The same, in a new vector.

@@ -31,7 +31,7 @@ struct LimitWatch {
 /// Every limit on the states of the arm: bends, stretches, folding (curvature times radius below 1).
 [[nodiscard]] std::vector<LimitWatch> limit_watches(const Arm& arm);
 
-/// The bounds that `motion` knows; none when it knows none.
+/// The bounds that `motion` knows in [start, end] s of its own time; those of one that knows none are 0.
 [[nodiscard]] SectionRates rates_of(const Motion& motion, std::size_t section, double start, double end);
 
 /// A section's bend rate in a motion that knows its rates, rad/s.

@@ -18,9 +18,11 @@ namespace flexura {
 /// spools, the arm by what is true: its motors' rates, its play, its tendons.
 class SimulatedDrive {
  public:
-  /// Both arms stand in their initial shapes when the motors are where the model puts its own.
+  /// Both arms stand in their initial shapes when the motors are where the model puts its own. The truth is
+  /// known back to `horizon` s before the last command. Both setups have a drive, of as many axes.
   SimulatedDrive(const ArmSetup& model, const ArmSetup& truth, double horizon);
 
+  /// At `time` s: to this shape of the model's within `duration` s, or as soon after that as each motor can.
   /// False when a motor's position could not be counted; nothing moves then.
   [[nodiscard]] bool command(double time, const ArmState& state, double duration);
   /// The motors brake as fast as they can.

@@ -31,9 +31,9 @@ using TakePicture = std::function<Picture(const Shot&)>;
 /// When a frame of a sensor is exposed and can be had.
 struct FrameTimes {
   double start = 0;     ///< Of the first row's exposure, s.
-  double middle = 0;    ///< Of the exposure of the middle of the image.
-  double end = 0;       ///< Of the last row's exposure.
-  double received = 0;  ///< end + delay
+  double middle = 0;    ///< Of the exposure of the middle of the image, s.
+  double end = 0;       ///< Of the last row's exposure, s.
+  double received = 0;  ///< end + delay, s.
 };
 /// Of a frame that starts at `start`, s; of frame n, which starts at n / frame_rate.
 [[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);

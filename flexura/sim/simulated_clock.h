@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Time that passes when somebody waits, and takes none.
+/// Time, from 0 s on, that passes when somebody waits, and takes none.
 class SimulatedClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return now_; }

@@ -33,7 +33,7 @@ class ThreeAxes {
   CommandOutcome command(const Eigen::Vector3d& target);
   CommandOutcome halt();
   [[nodiscard]] Outcome<Reading> read() const;
-  /// Where what they carry is.
+  /// Where what they carry is at `time` s, back to the horizon.
   [[nodiscard]] Eigen::Vector3d positions(double time) const;
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
@@ -65,7 +65,7 @@ class SimulatedHead : public HeadPort {
   ThreeAxes axes_;
 };
 
-/// The same of a stage.
+/// The same of a stage, whose axes are the mount's (right, down, forward), m.
 class SimulatedStage : public StagePort {
  public:
   SimulatedStage(const Camera& camera, const StageState& counted, const ClockPort& clock, double horizon);

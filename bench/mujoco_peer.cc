@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "bench/egl_context.h"
 #include "bench/peer_mesh.h"
+#include "flexura/base/degree.h"
 
 namespace flexura {
 namespace {
@@ -60,7 +60,7 @@ std::string model_of(const Setting& setting, MujocoConfig config) {
       "<asset><material name='arm' specular='0'/></asset><default><geom material='arm'/></default>"
       "<worldbody><camera name='camera' pos='{}' xyaxes='{} {}' fovy='{}'/>\n",
       config.samples, config.slices, config.stacks, nearest, farthest, view.width, view.height,
-      text(view.X_WC.position), text(right), text(up), height_angle * 180 / std::numbers::pi);
+      text(view.X_WC.position), text(right), text(up), height_angle / degree);
   const std::string ambient = text(Eigen::Vector3d::Constant(light.ambient));
   const std::string directional = text(Eigen::Vector3d::Constant(light.directional));
   model += fmt::format(

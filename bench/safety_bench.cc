@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr double step = 0.01;    // s
 constexpr double duration = 10;  // s
-constexpr double degree = std::numbers::pi / 180;
 
 // The laboratory arm of the examples: three spatial sections.
 Arm laboratory_arm() {

@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
 #include "tests/support/calibration_bench.h"
@@ -113,7 +114,7 @@ std::string file_of(const LoopRig& rig, bool is_colored) {
 // 0.5 degrees about each axis and 1 % of focal length, either way.
 std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
   std::array<WrongStart, 2> wrong;
-  constexpr double half = 0.5 * std::numbers::pi / 180;
+  constexpr double half = 0.5 * degree;
   const auto either = [&](double size) { return random.uniform(-1, 1) < 0 ? -size : size; };
   for (WrongStart& one : wrong) one.pan = either(half), one.tilt = either(half), one.roll = either(half);
   return wrong;

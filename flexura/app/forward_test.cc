@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "flexura/app/commands.h"
+#include "flexura/base/degree.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/store/json.h"
 #include "tests/support/checkout.h"
@@ -52,7 +53,7 @@ TEST(AnswerForward, CountsCordAnglesFromTheBasesTangentAsItIsWritten) {
                                      degrees),
                          "x.toml")
             .arm.arm();
-    const double angle = degrees * std::numbers::pi / 180;
+    const double angle = degrees * degree;
     const Node answer =
         parse_json(answer_forward(arm, fmt::format(R"({{"cord_angles":[{},{}]}})", angle, angle)), "answer");
     const auto tip = numbers(*answer.find("tip")->find("position"));

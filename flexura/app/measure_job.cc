@@ -2,14 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+
+#include "flexura/base/degree.h"
 
 namespace flexura {
-namespace {
-
-double degrees(double angle) { return angle * 180 / std::numbers::pi; }
-
-}  // namespace
 
 double rounded(double value, double parts) { return std::round(value * parts) / parts; }
 double px(double value) { return rounded(value, 1e4); }
@@ -25,10 +21,10 @@ Node circle_node(const std::optional<CircleFit>& fit) {
       .add("radius", number_node(px(fit->radius)))
       .add("rms", number_node(fit->rms))
       .add("sigma", number_node(std::sqrt(fit->covariance(2, 2))))
-      .add("arc_deg", number_node(degrees(fit->arc)))
+      .add("arc_deg", number_node(fit->arc / degree))
       .add("misfit_correlation", number_node(rounded(fit->misfit_correlation, 1e3)))
       .add("verified", {fit->is_circle(), {}})
-      .add("detectable_tilt_deg", number_node(degrees(fit->detectable_tilt)))
+      .add("detectable_tilt_deg", number_node(fit->detectable_tilt / degree))
       .take();
 }
 
@@ -37,7 +33,7 @@ Node ellipse_node(const std::optional<EllipseFit>& fit) {
   return TableMaker()
       .add("center", pixel_pair(fit->center))
       .add("semi_axes", pixel_pair(fit->semi_axes))
-      .add("angle_deg", number_node(degrees(fit->angle)))
+      .add("angle_deg", number_node(fit->angle / degree))
       .add("rms", number_node(fit->rms))
       .take();
 }

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/store/json.h"
@@ -73,7 +74,7 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
       steps.push_back(read_as<ServoStepMessage>(parse_json(message.text(), "log")));
   ASSERT_GT(steps.size(), 3u);
   EXPECT_NE(steps[0].sent, steps[2].sent);
-  const double rate = 90 * M_PI / 180;
+  const double rate = 90 * degree;
   // To rest along the limiter's way: no command leaps.
   for (std::size_t k = 1; k < steps.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i)

@@ -3,6 +3,8 @@
 #include <array>
 #include <numbers>
 
+#include "flexura/base/degree.h"
+
 namespace flexura {
 
 std::span<const UnitSpelling> spellings(Unit unit) {
@@ -14,11 +16,11 @@ std::span<const UnitSpelling> spellings(Unit unit) {
       {{"", 1.0, "m/s^2"}, {"_mm", 1e-3, "mm/s^2"}}};
   static constexpr std::array<UnitSpelling, 2> second{{{"", 1.0, "s"}, {"_ms", 1e-3, "ms"}}};
   static constexpr std::array<UnitSpelling, 3> radian{
-      {{"", 1.0, "rad"}, {"_deg", pi / 180.0, "deg"}, {"_pi", pi, "pi rad"}}};
+      {{"", 1.0, "rad"}, {"_deg", degree, "deg"}, {"_pi", pi, "pi rad"}}};
   static constexpr std::array<UnitSpelling, 3> radian_per_second{
-      {{"", 1.0, "rad/s"}, {"_deg", pi / 180.0, "deg/s"}, {"_pi", pi, "pi rad/s"}}};
+      {{"", 1.0, "rad/s"}, {"_deg", degree, "deg/s"}, {"_pi", pi, "pi rad/s"}}};
   static constexpr std::array<UnitSpelling, 3> radian_per_second_squared{
-      {{"", 1.0, "rad/s^2"}, {"_deg", pi / 180.0, "deg/s^2"}, {"_pi", pi, "pi rad/s^2"}}};
+      {{"", 1.0, "rad/s^2"}, {"_deg", degree, "deg/s^2"}, {"_pi", pi, "pi rad/s^2"}}};
   switch (unit) {
     case Unit::none:
       break;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/zoom_correlation.h"
 #include "flexura/math/arrays.h"
@@ -82,8 +82,8 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
   for (std::size_t i = 0; i < 2; ++i) {
     const auto state = arc_state(arm, bend, towards[i]);
     if (!state)
-      return fmt::format("the arm cannot be bent into an arc of {:.0f} deg in {}",
-                         bend * 180 / std::numbers::pi, name_of_plane(i));
+      return fmt::format("the arm cannot be bent into an arc of {:.0f} deg in {}", bend / degree,
+                         name_of_plane(i));
     plan.arcs[i] = *state;
     plan.centers[i] = center_of(arm, *state, bend, towards[i]);
     middles[i] = aims_at_centers ? plan.centers[i] : Backbone(arm, *state).pose(0.5 * arm.length()).position;

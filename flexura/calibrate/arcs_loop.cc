@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/etalon_view.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_quantities.h"
@@ -17,7 +18,7 @@
 namespace flexura {
 namespace {
 
-constexpr double in_degrees = 180 / std::numbers::pi;
+constexpr double in_degrees = 1 / degree;
 // Of an arm that has as many.
 std::size_t fewest_markers(const LoopConfig& config) {
   return std::min<std::size_t>(5, config.picture.markers.size());

@@ -5,10 +5,11 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "flexura/base/degree.h"
 
 namespace flexura {
 namespace {
@@ -123,7 +124,7 @@ Intrinsics start_lens(std::span<const Matrix3d> homographies, int width, int hei
   if (!focal) focal = focal_lengths(homographies, middle);
   constexpr double widest = 0.2, longest = 50;  // in the image's size
   if (!focal || focal->minCoeff() < widest * size || focal->maxCoeff() > longest * size) {
-    const double guess = 0.5 * size / std::tan(25 * std::numbers::pi / 180);
+    const double guess = 0.5 * size / std::tan(25 * degree);
     return {.fx = guess, .fy = guess, .cx = middle.x(), .cy = middle.y()};
   }
   return {.fx = focal->x(), .fy = focal->y(), .cx = center.x(), .cy = center.y()};

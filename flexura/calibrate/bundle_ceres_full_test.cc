@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_quantities.h"
 #include "tests/support/ceres_peer.h"
@@ -83,7 +83,7 @@ Disagreement worst_of(int trials, double bound) {
     compare(trial, bound, worst);
   });
   std::printf("numbers %.2g sigma, angle %.2g deg, focal %.2g, place %.2g m, cost %.2g\n", worst.number,
-              worst.angle * 180 / std::numbers::pi, worst.focal, worst.place, worst.cost);
+              worst.angle / degree, worst.focal, worst.place, worst.cost);
   std::printf("sigmas %.2g, covariance %.2g\n", worst.sigma, worst.covariance);
   EXPECT_LT(worst.number, 1e-3);
   EXPECT_LT(worst.angle, 1e-5 * degree);

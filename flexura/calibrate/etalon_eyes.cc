@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/vision/eight_bits.h"
 
 namespace flexura {
@@ -51,7 +52,7 @@ std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonF
   add_rim(EtalonPart::upper_rim, hangs ? seen.lower_edge : seen.upper_edge);
   add_rim(EtalonPart::lower_rim, hangs ? seen.upper_edge : seen.lower_edge);
   // Beyond `facing` a line's middle is not the middle of what is seen of it; lines are 90 degrees apart.
-  constexpr double facing = std::numbers::pi / 3, known = 40 * std::numbers::pi / 180;
+  constexpr double facing = std::numbers::pi / 3, known = 40 * degree;
   constexpr std::size_t lines = 4;
   for (const UprightLine& line : seen.lines) {
     const double bearing = (hangs ? -1 : 1) * bearing_of(line, seen);

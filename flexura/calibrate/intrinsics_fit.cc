@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/board_alone.h"
 #include "flexura/calibrate/board_certainty.h"
 #include "flexura/calibrate/board_start.h"
@@ -164,7 +164,7 @@ class Calibration {
         "in the same order, by cameras that stand still to each other",
         camera_text(camera), fmt::join(rms_alone, " and "),
         fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
-        spread.turn * 180 / std::numbers::pi, spread.distance);
+        spread.turn / degree, spread.distance);
   }
 
   // The unknowns' order is that of BundleFit::information.

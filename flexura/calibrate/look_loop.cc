@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/camera/axis_config.h"
 
@@ -46,7 +47,7 @@ LookLoop::Trouble LookLoop::look_from_one_side() const {
   if (std::abs(beyond) <= farthest) return std::nullopt;
   return fmt::format(
       "both cameras look from {}: their axes are believed to be {:.1f} deg apart, expected 45 to 135",
-      beyond < 0 ? "one side" : "opposite sides", 90 + beyond * 180 / std::numbers::pi);
+      beyond < 0 ? "one side" : "opposite sides", 90 + beyond / degree);
 }
 
 LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {

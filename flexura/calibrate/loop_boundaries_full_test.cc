@@ -8,10 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
 
@@ -19,7 +19,6 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double a_deg = std::numbers::pi / 180;
 
 // What the steps of this name were about, of the first camera, in order.
 std::vector<double> offsets_of(const LoopResult& result, const std::string& step) {
@@ -41,30 +40,30 @@ std::string turned_stage(double turned, double aside) {
 TEST(LoopBoundaries, EtalonEndsWhereTheStageIsTurnedByLessThanARightAngle) {
   for_random_cases(6, [](TestRandom& random) {
     const double side = random.integer(0, 1) == 1 ? 1 : -1;
-    const double turned = side * random.uniform(40, 75) * a_deg;
+    const double turned = side * random.uniform(40, 75) * degree;
     CalibrationBench bench(turned_stage(turned, (random.integer(0, 1) == 1 ? 1 : -1) * 0.06));
     const LoopResult result = bench.calibrate();
     ASSERT_TRUE(result.is_done) << result.reason;
-    EXPECT_LT(std::abs(bench.truth(result).angle), 0.2 * a_deg);
+    EXPECT_LT(std::abs(bench.truth(result).angle), 0.2 * degree);
     EXPECT_LT(bench.truth(result).aim[0].norm(), 0.01);
     // Each step leaves the eigenvalue 1 - cos(turned).
     const std::vector<double> line = offsets_of(result, "horizontal positioning");
     ASSERT_GE(line.size(), 2U);
     for (std::size_t i = 1; i < line.size() && std::abs(line[i - 1]) > 1; ++i)
-      EXPECT_NEAR(line[i] / line[i - 1], 1 - std::cos(turned), 0.12) << turned / a_deg;
+      EXPECT_NEAR(line[i] / line[i - 1], 1 - std::cos(turned), 0.12) << turned / degree;
   });
 }
 
 TEST(LoopBoundaries, EtalonRunsAwayWhereTheStageIsTurnedByMore) {
   for_random_cases(5, [](TestRandom& random) {
-    const double turned = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(97, 115) * a_deg;
+    const double turned = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(97, 115) * degree;
     CalibrationBench bench(turned_stage(turned, 0.06));
     const LoopResult result = bench.calibrate();
     EXPECT_FALSE(result.is_done);
     EXPECT_THAT(result.reason, HasSubstr("horizontal positioning of camera front runs away"));
     const std::vector<double> line = offsets_of(result, "horizontal positioning");
     ASSERT_GE(line.size(), 2U);
-    EXPECT_NEAR(line[1] / line[0], 1 - std::cos(turned), 0.12) << turned / a_deg;
+    EXPECT_NEAR(line[1] / line[0], 1 - std::cos(turned), 0.12) << turned / degree;
     bench.expect_back();
   });
 }
@@ -72,7 +71,7 @@ TEST(LoopBoundaries, EtalonRunsAwayWhereTheStageIsTurnedByMore) {
 // Carried around the circle's centre, to the side that is tried first or the other one.
 TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
   for_random_cases(8, [](TestRandom& random) {
-    const double tilt = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(8, 17) * a_deg;
+    const double tilt = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(8, 17) * degree;
     const double aside = 2.5 * std::sin(tilt), back = 2.5 * (std::cos(tilt) - 1);
     const bool is_across = random.integer(0, 1) == 1;
     WrongStart wrong;
@@ -82,15 +81,15 @@ TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
     rig.travel = 2;
     CalibrationBench bench(arcs_rig("method = \"arcs-paper\"\n", rig));
     const LoopResult result = bench.calibrate();
-    ASSERT_EQ(offsets_of(result, "circle").size(), 1U) << tilt / a_deg << ": " << result.reason;
+    ASSERT_EQ(offsets_of(result, "circle").size(), 1U) << tilt / degree << ": " << result.reason;
     const std::vector<double> ratios = offsets_of(result, "ratio of axes");
     ASSERT_GE(ratios.size(), 1U);
-    EXPECT_LE(ratios.size(), 6U) << tilt / a_deg;
+    EXPECT_LE(ratios.size(), 6U) << tilt / degree;
     std::vector<double> tilts;
-    for (const double off : ratios) tilts.push_back(std::acos(1 - off) / a_deg);
+    for (const double off : ratios) tilts.push_back(std::acos(1 - off) / degree);
     const Eigen::Vector3d axis = bench.rig().camera(0).view(bench.rig().clock().now()).X_WC.rotation.col(2);
-    const double left = std::acos(-axis.z()) / a_deg;
-    EXPECT_LT(left, 2.5) << tilt / a_deg;
+    const double left = std::acos(-axis.z()) / degree;
+    EXPECT_LT(left, 2.5) << tilt / degree;
     // A wrong side makes twice as much of it.
     for (std::size_t i = 1; i < tilts.size(); ++i) EXPECT_LT(tilts[i], 2.2 * tilts[i - 1]);
   });

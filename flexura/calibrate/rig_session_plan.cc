@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/camera/camera.h"
 #include "flexura/math/arrays.h"
 
 namespace flexura {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 }  // namespace
 

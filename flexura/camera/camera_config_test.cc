@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "flexura/base/degree.h"
 #include "flexura/camera/camera.h"
 #include "tests/support/cameras.h"
 
@@ -45,11 +45,11 @@ TEST(CameraConfig, WritesWhatItReads) {
 
 TEST(CameraConfig, HasThePapersHeadByDefault) {
   const HeadConfig head;
-  EXPECT_NEAR(head.pan.limits[1] * 180 / std::numbers::pi, 135, 1e-12);
-  EXPECT_NEAR(head.tilt.limits[0] * 180 / std::numbers::pi, -45, 1e-12);
-  EXPECT_NEAR(head.tilt.limits[1] * 180 / std::numbers::pi, 90, 1e-12);
-  EXPECT_NEAR(head.pan.max_rate * 180 / std::numbers::pi, 50, 1e-12);
-  EXPECT_NEAR(head.tilt.max_rate * 180 / std::numbers::pi, 25, 1e-12);
+  EXPECT_NEAR(head.pan.limits[1] / degree, 135, 1e-12);
+  EXPECT_NEAR(head.tilt.limits[0] / degree, -45, 1e-12);
+  EXPECT_NEAR(head.tilt.limits[1] / degree, 90, 1e-12);
+  EXPECT_NEAR(head.pan.max_rate / degree, 50, 1e-12);
+  EXPECT_NEAR(head.tilt.max_rate / degree, 25, 1e-12);
   EXPECT_EQ(Camera(front()).head_axes()[2].limits, (std::array<double, 2>{1, 10}));
 }
 

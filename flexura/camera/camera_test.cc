@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "flexura/base/degree.h"
 #include "flexura/math/derivative_check.h"
 #include "flexura/math/so3.h"
 #include "tests/support/cameras.h"
@@ -13,8 +13,6 @@
 
 namespace flexura {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 TEST(Head, PansToTheLeftAndTiltsUp) {
   const Eigen::Vector3d forward(0, 0, 1);

@@ -1,12 +1,12 @@
 #include "flexura/camera/head.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "flexura/base/degree.h"
 
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr NumberRange offset_range = {.min = -1e3, .max = 1e3};
 constexpr AxisUnits turn_units = {Unit::radian, Unit::radian_per_second, Unit::radian_per_second_squared};
 constexpr AxisUnits zoom_units = {Unit::none, Unit::none, Unit::none};

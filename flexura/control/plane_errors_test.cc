@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/random_cases.h"
 
@@ -44,7 +44,6 @@ TEST(PlaneErrors, AreTheDerivativesOfTheViewsReading) {
 }
 
 TEST(PlaneErrors, GrowWithoutBoundTowardsTheQuarterTurn) {
-  constexpr double degree = std::numbers::pi / 180;
   const auto at = [](double theta) { return plane_error(plane_view(theta * degree, 20 * degree), {}); };
   EXPECT_NEAR(at(30).gain, -0.19, 0.005);
   EXPECT_NEAR(at(80).gain, -1.8, 0.05);

@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 TEST(DirectionAngles, GiveTheTangentBack) {
   for_random_cases(50, [](TestRandom& random) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <variant>
 
+#include "flexura/base/degree.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/loop_chapter.h"
@@ -16,7 +17,6 @@
 namespace flexura {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 // What a chart shows of a value that falls over orders of magnitude.

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/camera_names.h"
@@ -360,7 +360,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
     reader.problem_at(
         path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
                           "spatial one that stands upright, or a smaller loop.arc",
-                          arc_bend(task) * 180 / std::numbers::pi));
+                          arc_bend(task) / degree));
   if (!task.pose.empty() || task.target || !task.stages)
     reader.problem_at(
         path, "has no pose, no target and moves stages with this method: expected none of these keys");

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/kinematics/spatial.h"
@@ -263,8 +263,8 @@ std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& r
   return fmt::format(
              "# Found by a calibration with {} pictures: angle between the axes known within {:.3g} deg, "
              "focal lengths within {:.2g} %\n# and {:.2g} % (standard deviations).\n",
-             run.result.pictures[0] + run.result.pictures[1], sigmas.angle * 180 / std::numbers::pi,
-             100 * sigmas.focal[0], 100 * sigmas.focal[1]) +
+             run.result.pictures[0] + run.result.pictures[1], sigmas.angle / degree, 100 * sigmas.focal[0],
+             100 * sigmas.focal[1]) +
          file_text(file);
 }
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/experiment/commanded_motion.h"
 #include "flexura/experiment/ideal_picture.h"
 #include "flexura/experiment/servo_run.h"
@@ -82,7 +82,7 @@ class LoggedSession : public RigSessionWatcher {
     message.zoom_ratio_sigma = step.sigmas.zoom_ratio;
     witness_.calibration(message);
     const std::string what = step.is_found ? fmt::format("angle between the axes known within {:.4f} deg",
-                                                         step.sigmas.angle * 180 / std::numbers::pi)
+                                                         step.sigmas.angle / degree)
                                            : step.reason;
     witness_.event(step.time, Recorder::Level::info, run_.name,
                    fmt::format("after {} looks: {}", step.looks, what));

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/progress.h"
 #include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/experiment/calibrate_results.h"
@@ -31,8 +31,6 @@
 
 namespace flexura {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 double number_at(const Node& node, const char* key) { return *node.find(key)->as<double>(); }
 

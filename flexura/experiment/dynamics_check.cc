@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "flexura/base/degree.h"
 #include "flexura/experiment/dynamics_plant.h"
 #include "flexura/experiment/dynamics_task_config.h"
 #include "flexura/kinematics/shape.h"
@@ -12,7 +13,6 @@
 namespace flexura {
 namespace {
 
-double as_degrees(double radians) { return radians * 180 / std::numbers::pi; }
 // The most sections of which each has numbers of its own, and of those that share a polynomial's: the work
 // grows with the third power, and with the second.
 constexpr std::size_t most_sections = 40, most_of_polynomial = 200;
@@ -52,7 +52,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
     if (std::abs(elevations[i]) > most_elevation)
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
                         fmt::format("{:.6g} deg: expected less than 90 deg, where the azimuth is none",
-                                    as_degrees(elevations[i])));
+                                    elevations[i] / degree));
     if (arm.kind == ArmKind::planar && elevations[i] != 0)
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
                         "leaves the plane: expected 0 of a planar arm");
@@ -64,7 +64,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
           fmt::format("{}.azimuths[{}]", path, i),
           fmt::format("{:.6g} deg, where the one before is {:.6g} deg: expected half a turn at most from one "
                       "to the next, for azimuths go on beyond 180 deg",
-                      as_degrees(azimuths[i]), as_degrees(azimuths[i - 1])));
+                      azimuths[i] / degree, azimuths[i - 1] / degree));
   }
   const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
   constexpr double rounding = 1e-6;
@@ -77,7 +77,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
       reader.problem_at(
           fmt::format("{}.{}[0]", path, name),
           fmt::format("{:.6g} deg: expected that of the arm's base, which is clamped, {:.6g} deg",
-                      as_degrees(first), as_degrees(own)));
+                      first / degree, own / degree));
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std
     reader.problem_at(
         target, fmt::format("leads through an elevation of {:.4g} deg: expected less than 90 deg, where "
                             "the azimuth is none",
-                            as_degrees(q)));
+                            q / degree));
   }
   if (reader.problems().size() > before) return;
   // The curve as it will be, not only what is given of it.
@@ -118,7 +118,7 @@ void check_dynamics(const DynamicsTask& task, const ArmConfig& config, const std
         target,
         fmt::format("leads, as a polynomial (nodes = {}), through an elevation of {:.4g} deg: expected "
                     "less than 90 deg, where the azimuth is none",
-                    task.nodes, as_degrees(q)));
+                    task.nodes, q / degree));
 }
 
 }  // namespace flexura

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/study_view.h"
 #include "flexura/render/truth.h"
@@ -22,7 +23,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double degree = pi / 180;
 constexpr double focal_length = 800, circle_radius = 0.5, distance = 2.5;
 constexpr double half_side = circle_radius / std::numbers::sqrt2;
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
 #include "flexura/experiment/servo_run.h"
@@ -88,7 +89,7 @@ NamedDrawing ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t
 std::string arc_text(const CommandedArc& arc, const std::string& camera) {
   // Degrees; no zero is negative.
   const auto to_hundredths = [](double angle) {
-    return fmt::format("{:.2f}", std::round(angle * 18000 / std::numbers::pi) / 100 + 0.0);
+    return fmt::format("{:.2f}", std::round(100 * angle / degree) / 100 + 0.0);
   };
   std::vector<std::string> bends, rotations;
   for (std::size_t i = 0; i < arc.rotations.size(); ++i) {

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/progress.h"
 #include "flexura/calibrate/arcs_loop.h"
 #include "flexura/experiment/calibrate_results.h"
@@ -27,7 +27,6 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double a_degree = std::numbers::pi / 180;
 
 // With pictures of half the size, which are quickly drawn.
 LoopRig small(const std::array<WrongStart, 2>& wrong, const std::string& sensor = "") {
@@ -44,12 +43,12 @@ TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
     ASSERT_TRUE(result.is_done) << result.reason;
     const RigRemainder left = bench.truth(result);
     // Half a step of the head, and what a principal point 1 px off does.
-    EXPECT_LT(std::abs(left.angle), 0.25 * a_degree);
-    EXPECT_NEAR(left.angle, *result.angle, 0.2 * a_degree);
+    EXPECT_LT(std::abs(left.angle), 0.25 * degree);
+    EXPECT_NEAR(left.angle, *result.angle, 0.2 * degree);
     EXPECT_NEAR(left.zoom_ratio, 1, 0.003);
     EXPECT_LT(left.aim[0].norm() + left.aim[1].norm(), 0.02);
     for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.1 * a_degree);
+      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.1 * degree);
       EXPECT_LE(result.pictures[i], 25U);
     }
   });
@@ -64,7 +63,7 @@ TEST(EtalonLoop, ReadsEachCameraByItsOwnBitDepth) {
   CalibrationBench bench(text);
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_LT(std::abs(bench.truth(result).angle), 0.5 * a_degree);
+  EXPECT_LT(std::abs(bench.truth(result).angle), 0.5 * degree);
 }
 
 TEST(EtalonLoop, StopsWhereTheCylinderIsOutOfView) {
@@ -176,7 +175,7 @@ TEST(EtalonPaperLoop, CentresTheCylinderWhereNothingElseIsWrong) {
   const RigRemainder left = bench.truth(result);
   // 3 px of whites to the left less those to the right are 1.5 px, or 0.11 deg, of a camera that turns by
   // 0.2.
-  EXPECT_LT(std::abs(left.angle), 0.5 * a_degree);
+  EXPECT_LT(std::abs(left.angle), 0.5 * degree);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(left.aim[i].norm(), 0.02);
   EXPECT_FALSE(result.notes.empty());
 }
@@ -187,7 +186,7 @@ TEST(EtalonPaperLoop, DoesNotSeeThatACameraStandsBesideTheLine) {
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   // 0.05 m at 1.5 m.
-  EXPECT_NEAR(std::abs(bench.truth(result).angle), 1.91 * a_degree, 0.5 * a_degree);
+  EXPECT_NEAR(std::abs(bench.truth(result).angle), 1.91 * degree, 0.5 * degree);
 }
 
 TEST(EtalonPaperLoop, StopsWhereTwoAxesShowForEver) {
@@ -230,19 +229,19 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
     const LoopResult result = bench.calibrate(ports);
     ASSERT_TRUE(result.is_done) << result.reason;
     const RigRemainder left = bench.truth(result);
-    EXPECT_LT(std::abs(left.angle), 0.6 * a_degree);
-    EXPECT_NEAR(left.angle, *result.angle, 0.6 * a_degree);
+    EXPECT_LT(std::abs(left.angle), 0.6 * degree);
+    EXPECT_NEAR(left.angle, *result.angle, 0.6 * degree);
     EXPECT_NEAR(left.zoom_ratio, 1, 0.01);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_LT(left.aim[i].norm(), 0.02);
-      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.3 * a_degree);
+      EXPECT_NEAR(*result.roll[i], left.roll[i], 0.3 * degree);
     }
   });
 }
 
 // A small slip can be made up for by more pictures from where the head stands then.
 TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
-  for (const double slip : {0.8 * a_degree, 4 * a_degree}) {
+  for (const double slip : {0.8 * degree, 4 * degree}) {
     const LoopRig rig = arcs_cameras({WrongStart{.pan = 0.08}, WrongStart{.tilt = 0.05}});
     CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
     RigPorts ports = bench.ports();
@@ -250,8 +249,8 @@ TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
     ports.cameras[0].head = &slipped;
     const LoopResult result = bench.calibrate(ports);
     if (result.is_done) {
-      EXPECT_LT(std::abs(bench.truth(result).angle), 0.5 * a_degree) << slip;
-      EXPECT_LT(slip, a_degree);
+      EXPECT_LT(std::abs(bench.truth(result).angle), 0.5 * degree) << slip;
+      EXPECT_LT(slip, degree);
     } else {
       EXPECT_THAT(result.reason,
                   ::testing::AnyOf(HasSubstr("do not agree with those before"),
@@ -265,11 +264,11 @@ TEST(ArcsLoop, GoesOnOrStopsWhereAHeadSlipsNearTheGoal) {
   const LoopRig rig = arcs_cameras({WrongStart{.pan = 0.012}, WrongStart{}});
   CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
   RigPorts ports = bench.ports();
-  SlippedPan slipped(*ports.cameras[0].head, 0.9 * a_degree);
+  SlippedPan slipped(*ports.cameras[0].head, 0.9 * degree);
   ports.cameras[0].head = &slipped;
   const LoopResult result = bench.calibrate(ports);
   if (result.is_done) {
-    EXPECT_LT(std::abs(bench.truth(result).angle), 0.4 * a_degree);
+    EXPECT_LT(std::abs(bench.truth(result).angle), 0.4 * degree);
   } else {
     EXPECT_NE(result.reason, "");
   }

@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/export_csv.h"
 #include "flexura/experiment/results.h"
@@ -197,7 +198,7 @@ TEST_F(Run, GoesToALimitButNotBeyond) {
   Experiment experiment = parse_experiment(limited, "x.toml");
   EXPECT_EQ(run(experiment).outcome, RunOutcome::done);
   auto& move = std::get<MoveTask>(experiment.task[0]);
-  move.to.archings->at(0) = -31 * std::numbers::pi / 180;
+  move.to.archings->at(0) = -31 * degree;
   RunResult result = run(experiment);
   EXPECT_EQ(result.outcome, RunOutcome::unsafe);
   ASSERT_THAT(result.reasons, SizeIs(1));

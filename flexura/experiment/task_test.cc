@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/schedule.h"
@@ -85,16 +86,16 @@ TEST(Tasks, ASineSwingsCordAnglesAsAsked) {
   const std::vector<double> cords = cord_angles(experiment.arm.arm(), state);
   // At a quarter of the period section 1 stands at its full swing of 10 deg, and section 2, which started at
   // its own, in the middle: 20 deg lower.
-  EXPECT_NEAR(cords[0] * 180 / std::numbers::pi, 100, 1e-12);
-  EXPECT_NEAR(cords[1] * 180 / std::numbers::pi, 70, 1e-12);
+  EXPECT_NEAR(cords[0] / degree, 100, 1e-12);
+  EXPECT_NEAR(cords[1] / degree, 70, 1e-12);
 }
 
 TEST(Tasks, ALawForOneSectionIsALawOfTheCordAngleItNames) {
   const Experiment experiment = experiment_of_task(
       "kind='move'\nduration=4\nto.cord_angles_deg=[100, 60]\nlaw=['minimum_jerk', 'linear']\n");
   const std::vector<double> cords = cord_angles(experiment.arm.arm(), Schedule(experiment).state_at(1));
-  EXPECT_NEAR(cords[0] * 180 / std::numbers::pi, 90 + 0.103515625 * 10, 1e-12);
-  EXPECT_NEAR(cords[1] * 180 / std::numbers::pi, 90 - 0.25 * 30, 1e-12);
+  EXPECT_NEAR(cords[0] / degree, 90 + 0.103515625 * 10, 1e-12);
+  EXPECT_NEAR(cords[1] / degree, 90 - 0.25 * 30, 1e-12);
   EXPECT_TRUE(Schedule(experiment).check().is_safe());
 }
 

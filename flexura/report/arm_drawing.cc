@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/report/obstacle_drawing.h"
 
 namespace flexura {
@@ -26,8 +26,7 @@ std::string moment(const ReportMotion& motion, std::size_t i) {
 void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm& arm) {
   const Eigen::Vector2d at = frame.page(seen(view, arm.X_WB.position));
   const Eigen::Vector2d tangent = seen(view, arm.X_WB.rotation.col(2));
-  const double turn =
-      tangent.norm() < 1e-6 ? 0.0 : std::atan2(tangent.x(), tangent.y()) * 180.0 / std::numbers::pi;
+  const double turn = tangent.norm() < 1e-6 ? 0.0 : std::atan2(tangent.x(), tangent.y()) / degree;
   svg.leaf("path", {{"class", "base"},
                     {"transform", fmt::format("translate({}) rotate({})", page_point(at), page_number(turn))},
                     {"d", "M-14 0H14M-12 0l-5 6M-5 0l-5 6M2 0l-5 6M9 0l-5 6"}});

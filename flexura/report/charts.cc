@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <functional>
-#include <numbers>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/report/arm_drawing.h"
 
 namespace flexura {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 // A chart with a line for each section; `value` takes the state's and the section's index.
 LineChart section_chart(const ReportMotion& motion, LineChart chart,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/motion_check.h"
 #include "tests/support/arms.h"
@@ -98,8 +99,8 @@ class LongTask : public ::testing::Test {
 
   static ArmState bow(double share) {
     ArmState state = bent(2, 0);
-    state.bends[0].x() = share * 100 * pi / 180;
-    state.bends[1].x() = share * 60 * pi / 180;
+    state.bends[0].x() = share * 100 * degree;
+    state.bends[1].x() = share * 60 * degree;
     return state;
   }
   // Whether a section touches the ground.
@@ -143,8 +144,8 @@ TEST_F(LongTask, SoIsAPairBesideOneThatAlwaysTouches) {
   // The first section is almost a circle and touches itself; the second one curls for a moment.
   arm_.sections[1].length = 0.4;
   const auto curl = [](double second) {
-    ArmState state = bent(2, 350. * pi / 180);
-    state.bends[1].x() = second * pi / 180;
+    ArmState state = bent(2, 350. * degree);
+    state.bends[1].x() = second * degree;
     return state;
   };
   const MotionPtr law = keyframe_motion(

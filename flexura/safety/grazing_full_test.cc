@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/safety/motion_check.h"
 #include "tests/support/arms.h"
 
@@ -95,7 +96,7 @@ TEST(Grazing, ABendThatGoesRoundAtItsMaximumIsSampled) {
 
 TEST(Grazing, KeyframesAMomentApartJump) {
   Arm arm = thin_arm(1);
-  arm.sections[0].max_bend_rate = 20 * pi / 180;
+  arm.sections[0].max_bend_rate = 20 * degree;
   const auto rows = keyframe_motion(
       {0, 1, 1.00000001, 3}, {bent(1, 0), bent(1, 0.1), bent(1, 0.5), bent(1, 0.6)}, Interpolation::linear);
   const SafetyReport report = check(arm, rows);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/safety/jumps.h"
 #include "tests/support/arms.h"
 #include "tests/support/sampled_check.h"
@@ -54,7 +55,6 @@ TEST(MotionCheck, MissesNothingThatDenseSamplingFinds) {
 }
 
 TEST(MotionCheck, FindsTheWorstValueOfALongSpan) {
-  constexpr double degree = std::numbers::pi / 180;
   Arm arm = short_section();
   arm.sections[0].max_bend = 10 * degree;
   const ArmState slight = bent(12 * degree);

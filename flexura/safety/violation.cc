@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 #include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/safety/spans.h"
 
 namespace flexura {
@@ -25,7 +25,7 @@ struct HazardText {
 };
 
 const HazardText& text_of(Hazard hazard) {
-  constexpr double degrees = 180.0 / std::numbers::pi;
+  constexpr double degrees = 1 / degree;
   static constexpr std::array<HazardText, 13> texts{{{"bend", degrees, " deg"},
                                                      {"bend rate", degrees, " deg/s"},
                                                      {"stretch", 1, ""},

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/view/live_session.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/live_sessions.h"
@@ -53,12 +53,12 @@ TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
   };
   const std::string at_start = picture({});
   const StateMessage start = messenger_.state(other);
-  EXPECT_NEAR(start.cameras[1].head.pan, 2 * std::numbers::pi / 180, 1e-6) << "where it truly stands";
+  EXPECT_NEAR(start.cameras[1].head.pan, 2 * degree, 1e-6) << "where it truly stands";
   const CameraReading front{{0, 0, 1}, {}}, side{{0.05, -0.02, 1.5}, {{0, 0.25, 0}}};
   const std::string moved = picture(std::array{front, side});
   EXPECT_NE(moved, at_start);
   const CameraSample shown = messenger_.state(other).cameras[1];
-  EXPECT_NEAR(shown.head.pan, 2 * std::numbers::pi / 180 + 0.05, 1e-6) << "from where it started";
+  EXPECT_NEAR(shown.head.pan, 2 * degree + 0.05, 1e-6) << "from where it started";
   EXPECT_NEAR(shown.head.tilt, -0.02, 1e-6);
   EXPECT_NEAR(shown.head.zoom, 1.5, 1e-6);
   EXPECT_NEAR(shown.stage.y(), 0.25, 1e-6);

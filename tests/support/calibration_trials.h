@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_quantities.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
@@ -96,7 +97,7 @@ inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed,
   TestRandom random(seed * 1000003 + index);
   WrongRig wrong = wrong_rig(random);
   // Both bundles learn the principal point and the zeros of the heads; the others cannot see them.
-  constexpr double rougher = 10, zero = std::numbers::pi / 180;
+  constexpr double rougher = 10, zero = degree;
   const bool is_bundle = method.starts_with("bundle");
   if (is_bundle) {
     for (WrongStart* start : {&wrong.front, &wrong.side}) {

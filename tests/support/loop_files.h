@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
@@ -22,7 +23,6 @@ struct WrongStart {
 /// Evenly over what the paper's methods shall start from: pan and tilt 10 degrees off, roll 1, the stage 0.2
 /// m in each direction, zoom 1 to 2.5, the principal point 1 px; `size` is a share of all that.
 inline WrongStart wrong_start(TestRandom& random, double size = 1) {
-  constexpr double degree = std::numbers::pi / 180;
   WrongStart start;
   start.pan = size * random.uniform(-10, 10) * degree, start.tilt = size * random.uniform(-10, 10) * degree;
   start.roll = size * random.uniform(-1, 1) * degree, start.zoom = 1 + size * random.uniform(0, 1.5);

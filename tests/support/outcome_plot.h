@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/report/axes.h"
 #include "flexura/report/legend.h"
 #include "flexura/report/svg.h"
@@ -38,7 +38,7 @@ class OutcomePlot {
 
  private:
   static constexpr double margin = 60, width = 330, height = 300, gap = 80, top = heading_space + 6;
-  static constexpr double in_degrees = 180 / std::numbers::pi;
+  static constexpr double in_degrees = 1 / degree;
 
   [[nodiscard]] PlotFrame start_plot(const std::string& heading, double left, Interval x, Interval y,
                                      const char* x_name, const char* y_name) {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_observations.h"
 #include "flexura/camera/camera.h"
 #include "flexura/kinematics/spatial.h"
@@ -18,16 +18,14 @@
 
 namespace flexura {
 
-inline constexpr double degree = std::numbers::pi / 180;
-
 /// How far a rig is from what is believed of it: evenly within these bounds.
 struct RigTrialConfig {
-  double turn = 10 * std::numbers::pi / 180;  ///< Of the mounts, in pan and in tilt.
-  double roll = std::numbers::pi / 180;
-  double zero = std::numbers::pi / 180;  ///< Of the heads' axes.
-  double shift = 0.2;                    ///< Of the mounts, along each axis, m.
-  double focal = 0.1;                    ///< Share.
-  double principal_point = 10;           ///< px
+  double turn = 10 * degree;  ///< Of the mounts, in pan and in tilt.
+  double roll = degree;
+  double zero = degree;         ///< Of the heads' axes.
+  double shift = 0.2;           ///< Of the mounts, along each axis, m.
+  double focal = 0.1;           ///< Share.
+  double principal_point = 10;  ///< px
   double bend = 0.01, length = 0.005;
   bool are_heads_exact = false;  ///< Otherwise evenly within half a step of what they say.
   double noise = 0.2;            ///< px
@@ -39,7 +37,7 @@ struct RigTrialConfig {
 inline RigModel believed_rig() {
   std::vector<CameraConfig> cameras = cameras_at({2.5, 2.5}, {0, 0.5, 0});
   for (CameraConfig& camera : cameras) {
-    camera.head.pan.resolution = camera.head.tilt.resolution = 0.075 * std::numbers::pi / 180;
+    camera.head.pan.resolution = camera.head.tilt.resolution = 0.075 * degree;
     for (SlideConfig* slide : {&camera.mount.stage.x, &camera.mount.stage.y, &camera.mount.stage.z})
       slide->limits = {-0.5, 0.5};
   }

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/control/image_law.h"
 #include "flexura/control/jacobian_estimate.h"
 #include "flexura/control/shape_features.h"
@@ -71,7 +71,7 @@ inline void expect_targets_of_wrong_cameras(int cases) {
   for_random_cases(cases, [&](TestRandom& random) {
     ServoLoop loop;
     loop.set = FeatureSet::of_points(6);
-    loop.model = wrong_views(random, loop.truth, 0.5 * std::numbers::pi / 180, 0.01);
+    loop.model = wrong_views(random, loop.truth, 0.5 * degree, 0.01);
     share.add(
         servo(loop, random_servo_state(random, loop.arm, 0.3), random_servo_state(random, loop.arm, 1.5), 8));
   });

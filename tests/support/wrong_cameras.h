@@ -1,8 +1,8 @@
 #pragma once
 
-#include <numbers>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
@@ -11,9 +11,8 @@
 
 namespace flexura {
 
-constexpr double one_degree = std::numbers::pi / 180;
 /// In cameras that may be so wrong.
-constexpr ViewDoubt a_degree_and_two_percent = {.turn = 1 * one_degree, .focal = 0.02};
+constexpr ViewDoubt a_degree_and_two_percent = {.turn = degree, .focal = 0.02};
 
 struct WrongCameras {
   std::vector<Sighting> seen;
@@ -25,8 +24,7 @@ inline WrongCameras wrong_cameras(const Backbone& truth, TestRandom& random, dou
   WrongCameras cameras{sightings_of(truth, random, noise), {}};
   for (Sighting& one : cameras.seen) {
     for (auto& end : one.ends) end->sigma = 0.1;
-    const ViewError believed{random.vector<3>(-0.5, 0.5) * most * one_degree,
-                             random.uniform(-0.01, 0.01) * most};
+    const ViewError believed{random.vector<3>(-0.5, 0.5) * most * degree, random.uniform(-0.01, 0.01) * most};
     const View is = one.view;
     one.view = corrected(is, believed);
     one.doubt = a_degree_and_two_percent;

@@ -82,21 +82,20 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
   const auto power = [=](double value) { return std::log10(std::max(value, least_joule)); };
   const Value W = lyapunov_value, T = [](const DynamicsSample& at) { return at.energies.kinetic; },
               pi = [](const DynamicsSample& at) { return at.energies.potential; };
-  return {
-      charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
-                  {{"W", W}, {"T", T}, {"Pi", pi}}),
-      charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
-                  {{"W", [=](const DynamicsSample& at) { return power(W(at)); }},
-                   {"T", [=](const DynamicsSample& at) { return power(T(at)); }},
-                   {"Pi", [=](const DynamicsSample& at) { return power(pi(at)); }}}),
-      charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
-                  {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
-                   {"elastic", [&](const DynamicsSample& at) { return run.message(at).elastic_energy; }},
-                   {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
-                   {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
-      charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
-                  {{"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
-                   {"q", [&](const DynamicsSample& at) { return run.error(at).elevation / degree; }}})};
+  return {charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
+                      {{"W", W}, {"T", T}, {"Pi", pi}}),
+          charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
+                      {{"W", [=](const DynamicsSample& at) { return power(W(at)); }},
+                       {"T", [=](const DynamicsSample& at) { return power(T(at)); }},
+                       {"Pi", [=](const DynamicsSample& at) { return power(pi(at)); }}}),
+          charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
+                      {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
+                       {"elastic", [&](const DynamicsSample& at) { return run.message(at).elastic_energy; }},
+                       {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
+                       {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
+          charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
+                      {{"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
+                       {"q", [&](const DynamicsSample& at) { return run.error(at).elevation / degree; }}})};
 }
 
 const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }

@@ -67,9 +67,9 @@ struct DynamicsRun {
 void run_known_dynamics(const Experiment& experiment, std::map<std::size_t, MotionPtr>& performed,
                         std::vector<DynamicsRun>& runs, Progress& progress);
 
-/// What the motions of this schedule, which has what these runs did, would harm (Schedule::check). Caveats say
-/// of which runs the arcs that are judged are farther from the arm than the arm is thick, and which tasks were
-/// not simulated, and why; what those violate of the theory's conditions is noted.
+/// What the motions of this schedule, which has what these runs did, would harm (Schedule::check). Caveats
+/// say of which runs the arcs that are judged are farther from the arm than the arm is thick, and which tasks
+/// were not simulated, and why; what those violate of the theory's conditions is noted.
 [[nodiscard]] SafetyReport checked(const Experiment& experiment, const Schedule& schedule,
                                    const std::vector<DynamicsRun>& runs, Progress* progress = nullptr);
 

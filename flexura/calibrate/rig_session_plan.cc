@@ -12,6 +12,7 @@
 #include "flexura/math/arrays.h"
 
 namespace flexura {
+
 bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look) {
   constexpr double turn = 2 * degree, way = 0.05, larger = 0.1;  // rad; m; share.
   const auto is_near = [&](const RigStance& a, const RigStance& b) {

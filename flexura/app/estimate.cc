@@ -121,7 +121,7 @@ double marker_place(const std::string& word, const ShapePrior& prior) {
   return s;
 }
 
-EstimateSettings settings_of(const EstimateArguments& arguments) {
+EstimateSettings estimate_settings(const EstimateArguments& arguments) {
   EstimateSettings settings;
   settings.prior = arm_of(arguments);
   auto& markers = settings.prior.markers;
@@ -314,7 +314,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
 int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   check(arguments);
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
-  const EstimateSettings settings = settings_of(arguments);
+  const EstimateSettings settings = estimate_settings(arguments);
   std::vector<PictureFile> pictures;
   for (const std::string& name : arguments.images)
     pictures.push_back({name, read_text_file(name, most_picture_bytes)});

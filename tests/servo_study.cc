@@ -1,6 +1,6 @@
 // Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
-// [TARGETS] [SEED] [THREADS] [PART], of all parts calibrated, wrong, recorded and turned.
-// docs/studies/servo.md
+// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded and turned, and of all
+// ways of steering: the names of its rows. docs/studies/servo.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,18 +44,17 @@ struct Method {
   bool is_turned = false;  // Drives mounted a quarter turn round, which bend the arm 1.3 times as far.
 };
 
-const std::vector<Method>& main_methods() {
-  static const std::vector<Method> methods = {{.name = "shape"},
-                                              {.name = "points", .law = ServoLawKind::points},
-                                              {.name = "chords", .law = ServoLawKind::chords},
-                                              {.name = "potential", .law = ServoLawKind::potential},
-                                              {.name = "silhouettes", .law = ServoLawKind::silhouettes}};
-  return methods;
+std::vector<Method> laws() {
+  return {{.name = "shape"},
+          {.name = "points", .law = ServoLawKind::points},
+          {.name = "chords", .law = ServoLawKind::chords},
+          {.name = "potential", .law = ServoLawKind::potential},
+          {.name = "silhouettes", .law = ServoLawKind::silhouettes},
+          {.name = "moments, from within 0.15 rad", .law = ServoLawKind::moments, .is_near = true}};
 }
 
 std::vector<Method> all_methods() {
-  std::vector<Method> methods = main_methods();
-  methods.push_back({.name = "moments, from within 0.15 rad", .law = ServoLawKind::moments, .is_near = true});
+  std::vector<Method> methods = laws();
   methods.push_back(
       {.name = "points, broyden", .law = ServoLawKind::points, .jacobian = ServoJacobian::broyden});
   methods.push_back(
@@ -269,8 +268,9 @@ class StudyRig {
   std::string why_not_;
 };
 
-void study(Cameras cameras, const std::vector<Method>& methods, std::size_t targets, std::uint64_t seed,
-           unsigned threads) {
+void study(Cameras cameras, std::vector<Method> methods, const std::string& way, std::size_t targets,
+           std::uint64_t seed, unsigned threads) {
+  if (!way.empty()) std::erase_if(methods, [&](const Method& method) { return method.name != way; });
   const std::size_t rigs = (targets + targets_a_rig - 1) / targets_a_rig;
   std::vector<std::vector<Arrival>> arrivals(methods.size(), std::vector<Arrival>(targets));
   std::atomic<std::size_t> next = 0;
@@ -316,22 +316,23 @@ int main(int count, char** arguments) {
   const std::uint64_t seed = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 1;
   const auto threads = static_cast<unsigned>(count > 3 ? std::strtoul(arguments[3], nullptr, 10) : 2);
   const std::string part = count > 4 ? arguments[4] : "";
+  const std::string way = count > 5 ? arguments[5] : "";
   const auto is_asked = [&](const char* name) { return part.empty() || part == name; };
   if (is_asked("calibrated")) {
     fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
-    study(Cameras::calibrated, all_methods(), targets, seed, threads);
+    study(Cameras::calibrated, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("wrong")) {
     fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
-    study(Cameras::wrong, main_methods(), targets, seed, threads);
+    study(Cameras::wrong, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("recorded")) {
     fmt::print("## The same cameras, targets that they recorded\n\n");
-    study(Cameras::recorded, main_methods(), targets, seed, threads);
+    study(Cameras::recorded, laws(), way, targets, seed, threads);
   }
   if (is_asked("turned")) {
     fmt::print("## Calibrated cameras, an arm mounted a quarter turn round that bends 1.3 times as far\n\n");
-    study(Cameras::calibrated, methods_of_turned_arm(), targets, seed, threads);
+    study(Cameras::calibrated, methods_of_turned_arm(), way, targets, seed, threads);
   }
   return 0;
 }

@@ -1,6 +1,6 @@
 // Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
-// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded and turned, and of all
-// ways of steering: the names of its rows. docs/studies/servo.md
+// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded, turned and exact, and of
+// all ways of steering: the names of its rows. docs/studies/servo.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +21,7 @@
 #include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
 #include "tests/support/calibration_bench.h"
+#include "tests/support/exact_loops.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/servo_bench.h"
 #include "tests/support/study_rows.h"
@@ -83,6 +84,13 @@ ArmState random_target(TestRandom& random) {
   ArmState state = ArmState::straight(3);
   for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-1.2, 1.2);
   return state;
+}
+
+ArmState start_for(const Method& method, const ArmState& target, TestRandom& random) {
+  ArmState start = method.is_near ? target : ArmState::straight(target.bends.size());
+  for (Eigen::Vector2d& bend : start.bends)
+    if (method.is_near) bend += random.vector<2>(-0.15, 0.15);
+  return start;
 }
 
 // Steps between sights are of a frame; sensors as real cameras have them: late, short exposures.
@@ -202,10 +210,7 @@ class StudyRig {
     config.markers = band_places(bench.experiment(), believed_.arm);
     config.goals = {{0, target}};
     if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(bench, target)}};
-    ArmState start = method.is_near ? target : ArmState::straight(arm.sections.size());
-    for (Eigen::Vector2d& bend : start.bends)
-      if (method.is_near) bend += random.vector<2>(-0.15, 0.15);
-    rest_at(bench, start);
+    rest_at(bench, start_for(method, target, random));
     ServoNotes notes;
     RigPorts ports = bench.ports();
     TurnedArm turned(*ports.arm, std::numbers::pi / 2, 1.3);
@@ -307,6 +312,34 @@ void study(Cameras cameras, std::vector<Method> methods, const std::string& way,
   fmt::print("\n");
 }
 
+// The same targets without pictures, by the derivatives of the whole way and by those where the arm stands.
+void study_exact(const std::string& way, std::size_t targets, std::uint64_t seed) {
+  RigBench bench(file_of(study_rig({}), false));
+  ExactLoop loop{.arm = bench.experiment().arm.arm(),
+                 .views = {bench.rig().camera(0).view(0), bench.rig().camera(1).view(0)}};
+  constexpr double noise = 0.1;  // px
+  fmt::print(
+      "| law | derivatives | converged | to 2 %, s (median / 95 % / all) | with noise: converged | to 2 %, s "
+      "|\n| --- | --- | ---: | ---: | ---: | ---: |\n");
+  for (const Method& method : laws()) {
+    if (!way.empty() && method.name != way) continue;
+    std::vector<std::pair<ArmState, ArmState>> ways;
+    for (std::size_t k = 0; k < targets; ++k) {
+      TestRandom random(1000 * seed + k);
+      const ArmState target = random_target(random);
+      ways.emplace_back(start_for(method, target, random), target);
+    }
+    const bool has_both = method.law != ServoLawKind::shape && method.law != ServoLawKind::potential;
+    for (const bool has_secants : {true, false}) {
+      if (!has_secants && !has_both) continue;
+      loop.has_secants = has_secants;
+      const char* which = has_secants && has_both ? "of the whole way" : "where it stands";
+      fmt::print("{}\n", exact_row(loop, method.law, method.name + " | " + which, ways, noise));
+    }
+  }
+  fmt::print("\n");
+}
+
 }  // namespace
 }  // namespace flexura
 
@@ -334,5 +367,6 @@ int main(int count, char** arguments) {
     fmt::print("## Calibrated cameras, an arm mounted a quarter turn round that bends 1.3 times as far\n\n");
     study(Cameras::calibrated, methods_of_turned_arm(), way, targets, seed, threads);
   }
+  if (is_asked("exact")) study_exact(way, targets, seed);
   return 0;
 }

@@ -12,6 +12,12 @@ namespace {
 
 constexpr double no_contour = std::numeric_limits<double>::quiet_NaN();
 
+// Of normals that are each other's opposite there is no middle: such an edge says nothing.
+Eigen::Vector2d halfway(const Eigen::Vector2d& one, const Eigen::Vector2d& other) {
+  const Eigen::Vector2d both = one + other;
+  return both / both.norm();
+}
+
 }  // namespace
 
 ContourImages::ContourImages(Arm arm, const std::vector<double>& shares) : arm_(std::move(arm)) {
@@ -75,7 +81,7 @@ bool ContourImages::see(const Ring& ring, const View& view, Eigen::Index i, Cont
   if (!touch(ring, view, i % 2 == 0 ? 1 : -1, arm, normal)) {
     image.pixels.col(i).setConstant(no_contour), image.normals.col(i).setConstant(no_contour);
     image.places.col(i).setConstant(no_contour), image.arms.col(i).setConstant(no_contour);
-    image.slopes.col(i).setConstant(no_contour);
+    image.slopes.col(i).setConstant(no_contour), image.slides.col(i).setConstant(no_contour);
     return true;
   }
   const Eigen::Vector3d p_CP =
@@ -88,12 +94,14 @@ bool ContourImages::see(const Ring& ring, const View& view, Eigen::Index i, Cont
   image.pixels.col(i) = projection.pixel, image.normals.col(i) = across;
   image.places.col(i) = p_CP, image.arms.col(i) = arm;
   image.slopes.col(i) = projection.by_point.transpose() * across;
+  image.slides.col(i) = projection.by_point.transpose() * Eigen::Vector2d(across.y(), -across.x());
   return true;
 }
 
 bool ContourImages::see(const View& view, ContourImage& image) const {
   image.pixels.resize(2, count()), image.normals.resize(2, count());
   image.places.resize(3, count()), image.arms.resize(3, count()), image.slopes.resize(3, count());
+  image.slides.resize(3, count());
   for (std::size_t k = 0; k < rings_.size(); ++k)
     for (const Eigen::Index side : {0, 1})
       if (!see(rings_[k], view, 2 * static_cast<Eigen::Index>(k) + side, image)) return false;
@@ -102,15 +110,24 @@ bool ContourImages::see(const View& view, ContourImage& image) const {
 
 void ContourImages::derive(const View& view, const ContourImage& image,
                            Eigen::Ref<Eigen::MatrixXd> by_state) {
+  derive(view, image, image.normals, by_state);
+}
+
+void ContourImages::derive(const View& view, const ContourImage& image,
+                           const Eigen::Ref<const Eigen::Matrix2Xd>& directions,
+                           Eigen::Ref<Eigen::MatrixXd> by_state) {
   for (std::size_t k = 0; k < points_.size(); ++k) {
     backbone_.at(points_[k], by_);
     for (const Eigen::Index side : {0, 1}) {
       const Eigen::Index i = 2 * static_cast<Eigen::Index>(k) + side;
-      if (!image.has(i)) {
+      const Eigen::Vector2d normal = image.normals.col(i), way = directions.col(i);
+      const double out = normal.dot(way), along = normal.y() * way.x() - normal.x() * way.y();
+      if (!image.has(i) || !std::isfinite(out)) {
         by_state.row(i).setZero();
         continue;
       }
-      const Eigen::Vector3d slope = view.X_WC.rotation * image.slopes.col(i),
+      const Eigen::Vector3d slope = view.X_WC.rotation *
+                                    (out * image.slopes.col(i) + along * image.slides.col(i)),
                             arm = view.X_WC.rotation * image.arms.col(i);
       const Eigen::Vector3d lever = arm.cross(slope);
       for (Eigen::Index column = 0; column < by_state.cols(); ++column)
@@ -137,11 +154,16 @@ void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2
       error.size() != count)
     throw std::invalid_argument("contours of different places have no difference");
   for (Eigen::Index i = 0; i < count; ++i) {
-    // Of normals that are each other's opposite there is no middle: such an edge says nothing.
-    const Eigen::Vector2d both = at.normals.col(i) + desired_normals.col(i);
-    const double off = both.dot(seen.col(i) - desired.col(i)) / both.norm();
+    const double off = halfway(at.normals.col(i), desired_normals.col(i)).dot(seen.col(i) - desired.col(i));
     error[i] = std::isfinite(off) ? off : 0;
   }
+}
+
+void halfway_normals(const Eigen::Ref<const Eigen::Matrix2Xd>& one,
+                     const Eigen::Ref<const Eigen::Matrix2Xd>& other, Eigen::Ref<Eigen::Matrix2Xd> middle) {
+  if (one.cols() != other.cols() || one.cols() != middle.cols())
+    throw std::invalid_argument("normals of different places have no middle");
+  for (Eigen::Index i = 0; i < one.cols(); ++i) middle.col(i) = halfway(one.col(i), other.col(i));
 }
 
 }  // namespace flexura

@@ -20,6 +20,8 @@ struct ContourImage {
   Eigen::Matrix3Xd arms;     ///< From the section's middle to P, in C, m.
   /// By how much the curve moves along `normals` as the surface at P moves, by p_CP, px/m.
   Eigen::Matrix3Xd slopes;
+  /// And P's pixel along the curve, the normal turned from v to u.
+  Eigen::Matrix3Xd slides;
 
   /// Whether the contour has point i.
   [[nodiscard]] bool has(Eigen::Index i) const { return pixels.col(i).allFinite(); }
@@ -45,6 +47,12 @@ class ContourImages {
   /// By how much the curves that `view` showed move along their normals, by the state: count() x columns(),
   /// px/rad and px; rows of zeros where there is no contour.
   void derive(const View& view, const ContourImage& image, Eigen::Ref<Eigen::MatrixXd> by_state);
+  // NOLINTBEGIN(performance-unnecessary-value-param): as above.
+  /// The same along other `directions` (unit, a column a point) than the normals, of the surface under the
+  /// curve; rows of zeros where these are not numbers.
+  void derive(const View& view, const ContourImage& image,
+              const Eigen::Ref<const Eigen::Matrix2Xd>& directions, Eigen::Ref<Eigen::MatrixXd> by_state);
+  // NOLINTEND(performance-unnecessary-value-param)
 
  private:
   // A cross-section as it stands.
@@ -74,10 +82,15 @@ class ContourImages {
 /// normals are those of the contours `at` and, where it shall be, `desired_normals`; along the direction
 /// half-way between the two, which is the way of a piece of edge that turns as evenly as it goes. 0 where one
 /// of the three has no edge. std::invalid_argument: other numbers of points.
-// NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
+// NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2Xd>& seen,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired_normals,
                    Eigen::Ref<Eigen::VectorXd> error);
+/// The directions half-way between two normals of each point; not numbers where one of them is none, or they
+/// are each other's opposite.
+void halfway_normals(const Eigen::Ref<const Eigen::Matrix2Xd>& one,
+                     const Eigen::Ref<const Eigen::Matrix2Xd>& other, Eigen::Ref<Eigen::Matrix2Xd> middle);
+// NOLINTEND(performance-unnecessary-value-param)
 
 }  // namespace flexura

@@ -34,6 +34,10 @@ class FlowFeatures : public ServoFeatures {
                            FeatureError& result) override {
     return chords_->error(seen, desired, estimate, views, result);
   }
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
+                            const std::array<View, 2>& views, FeatureError& result) override {
+    return chords_->secant(seen, desired, way, views, result);
+  }
 
   /// Of the last sight, camera by camera: the angles of the chords' images as carried and drawn back, as
   /// measured in the picture, and by how much they turned since the sight before as the flow has it (not

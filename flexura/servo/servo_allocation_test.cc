@@ -52,8 +52,12 @@ TEST(ServoFeatures, AllocateNothingOnceTheyHaveServed) {
     const auto features = servo_features(law, arm, 12);
     Eigen::VectorXd values;
     FeatureError error;
+    const ArmState wanted = {{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}},
+                   halfway = {{{0.45, 0.1}, {-0.2, 0.3}, {0.2, 0.3}}, {1, 1, 1}};
     const auto look = [&] {
-      return features->foreseen(state, views, values) && features->error(values, values, state, views, error);
+      return features->foreseen(state, views, values) &&
+             features->error(values, values, state, views, error) &&
+             features->secant(values, values, {state, wanted, halfway}, views, error);
     };
     ASSERT_TRUE(look());
     const long before = mallocs;

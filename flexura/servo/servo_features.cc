@@ -1,12 +1,15 @@
 #include "flexura/servo/servo_features.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "flexura/control/feature_images.h"
+#include "flexura/control/point_images.h"
 #include "flexura/control/shape_features.h"
 #include "flexura/servo/flow_features.h"
 #include "flexura/servo/measured_places.h"
@@ -72,6 +75,11 @@ class ImageFeatures : public ServoFeatures {
     feature_error(set_, seen, desired, result.error);
     return images_.derive(estimate, views, values_, result.by_state);
   }
+  // Where the lens does not show the arm half-way, the derivatives where it stands are all that is known.
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
+                            const std::array<View, 2>& views, FeatureError& result) override {
+    return error(seen, desired, way.halfway, views, result) || error(seen, desired, way.seen, views, result);
+  }
 
  private:
   Arm arm_;
@@ -84,9 +92,8 @@ class ImageFeatures : public ServoFeatures {
 // The chords of both images, each between two places in a row.
 class ChordAngles : public ChordFeatures {
  public:
-  ChordAngles(const Arm& arm, int points) : inner_(arm, FeatureSet::of_chords(points)) {
-    for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
-  }
+  ChordAngles(const Arm& arm, int points)
+      : shares_(equal_shares(points)), inner_(arm, FeatureSet::of_chords(points)), ends_(arm, shares_) {}
 
   [[nodiscard]] const std::vector<double>& shares() const override { return shares_; }
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
@@ -101,6 +108,20 @@ class ChordAngles : public ChordFeatures {
                            const ArmState& estimate, const std::array<View, 2>& views,
                            FeatureError& result) override {
     return inner_.error(seen, desired, estimate, views, result);
+  }
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
+                            const std::array<View, 2>& views, FeatureError& result) override {
+    if (!inner_.error(seen, desired, way.seen, views, result)) return false;
+    for (std::size_t i = 0; i < 2; ++i) {
+      by_[i].resize(2 * ends_.count(), ends_.columns());
+      const bool are_shown = see(way.seen, views[i], here_[i]) && see(way.wanted, views[i], there_[i]);
+      ends_.set(way.halfway);
+      if (!are_shown || !ends_.see(views[i], halfway_, by_[i])) return true;
+    }
+    const auto chords = static_cast<Eigen::Index>(shares_.size()) - 1;
+    for (std::size_t i = 0; i < 2; ++i)
+      for (Eigen::Index k = 0; k < chords; ++k) turn(i, k, static_cast<Eigen::Index>(i) * chords + k, result);
+    return true;
   }
   [[nodiscard]] bool of_pixels(const std::array<Eigen::Matrix2Xd, 2>& pixels, const ArmState&,
                                const std::array<View, 2>&, Eigen::VectorXd& values) override {
@@ -117,8 +138,41 @@ class ChordAngles : public ChordFeatures {
   }
 
  private:
+  static std::vector<double> equal_shares(int count) {
+    std::vector<double> shares;
+    for (int k = 0; k <= count; ++k) shares.push_back(static_cast<double>(k) / count);
+    return shares;
+  }
+  [[nodiscard]] bool see(const ArmState& state, const View& view, Eigen::Matrix2Xd& pixels) {
+    ends_.set(state);
+    return ends_.see(view, pixels);
+  }
+  // Chord k's image turns from d, where it is wanted, to c by a, and |c| |d| sin a = (c + d)/2 x (c - d), of
+  // which c - d is by_ times the way. How well its angle is measured goes with its length in the picture, so
+  // it counts by the shorter of both: by how many px its end is to turn.
+  void turn(std::size_t camera, Eigen::Index k, Eigen::Index row, FeatureError& result) const {
+    const Eigen::MatrixXd& by = by_[camera];
+    const Eigen::Vector2d c = here_[camera].col(k + 1) - here_[camera].col(k),
+                          d = there_[camera].col(k + 1) - there_[camera].col(k), mean = 0.5 * (c + d);
+    const double lengths = c.norm() * d.norm(), shorter = std::min(c.norm(), d.norm());
+    const double sine = d.x() * c.y() - d.y() * c.x(), angle = std::atan2(sine, c.dot(d));
+    // Of chords that are each other's opposite the middle is any: from 150 degrees on they count less and
+    // less.
+    constexpr double most = 5.3;
+    const double ratio = sine == 0 && c.dot(d) > 0 ? 1 : angle * lengths / sine;
+    const double share = shorter * std::min(most, ratio) / lengths, trust = std::min(1.0, most / ratio);
+    for (Eigen::Index column = 0; column < by.cols(); ++column)
+      result.by_state(row, column) = share * (mean.x() * (by(2 * k + 3, column) - by(2 * k + 1, column)) -
+                                              mean.y() * (by(2 * k + 2, column) - by(2 * k, column)));
+    result.error[row] *= trust * shorter / inner_.set().angle_weight;
+  }
+
   std::vector<double> shares_;
   ImageFeatures inner_;
+  PointImages ends_;
+  std::array<Eigen::Matrix2Xd, 2> here_, there_;  // Pixels of the chords' ends in each camera.
+  Eigen::Matrix2Xd halfway_;
+  std::array<Eigen::MatrixXd, 2> by_;  // By the state half-way.
 };
 
 }  // namespace

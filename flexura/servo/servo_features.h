@@ -22,6 +22,12 @@ struct FeatureError {
   Eigen::MatrixXd by_state;
 };
 
+/// The way that a law is to close: from the shape that is seen to the wanted one. These outlive it.
+struct ShapeWay {
+  const ArmState &seen, &wanted;
+  const ArmState& halfway;  ///< interpolate(seen, wanted, 0.5)
+};
+
 /// What a law looks at. Each is a vector of the same size for every sight, written into what is made to fit.
 /// One thread at a time uses it.
 class ServoFeatures {
@@ -43,6 +49,14 @@ class ServoFeatures {
   [[nodiscard]] virtual bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                    const ArmState& estimate, const std::array<View, 2>& views,
                                    FeatureError& result) = 0;
+  /// The same error, of an arm in the state way.seen, with the derivatives of the whole way instead: it is
+  /// by_state times what the arm's state is off the wanted one, from which `desired` is, as nearly as the
+  /// arm half-way tells (docs/control.md, eq. 20a). Features that know no better have those of error().
+  [[nodiscard]] virtual bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                                    const ShapeWay& way, const std::array<View, 2>& views,
+                                    FeatureError& result) {
+    return error(seen, desired, way.seen, views, result);
+  }
 };
 
 /// Features that are made of the chords between places in a row along the arm.

@@ -12,6 +12,15 @@ ImageLawGains gains_of(const ServoConfig& config) {
   return gains;
 }
 
+// interpolate(from, to, 0.5) in place.
+void middle_of(const ArmState& from, const ArmState& to, ArmState& middle) {
+  middle = from;
+  for (std::size_t i = 0; i < middle.bends.size(); ++i) {
+    middle.bends[i] = 0.5 * (from.bends[i] + to.bends[i]);
+    middle.stretches[i] = 0.5 * (from.stretches[i] + to.stretches[i]);
+  }
+}
+
 bool is_same(const WantedShape& a, const WantedShape& b) {
   return a.state.bends == b.state.bends && a.state.stretches == b.state.stretches &&
          a.offset.size() == b.offset.size() && a.offset == b.offset;
@@ -40,7 +49,8 @@ bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, Feature
   const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
   if (!features_.foreseen(wanted.state, views, desired_)) return false;
   if (wanted.offset.size() == desired_.size()) desired_ += wanted.offset;
-  return features_.error(seen_, desired_, estimate, views, result);
+  middle_of(estimate, wanted.state, halfway_);
+  return features_.secant(seen_, desired_, {estimate, wanted.state, halfway_}, views, result);
 }
 
 void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) {

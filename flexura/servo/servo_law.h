@@ -51,6 +51,7 @@ class ServoLaw {
   DriveResponse response_;
   // What a step works on, kept so that none allocates it anew.
   Eigen::VectorXd seen_, desired_, x_, y_;
+  ArmState halfway_;
   FeatureError is_, was_;
   Eigen::MatrixXd by_shape_, J_;
   ImageLaw::Work work_;

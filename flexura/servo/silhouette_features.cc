@@ -51,6 +51,22 @@ class SilhouetteFeatures : public ServoFeatures {
     }
     return true;
   }
+  // Where the lens does not show the arm half-way, the derivatives where it stands are left.
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
+                            const std::array<View, 2>& views, FeatureError& result) override {
+    if (!error(seen, desired, way.seen, views, result)) return false;
+    const Eigen::Index rows = contours_.count();
+    contours_.set(way.halfway);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      directions_[i].resize(2, rows);
+      halfway_normals(images_[i].normals, normals_in(desired, i), directions_[i]);
+      if (!contours_.see(views[i], halfway_[i])) return true;
+    }
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+      contours_.derive(views[i], halfway_[i], directions_[i],
+                       result.by_state.middleRows(static_cast<Eigen::Index>(i) * rows, rows));
+    return true;
+  }
 
  private:
   using Edges = Eigen::Map<Eigen::Matrix2Xd>;
@@ -82,7 +98,8 @@ class SilhouetteFeatures : public ServoFeatures {
   }
 
   ContourImages contours_;
-  std::array<ContourImage, 2> images_;
+  std::array<ContourImage, 2> images_, halfway_;
+  std::array<Eigen::Matrix2Xd, 2> directions_;  // Of the errors.
   Eigen::VectorXd own_;
 };
 

@@ -1,0 +1,141 @@
+// Features by the derivatives of the whole way, from what is seen to what is wanted.
+#include "flexura/servo/servo_features.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+
+#include "flexura/kinematics/shape.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/servo_views.h"
+
+namespace flexura {
+namespace {
+
+// A way of an arm, as long as `size` in each bend, and what a law makes of it.
+struct ShownWay {
+  ArmState seen, wanted, halfway;
+  Eigen::VectorXd way, seen_values, wanted_values;
+
+  ShownWay(ServoFeatures& features, const std::array<View, 2>& views, const ArmState& from,
+           const ArmState& unit_way, double size)
+      : seen(from), wanted(from) {
+    for (std::size_t i = 0; i < from.bends.size(); ++i) wanted.bends[i] += size * unit_way.bends[i];
+    halfway = interpolate(seen, wanted, 0.5);
+    way.setZero(3 * static_cast<Eigen::Index>(from.bends.size()));
+    for (std::size_t i = 0; i < from.bends.size(); ++i)
+      way.segment<2>(3 * static_cast<Eigen::Index>(i)) = -size * unit_way.bends[i];
+    EXPECT_TRUE(features.foreseen(seen, views, seen_values));
+    EXPECT_TRUE(features.foreseen(wanted, views, wanted_values));
+  }
+  [[nodiscard]] FeatureError secant(ServoFeatures& features, const std::array<View, 2>& views) const {
+    FeatureError result;
+    EXPECT_TRUE(features.secant(seen_values, wanted_values, {seen, wanted, halfway}, views, result));
+    return result;
+  }
+  [[nodiscard]] FeatureError tangent(ServoFeatures& features, const std::array<View, 2>& views) const {
+    FeatureError result;
+    EXPECT_TRUE(features.error(seen_values, wanted_values, seen, views, result));
+    return result;
+  }
+  // What derivatives leave unexplained of the error.
+  [[nodiscard]] double rest(const FeatureError& error) const {
+    return (error.error - error.by_state * way).norm();
+  }
+};
+
+// The rest of the derivatives half-way is of third order in the way's length, that of those where the arm
+// stands of second; and on no way they are the same.
+TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
+  for (const ServoLawKind law : {ServoLawKind::points, ServoLawKind::chords, ServoLawKind::moments}) {
+    double worst_order = 1e9, rests = 0, tangents = 0;
+    for_random_cases(20, [&](TestRandom& random) {
+      const Arm arm = servo_arm();
+      const std::array<View, 2> views = servo_views();
+      const auto features = servo_features(law, arm, 8);
+      const ArmState from = random_servo_state(random, arm, 0.6),
+                     unit_way = random_servo_state(random, arm, 1);
+      const ShownWay there(*features, views, from, unit_way, 0.2),
+          nearer(*features, views, from, unit_way, 0.1), none(*features, views, from, unit_way, 0);
+      const double rest = there.rest(there.secant(*features, views));
+      rests += rest, tangents += there.rest(there.tangent(*features, views));
+      worst_order = std::min(worst_order, rest / nearer.rest(nearer.secant(*features, views)));
+      // Chords count by their images' lengths besides.
+      const Eigen::MatrixXd at_rest = none.secant(*features, views).by_state,
+                            slopes = none.tangent(*features, views).by_state;
+      EXPECT_EQ(none.secant(*features, views).error.norm(), 0);
+      EXPECT_LT((at_rest.rowwise().normalized() - slopes.rowwise().normalized()).norm(), 1e-9);
+      if (law == ServoLawKind::chords) return;
+      EXPECT_EQ(there.secant(*features, views).error, there.tangent(*features, views).error);
+      EXPECT_EQ(at_rest, slopes);
+    });
+    std::printf(
+        "law %d: half the way leaves 1/%.1f or less, the derivatives where it stands %.0f times as "
+        "much\n",
+        static_cast<int>(law), worst_order, tangents / rests);
+    EXPECT_GT(worst_order, 6);
+    EXPECT_GT(tangents, 5 * rests);
+  }
+}
+
+// Of edges a slip along themselves is left, which no derivative knows: a tenth of what the derivatives where
+// the arm stands leave of a way of half a rad a bend.
+TEST(ServoFeatures, OfSilhouettesTellTheWholeWayButForSlips) {
+  double rests = 0, tangents = 0;
+  for_random_cases(20, [&](TestRandom& random) {
+    const Arm arm = servo_arm();
+    const std::array<View, 2> views = servo_views();
+    const auto features = servo_features(ServoLawKind::silhouettes, arm, 8);
+    const ArmState from = random_servo_state(random, arm, 0.6), way = random_servo_state(random, arm, 1);
+    const ShownWay there(*features, views, from, way, 0.5), none(*features, views, from, way, 0);
+    rests += there.rest(there.secant(*features, views));
+    tangents += there.rest(there.tangent(*features, views));
+    const Eigen::MatrixXd slopes = none.tangent(*features, views).by_state;
+    EXPECT_LT((none.secant(*features, views).by_state - slopes).norm(), 1e-9 * slopes.norm());
+  });
+  std::printf("the way by edges: %.3f of what is left by the derivatives where the arm stands\n",
+              rests / tangents);
+  EXPECT_LT(rests, 0.3 * tangents);
+}
+
+// The whole arm turned over: what comes out are numbers, and none that are out of all proportion.
+TEST(ServoFeatures, OfWaysThatHaveNoMiddleAreNumbersAllTheSame) {
+  const Arm arm = servo_arm();
+  const std::array<View, 2> views = servo_views();
+  const ArmState from = {{{2, 0}, {2, 0}, {2, 0}}, {1, 1, 1}},
+                 over = {{{-4, 0}, {-4, 0}, {-4, 0}}, {1, 1, 1}};
+  for (const ServoLawKind law : {ServoLawKind::points, ServoLawKind::chords, ServoLawKind::silhouettes}) {
+    const auto features = servo_features(law, arm, 8);
+    const ShownWay opposite(*features, views, from, over, 1);
+    EXPECT_EQ(opposite.wanted.bends[2], Eigen::Vector2d(-2, 0));
+    const FeatureError error = opposite.secant(*features, views);
+    EXPECT_TRUE(error.error.allFinite());
+    EXPECT_TRUE(error.by_state.allFinite());
+    EXPECT_LT(error.by_state.norm(), 1e4);
+  }
+}
+
+// What was measured as no number stays none, for the limiter to stop at; an edge that was not is passed over.
+TEST(ServoFeatures, OfWhatIsNoNumberTellNone) {
+  const Arm arm = servo_arm();
+  const std::array<View, 2> views = servo_views();
+  const ArmState from = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}},
+                 way = {{{0.1, 0}, {0, -0.4}, {0.2, 0}}, {1, 1, 1}};
+  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
+                                 ServoLawKind::potential, ServoLawKind::silhouettes}) {
+    const auto features = servo_features(law, arm, 8);
+    ShownWay there(*features, views, from, way, 1);
+    there.seen_values[0] = std::nan("");
+    const FeatureError error = there.secant(*features, views);
+    EXPECT_EQ(error.error.allFinite(), law == ServoLawKind::silhouettes) << static_cast<int>(law);
+  }
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# rigs calibrated from rough guesses, and the paper's methods: ./dev study calibration [TRIALS] [SEED] [DRAWN] [PRINTED]
+# rigs calibrated from rough guesses, and the paper's methods: ./dev study calibration [TRIALS] [SEED] [DRAWN] [PRINTED] [BUNDLES]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 trials=${1:-100}
 seed=${2:-1}
 drawn=${3:-20}
 printed=${4:-20}
+bundles=${5:-$drawn}
 page=docs/studies/calibration.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -31,7 +32,7 @@ mkdir -p docs/studies "$trials_kept"
   echo "are inside, with normal noise in each; nothing is drawn."
   echo
   echo '```console'
-  echo "\$ ./dev study calibration $trials $seed $drawn $printed"
+  echo "\$ ./dev study calibration $trials $seed $drawn $printed $bundles"
   echo '```'
   echo
   "$build/bin/calibration_study" "$trials" "$seed"
@@ -41,10 +42,10 @@ mkdir -p docs/studies "$trials_kept"
   echo "Simulated rigs at their ports: pictures of 640 x 480 px with f = 800 px at ratio 1, a noise of 2 to 3 of 255, heads"
   echo "that count in steps of 0.075 degrees. Evenly within these bounds, cameras start turned by 10 degrees in pan and in"
   echo "tilt and by 1 in roll, 0.2 m off along each axis, at a zoom of 1 to 2.5, with a principal point 1 px off (10 px for"
-  echo "\`bundle\`); the arm's sections bend by 1 % more or less and are 0.5 % longer or shorter. The cylinder (radius 0.1 m) is 1.5 m away, the"
+  echo "both bundles, whose heads' zeros are 1 degree off, tilt axes 3 mm along each axis and k1 0.02, too); the arm's sections bend by 1 % more or less and are 0.5 % longer or shorter. The cylinder (radius 0.1 m) is 1.5 m away, the"
   echo "arm 2.5 m. What remains is the simulated truth's."
   echo
-  "$build/bin/paper_study" "$drawn" "$seed" "$printed" "$trials_kept" "$trials_kept/picture.svg"
+  "$build/bin/paper_study" "$drawn" "$seed" "$printed" "$bundles" "$trials_kept" "$trials_kept/picture.svg"
   echo "![Where the printed methods start and what comes of them; which share of the starts each method brings how near](../images/calibration-study.svg)"
 } >"$trials_kept/page.md"
 mv "$trials_kept/page.md" "$page"

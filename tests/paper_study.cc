@@ -1,7 +1,7 @@
 // Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study TRIALS
-// SEED PRINTED FOLDER [PICTURE]: so many trials of the methods that are meant to succeed, and PRINTED ones of
-// the paper's as printed. Trials are kept in FOLDER as they end; those that are there already are not run
-// again. Draws where the printed ones fail into PICTURE. docs/studies/calibration.md
+// SEED PRINTED BUNDLES FOLDER [PICTURE]: so many trials of the paper's methods as corrected, PRINTED ones of
+// these as printed, BUNDLES of the bundles. Trials are kept in FOLDER as they end; those that are there
+// already are not run again. Draws where the printed ones fail into PICTURE. docs/studies/calibration.md
 // paper_study --method METHOD SEED FOLDER FIRST[-LAST]...: these trials of one method, each in a line with
 // its reason as told; then the method's row, by them.
 #include <fmt/format.h>
@@ -205,23 +205,25 @@ int main(int argc, char** argv) {
     for (int i = 5; i < argc; ++i) add_indices(argv[i], indices);
     return run_chosen(argv[2], std::strtoull(argv[3], nullptr, 10), argv[4], indices);
   }
-  if (argc < 5) {
+  if (argc < 6) {
     fmt::print(stderr,
-               "paper_study TRIALS SEED PRINTED FOLDER [PICTURE]\n"
+               "paper_study TRIALS SEED PRINTED BUNDLES FOLDER [PICTURE]\n"
                "paper_study --method METHOD SEED FOLDER FIRST[-LAST]...\n");
     return 2;
   }
   const auto trials = static_cast<std::size_t>(std::atoi(argv[1]));
   const std::uint64_t seed = std::strtoull(argv[2], nullptr, 10);
-  const auto printed = static_cast<std::size_t>(std::atoi(argv[3]));
-  const std::filesystem::path folder = argv[4];
+  const auto printed = static_cast<std::size_t>(std::atoi(argv[3])),
+             bundles = static_cast<std::size_t>(std::atoi(argv[4]));
+  const std::filesystem::path folder = argv[5];
   std::filesystem::create_directories(folder);
   print_head();
   MethodTrials all, shown;
   for (const std::string method :
        {"bundle", "bundle-etalon", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
-    const bool is_printed = method.ends_with("-paper");
-    all.emplace_back(method, run_all(method, is_printed ? printed : trials, seed, folder));
+    const bool is_printed = method.ends_with("-paper"), is_bundle = method.starts_with("bundle");
+    const std::size_t count = is_printed ? printed : is_bundle ? bundles : trials;
+    all.emplace_back(method, run_all(method, count, seed, folder));
     if (is_printed) shown.push_back(all.back());
     print_row(method, all.back().second);
     std::fflush(stdout);
@@ -229,6 +231,6 @@ int main(int argc, char** argv) {
   fmt::print("\n");
   for (const auto& [method, ended] : all) print_failures(method, ended);
   print_known(all);
-  if (argc > 5) std::ofstream(argv[5]) << OutcomePlot::draw(shown, all);
+  if (argc > 6) std::ofstream(argv[6]) << OutcomePlot::draw(shown, all);
   return 0;
 }

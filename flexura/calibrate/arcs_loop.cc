@@ -268,11 +268,71 @@ LookLoop::Trouble ArcsLoop::square() {
   }
 }
 
+// How many times as long a focal length shows half of the markers of both arcs still.
+double ArcsLoop::longer(std::size_t i) const {
+  constexpr double most = 2.5, less = 0.95, margin = 20;  // px
+  const std::vector<KnownMarker>& markers = loop_.config().picture.markers;
+  const std::size_t enough = std::max(fewest_markers(loop_.config()), markers.size() / 2);
+  double times = most;
+  for (; times > 1; times *= less) {
+    RigStance stance = loop_.stance(i);
+    stance.head.zoom = zoom_by(loop_.camera(i), stance.head.zoom, times);
+    const View view = view_of(model(), stance);
+    const bool shows = std::ranges::all_of(plan_.arcs, [&](const ArmState& arc) {
+      const MarkerScene scene =
+          expected_markers(model().arm, model().bent(arc), markers, view, loop_.believed().arm);
+      const auto inside = std::ranges::count_if(scene.markers, [&](const auto& place) {
+        return place && place->pixel.minCoeff() > margin && place->pixel.x() < view.width - 1 - margin &&
+               place->pixel.y() < view.height - 1 - margin;
+      });
+      return static_cast<std::size_t>(inside) >= enough;
+    });
+    if (shows) break;
+  }
+  return std::max(1.0, times);
+}
+
+// What a longer focal length moves in the picture moves away from the principal point.
+LookLoop::Trouble ArcsLoop::center() {
+  constexpr double least = 1.2;  // Where noise counts ten times.
+  std::array<std::optional<RigStance>, 2> wide;
+  for (std::size_t i = 0; i < 2; ++i) {
+    RigStance next = loop_.stance(i);
+    next.head.zoom = zoom_by(loop_.camera(i), next.head.zoom, longer(i));
+    next = loop_.commandable_stance(i, next);
+    const double times = loop_.camera(i).lens().at(next.head.zoom).fx / loop_.lens(i).fx;
+    if (times < least) {
+      loop_.result().notes.push_back(
+          fmt::format("{}: the principal point is taken to be known within 1 px: enough of the arm is in the "
+                      "picture up to {:.2f} times the focal length, expected {}",
+                      loop_.name(i), std::max(1.0, times), least));
+      continue;
+    }
+    loop_.decide(i, "principal point", 0, 0, "px",
+                 fmt::format("zoom to {:.5g}, for what stays where it is", next.head.zoom));
+    wide[i] = loop_.stance(i);
+    if (auto trouble = loop_.go(i, next)) return trouble;
+  }
+  if (!wide[0] && !wide[1]) return std::nullopt;
+  for (const std::size_t arc : {std::size_t{0}, std::size_t{1}}) {
+    if (auto trouble = loop_.show(plan_.arcs[arc])) return trouble;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (wide[i])
+        if (auto trouble = look(i, arc)) return trouble;
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    if (wide[i])
+      if (auto trouble = loop_.go(i, *wide[i])) return trouble;
+  return std::nullopt;
+}
+
 LookLoop::Trouble ArcsLoop::run() {
   if (auto trouble = begin_with_arm(loop_)) return trouble;
   if (auto why = plan_arcs(loop_, false, plan_)) return why;
   loop_.result().target = plan_.target;
   if (auto trouble = zoom_as_planned(loop_, plan_)) return trouble;
+  if (auto trouble = square()) return trouble;
+  if (auto trouble = center()) return trouble;
   if (auto trouble = square()) return trouble;
   loop_.result().notes.push_back(
       fmt::format("the angle between the axes is known within {:.3f} deg (standard deviation); residuals are "

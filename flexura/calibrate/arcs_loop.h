@@ -21,8 +21,9 @@ namespace flexura {
 
 /// Calibrates with arcs of the arm (section 3.4), made well posed: both cameras see both arcs, by their
 /// markers and axes; what moves a camera from where all these pictures put it to where the simulator has it
-/// is commanded, until nothing finer can be, or pictures tell nothing finer. Pictures that do not agree
-/// within their standard deviations are trouble, and so is what cannot be commanded. Then the zooms.
+/// is commanded, until nothing finer can be, or pictures tell nothing finer. Then both look once with a
+/// longer focal length, which tells principal points, and go on from what is known now. Pictures that do not
+/// agree within their standard deviations are trouble, and so is what cannot be commanded. Then the zooms.
 class ArcsLoop {
  public:
   explicit ArcsLoop(LookLoop& loop);
@@ -41,6 +42,8 @@ class ArcsLoop {
   [[nodiscard]] Trouble locate();
   [[nodiscard]] Trouble disagreement() const;
   [[nodiscard]] Trouble square();
+  [[nodiscard]] Trouble center();
+  [[nodiscard]] double longer(std::size_t i) const;
   struct Wanted {
     std::array<RigStance, 2> stances;
     std::array<bool, 2> is_short{};  // A head or stage does not reach where it should.

@@ -64,7 +64,7 @@ struct EtalonLoop::Offset {
 
 std::array<EtalonLoop::Offset, 4> EtalonLoop::offsets(std::size_t i) const {
   const EtalonView& view = views_[i];
-  const double by_px = 1 / loop_.lens(i).fx, accepted = loop_.config().accepted;
+  const double by_px = 1 / lens(i).fx, accepted = loop_.config().accepted;
   const double distance = view.distance, turn = 1 / distance;
   // A camera that slides keeps looking at the cylinder: position and orientation do not undo each other.
   return {Offset{"horizontal orientation", view.middle, view.sight, accepted * by_px, "pan", {-1, 0, 0, 0}},
@@ -83,9 +83,16 @@ std::array<EtalonLoop::Offset, 4> EtalonLoop::offsets(std::size_t i) const {
                  {0, turn, 0, 1}}};
 }
 
+// As it is believed to be by now.
+Intrinsics EtalonLoop::lens(std::size_t i) const {
+  Intrinsics lens = loop_.lens(i);
+  lens.cx += beside_[i].x(), lens.cy += beside_[i].y();
+  return lens;
+}
+
 LoopTrouble EtalonLoop::look(std::size_t i) {
   return loop_.look(i, [this, i](RigSight& sight) {
-    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]), loop_.lens(i),
+    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]), lens(i),
                             loop_.config().etalon.radius);
     tell(views_[i], loop_, sight);
   });
@@ -98,7 +105,7 @@ LoopTrouble EtalonLoop::into_view(std::size_t i) {
     const EtalonView& view = views_[i];
     if (!view.centroid)
       return fmt::format("the cylinder is out of view of camera {}: {}", loop_.name(i), view.reason);
-    const Intrinsics lens = loop_.lens(i);
+    const Intrinsics lens = this->lens(i);
     RigStance next = loop_.stance(i);
     next.head.pan -= std::atan((view.centroid->x() - lens.cx) / lens.fx);
     next.head.tilt -= std::atan((view.centroid->y() - lens.cy) / lens.fy);
@@ -159,6 +166,62 @@ LoopTrouble EtalonLoop::align(std::size_t i) {
                "px", "all four offsets hold in one picture, or nothing finer can be commanded");
   loop_.result().roll[i] = views_[i].roll;
   return std::nullopt;
+}
+
+// How many times as long a focal length shows all of the cylinder still.
+double EtalonLoop::longer(std::size_t i) const {
+  const EtalonSighting& seen = views_[i].sighting;
+  const Intrinsics lens = this->lens(i);
+  const SensorConfig& sensor = loop_.model(i).sensor;
+  const double half = 0.5 * (seen.bottom - seen.top);
+  double times = std::numeric_limits<double>::infinity();
+  const auto keep = [&](double from_middle, double room) {
+    constexpr double margin = 12;  // px: more than a principal point is off, times what it grows by.
+    if (from_middle > 0) times = std::min(times, (room - margin) / from_middle);
+  };
+  for (const UprightLine& side : {seen.left, seen.right}) {
+    for (const double at : {side.at - side.slope * half, side.at + side.slope * half})
+      keep(at - lens.cx, static_cast<double>(sensor.width - 1) - lens.cx), keep(lens.cx - at, lens.cx);
+  }
+  keep(lens.cy - seen.top, lens.cy);
+  keep(seen.bottom - lens.cy, static_cast<double>(sensor.height - 1) - lens.cy);
+  return times;
+}
+
+// What a longer focal length moves in the picture moves away from the principal point.
+LoopTrouble EtalonLoop::center(std::size_t i) {
+  constexpr double least = 1.2;  // Where noise counts ten times.
+  const RigStance wide = loop_.stance(i);
+  RigStance next = wide;
+  next.head.zoom = zoom_by(loop_.camera(i), wide.head.zoom, longer(i));
+  next = loop_.commandable_stance(i, next);
+  const EtalonView before = views_[i];
+  const Intrinsics lens = this->lens(i), lens_then = loop_.camera(i).lens().at(next.head.zoom);
+  const double times = lens_then.fx / lens.fx;
+  if (times < least) {
+    loop_.result().notes.push_back(
+        fmt::format("{}: the principal point is taken to be where the file has it: all of the cylinder is in "
+                    "the picture up to {:.2f} times the shortest focal length, expected {}",
+                    loop_.name(i), std::max(1.0, times), least));
+    return std::nullopt;
+  }
+  loop_.decide(i, "principal point", 0, 0, "px",
+               fmt::format("zoom to {:.5g}, for what stays where it is", next.head.zoom));
+  if (auto trouble = loop_.go(i, next)) return trouble;
+  if (auto trouble = look(i)) return trouble;
+  if (!views_[i].reason.empty())
+    return fmt::format("camera {} at {:.2f} times its shortest focal length: {}", loop_.name(i), times,
+                       views_[i].reason);
+  const auto stays = [](double was, double is, double f, double f_then) {
+    return (was * f_then - is * f) / (f_then - f);
+  };
+  const Eigen::Vector2d off(stays(before.middle, views_[i].middle, lens.fx, lens_then.fx),
+                            stays(before.height, views_[i].height, lens.fy, lens_then.fy));
+  beside_[i] += off;
+  loop_.decide(i, "principal point", off.norm(), 0, "px",
+               fmt::format("it is {:.3f} px to the right of and {:.3f} px below where the file has it",
+                           off.x(), off.y()));
+  return loop_.go(i, wide);
 }
 
 LoopTrouble EtalonLoop::zoom() {
@@ -236,8 +299,11 @@ LoopTrouble EtalonLoop::square() {
 
 LoopTrouble EtalonLoop::run() {
   if (auto trouble = begin_with_etalon(loop_)) return trouble;
-  for (std::size_t i = 0; i < 2; ++i)
+  for (std::size_t i = 0; i < 2; ++i) {
     if (auto trouble = align(i)) return trouble;
+    if (auto trouble = center(i)) return trouble;
+    if (auto trouble = align(i)) return trouble;
+  }
   if (auto trouble = zoom()) return trouble;
   return square();
 }

@@ -30,7 +30,7 @@ TEST(ShapeWithDoubtfulViews, IsFoundWithTheErrorsOfTheViews) {
     EXPECT_LT(shape_error(found.shape, truth), 5e-4);
     ASSERT_EQ(found.shape.views.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_LT((found.shape.views[i].turn - cameras.errors[i].turn).norm(), 0.05 * one_degree);
+      EXPECT_LT((found.shape.views[i].turn - cameras.errors[i].turn).norm(), 0.05 * degree);
       EXPECT_NEAR(found.shape.views[i].focal, cameras.errors[i].focal, 2e-3);
     }
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -17,7 +18,10 @@ namespace flexura {
 struct WrongStart {
   double pan = 0, tilt = 0, roll = 0, zoom = 1, cx = 0, cy = 0;
   std::array<double, 3> shift = {0, 0, 0};
-  double pan_zero = 0, tilt_zero = 0;  ///< Of the head; not drawn by wrong_start.
+  // Not drawn by wrong_start:
+  double pan_zero = 0, tilt_zero = 0;           ///< Of the head.
+  std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point of it, m.
+  double k1 = 0;                                ///< Of the lens.
 };
 
 /// Evenly over what the paper's methods shall start from: pan and tilt 10 degrees off, roll 1, the stage 0.2
@@ -73,12 +77,13 @@ inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) 
   std::string text = fmt::format(
       "name = \"{}\"\nmount = {{ position = [{}, {}, {}], look_at = [{}, {}, {}], roll = {}, stage = {{ x = "
       "{}, y = {}, "
-      "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {} }}\n",
+      "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {}, distortion = [{}, 0, 0, 0, 0] }}\n",
       is_side ? "side" : "front", at[0], at[1], at[2], look[0], look[1], look[2], wrong.roll, slide, slide,
-      slide, 800 * rig.size, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy);
+      slide, 800 * rig.size, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy, wrong.k1);
   if (is_truth)
-    return fmt::format("[[truth.camera]]\n{}head = {{ pan = {{ zero = {} }}, tilt = {{ zero = {} }} }}\n",
-                       text, wrong.pan_zero, wrong.tilt_zero);
+    return fmt::format(
+        "[[truth.camera]]\n{}head = {{ pan = {{ zero = {} }}, tilt = {{ zero = {} }}, tilt_axis = [{}] }}\n",
+        text, wrong.pan_zero, wrong.tilt_zero, fmt::join(wrong.tilt_axis, ", "));
   text += fmt::format(
       "head = {{ pan = {{ limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }}, tilt = {{ "
       "limits_deg = "

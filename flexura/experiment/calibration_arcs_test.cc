@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,13 +12,18 @@
 #include <vector>
 
 #include "flexura/base/image.h"
+#include "flexura/base/source.h"
+#include "flexura/calibrate/arcs_loop.h"
+#include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
+#include "flexura/math/arrays.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "tests/support/calibration_bench.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/loop_files.h"
 #include "tests/support/quiet.h"
@@ -94,6 +100,72 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
                            "rotated by 0.00, 0.00, 0.00 deg",
                            "; motors at ", "camera side, ideal: the arc in ZOY"})
     EXPECT_THAT(report, HasSubstr(part));
+}
+
+TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
+  const auto problems_of = [](const std::string& text) {
+    std::vector<std::string> problems;
+    try {
+      (void)parse_experiment(text, "x.toml");
+    } catch (const InputError& error) {
+      for (const auto& problem : error.problems()) problems.push_back(problem.what);
+    }
+    return problems;
+  };
+  const LoopRig rig = {.size = 0.5};
+  EXPECT_THAT(
+      problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
+                             "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
+                             rig)),
+      ::testing::ElementsAre("task[0].loop.turn: counts with etalon-paper alone: expected no such key",
+                             "task[0].loop.slide: counts with etalon-paper alone: expected no such key",
+                             "task[0].loop.zoom_step: counts with etalon-paper alone: expected no such key",
+                             "task[0].loop.arc: counts with arcs and arcs-paper alone: expected no such key",
+                             "task[0].zooms: counts with bundle alone: expected no such key"));
+  const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
+  const std::string count = ": counts with bundle and bundle-etalon alone: expected no such key";
+  EXPECT_THAT(
+      problems_of(arcs_rig("method = \"arcs\"\nguess = { focal = 0.2, principal_point = 3, zero = 0.1, "
+                           "rotation = 0.1, exact_heads = true }\nloop.arc_deg = 80\n",
+                           arcs)),
+      ::testing::ElementsAre("task[0].guess.focal" + count, "task[0].guess.principal_point" + count,
+                             "task[0].guess.zero" + count));
+  EXPECT_THAT(problems_of(etalon_rig("method = \"etalon-paper\"\nloop = { turn_deg = 1, slide = 0.1, "
+                                     "zoom_step = 0.1, accepted = 1, zoom_accepted = 0.1 }\n",
+                                     rig)),
+              ::testing::IsEmpty());
+}
+
+TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
+  CalibrationBench bench(arcs_rig("method = \"arcs\"\nguess = { rotation = 0.02, exact_heads = true }\n",
+                                  arcs_cameras({WrongStart{}, WrongStart{}}, false)));
+  const Experiment& file = bench.experiment();
+  const LoopConfig config =
+      loop_config(std::get<CalibrateTask>(file.task.front()), file.arm, file.cameras(), file.stand);
+  ASSERT_TRUE(config.prior.has_value());
+  const RigPrior prior = arcs_prior(*config.prior);
+  for (const CameraPrior& camera : prior.cameras) {
+    EXPECT_EQ(camera.rotation, 0.02);
+    EXPECT_EQ(camera.steps, 0);
+    EXPECT_EQ(camera.pan_zero, 0);
+    EXPECT_EQ(camera.tilt_zero, 0);
+    EXPECT_EQ(camera.principal_point, 1);
+    EXPECT_EQ(camera.focal, 0);
+  }
+}
+
+// Of the distance from what is looked at: the cylinder may stand far from the arm's base.
+TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
+  const CalibrationBench bench(
+      etalon_rig("method = \"bundle-etalon\"\nguess.distance = 0.1\n", {}, "height = 0.4\n"));
+  const Experiment& file = bench.experiment();
+  const RigModel believed = rig_model(file.arm.arm(), file.cameras());
+  const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), believed, file.stand);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Eigen::Vector3d from = vector(believed.cameras[i].mount.position);
+    EXPECT_NEAR(prior.cameras[i].position, 0.1 * (from - Eigen::Vector3d(0, 0.3 + 0.5 * 0.4, 0)).norm(),
+                1e-12);
+  }
 }
 
 }  // namespace

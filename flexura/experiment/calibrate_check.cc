@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numbers>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/camera_names.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "flexura/base/degree.h"
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/camera_names.h"

@@ -26,6 +26,16 @@ M message_of(const McapMessage& message) {
   return read_as<M>(parse_json(message.text(), "the log's " + message.channel->topic));
 }
 
+// Whose picture a sighting is of; none of a damaged one.
+template <class Sighting>
+std::optional<std::size_t> camera_of(const ViewedRig& rig, const McapMessage& message) {
+  try {
+    return rig.camera(message_of<Sighting>(message).camera);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 ViewedRigPtr rig_of(const std::filesystem::path& folder) {
   return std::make_shared<const ViewedRig>(load_experiment(file_of_results(folder, experiment_file_name)));
 }
@@ -57,12 +67,20 @@ void Recording::index() {
   heads_.resize(rig_->cameras.size());
   stages_.resize(rig_->cameras.size());
   servo_sightings_.resize(rig_->cameras.size());
+  calibration_sightings_.resize(rig_->cameras.size());
   for (const McapMessage& message : log_.messages()) {
     const std::string& topic = message.channel->topic;
     const Entry entry{message.log_time, &message};
     if (topic == arm_state_topic) states_.push_back(entry);
     if (topic == servo_steps_topic) servo_steps_.push_back(entry);
-    if (topic == servo_sightings_topic) index_sighting(entry);
+    if (topic == calibration_decisions_topic) decisions_.push_back(entry);
+    const bool is_servo = topic == servo_sightings_topic,
+               is_calibration = topic == calibration_sightings_topic;
+    if (is_servo || is_calibration) {
+      const auto camera = is_servo ? camera_of<ServoSightingMessage>(*rig_, message)
+                                   : camera_of<CalibrationSightingMessage>(*rig_, message);
+      if (camera) (is_servo ? servo_sightings_ : calibration_sightings_)[*camera].push_back(entry);
+    }
     for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
       const std::string& name = rig_->cameras[i].config().name;
       if (topic == image_topic(name)) images_[i].push_back(entry);
@@ -76,17 +94,10 @@ void Recording::index() {
   std::ranges::for_each(heads_, sort);
   std::ranges::for_each(stages_, sort);
   sort(servo_steps_);
+  sort(decisions_);
   std::ranges::for_each(servo_sightings_, sort);
+  std::ranges::for_each(calibration_sightings_, sort);
   servo_interval_ = interval_of(servo_steps_);
-}
-
-void Recording::index_sighting(const Entry& entry) {
-  try {
-    const auto camera = rig_->camera(message_of<ServoSightingMessage>(*entry.message).camera);
-    if (camera) servo_sightings_[*camera].push_back(entry);
-  } catch (const InputError&) {
-    return;  // A damaged one is of no picture.
-  }
 }
 
 void Recording::read_marks() {
@@ -189,20 +200,21 @@ std::optional<ServoStepMessage> Recording::servo_step(double time) const {
   return message_of<ServoStepMessage>(*entry.message);
 }
 
-std::optional<ServoPicture> Recording::servo_picture(std::size_t camera, double time) const {
-  const Entries& sightings = servo_sightings_[camera];
+// Of the picture that is shown then.
+std::optional<Recording::PictureEntry> Recording::sighting_at(const Entries& sightings, std::size_t camera,
+                                                              double time) const {
   if (sightings.empty()) return std::nullopt;
-  const Entry* entry = &sightings[place_at(sightings, time)];
   if (images_[camera].empty()) {
-    if (seconds(entry->time) > time) return std::nullopt;
-    return ServoPicture{message_of<ServoSightingMessage>(*entry->message), {}};
+    const Entry& entry = sightings[place_at(sightings, time)];
+    if (seconds(entry.time) > time) return std::nullopt;
+    return PictureEntry{entry.message, {}};
   }
   // Both stand in the log at the time when the picture came.
   const std::size_t place = image_at(camera, time);
   const auto [first, last] =
       std::ranges::equal_range(sightings, images_[camera][place].time, {}, &Entry::time);
   if (first == last) return std::nullopt;
-  return ServoPicture{message_of<ServoSightingMessage>(*first->message), static_cast<std::int64_t>(place)};
+  return PictureEntry{first->message, static_cast<std::int64_t>(place)};
 }
 
 std::optional<ShownServo> Recording::servo(double time) const {
@@ -210,7 +222,32 @@ std::optional<ShownServo> Recording::servo(double time) const {
   if (!step) return std::nullopt;
   ShownServo shown{std::move(*step), {}};
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera)
-    if (auto picture = servo_picture(camera, time)) shown.pictures.push_back(std::move(*picture));
+    if (const auto entry = sighting_at(servo_sightings_[camera], camera, time))
+      shown.pictures.push_back({message_of<ServoSightingMessage>(*entry->message), entry->number});
+  return shown;
+}
+
+std::optional<ShownCalibration> Recording::calibration(double time) const {
+  if (decisions_.empty()) return std::nullopt;
+  ShownCalibration shown;
+  const auto has_begun = [&](const Entry& entry) { return seconds(entry.time) <= time; };
+  const Entry& last = decisions_[place_at(decisions_, time)];
+  std::uint64_t begun = 0;  // ns: what belongs to one before that is over.
+  if (has_begun(last)) {
+    auto decision = message_of<CalibrationDecisionMessage>(*last.message);
+    if (decision.ended.value_or(false)) {
+      begun = last.time + 1;
+    } else {
+      shown.decision = std::move(decision);
+    }
+  }
+  for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera) {
+    const Entries& all = calibration_sightings_[camera];
+    const auto entry = sighting_at(all, camera, time);
+    if (!entry || all[place_at(all, time)].time < begun || !has_begun(all[place_at(all, time)])) continue;
+    shown.pictures.push_back({message_of<CalibrationSightingMessage>(*entry->message), entry->number});
+  }
+  if (!shown.decision && shown.pictures.empty()) return std::nullopt;
   return shown;
 }
 

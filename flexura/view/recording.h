@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/store/mcap_reader.h"
+#include "flexura/view/calibration_extras.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/servo_extras.h"
 #include "flexura/view/viewed_rig.h"
@@ -54,6 +55,10 @@ class Recording {
   [[nodiscard]] std::optional<ServoStepMessage> servo_step(double time) const;
   /// With what it sees in the pictures that are shown then.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
+  /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures
+  /// that are shown then, while one goes on. InputError likewise.
+  [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
+  [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
   /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
   /// starts.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
@@ -67,9 +72,13 @@ class Recording {
   [[nodiscard]] static double seconds(std::uint64_t nanoseconds);
   [[nodiscard]] static std::size_t place_at(const Entries& entries, double time);
   void index();
-  void index_sighting(const Entry& entry);
   [[nodiscard]] static double interval_of(const Entries& entries);
-  [[nodiscard]] std::optional<ServoPicture> servo_picture(std::size_t camera, double time) const;
+  struct PictureEntry {
+    const McapMessage* message = nullptr;
+    std::optional<std::int64_t> number;  // of the picture
+  };
+  [[nodiscard]] std::optional<PictureEntry> sighting_at(const Entries& sightings, std::size_t camera,
+                                                        double time) const;
   void read_marks();
   void mark_violations();
 
@@ -79,8 +88,9 @@ class Recording {
   Entries states_;
   std::vector<Entries> images_, heads_, stages_;  // by camera
   Entries servo_steps_;
-  std::vector<Entries> servo_sightings_;  // by camera
-  double servo_interval_ = 0;             // from one command of a servo to the next, s
+  std::vector<Entries> servo_sightings_, calibration_sightings_;  // by camera
+  Entries decisions_;                                             // of calibrations
+  double servo_interval_ = 0;  // from one command of a servo to the next, s
   std::vector<Mark> marks_;
 };
 

@@ -131,12 +131,16 @@ void RecordingSession::take(const Document& document, std::function<void(HttpAns
 
 // Before the state, so that it has come when that is drawn.
 void RecordingSession::send_extras(ClientId client) {
-  if (!recording_->has_servo()) return;
+  if (!recording_->has_servo() && !recording_->has_calibration()) return;
   const double time = times_.at(client);
   Extras extras;
   extras.time = time;
   try {
-    if (const auto servo = recording_->servo(time)) extras = servo_extras(*viewed(), *servo);
+    if (const auto servo = recording_->servo(time)) {
+      extras = servo_extras(*viewed(), *servo);
+    } else if (const auto calibration = recording_->calibration(time)) {
+      extras = calibration_extras(*calibration);
+    }
   } catch (const InputError&) {
     extras = {};  // What is damaged is not drawn.
   }

@@ -5,6 +5,21 @@
 #include <utility>
 
 namespace flexura {
+namespace {
+
+// In the place of what the same camera saw before.
+template <class Picture, class Sighting>
+void keep(std::vector<Picture>& pictures, const Sighting& sighting) {
+  const auto same = std::ranges::find_if(
+      pictures, [&](const Picture& picture) { return picture.sighting.camera == sighting.camera; });
+  if (same == pictures.end()) {
+    pictures.push_back({sighting, {}});
+  } else {
+    same->sighting = sighting;
+  }
+}
+
+}  // namespace
 
 void RunLink::update(double fraction, std::string_view what) {
   if (also_ != nullptr) also_->update(fraction, what);
@@ -36,28 +51,40 @@ std::vector<RunLink::Event> RunLink::take_events(std::size_t most) {
   return taken;
 }
 
+void RunLink::calibration_saw(const CalibrationSightingMessage& sighting) {
+  const std::lock_guard lock(mutex_);
+  if (!news_.calibration) news_.calibration.emplace();
+  keep(news_.calibration->pictures, sighting);
+  ++news_.changes;
+}
+
+void RunLink::calibration_decided(const CalibrationDecisionMessage& decision) {
+  const std::lock_guard lock(mutex_);
+  if (decision.ended.value_or(false)) {
+    news_.calibration.reset();
+  } else {
+    if (!news_.calibration) news_.calibration.emplace();
+    news_.calibration->decision = decision;
+  }
+  ++news_.changes;
+}
+
 void RunLink::servo_saw(const ServoSightingMessage& sighting) {
   const std::lock_guard lock(mutex_);
-  const auto same = std::ranges::find_if(
-      pictures_, [&](const ServoPicture& picture) { return picture.sighting.camera == sighting.camera; });
-  if (same == pictures_.end()) {
-    pictures_.push_back({sighting, {}});
-  } else {
-    same->sighting = sighting;
-  }
+  keep(pictures_, sighting);
 }
 
 void RunLink::servo_stepped(const ServoStepMessage& step) {
   const std::lock_guard lock(mutex_);
   news_.servo = ShownServo{step, pictures_};
-  ++news_.servo_changes;
+  ++news_.changes;
 }
 
 void RunLink::servo_ended() {
   const std::lock_guard lock(mutex_);
   pictures_.clear();
   news_.servo.reset();
-  ++news_.servo_changes;
+  ++news_.changes;
 }
 
 void RunLink::finish(End end) {

@@ -14,6 +14,7 @@
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run.h"
+#include "flexura/view/calibration_extras.h"
 #include "flexura/view/servo_extras.h"
 
 namespace flexura {
@@ -41,7 +42,8 @@ class RunLink : public Progress, public RunWatcher {
     ArmState state;
     std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
     std::optional<ShownServo> servo;     ///< While one steers the arm.
-    std::uint64_t servo_changes = 0;     ///< Counts what came of servos.
+    std::optional<ShownCalibration> calibration;  ///< While one goes on.
+    std::uint64_t changes = 0;                    ///< Counts what came of both.
     std::optional<End> end;
   };
 
@@ -54,6 +56,8 @@ class RunLink : public Progress, public RunWatcher {
 
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
+  void calibration_saw(const CalibrationSightingMessage& sighting) override;
+  void calibration_decided(const CalibrationDecisionMessage& decision) override;
   void servo_stepped(const ServoStepMessage& step) override;
   void servo_saw(const ServoSightingMessage& sighting) override;
   void servo_ended() override;

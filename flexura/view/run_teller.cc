@@ -11,9 +11,9 @@
 namespace flexura {
 
 void RunTeller::begin() {
-  told_fraction_ = told_at_ = servo_at_ = -1;
+  told_fraction_ = told_at_ = drawn_at_ = -1;
   told_what_.clear();
-  servo_changes_ = 0, is_servo_known_ = true;
+  changes_ = 0, are_extras_known_ = true;
 }
 
 void RunTeller::tell(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
@@ -29,7 +29,7 @@ void RunTeller::tell(RunLink& run, const RunLink::News& news, double clock, std:
           {}},
          clients);
   }
-  tell_servo(news, clock, now, clients);
+  tell_extras(news, clock, now, clients);
   if (!news.end) {
     tell_progress(news, clock, clients);
     return;
@@ -56,18 +56,20 @@ void RunTeller::tell_progress(const RunLink::News& news, double clock, const std
        clients);
 }
 
-void RunTeller::tell_servo(const RunLink::News& news, double clock, std::optional<double> now,
-                           const std::set<ClientId>& clients) {
+void RunTeller::tell_extras(const RunLink::News& news, double clock, std::optional<double> now,
+                            const std::set<ClientId>& clients) {
   constexpr double between = 0.04;  // s; more often nobody sees
-  // With the run its last servo is over, however it ended.
-  const bool is_over = news.end || !news.servo;
-  const bool is_new = news.servo_changes != servo_changes_ || (!is_servo_known_ && !is_over);
-  if (!is_new && !(news.end && news.servo)) return;
-  if (!is_over && clock - servo_at_ < between) return;
-  servo_changes_ = news.servo_changes, servo_at_ = clock, is_servo_known_ = true;
+  const bool is_something = news.servo || news.calibration;
+  // With the run its last servo or calibration is over, however it ended.
+  const bool is_over = news.end || !is_something;
+  const bool is_new = news.changes != changes_ || (!are_extras_known_ && !is_over);
+  if (!is_new && !(news.end && is_something)) return;
+  if (!is_over && clock - drawn_at_ < between) return;
+  changes_ = news.changes, drawn_at_ = clock, are_extras_known_ = true;
   Extras extras;
   try {
-    if (!is_over) extras = servo_extras(*rig_, *news.servo);
+    if (!is_over)
+      extras = news.servo ? servo_extras(*rig_, *news.servo) : calibration_extras(*news.calibration);
   } catch (const InputError&) {
     extras = {};  // Of an arm that cannot be drawn nothing is.
   }

@@ -13,7 +13,8 @@
 
 namespace flexura {
 
-/// Tells clients how a run of tasks goes: how far it is, what happens, what a servo sees, how it ends.
+/// Tells clients how a run of tasks goes: how far it is, what happens, what a calibration or a servo sees,
+/// how it ends.
 class RunTeller {
  public:
   RunTeller(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
@@ -21,7 +22,7 @@ class RunTeller {
   /// Another run begins: nothing was told of it.
   void begin();
   /// Somebody has come who knows nothing yet.
-  void repeat() { is_servo_known_ = false; }
+  void repeat() { are_extras_known_ = false; }
   /// Tells the clients what is new at `clock` s. Events bear the time `now`, s, or where there is none their
   /// own.
   void tell(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
@@ -29,8 +30,8 @@ class RunTeller {
 
  private:
   void tell_progress(const RunLink::News& news, double clock, const std::set<ClientId>& clients);
-  void tell_servo(const RunLink::News& news, double clock, std::optional<double> now,
-                  const std::set<ClientId>& clients);
+  void tell_extras(const RunLink::News& news, double clock, std::optional<double> now,
+                   const std::set<ClientId>& clients);
   void send(const Node& message, const std::set<ClientId>& clients);
 
   ViewedRigPtr rig_;
@@ -38,9 +39,9 @@ class RunTeller {
   double told_fraction_ = -1;
   std::string told_what_;
   double told_at_ = -1;  // s, of the clock
-  bool is_servo_known_ = true;
-  std::uint64_t servo_changes_ = 0;
-  double servo_at_ = -1;  // s, of the clock
+  bool are_extras_known_ = true;
+  std::uint64_t changes_ = 0;
+  double drawn_at_ = -1;  // s, of the clock
 };
 
 }  // namespace flexura

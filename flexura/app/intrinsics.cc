@@ -53,8 +53,8 @@ void check(const IntrinsicsArguments& arguments) {
                       fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));
   constexpr std::int64_t most = 1000000;
   if (arguments.hold_out && (*arguments.hold_out < 2 || *arguments.hold_out > most))
-    throw input_error("--hold-out", fmt::format("{}: expected 2 or more: every Nth view is left out",
-                                                *arguments.hold_out));
+    throw input_error("--hold-out",
+                      fmt::format("{}: expected 2 or more: every Nth view is left out", *arguments.hold_out));
   for (const double x : arguments.position)
     if (!std::isfinite(x)) throw input_error("--position", "expected three finite numbers X,Y,Z");
   if (arguments.rotation.size() == 4) {

@@ -90,8 +90,8 @@ void add_row(CsvText& csv, const DynamicsSampleMessage& sample) {
 }
 
 void name_servo_columns(CsvText& csv) {
-  for (const char* title : {"time", "seen_at", "rms", "most", "tip", "true_rms", "true_most", "true_tip",
-                            "potential", "limited"})
+  for (const char* title :
+       {"time", "seen_at", "rms", "most", "tip", "true_rms", "true_most", "true_tip", "potential", "limited"})
     csv.cell(std::string_view(title));
   csv.end_row();
 }
@@ -99,8 +99,8 @@ void name_servo_columns(CsvText& csv) {
 // How far a servo's arm was from what is wanted; the shapes themselves are the log's to tell.
 void add_row(CsvText& csv, const ServoStepMessage& step) {
   csv.cell(step.time);
-  for (const auto& value : {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most,
-                            step.true_tip}) {
+  for (const auto& value :
+       {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most, step.true_tip}) {
     if (value)
       csv.cell(*value);
     else

@@ -45,18 +45,32 @@ double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
   return std::hypot(of_any * arm.blur * std::sqrt(thin) + of_thin * thin * thin, locked);
 }
 
-// Whether samples tell where the axis is: those that are seen, but for a few between two stretches that it
-// bridges. There borders of something else were taken for the tube's, pixels off.
+// The length of the axis from sample `from` to sample `to`, px.
+double length_between(const std::vector<AxisSample>& axis, std::size_t from, std::size_t to) {
+  double length = 0;
+  for (std::size_t i = from; i < to; ++i) length += (axis[i + 1].pixel - axis[i].pixel).norm();
+  return length;
+}
+
+// Whether samples tell where the axis is: those that are seen, but for a few between two long stretches that
+// it bridges. There borders of something else were taken for the tube's, pixels off. (A cross-section that
+// noise hides is bridged over what axes are smoothed over; it says nothing of those between two such.)
 std::vector<bool> telling(const std::vector<AxisSample>& axis) {
   std::vector<bool> tells(axis.size());
-  for (std::size_t first = 0, last = 0; first < axis.size(); first = last + 1) {
-    last = first;
-    double length = 0;
-    for (; last < axis.size() && axis[last].is_seen; ++last)
-      if (last > first) length += (axis[last].pixel - axis[last - 1].pixel).norm();
-    const bool is_between = first > 0 && last < axis.size();
-    if (is_between && length < 0.5 * axis[first].width) continue;
-    for (std::size_t i = first; i < last; ++i) tells[i] = true;
+  const auto next_seen = [&](std::size_t i, bool is_seen) {
+    while (i < axis.size() && axis[i].is_seen != is_seen) ++i;
+    return i;
+  };
+  std::size_t before = 0;  // The last sample seen before the stretch.
+  for (std::size_t first = next_seen(0, true), end = first; first < axis.size();
+       first = next_seen(end, true)) {
+    end = next_seen(first, false);
+    const std::size_t last = end - 1, after = std::min(next_seen(end, true), axis.size() - 1);
+    const bool is_by_chance = length_between(axis, first, last) < 0.5 * axis[first].width &&
+                              length_between(axis, before, first) > 2 * smoothed &&
+                              length_between(axis, last, after) > 2 * smoothed;
+    for (std::size_t i = first; i < end; ++i) tells[i] = !is_by_chance;
+    before = last;
   }
   return tells;
 }

@@ -86,6 +86,7 @@ TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
     ASSERT_GE(ratios.size(), 1U);
     EXPECT_LE(ratios.size(), 6U) << tilt / degree;
     std::vector<double> tilts;
+    tilts.reserve(ratios.size());
     for (const double off : ratios) tilts.push_back(std::acos(1 - off) / degree);
     const Eigen::Vector3d axis = bench.rig().camera(0).view(bench.rig().clock().now()).X_WC.rotation.col(2);
     const double left = std::acos(-axis.z()) / degree;

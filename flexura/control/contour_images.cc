@@ -108,10 +108,12 @@ bool ContourImages::see(const View& view, ContourImage& image) const {
   return true;
 }
 
+// NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void ContourImages::derive(const View& view, const ContourImage& image,
                            Eigen::Ref<Eigen::MatrixXd> by_state) {
   derive(view, image, image.normals, by_state);
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void ContourImages::derive(const View& view, const ContourImage& image,
                            const Eigen::Ref<const Eigen::Matrix2Xd>& directions,

@@ -20,6 +20,7 @@ std::array<double, 3> array_of(const Eigen::Vector3d& v) { return {v.x(), v.y(),
 
 std::vector<double> rotations_of(const ArmState& state) {
   std::vector<double> rotations;
+  rotations.reserve(state.bends.size());
   for (const Eigen::Vector2d& bend : state.bends) rotations.push_back(std::atan2(bend.y(), bend.x()));
   return rotations;
 }

@@ -102,8 +102,8 @@ TEST(Renderer, DrawsTheSameWhateverWasDrawnBefore) {
   };
   expect_as_alone("the first");
   Intrinsics intrinsics = view.lens.intrinsics();
-  for (double* number : {&intrinsics.distortion[0], &intrinsics.distortion[2], &intrinsics.distortion[4]}) {
-    *number += 0.1, view.lens = Lens(intrinsics);
+  for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{4}}) {
+    intrinsics.distortion[k] += 0.1, view.lens = Lens(intrinsics);
     expect_as_alone("another distortion");
   }
   for (double* number : {&intrinsics.fx, &intrinsics.fy, &intrinsics.cx, &intrinsics.cy}) {

@@ -44,7 +44,7 @@ struct Known {
 template <class T>
 std::pair<Matrix3<T>, Vector3<T>> camera_pose(const Known& known, const T* z, const T* stance) {
   const CameraConfig& camera = known.guess->cameras[known.camera];
-  std::array<T, camera_numbers> x;
+  std::array<T, camera_numbers> x{};
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = known.camera_sigmas[i] * z[i];
   const Pose X_WM = camera.mount.pose();
   const Matrix3<T> R_WM = turn(Vector3<T>(x[3], x[4], x[5])) * X_WM.rotation.cast<T>();
@@ -73,8 +73,8 @@ Vector3<T> arm_point(const Known& known, const T* arm, const T* pose, int sectio
     const T length =
         share * known.pose.stretches[k] * guess.sections[k].length * exp(known.arm_sigmas[k] * arm[i]);
     const T gain = known.guess->bend_gains[k] + known.arm_sigmas[k + sections] * arm[i + sections];
-    const T x = share * (gain * known.pose.bends[k].x() + known.pose_sigmas[2 * k] * pose[2 * i]);
-    const T y = share * (gain * known.pose.bends[k].y() + known.pose_sigmas[2 * k + 1] * pose[2 * i + 1]);
+    const T x = share * (gain * known.pose.bends[k].x() + known.pose_sigmas[2 * k] * pose[2 * k]);
+    const T y = share * (gain * known.pose.bends[k].y() + known.pose_sigmas[2 * k + 1] * pose[2 * k + 1]);
     const T angle = sqrt(x * x + y * y), out = length * (1.0 - cos(angle)) / (angle * angle);
     p += R * Vector3<T>(out * x, out * y, length * sin(angle) / angle);
     R = R * turn(Vector3<T>(-y, x, T(0)));
@@ -199,7 +199,7 @@ class Own {
     result.covariance = (scales.asDiagonal() * of_z * scales.asDiagonal())(free, free);
     for (std::size_t i = 0; i < stances_.size(); ++i) {
       const Known known = of(i, 0);
-      result.axes.push_back(
+      result.axes.emplace_back(
           camera_pose(known, cameras_[known.camera].z.data(), stances_[i].z.data()).first.col(2));
     }
   }
@@ -226,6 +226,7 @@ class Own {
 
   std::vector<Block*> all() {
     std::vector<Block*> blocks;
+    blocks.reserve(cameras_.size() + 1 + poses_.size() + stances_.size());
     for (Block& block : cameras_) blocks.push_back(&block);
     blocks.push_back(&arm_);
     for (Block& block : poses_) blocks.push_back(&block);

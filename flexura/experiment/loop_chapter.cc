@@ -106,6 +106,7 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
   constexpr double degrees = 180 / std::numbers::pi;
   const LoopResult& result = *run.loop;
   std::vector<std::string> points;
+  points.reserve(run.arcs.size() + 1);
   for (std::size_t i = 0; i < run.arcs.size(); ++i) points.push_back(arc_text(run.arcs[i], run.cameras[i]));
   if (result.angle)
     points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle * degrees));

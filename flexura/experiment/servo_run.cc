@@ -87,6 +87,7 @@ class LoggedServo : public ServoWatcher {
   }
   static std::vector<std::array<double, 2>> to_hundredths(const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<std::array<double, 2>> rounded;
+    rounded.reserve(pixels.size());
     for (const Eigen::Vector2d& pixel : pixels) rounded.push_back(to_hundredths(pixel));
     return rounded;
   }

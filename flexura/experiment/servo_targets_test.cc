@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -42,7 +43,8 @@ std::string leaning_angles() {
   for (int k = 0; k <= 20; ++k) {
     azimuths += fmt::format("{}{}", k > 0 ? ", " : "", azimuth);
     elevations += k > 0 ? ", 0" : "0";
-    azimuth += k < 7 ? leanings[0] / 7 : (k < 14 ? leanings[1] / 7 : leanings[2] / 6);
+    const int section = std::min(k / 7, 2);
+    azimuth += leanings[static_cast<std::size_t>(section)] / (section < 2 ? 7 : 6);
   }
   return "azimuths = [" + azimuths + "]\nelevations = [" + elevations + "]";
 }

@@ -77,7 +77,10 @@ enum Cameras : std::uint8_t { one, each_and_both };
 
 void calibrate(benchmark::State& state, bool are_real, Cameras cameras) {
   const Views& both = pairs(are_real);
-  if (both.empty()) return state.SkipWithError("the pictures of opencv-doc are not there");
+  if (both.empty()) {
+    state.SkipWithError("the pictures of opencv-doc are not there");
+    return;
+  }
   const Views left = side(both, 0), right = side(both, 1);
   constexpr std::array<std::array<int, 2>, 2> sizes = {{{640, 480}, {640, 480}}};
   const std::span<const std::array<int, 2>> size(sizes.data(), 1);
@@ -117,7 +120,10 @@ OpenCvBoards opencv_boards(const Views& views) {
 
 void opencv_calibrates(benchmark::State& state, bool are_real, Cameras cameras) {
   const OpenCvBoards boards = opencv_boards(pairs(are_real));
-  if (boards.there.empty()) return state.SkipWithError("the pictures of opencv-doc are not there");
+  if (boards.there.empty()) {
+    state.SkipWithError("the pictures of opencv-doc are not there");
+    return;
+  }
   double rms = 0;
   for (auto _ : state) {
     cv::Mat K, distortion, other, other_distortion, R, t, E, F;

@@ -222,7 +222,7 @@ int main(int argc, char** argv) {
   for (const std::string method :
        {"bundle", "bundle-etalon", "etalon", "arcs", "arcs-paper", "etalon-paper"}) {
     const bool is_printed = method.ends_with("-paper"), is_bundle = method.starts_with("bundle");
-    const std::size_t count = is_printed ? printed : is_bundle ? bundles : trials;
+    const std::size_t corrected = is_bundle ? bundles : trials, count = is_printed ? printed : corrected;
     all.emplace_back(method, run_all(method, count, seed, folder));
     if (is_printed) shown.push_back(all.back());
     print_row(method, all.back().second);

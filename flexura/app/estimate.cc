@@ -316,6 +316,7 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
   const EstimateSettings settings = estimate_settings(arguments);
   std::vector<PictureFile> pictures;
+  pictures.reserve(arguments.images.size());
   for (const std::string& name : arguments.images)
     pictures.push_back({name, read_text_file(name, most_picture_bytes)});
   const ShapeAnswer found = estimate_shape(pictures, cameras, settings);

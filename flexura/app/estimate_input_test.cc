@@ -54,7 +54,7 @@ TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
             "cameras.toml:9:1: camera[1].name: is that of camera[0], too: expected another");
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),
             "cameras.toml:4:6: camera[0].cx = 1e+308: expected a number from -10000000 to 10000000");
-  arguments_.images.push_back("third.png");
+  arguments_.images.emplace_back("third.png");
   EXPECT_EQ(refusal("", ""), "cameras.toml:1:1: camera: 2 for 3 pictures: expected one for each");
 }
 

@@ -294,7 +294,7 @@ double ArcsLoop::longer(std::size_t i) const {
 
 // What a longer focal length moves in the picture moves away from the principal point.
 LookLoop::Trouble ArcsLoop::center() {
-  constexpr double least = 1.2;  // Where noise counts ten times.
+  constexpr double least = 1.2;  // Where noise counts eight times.
   std::array<std::optional<RigStance>, 2> wide;
   for (std::size_t i = 0; i < 2; ++i) {
     RigStance next = loop_.stance(i);

@@ -190,7 +190,7 @@ double EtalonLoop::longer(std::size_t i) const {
 
 // What a longer focal length moves in the picture moves away from the principal point.
 LoopTrouble EtalonLoop::center(std::size_t i) {
-  constexpr double least = 1.2;  // Where noise counts ten times.
+  constexpr double least = 1.2;  // Where noise counts eight times.
   const RigStance wide = loop_.stance(i);
   RigStance next = wide;
   next.head.zoom = zoom_by(loop_.camera(i), wide.head.zoom, longer(i));

@@ -93,7 +93,7 @@ TEST(FeatureMarks, OfSilhouettesAreOnBothEdges) {
                 ++compared;
               }
             });
-  EXPECT_GT(compared, 300);
+  EXPECT_GT(compared, 300 / one_case_of);
 }
 
 TEST(FeatureMarks, OfMomentsHaveTheirMiddleAndTheirMoments) {

@@ -11,10 +11,10 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # ccache sees through precompiled headers only with these two relaxations; by the others what one checkout has compiled
+  # ccache sees through precompiled headers only with the first two relaxations; by the others what one checkout has compiled
   # serves all.
   set(CMAKE_CXX_COMPILER_LAUNCHER
-      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,locale CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
       CCACHE_NOHASHDIR=true ${CCACHE})
 endif()
 

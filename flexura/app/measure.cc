@@ -37,9 +37,11 @@ MeasureSettings settings_of(const MeasureArguments& arguments) {
       throw input_error("--base", "expected two finite numbers u,v");
     settings.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
   }
-  const auto is_size = [](double x) { return x > 0 && std::isfinite(x); };
+  constexpr double thinnest = 1e-6, thickest = 1e3;
+  const auto is_size = [](double x) { return x >= thinnest && x <= thickest; };
   if (arguments.radius && !is_size(*arguments.radius))
-    throw input_error("--radius", fmt::format("{} m: expected a number above 0", *arguments.radius));
+    throw input_error("--radius", fmt::format("{} m: expected a number from {:g} to {:g}", *arguments.radius,
+                                              thinnest, thickest));
   settings.radius = arguments.radius;
   return settings;
 }

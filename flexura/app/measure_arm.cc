@@ -83,7 +83,8 @@ bool measure_arm(const Job& job) {
                                      : finder.find(job.gray);
   add_threshold(arm.threshold, job.answer);
   std::vector<AxisSample> axis = arm.axis;
-  if (job.settings.lens) to_backbone_image(*job.settings.lens, axis);
+  const bool is_backbone = job.settings.lens && to_backbone_image(*job.settings.lens, axis);
+  if (!is_backbone) axis = arm.axis;
   ArmSighting corrected = arm;
   corrected.axis = axis;
   MarkerSightings markers;
@@ -94,6 +95,9 @@ bool measure_arm(const Job& job) {
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   if (!arm.is_found()) return false;
   std::vector<std::string> notes = arm.notes;
+  if (job.settings.lens && !is_backbone)
+    notes.emplace_back(
+        "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   job.answer.add("notes", texts_node(notes))
       .add("base", end_node(arm.ends[0]))
@@ -104,7 +108,7 @@ bool measure_arm(const Job& job) {
   Node::Array marker_nodes;
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.settings.what == MeasureTarget::arm) {
-    add_axis(job, axis, job.settings.lens.has_value());
+    add_axis(job, axis, is_backbone);
     const AxisPoints points = independent_points(axis);
     job.answer.add("markers", {std::move(marker_nodes), {}})
         .add("circle", circle_node(fit_circle(points.pixels, points.sigma)))

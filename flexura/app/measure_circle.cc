@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,18 +18,19 @@ using Eigen::Vector2d;
 
 // Whether most of a figure's border lies near the circle or the ellipse.
 bool is_round(const std::optional<CircleFit>& circle, const std::optional<EllipseFit>& ellipse,
-              std::size_t used, const FigureBorder& figure) {
+              const std::vector<Vector2d>& used, const FigureBorder& figure) {
   // Through a few points there is always one.
   constexpr std::size_t fewest = 12;
-  if (used < fewest) return false;
+  if (used.size() < fewest) return false;
   constexpr double least_share = 0.4, roughest = 0.03;
-  if (static_cast<double>(used) < least_share * static_cast<double>(figure.points.size())) return false;
-  // Through half a circle's height at least: what is nearly straight fits some huge one.
-  const double size = std::sqrt(static_cast<double>(figure.area));
-  constexpr double widest = 20;
-  return (circle && circle->rms < roughest * circle->radius && circle->radius < widest * size) ||
+  if (static_cast<double>(used.size()) < least_share * static_cast<double>(figure.points.size()))
+    return false;
+  // Along a third of it at least: straight sides fit some long one.
+  constexpr double least_around = 1.0 / 3;
+  return (circle && circle->rms < roughest * circle->radius &&
+          circle->arc > least_around * 2 * std::numbers::pi) ||
          (ellipse && ellipse->rms < roughest * ellipse->semi_axes.y() &&
-          ellipse->semi_axes.x() < widest * size);
+          share_around(*ellipse, used) > least_around);
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ bool measure_circle(const Job& job) {
   for (const BorderPoint& point : figure.points) points.push_back(point.pixel);
   const std::optional<EllipseFit> ellipse = fit_ellipse_to_most(points);
   const std::optional<CircleFit> circle = fit_circle(points);
-  const bool is_found = figure.reason.empty() && is_round(circle, ellipse, points.size(), figure);
+  const bool is_found = figure.reason.empty() && is_round(circle, ellipse, points, figure);
   job.answer.add("found", {is_found, {}});
   if (!is_found) {
     job.answer.add("reason", text_node(figure.reason.empty() ? "no circle or ellipse fits the largest figure"

@@ -1,5 +1,6 @@
 #include "flexura/app/measure.h"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -263,6 +264,31 @@ TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
       if (std::hypot(u - 160, v - 120) < 60 + 35 * std::sin(9 * std::atan2(v - 120, u - 160)))
         star.at(u, v) = 30;
   EXPECT_THAT(reason_of(star), testing::Not(testing::AnyOf(HasSubstr("blurred"), HasSubstr("faint"))));
+}
+
+// Two parallel sides lie on a long ellipse.
+TEST(Measure, TakesNoStraightSidesForAnEllipse) {
+  for_random_cases(40, [](TestRandom& random) {
+    const double width = random.uniform(30, 120), height = random.uniform(30, 120);
+    // Its corners, or its ends, may be round: of a capsule the two sides remain.
+    const double corner = (random.integer(0, 2) == 0 ? 0.5 : 0.15) * std::min(width, height);
+    const double turn = random.uniform(0, 3);
+    const bool is_capsule = corner > 0.4 * std::min(width, height);
+    // A short one is much like an ellipse.
+    if (is_capsule && std::max(width, height) < 2.5 * std::min(width, height)) return;
+    Image<std::uint8_t> picture(240, 200, 1, 210);
+    for (int v = 0; v < 200; ++v) {
+      for (int u = 0; u < 240; ++u) {
+        const Eigen::Vector2d at = Eigen::Rotation2Dd(turn) * Eigen::Vector2d(u - 119.5, v - 99.5);
+        const Eigen::Vector2d beyond(std::max(0.0, std::abs(at.x()) - width / 2 + corner),
+                                     std::max(0.0, std::abs(at.y()) - height / 2 + corner));
+        const double inside = std::clamp(corner - beyond.norm() + 0.5, 0.0, 1.0);
+        picture.at(u, v) = static_cast<std::uint8_t>(210 - 180 * inside);
+      }
+    }
+    const Measurement circle = measured(png(picture), MeasureTarget::circle);
+    EXPECT_FALSE(circle.is_found) << width << " x " << height << ", corner " << corner << ", turn " << turn;
+  });
 }
 
 TEST(Measure, TakesNoBoxForACircleAndNoBrightFigureForTheEtalon) {

@@ -18,7 +18,6 @@
 namespace flexura {
 namespace {
 
-constexpr double in_degrees = 1 / degree;
 // Of an arm that has as many.
 std::size_t fewest_markers(const LoopConfig& config) {
   return std::min<std::size_t>(5, config.picture.markers.size());
@@ -162,7 +161,7 @@ LookLoop::Trouble ArcsLoop::disagreement() const {
   return fmt::format(
       "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, foretold "
       "were {:.3f} deg with a standard deviation of {:.3f} deg",
-      angle_.value * in_degrees, foretold_->value * in_degrees, foretold_->sigma * in_degrees);
+      angle_.value / degree, foretold_->value / degree, foretold_->sigma / degree);
 }
 
 // How far a camera's picture is from the simulator's, as the larger of turn and shift, px.
@@ -257,7 +256,7 @@ LookLoop::Trouble ArcsLoop::square() {
         decision = fmt::format(
             "residuals are {:.2f} times their noise, the angle between the axes is known within {:.3f} deg; "
             "pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
-            reading_->found.rms, angle_.sigma * in_degrees, next[i].head.pan, next[i].head.tilt,
+            reading_->found.rms, angle_.sigma / degree, next[i].head.pan, next[i].head.tilt,
             next[i].stage.offset.x(), next[i].stage.offset.y(), next[i].stage.offset.z());
       loop_.decide(i, "orientation and positioning", off, loop_.config().accepted, "px", decision);
       if (!goes) continue;
@@ -310,7 +309,7 @@ LookLoop::Trouble ArcsLoop::center() {
     }
     loop_.decide(i, "principal point", 0, 0, "px",
                  fmt::format("zoom to {:.5g}, for what stays where it is", next.head.zoom));
-    wide[i] = loop_.stance(i);
+    wide[i] = loop_.stance(i), is_centered_[i] = true;
     if (auto trouble = loop_.go(i, next)) return trouble;
   }
   if (!wide[0] && !wide[1]) return std::nullopt;
@@ -337,7 +336,14 @@ LookLoop::Trouble ArcsLoop::run() {
   loop_.result().notes.push_back(
       fmt::format("the angle between the axes is known within {:.3f} deg (standard deviation); residuals are "
                   "{:.2f} times their noise",
-                  angle_.sigma * in_degrees, reading_->found.rms));
+                  angle_.sigma / degree, reading_->found.rms));
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!is_centered_[i]) continue;
+    const Intrinsics was = loop_.lens(i), is = Camera(model().cameras[loop_.config().cameras[i]])
+                                                   .lens()
+                                                   .at(loop_.stance(i).head.zoom);
+    loop_.result().principal_point[i] = Eigen::Vector2d(is.cx - was.cx, is.cy - was.cy);
+  }
   return equalize_zooms(loop_, plan_);
 }
 

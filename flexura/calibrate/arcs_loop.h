@@ -65,6 +65,7 @@ class ArcsLoop {
   RigReader reader_;
   std::array<std::optional<std::size_t>, 2> stance_;  // Of the last picture of each camera.
   std::optional<RigReading> reading_;                 // What the pictures tell.
+  std::array<bool, 2> is_centered_ = {false, false};  // A longer focal length told the principal point.
   Angle angle_;
   std::optional<Angle> foretold_;  // Before the last pictures were taken.
 };

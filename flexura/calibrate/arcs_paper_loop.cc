@@ -4,15 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "flexura/base/degree.h"
 
 namespace flexura {
-namespace {
-
-constexpr double by_degrees = 180 / std::numbers::pi;
-
-}  // namespace
-
 ArcsPaperLoop::ArcsPaperLoop(LookLoop& loop) : loop_(loop) {
   ArmPictureConfig picture = loop.config().picture;
   for (const int white : loop.config().white) {
@@ -36,7 +31,7 @@ LookLoop::Trouble ArcsPaperLoop::look(std::size_t i) {
     sight.values = {{"radius, px", circle_->radius},
                     {"rms, px", circle_->rms},
                     {"verified", circle_->is_verified ? 1.0 : 0.0},
-                    {"detectable tilt, deg", circle_->detectable_tilt * by_degrees}};
+                    {"detectable tilt, deg", circle_->detectable_tilt / degree}};
   });
   if (trouble) return trouble;
   if (!circle_)
@@ -58,12 +53,12 @@ LookLoop::Trouble ArcsPaperLoop::verify(std::size_t i) {
     if (circle_->is_verified) {
       loop_.decide(i, "circle", circle_->rms, 0, "px",
                    fmt::format("the circle's equation is verified; the test would see a tilt of {:.2f} deg",
-                               circle_->detectable_tilt * by_degrees));
+                               circle_->detectable_tilt / degree));
       loop_.result().notes.push_back(
           fmt::format("camera {}: the circle's equation is verified, which proves no more than a tilt below "
                       "{:.2f} deg, and nothing "
                       "of where the camera looks: the circle's centre is {:.1f} px from where it should be",
-                      loop_.name(i), circle_->detectable_tilt * by_degrees, off.norm()));
+                      loop_.name(i), circle_->detectable_tilt / degree, off.norm()));
       return std::nullopt;
     }
     auto trouble = off.norm() > loop_.config().accepted ? centre(i, off) : go_around(i, orbit);
@@ -109,7 +104,7 @@ LookLoop::Trouble ArcsPaperLoop::go_around(std::size_t i, Orbit& orbit) {
   next.head.pan += slide.x() / distance, next.head.tilt += slide.y() / distance;
   next = loop_.commandable_stance(i, next);
   loop_.decide(i, "ratio of axes", 1 - ratio, 0, "share",
-               fmt::format("around the centre by {:.3f} deg", orbit.side * tilt * by_degrees));
+               fmt::format("around the centre by {:.3f} deg", orbit.side * tilt / degree));
   if (loop_.stands_there(i, next))
     return fmt::format(
         "the circle's equation is not verified by camera {}, and the stage goes no farther: the ratio of "

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/calibrate/offset_steps.h"
 #include "flexura/calibrate/rig_aim.h"
@@ -20,7 +20,6 @@ namespace flexura {
 namespace {
 
 using LoopTrouble = LookLoop::Trouble;
-constexpr double degrees = 180 / std::numbers::pi;
 
 void tell(const EtalonView& view, const LookLoop& loop, RigSight& sight) {
   if (view.reason.empty())
@@ -192,32 +191,38 @@ double EtalonLoop::longer(std::size_t i) const {
 LoopTrouble EtalonLoop::center(std::size_t i) {
   constexpr double least = 1.2;  // Where noise counts eight times.
   const RigStance wide = loop_.stance(i);
-  RigStance next = wide;
-  next.head.zoom = zoom_by(loop_.camera(i), wide.head.zoom, longer(i));
-  next = loop_.commandable_stance(i, next);
   const EtalonView before = views_[i];
-  const Intrinsics lens = this->lens(i), lens_then = loop_.camera(i).lens().at(next.head.zoom);
-  const double times = lens_then.fx / lens.fx;
-  if (times < least) {
-    loop_.result().notes.push_back(
-        fmt::format("{}: the principal point is taken to be where the file has it: all of the cylinder is in "
-                    "the picture up to {:.2f} times the shortest focal length, expected {}",
-                    loop_.name(i), std::max(1.0, times), least));
-    return std::nullopt;
+  const Intrinsics lens = this->lens(i);
+  Intrinsics lens_then = lens;
+  double times = longer(i);
+  for (;;) {
+    RigStance next = wide;
+    next.head.zoom = zoom_by(loop_.camera(i), wide.head.zoom, times);
+    next = loop_.commandable_stance(i, next);
+    lens_then = loop_.camera(i).lens().at(next.head.zoom);
+    times = lens_then.fx / lens.fx;
+    if (times < least) {
+      loop_.result().notes.push_back(
+          fmt::format("{}: the principal point is taken to be where the file has it: no picture by {} times "
+                      "the shortest focal length or more has all of the cylinder",
+                      loop_.name(i), least));
+      return loop_.stands_there(i, wide) ? std::nullopt : loop_.go(i, wide);
+    }
+    loop_.decide(i, "principal point", 0, 0, "px",
+                 fmt::format("zoom to {:.5g}, for what stays where it is", next.head.zoom));
+    if (auto trouble = loop_.go(i, next)) return trouble;
+    if (auto trouble = look(i)) return trouble;
+    if (views_[i].reason.empty()) break;
+    // A principal point that is far off carries the cylinder out of the picture.
+    times = std::sqrt(times);
   }
-  loop_.decide(i, "principal point", 0, 0, "px",
-               fmt::format("zoom to {:.5g}, for what stays where it is", next.head.zoom));
-  if (auto trouble = loop_.go(i, next)) return trouble;
-  if (auto trouble = look(i)) return trouble;
-  if (!views_[i].reason.empty())
-    return fmt::format("camera {} at {:.2f} times its shortest focal length: {}", loop_.name(i), times,
-                       views_[i].reason);
   const auto stays = [](double was, double is, double f, double f_then) {
     return (was * f_then - is * f) / (f_then - f);
   };
   const Eigen::Vector2d off(stays(before.middle, views_[i].middle, lens.fx, lens_then.fx),
                             stays(before.height, views_[i].height, lens.fy, lens_then.fy));
   beside_[i] += off;
+  loop_.result().principal_point[i] = beside_[i];
   loop_.decide(i, "principal point", off.norm(), 0, "px",
                fmt::format("it is {:.3f} px to the right of and {:.3f} px below where the file has it",
                            off.x(), off.y()));
@@ -279,7 +284,7 @@ LoopTrouble EtalonLoop::square() {
     next.head.pan += best[i] * step(i);
     next = loop_.commandable_stance(i, next);
     if (!loop_.stands_there(i, next)) {
-      loop_.decide(i, "orthogonal axes", (across(0) - across(1)) * degrees, 0, "deg",
+      loop_.decide(i, "orthogonal axes", (across(0) - across(1)) / degree, 0, "deg",
                    "pan by a step: together the axes are more nearly orthogonal");
       if (auto trouble = loop_.go(i, next)) return trouble;
     }
@@ -293,7 +298,7 @@ LoopTrouble EtalonLoop::square() {
   const double hand = a.cross(b).y() < 0 ? 1 : -1;
   loop_.result().angle = hand * (across(0) - across(1));
   loop_.result().zoom_ratio = views_[0].magnification / views_[1].magnification;
-  loop_.decide(1, "orthogonal axes", *loop_.result().angle * degrees, 0, "deg", "");
+  loop_.decide(1, "orthogonal axes", *loop_.result().angle / degree, 0, "deg", "");
   return std::nullopt;
 }
 

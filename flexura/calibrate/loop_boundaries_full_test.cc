@@ -96,5 +96,44 @@ TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
   });
 }
 
+// A lens that is `focal` times as long as it is believed to be: each turn leaves 1 - focal of what is
+// missing.
+std::string wrong_lens(TestRandom& random, double focal) {
+  // To the side that no screen hides.
+  const double tilt = -random.uniform(14, 17) * degree;
+  constexpr double distance = 5;
+  WrongStart wrong;
+  wrong.shift = {distance * std::sin(tilt), 0, distance * (std::cos(tilt) - 1)};
+  wrong.pan = tilt + (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(1, 1.5) * degree;
+  wrong.focal = focal;
+  LoopRig rig = arcs_cameras({wrong, WrongStart{}}, true);
+  rig.at[0][2] *= 2, rig.at[1][0] *= 2, rig.travel = 3;
+  return arcs_rig("method = \"arcs-paper\"\n", rig);
+}
+
+TEST(LoopBoundaries, ArcsPaperCentresTheCircleWithAFocalLengthBelowTwiceTheBelieved) {
+  for_random_cases(6, [](TestRandom& random) {
+    const double focal = random.uniform(1.2, 1.8);
+    CalibrationBench bench(wrong_lens(random, focal));
+    const LoopResult result = bench.calibrate();
+    const std::vector<double> off = offsets_of(result, "centre");
+    ASSERT_GE(off.size(), 2U) << result.reason;
+    EXPECT_NEAR(off[1] / off[0], focal - 1, 0.15) << focal;
+  });
+}
+
+TEST(LoopBoundaries, ArcsPaperRunsAwayWithAFocalLengthBeyond) {
+  for_random_cases(6, [](TestRandom& random) {
+    const double focal = random.uniform(2.15, 2.4);
+    CalibrationBench bench(wrong_lens(random, focal));
+    const LoopResult result = bench.calibrate();
+    EXPECT_FALSE(result.is_done);
+    const std::vector<double> off = offsets_of(result, "centre");
+    ASSERT_GE(off.size(), 3U) << result.reason;
+    for (std::size_t i = 1; i < 3; ++i) EXPECT_NEAR(off[i] / off[i - 1], focal - 1, 0.2) << focal;
+    bench.expect_back();
+  });
+}
+
 }  // namespace
 }  // namespace flexura

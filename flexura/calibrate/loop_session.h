@@ -56,9 +56,11 @@ struct LoopResult {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What the cameras look at, m.
   std::array<RigStance, 2> start, stances;           ///< How they stood at first, and at the end, as read.
   std::array<std::optional<double>, 2> roll;         ///< As seen, rad: no head can correct it.
-  std::optional<double> angle;                       ///< Between the axes beyond 90 degrees, as seen, rad.
-  std::optional<double> zoom_ratio;                  ///< How much larger the first shows it, as seen.
-  std::vector<std::string> notes;                    ///< What else there is to know.
+  /// By which each principal point is seen to the right of and below where the model has it, px.
+  std::array<std::optional<Eigen::Vector2d>, 2> principal_point;
+  std::optional<double> angle;       ///< Between the axes beyond 90 degrees, as seen, rad.
+  std::optional<double> zoom_ratio;  ///< How much larger the first shows it, as seen.
+  std::vector<std::string> notes;    ///< What else there is to know.
   std::array<std::optional<RigSight>, 2> before, after;  ///< The first and the last picture of each camera.
 };
 

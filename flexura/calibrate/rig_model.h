@@ -29,6 +29,12 @@ struct RigModel {
 /// A model of that arm and these cameras, nothing of which is known to be wrong.
 [[nodiscard]] RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras);
 
+/// The camera's lens with all its numbers, also such as follow from others where the file leaves them out.
+[[nodiscard]] LensConfig spelled_out(const CameraConfig& camera);
+
+/// The camera with its principal point moved by so much, px, the same at all zooms.
+[[nodiscard]] CameraConfig with_principal_point_moved(CameraConfig camera, const Eigen::Vector2d& by);
+
 /// How wrong a camera may be: standard deviations of what its description says; 0 holds a number, infinity
 /// says that nothing is known of it.
 struct CameraPrior {

@@ -24,21 +24,6 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument(message);
 }
 
-// A lens that says all its numbers, so that each can be moved.
-LensConfig spelled_out(const CameraConfig& camera) {
-  const ZoomTable table(camera.lens, camera.sensor.width, camera.sensor.height);
-  LensConfig lens = camera.lens;
-  lens.fy = lens.fy.value_or(lens.fx);
-  lens.cx = lens.cx.value_or(0.5 * static_cast<double>(camera.sensor.width - 1));
-  lens.cy = lens.cy.value_or(0.5 * static_cast<double>(camera.sensor.height - 1));
-  for (ZoomRow& row : lens.zoom) {
-    const Intrinsics there = table.at(row.count.value_or(row.ratio));
-    row.fx = there.fx, row.fy = there.fy, row.cx = there.cx, row.cy = there.cy;
-    row.distortion = there.distortion;
-  }
-  return lens;
-}
-
 void check_observations(const RigModel& guess, const RigObservations& seen) {
   for (const ArmState& pose : seen.poses)
     require(pose.bends.size() == guess.arm.sections.size() && pose.stretches.size() == pose.bends.size(),

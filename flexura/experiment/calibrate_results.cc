@@ -123,6 +123,11 @@ Node::Table loop_members(const CalibrationRun& run) {
   if (result.zoom_ratio) add("zoom_ratio_as_seen", number_node(*result.zoom_ratio));
   if (result.roll[0] && result.roll[1])
     add("roll_as_seen", {Node::Array{number_node(*result.roll[0]), number_node(*result.roll[1])}, {}});
+  Node::Array points;
+  for (const auto& by : result.principal_point)
+    points.push_back(by ? Node{Node::Array{number_node(by->x()), number_node(by->y())}, {}} : Node{});
+  if (result.principal_point[0] || result.principal_point[1])
+    add("principal_point_off_as_seen", {std::move(points), {}});
   if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
   add("commanded", {Node::Array{stance_node(run.cameras[0], result.stances[0]),
                                 stance_node(run.cameras[1], result.stances[1])},
@@ -228,22 +233,23 @@ std::string file_text(const FoundRigFile& file) {
   return write_toml(Codec<FoundRigFile>::write(file), fields_of(&file).info());
 }
 
-// A loop finds no rig: the file's own, whose cameras start where they were sent.
-std::string loop_rig_toml(const Experiment& experiment, const LoopResult& result) {
-  FoundRigFile file{experiment.arm, experiment.cameras()};
+// A loop finds no rig: the file's own, whose cameras start where they were sent, and principal points.
+std::string loop_rig_toml(const Experiment& experiment, const CalibrationRun& run) {
+  const LoopResult& result = *run.loop;
+  FoundRigFile file{experiment.arm, run.found().cameras};
   start_at(result.stances, file);
   return fmt::format(
              "# The rig as the file has it; a calibration with {} pictures sent its cameras to where they "
-             "start "
-             "here.\n",
-             result.pictures[0] + result.pictures[1]) +
+             "start here{}.\n",
+             result.pictures[0] + result.pictures[1],
+             result.principal_point[0] || result.principal_point[1] ? ", and saw principal points" : "") +
          file_text(file);
 }
 
 }  // namespace
 
 std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& run) {
-  if (run.loop) return loop_rig_toml(experiment, *run.loop);
+  if (run.loop) return loop_rig_toml(experiment, run);
   FoundRigFile file;
   file.arm = experiment.arm;
   const RigModel& found = run.result.found.model;

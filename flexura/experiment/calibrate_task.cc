@@ -25,6 +25,18 @@ std::vector<double> rotations_of(const ArmState& state) {
   return rotations;
 }
 
+CalibrationDecisionMessage decision_message(const RigStep& step) {
+  CalibrationDecisionMessage message;
+  message.time = step.time, message.looks = static_cast<std::int64_t>(step.looks);
+  message.found = step.is_found, message.rms = step.rms, message.next = step.next;
+  if (!step.is_found) message.reason = step.reason;
+  message.doubts = static_cast<std::int64_t>(step.doubts);
+  message.angle = step.angle, message.angle_sigma = step.sigmas.angle;
+  message.focal = step.focal, message.focal_sigma = step.sigmas.focal;
+  message.zoom_ratio_sigma = step.sigmas.zoom_ratio;
+  return message;
+}
+
 // Tells the log of everything.
 class LoggedSession : public RigSessionWatcher {
  public:
@@ -73,15 +85,7 @@ class LoggedSession : public RigSessionWatcher {
                      run_.name);
   }
   void known(const RigStep& step) override {
-    CalibrationDecisionMessage message;
-    message.time = step.time, message.looks = static_cast<std::int64_t>(step.looks);
-    message.found = step.is_found, message.rms = step.rms, message.next = step.next;
-    if (!step.is_found) message.reason = step.reason;
-    message.doubts = static_cast<std::int64_t>(step.doubts);
-    message.angle = step.angle, message.angle_sigma = step.sigmas.angle;
-    message.focal = step.focal, message.focal_sigma = step.sigmas.focal;
-    message.zoom_ratio_sigma = step.sigmas.zoom_ratio;
-    witness_.calibration(message);
+    witness_.calibration(decision_message(step));
     const std::string what = step.is_found ? fmt::format("angle between the axes known within {:.4f} deg",
                                                          step.sigmas.angle / degree)
                                            : step.reason;
@@ -103,10 +107,13 @@ class LoggedSession : public RigSessionWatcher {
 
   // At `time` s; the last that is told.
   void ended(double time) {
+    // With what a bundle knows in the end.
     CalibrationDecisionMessage message;
+    if (!run_.loop && !run_.result.steps.empty()) message = decision_message(run_.result.steps.back());
     message.time = time, message.found = run_.is_done() && !run_.loop, message.ended = true;
     message.looks = static_cast<std::int64_t>(run_.loop ? run_.loop->pictures[0] + run_.loop->pictures[1]
                                                         : run_.result.looks);
+    if (!run_.is_done()) message.reason = run_.reason();
     message.next = run_.is_done() ? "calibrated" : run_.reason();
     witness_.calibration(message);
     witness_.event(time, run_.is_done() ? Recorder::Level::info : Recorder::Level::error, run_.name,
@@ -146,6 +153,16 @@ class LoggedSession : public RigSessionWatcher {
 };
 
 }  // namespace
+
+RigModel CalibrationRun::found() const {
+  if (!loop) return result.found.model;
+  RigModel model = believed;
+  for (std::size_t i = 0; i < 2; ++i) {
+    CameraConfig& camera = model.cameras[loop->stances[i].camera];
+    if (const auto& by = loop->principal_point[i]) camera = with_principal_point_moved(camera, *by);
+  }
+  return model;
+}
 
 std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSight& sight) {
   constexpr int count = 40;

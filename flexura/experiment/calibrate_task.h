@@ -39,6 +39,8 @@ struct CalibrationRun {
   /// What truly remains where the cameras stand, of which the session knows nothing: simulated rigs tell.
   std::optional<RigRemainder> truth;
 
+  /// The rig as it is known when all is done: as it was believed, with what was found.
+  [[nodiscard]] RigModel found() const;
   [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
+#include "flexura/experiment/results.h"
 #include "flexura/experiment/servo_run.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
@@ -103,13 +103,12 @@ std::string arc_text(const CommandedArc& arc, const std::string& camera) {
 }
 
 std::vector<std::string> loop_points(const CalibrationRun& run) {
-  constexpr double degrees = 180 / std::numbers::pi;
   const LoopResult& result = *run.loop;
   std::vector<std::string> points;
   points.reserve(run.arcs.size() + 1);
   for (std::size_t i = 0; i < run.arcs.size(); ++i) points.push_back(arc_text(run.arcs[i], run.cameras[i]));
   if (result.angle)
-    points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle * degrees));
+    points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle / degree));
   if (result.zoom_ratio)
     points.push_back(
         fmt::format("As seen, the first camera shows the target {:.4f} times as large as the second.",
@@ -118,7 +117,13 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
     if (result.roll[i])
       points.push_back(
           fmt::format("Camera {} is turned by {:.2f} deg about its axis, which no head can correct.",
-                      run.cameras[i], *result.roll[i] * degrees));
+                      run.cameras[i], *result.roll[i] / degree));
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const auto& by = result.principal_point[i])
+      points.push_back(fmt::format(
+          "The principal point of camera {} is {:.2f} px to the right of and {:.2f} px below where the file "
+          "has it; {} has it there.",
+          run.cameras[i], by->x(), by->y(), rig_file_name));
   if (run.truth) points.push_back(remainder_text("In the simulated truth", *run.truth));
   for (const std::string& note : result.notes) points.push_back(note);
   return points;

@@ -62,6 +62,31 @@ TEST(EtalonLoop, SeesPrincipalPointsByZooming) {
   EXPECT_LT(std::abs(left.angle), 0.1 * degree) << "as the file has them they are 1.2 deg off";
   for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.003) << "with it 0.02 m";
   EXPECT_TRUE(result.notes.empty());
+  EXPECT_LT((*result.principal_point[0] - Eigen::Vector2d(9, -7)).norm(), 0.3);
+  EXPECT_LT((*result.principal_point[1] - Eigen::Vector2d(-8, 6)).norm(), 0.3);
+}
+
+// One that is far off carries the cylinder out of the picture: half of the way is tried then.
+TEST(EtalonLoop, ZoomsLessWhereThePrincipalPointIsFarOff) {
+  const LoopRig rig = {.wrong = {WrongStart{.cx = 40, .cy = -40}, WrongStart{}}};
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  std::size_t looks = 0;
+  for (const LoopDecision& decision : result.steps)
+    looks += decision.camera == 0 && decision.next.starts_with("zoom to") ? 1 : 0;
+  EXPECT_GE(looks, 2U);
+  EXPECT_LT((*result.principal_point[0] - Eigen::Vector2d(40, -40)).norm(), 0.5);
+  EXPECT_LT(std::abs(bench.truth(result).angle), 0.1 * degree);
+}
+
+TEST(EtalonLoop, SaysWhereNoLongerFocalLengthShowsAllOfTheCylinder) {
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", {}, "height = 0.75\n"));
+  const LoopResult result = bench.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  ASSERT_EQ(result.notes.size(), 2U);
+  EXPECT_THAT(result.notes[0], HasSubstr("front: the principal point is taken to be where the file has it"));
+  EXPECT_FALSE(result.principal_point[0]);
 }
 
 TEST(EtalonLoop, ReadsEachCameraByItsOwnBitDepth) {
@@ -169,6 +194,8 @@ TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
   EXPECT_THAT(read_text_file(folder.path() / report_file_name, 1 << 26), HasSubstr("Calibration: cylinder"));
   const Experiment found = load_experiment(folder.path() / rig_file_name);
   EXPECT_NE(found.cameras()[0].initial.pan, 0);
+  const auto& seen = *calibration.find("principal_point_off_as_seen")->as<Node::Array>();
+  EXPECT_DOUBLE_EQ(*found.cameras()[1].lens.cy, 119.5 + *seen[1].as<Node::Array>()->at(1).as<double>());
   (void)run_experiment(experiment, again.path(), quiet);
   for (const char* name : {"log.mcap", "summary.json", "rig.toml", "report.html"})
     EXPECT_EQ(read_text_file(folder.path() / name, 1U << 30), read_text_file(again.path() / name, 1U << 30))

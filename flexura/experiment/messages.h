@@ -172,7 +172,7 @@ struct CalibrationDecisionMessage {
   double time = 0;                             ///< s
   std::int64_t looks = 0;                      ///< Up to now.
   bool found = false;                          ///< A rig was found.
-  std::optional<std::string> reason;           ///< Why no rig was found.
+  std::optional<std::string> reason;           ///< Why no rig was found, or the end came early.
   double rms = 0;                              ///< Of the residuals, in standard deviations.
   std::int64_t doubts = 0;                     ///< Things seen that were left out.
   double angle = 0;                            ///< Between the axes where the cameras would be sent, rad.

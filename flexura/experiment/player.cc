@@ -176,7 +176,9 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
 
 Player::Performed Player::calibrate(std::size_t task, const RecordSteps& record_steps) {
   CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_steps);
-  if (run.is_done() && !run.loop) believed_ = run.result.found.model;
+  // A loop's principal points are beside the file's: nothing for a rig that was found.
+  if (run.is_done() && (!run.loop || !is_rig_found_)) believed_ = run.found();
+  is_rig_found_ = is_rig_found_ || (run.is_done() && !run.loop);
   calibrations_.push_back(std::move(run));
   const CalibrationRun& done = calibrations_.back();
   return {done.motion, done.is_done() ? "" : fmt::format("{}: {}", done.name, done.reason())};

@@ -82,7 +82,8 @@ class Player {
   std::vector<Event> events_;  // Still to be told, in the order of time.
   std::vector<CalibrationRun> calibrations_;
   std::vector<ServoRun> servos_;
-  RigModel believed_;  // By the file, or the last calibration that found a rig.
+  RigModel believed_;                                 // By the file, or the last calibration that found more.
+  bool is_rig_found_ = false;                         // By one of the default method, with mounts and lenses.
   std::size_t dynamics_told_ = 0, samples_told_ = 0;  // Runs of dynamics in the log, samples of the next.
   std::size_t step_ = 0;                              // The next one.
   Played played_;

@@ -32,9 +32,10 @@ std::array<Vector3d, 2> directions(const Lens& lens, const AxisSample& sample) {
 
 }  // namespace
 
-void to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
+bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
   const std::size_t n = axis.size();
-  if (n < 3) return;
+  if (n < 3) return true;
+  bool is_whole = true;
   std::vector<std::array<Vector3d, 2>> borders;
   borders.reserve(n);
   for (const AxisSample& sample : axis) borders.push_back(directions(lens, sample));
@@ -51,9 +52,11 @@ void to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     const bool is_measured = axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
     const double slide = is_measured ? std::clamp(wanted, -most, most) : 0;
     const Vector3d middle = here[0] - slide * first + here[1] + slide * second;
-    if (!middle.allFinite()) continue;
-    if (const auto pixel = lens.project(middle)) axis[i].pixel = *pixel;
+    const auto pixel = middle.allFinite() ? lens.project(middle) : std::nullopt;
+    if (pixel) axis[i].pixel = *pixel;
+    is_whole = is_whole && pixel.has_value();
   }
+  return is_whole;
 }
 
 std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {

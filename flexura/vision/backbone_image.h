@@ -11,8 +11,8 @@ namespace flexura {
 /// planes through the camera that touch the tube at arc length s lie evenly to both sides of the plane that
 /// holds the camera and the backbone's tangent at s, so the backbone's direction is half-way between those of
 /// the two borders, on the sphere around the camera and not in the picture (docs/vision.md). Samples that the
-/// lens shows nowhere stay. Fewer than 3 samples stay as they are.
-void to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
+/// lens shows nowhere stay. Fewer than 3 samples stay as they are. Whether all have a direction.
+bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// The depth of the backbone at each sample of such an axis, along the optical axis, m, from the tube's width
 /// and its radius, m: to first order in radius over distance squared. Not a number where the lens shows

@@ -67,6 +67,10 @@ struct EllipseFit {
 [[nodiscard]] std::optional<EllipseFit> fit_ellipse_to_most(std::vector<Eigen::Vector2d>& points,
                                                             double tolerance = 0.6);
 
+/// The share of the way around an ellipse, by its eccentric anomaly, along which there are points: two
+/// parallel sides lie on a long ellipse, and cover little of it.
+[[nodiscard]] double share_around(const EllipseFit& ellipse, std::span<const Eigen::Vector2d> points);
+
 /// The distance of a point from an ellipse, positive outside, px.
 [[nodiscard]] double distance_to(const EllipseFit& ellipse, const Eigen::Vector2d& point);
 

@@ -98,6 +98,29 @@ TEST(Circle, TestSeesTheTiltThatItSaysItSeesAndLittleLess) {
   EXPECT_GT(fit_circle(orbit_picture(0, 0, pi / 6, 200), 0.1)->detectable_tilt, 0.3);
 }
 
+// By their own misfits (docs/calibration-paper.md, "When a loop ends"): a second harmonic of rms h among
+// others of rms m is none up to h^2 = 9.21/(n - 12.21) m^2, and 12 points or fewer verify anything.
+TEST(Circle, IsVerifiedUpToTheShareOfASecondHarmonic) {
+  const auto is_verified = [](int count, double phase, double second, double fourth) {
+    std::vector<Vector2d> points;
+    for (int i = 0; i < count; ++i) {
+      const double phi = 2 * pi * i / count;
+      const double radius =
+          150 + std::sqrt(2) * (second * std::cos(2 * (phi - phase)) + fourth * std::cos(4 * phi));
+      points.emplace_back(radius * std::cos(phi), radius * std::sin(phi));
+    }
+    return fit_circle(points)->is_verified;
+  };
+  for_random_cases(100, [&](TestRandom& random) {
+    const int count = random.integer(15, 300);
+    const double phase = random.uniform(0, pi), others = random.uniform(0.01, 0.1);
+    const double boundary = others * std::sqrt(9.21 / (count - 12.21));
+    EXPECT_TRUE(is_verified(count, phase, 0.97 * boundary, others)) << count;
+    EXPECT_FALSE(is_verified(count, phase, 1.03 * boundary, others)) << count;
+    EXPECT_TRUE(is_verified(random.integer(6, 12), phase, random.uniform(0.01, 1), 0));
+  });
+}
+
 TEST(Ellipse, IsFoundWithItsCovariance) {
   for_random_cases(20, [](TestRandom& random) {
     EllipseFit truth;

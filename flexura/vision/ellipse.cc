@@ -203,4 +203,18 @@ std::optional<EllipseFit> fit_ellipse_to_most(std::vector<Vector2d>& points, dou
   return best;
 }
 
+double share_around(const EllipseFit& ellipse, std::span<const Vector2d> points) {
+  // Two points each where all of it is seen.
+  const std::size_t parts = std::clamp<std::size_t>(points.size() / 2, 6, 72);
+  std::vector<bool> is_seen(parts, false);
+  const Eigen::Rotation2Dd back(-ellipse.angle);
+  for (const Vector2d& point : points) {
+    const Vector2d local = back * (point - ellipse.center);
+    const double t = std::atan2(local.y() / ellipse.semi_axes.y(), local.x() / ellipse.semi_axes.x());
+    const double turn = 0.5 + t / (2 * std::numbers::pi);
+    is_seen[std::min(parts - 1, static_cast<std::size_t>(turn * static_cast<double>(parts)))] = true;
+  }
+  return static_cast<double>(std::ranges::count(is_seen, true)) / static_cast<double>(parts);
+}
+
 }  // namespace flexura

@@ -119,14 +119,12 @@ double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& leve
   return static_cast<double>(bright) / static_cast<double>(count);
 }
 
-// What is mostly there at the picture's border is ground. Where that is hardly decided, because the outermost
-// pixels are a frame, say, two rings farther in are asked too.
+// What is mostly there at the picture's border is ground; in three rings, as the outermost pixels may be a
+// frame.
 template <typename Level>
 Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
-  constexpr double undecided = 0.3;
-  double share = bright_share(gray, 0, level);
-  if (share > undecided && share < 1 - undecided)
-    share = (share + bright_share(gray, 2, level) + bright_share(gray, 4, level)) / 3;
+  const double share =
+      (bright_share(gray, 0, level) + bright_share(gray, 2, level) + bright_share(gray, 4, level)) / 3;
   return share >= 0.5 ? Figure::dark : Figure::bright;
 }
 

@@ -21,7 +21,8 @@ struct WrongStart {
   // Not drawn by wrong_start:
   double pan_zero = 0, tilt_zero = 0;           ///< Of the head.
   std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point of it, m.
-  double k1 = 0;                                ///< Of the lens.
+  double k1 = 0;                                ///< Of the lens,
+  double focal = 1;                             ///< and its focal length, as a factor.
 };
 
 /// Evenly over what the paper's methods shall start from: pan and tilt 10 degrees off, roll 1, the stage 0.2
@@ -79,7 +80,8 @@ inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) 
       "{}, y = {}, "
       "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {}, distortion = [{}, 0, 0, 0, 0] }}\n",
       is_side ? "side" : "front", at[0], at[1], at[2], look[0], look[1], look[2], wrong.roll, slide, slide,
-      slide, 800 * rig.size, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy, wrong.k1);
+      slide, 800 * rig.size * wrong.focal, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy,
+      wrong.k1);
   if (is_truth)
     return fmt::format(
         "[[truth.camera]]\n{}head = {{ pan = {{ zero = {} }}, tilt = {{ zero = {} }}, tilt_axis = [{}] }}\n",

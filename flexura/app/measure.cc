@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "flexura/app/commands.h"
@@ -43,6 +44,14 @@ MeasureSettings settings_of(const MeasureArguments& arguments) {
     throw input_error("--radius", fmt::format("{} m: expected a number from {:g} to {:g}", *arguments.radius,
                                               thinnest, thickest));
   settings.radius = arguments.radius;
+  if (settings.what == MeasureTarget::circle || settings.what == MeasureTarget::etalon) {
+    for (const auto& [option, is_given] : {std::pair{"--base", !arguments.base.empty()},
+                                           {"--camera", !arguments.camera.empty()},
+                                           {"--radius", arguments.radius.has_value()}})
+      if (is_given)
+        throw input_error(
+            option, fmt::format("counts for nothing with --what {}: expected for arms only", arguments.what));
+  }
   return settings;
 }
 

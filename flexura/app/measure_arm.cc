@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,6 +76,17 @@ void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSamp
   canvas.cross(arm.ends[0].pixel, 7, fit_color);
 }
 
+// A border beside what is cut off at white is drawn aside.
+std::optional<std::string> saturation(const Job& job) {
+  constexpr double most = 0.1, percent = 100;
+  const auto values = job.gray.values();
+  const double share =
+      static_cast<double>(std::ranges::count(values, 255)) / static_cast<double>(values.size());
+  if (job.photograph.is_mask || share <= most) return std::nullopt;
+  return fmt::format("{:.0f} % of the picture is saturated: borders beside that are seen aside, expose less",
+                     percent * share);
+}
+
 }  // namespace
 
 bool measure_arm(const Job& job) {
@@ -98,6 +113,7 @@ bool measure_arm(const Job& job) {
   if (job.settings.lens && !is_backbone)
     notes.emplace_back(
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
+  if (auto note = saturation(job)) notes.push_back(std::move(*note));
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   job.answer.add("notes", texts_node(notes))
       .add("base", end_node(arm.ends[0]))

@@ -1,10 +1,10 @@
 #include "flexura/app/measure.h"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -188,6 +188,58 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   const auto& depths = *backbone.find("depth")->as<Node::Array>();
   EXPECT_NEAR(*depths[depths.size() / 2].as<double>(), 1, 0.02);
   EXPECT_EQ(depths.size(), backbone.find("axis")->as<Node::Array>()->size());
+  // Of rays that no lens has nothing can be said.
+  write_new_file(folder.path() / "odd.toml",
+                 "[[camera]]\nname = \"front\"\nfx = 400\nfy = 400\ncx = 160\n"
+                 "cy = 120\ndistortion = [-5, 0, 0, 0, 0]\n");
+  arguments.camera = (folder.path() / "odd.toml").string();
+  const Node odd = answer();
+  EXPECT_EQ(*odd.find("axis_kind")->as<std::string>(), "middle");
+  EXPECT_EQ(write_json(*odd.find("axis")), write_json(*middle.find("axis")));
+  EXPECT_EQ(odd.find("depth"), nullptr);
+  EXPECT_THAT(write_json(*odd.find("notes")), HasSubstr("the axis is its middle"));
+}
+
+TEST(Measure, RefusesWhatCountsForNothing) {
+  MeasureArguments arguments;
+  arguments.images = {"x.png"};
+  std::ostringstream out;
+  for (const char* what : {"circle", "etalon"}) {
+    arguments.what = what;
+    arguments.base = {1, 2};
+    EXPECT_THROW((void)measure_command(arguments, out), InputError);
+    arguments.base.clear(), arguments.camera = "x.toml";
+    EXPECT_THROW((void)measure_command(arguments, out), InputError);
+    arguments.camera.clear();
+  }
+  arguments.what = "arm", arguments.camera = "x.toml";
+  for (const double radius : {0.0, -1.0, 1e-300, 1e300, std::nan("")}) {
+    arguments.radius = radius;
+    EXPECT_THROW((void)measure_command(arguments, out), InputError) << radius;
+  }
+}
+
+TEST(Measure, SeesAnArmInAFrameAndSaysWhereThePictureIsSaturated) {
+  Image<std::uint8_t> picture = tube();
+  for (const bool is_dark : {true, false}) {
+    Image<std::uint8_t> framed = picture;
+    for (int v = 0; v < framed.height(); ++v)
+      for (int u = 0; u < framed.width(); ++u)
+        if (u == 0 || v == 0 || u == framed.width() - 1 || v == framed.height() - 1)
+          for (int c = 0; c < framed.channels(); ++c) framed.at(u, v, c) = is_dark ? 20 : 250;
+    const Measurement found = measured(png(framed));
+    EXPECT_TRUE(found.is_found) << write_json(found.answer);
+    EXPECT_EQ(*found.answer.find("figure")->as<std::string>(), "dark");
+  }
+  const auto is_said = [](const Measurement& found) {
+    return write_json(*found.answer.find("notes")).find("saturated") != std::string::npos;
+  };
+  EXPECT_FALSE(is_said(measured(png(picture))));
+  for (int v = 0; v < picture.height() / 3; ++v)
+    for (int u = 0; u < picture.width(); ++u)
+      for (int c = 0; c < picture.channels(); ++c)
+        if (picture.at(u, v, c) > 150) picture.at(u, v, c) = 255;
+  EXPECT_TRUE(is_said(measured(png(picture))));
 }
 
 TEST(Measure, DoesNotDrawOverThePictureThatItMeasures) {

@@ -333,7 +333,11 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
         "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
   if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
     result.notes.push_back(std::move(doubt));
-  if (sigma > config_.uncertain * length) result.notes.push_back(fmt::format("uncertain to {:.2g} m", sigma));
+  if (sigma > config_.uncertain * length)
+    result.notes.push_back(fmt::format(
+        "uncertain to {:.2g} m{}", sigma,
+        prior_.is_length_known ? ""
+                               : ", if it is this shape: of unknown length another one may fit as well"));
   return result;
 }
 

@@ -30,11 +30,18 @@ Node circle_node(const std::optional<CircleFit>& fit) {
 
 Node ellipse_node(const std::optional<EllipseFit>& fit) {
   if (!fit) return {};
+  const Eigen::Matrix<double, 5, 1> sigma = fit->covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const auto pair = [](double a, double b) { return Node{Node::Array{number_node(a), number_node(b)}, {}}; };
   return TableMaker()
       .add("center", pixel_pair(fit->center))
       .add("semi_axes", pixel_pair(fit->semi_axes))
       .add("angle_deg", number_node(fit->angle / degree))
       .add("rms", number_node(fit->rms))
+      .add("sigma", TableMaker()
+                        .add("center", pair(sigma[0], sigma[1]))
+                        .add("semi_axes", pair(sigma[2], sigma[3]))
+                        .add("angle_deg", number_node(sigma[4] / degree))
+                        .take())
       .take();
 }
 

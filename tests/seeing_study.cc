@@ -26,12 +26,16 @@ struct Errors {
   void add(double value) { values.push_back(value); }
   [[nodiscard]] double rms() const { return root_mean_square(values); }
   [[nodiscard]] double size(double share) const { return quantile(sizes_of(values), share); }
+  [[nodiscard]] double share_beyond(double bound) const {
+    return static_cast<double>(std::ranges::count_if(values, [&](double value) { return value > bound; })) /
+           static_cast<double>(std::max<std::size_t>(values.size(), 1));
+  }
 };
 
 struct Tally {
   std::size_t pictures = 0, found = 0, samples = 0, unseen = 0, crossing = 0, crossing_found = 0, markers = 0,
-              markers_shown = 0, false_markers = 0;
-  Errors plain, middle, whole, by_sigma, picture, tip, marker;
+              markers_shown = 0, false_markers = 0, spots = 0;
+  Errors plain, middle, whole, by_sigma, picture, tip, marker, marker_by_sigma;
 };
 
 double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
@@ -87,11 +91,15 @@ void measure(const SeenArm& seen, ArmFinder& finder, Tally& tally) {
   tally.markers_shown += static_cast<std::size_t>(std::ranges::count_if(
       views, [](const MarkerView& view) { return view.area > 12 && view.center.is_visible; }));
   for (const MarkerSighting& marker : markers.markers) {
+    if (!marker.is_band) {
+      ++tally.spots;
+      continue;
+    }
     double nearest = 1e9;
     for (const MarkerView& view : views)
       if (view.center.pixel) nearest = std::min(nearest, (*view.center.pixel - marker.pixel).norm());
     nearest < 6 ? tally.marker.add(nearest) : void(++tally.false_markers);
-    ++tally.markers;
+    tally.marker_by_sigma.add(nearest / marker.sigma), ++tally.markers;
   }
 }
 
@@ -139,9 +147,10 @@ int study(int cases, std::uint64_t seed) {
   std::printf(
       "\nBands, noise 2, PSF 0.7: %zu in view, %zu found, %zu of these where none is; median %.3f px from "
       "where the\n"
-      "backbone is seen in the band's middle, 90 %% within %.2f px.\n",
+      "backbone is seen in the band's middle, 90 %% within %.2f px, %.2f %% beyond 4 sigma; %zu spots, where "
+      "there are none.\n",
       banded.markers_shown, banded.markers, banded.false_markers, banded.marker.size(0.5),
-      banded.marker.size(0.9));
+      banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4), banded.spots);
   return 0;
 }
 

@@ -34,6 +34,7 @@ Node marker_node(const MarkerSighting& marker) {
   return TableMaker()
       .add("at", pixel_pair(marker.pixel))
       .add("along", number_node(px(marker.along)))
+      .add("aside", number_node(px(marker.aside)))
       .add("length", number_node(px(marker.length)))
       .add("sigma", number_node(marker.sigma))
       .add("kind", text_node(marker.is_band ? "band" : "spot"))

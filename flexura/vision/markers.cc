@@ -14,90 +14,18 @@
 #include <vector>
 
 #include "flexura/math/median.h"
+#include "flexura/vision/arm_skin.h"
+#include "flexura/vision/spots.h"
 
 namespace flexura {
 namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-// Lines along the arm, in half widths from its axis.
-constexpr std::array<double, 7> skin_lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};
-constexpr std::size_t middle_line = 3;
+constexpr std::size_t middle_line = ArmSkin::middle_line, lines = ArmSkin::lines.size();
 
 // Markers are at least so much brighter or of another colour than the arm, of 255.
 constexpr double least_difference = 14;
-
-Vector3d color_at(const Image<std::uint8_t>& picture, const Vector2d& pixel) {
-  const double u = std::clamp(pixel.x(), 0.0, picture.width() - 1.001),
-               v = std::clamp(pixel.y(), 0.0, picture.height() - 1.001);
-  const int i = static_cast<int>(u), j = static_cast<int>(v);
-  const double right = u - i, down = v - j;
-  Vector3d color;
-  for (int c = 0; c < 3; ++c) {
-    const int channel = picture.channels() == 3 ? c : 0;
-    const int i1 = std::min(i + 1, picture.width() - 1), j1 = std::min(j + 1, picture.height() - 1);
-    color[c] = (1 - down) * ((1 - right) * picture.at(i, j, channel) + right * picture.at(i1, j, channel)) +
-               down * ((1 - right) * picture.at(i, j1, channel) + right * picture.at(i1, j1, channel));
-  }
-  return color;
-}
-
-// The arm's skin laid out flat: colours along the skin_lines, a pixel apart.
-struct Skin {
-  std::vector<Vector2d> axis, normals;
-  std::vector<double> half_widths;
-  std::array<std::vector<Vector3d>, skin_lines.size()> colors;
-
-  Skin(const Image<std::uint8_t>& picture, const ArmSighting& arm) {
-    double way = 0, next = 0;
-    for (std::size_t i = 0; i + 1 < arm.axis.size(); ++i) {
-      const AxisSample &a = arm.axis[i], &b = arm.axis[i + 1];
-      const double length = (b.pixel - a.pixel).norm();
-      for (; next < way + length; next += 1) {
-        const double share = (next - way) / length;
-        axis.emplace_back(a.pixel + share * (b.pixel - a.pixel));
-        normals.emplace_back((a.normal + share * (b.normal - a.normal)).normalized());
-        half_widths.push_back(0.5 * (a.width + share * (b.width - a.width)));
-      }
-      way += length;
-    }
-    for (std::size_t line = 0; line < skin_lines.size(); ++line)
-      for (std::size_t i = 0; i < axis.size(); ++i)
-        colors[line].push_back(color_at(picture, axis[i] + skin_lines[line] * half_widths[i] * normals[i]));
-  }
-  [[nodiscard]] std::size_t size() const { return axis.size(); }
-  [[nodiscard]] Vector2d at(double along) const {
-    const double place = std::clamp(along, 0.0, static_cast<double>(size() - 1));
-    const auto i = std::min(static_cast<std::size_t>(place), size() - 2);
-    return axis[i] + (place - static_cast<double>(i)) * (axis[i + 1] - axis[i]);
-  }
-};
-
-Vector3d median_color(const std::vector<Vector3d>& colors) {
-  Vector3d result;
-  std::vector<double> values(colors.size());
-  for (int c = 0; c < 3; ++c) {
-    std::ranges::transform(colors, values.begin(), [&](const Vector3d& color) { return color[c]; });
-    result[c] = median(std::span(values));
-  }
-  return result;
-}
-
-// Stretches [first, last) of a line whose colour is not the arm's.
-struct Stretch {
-  std::size_t first, last;
-};
-std::vector<Stretch> stretches(const std::vector<Vector3d>& colors, const Vector3d& own, double bound) {
-  std::vector<Stretch> result;
-  bool is_in = false;
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const bool differs = (colors[i] - own).norm() > bound;
-    if (differs && !is_in) result.push_back({i, colors.size()});
-    if (!differs && is_in) result.back().last = i;
-    is_in = differs;
-  }
-  return result;
-}
 
 // At an end of the arm the ground is in the last pixels, by the picture's blur.
 bool is_ground(const Stretch& stretch, std::size_t size) {
@@ -109,70 +37,220 @@ bool is_ground(const Stretch& stretch, std::size_t size) {
 // A line's part of a marker: its middle and length by the moments of how much it differs from the skin around
 // it.
 struct Part {
-  double middle = 0, length = 0, sigma = 0;
+  double middle = 0, length = 0, height = 0, sigma = 0;
 };
-std::optional<Part> part_of(const std::vector<Vector3d>& colors, const Stretch& near,
-                            const Vector3d& direction, double bound, double noise) {
-  const std::size_t margin = 4;
-  if (near.first < margin || near.last + margin > colors.size()) return std::nullopt;
-  const std::size_t from = near.first - margin, to = near.last + margin;
-  const double before = (colors[from] + colors[from + 1]).dot(direction) / 2;
-  const double after = (colors[to - 1] + colors[to - 2]).dot(direction) / 2;
-  double sum = 0, first = 0, most = 0;
-  for (std::size_t i = from; i < to; ++i) {
-    const double share = static_cast<double>(i - from) / static_cast<double>(to - 1 - from);
-    const double value = colors[i].dot(direction) - before - share * (after - before);
-    sum += value, first += value * static_cast<double>(i), most = std::max(most, value);
-  }
-  if (most < bound || sum <= 0) return std::nullopt;
-  const auto n = static_cast<double>(to - from);
-  const Part part{first / sum, sum / most, noise * std::sqrt(n * n * n / 12) / sum};
-  if (part.middle < static_cast<double>(from) || part.middle > static_cast<double>(to)) return std::nullopt;
-  return part;
-}
+using Parts = std::array<std::optional<Part>, lines>;
 
-// middle(y) = x + bulge h sqrt(1 - y^2), over the skin_lines that show the marker.
-MarkerSighting joined(const std::array<std::optional<Part>, skin_lines.size()>& parts, double half_width) {
-  MarkerSighting marker;
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Vector2d right = Vector2d::Zero();
-  double count = 0, sigma = 0;
-  for (std::size_t i = 0; i < skin_lines.size(); ++i) {
-    if (!parts[i]) continue;
-    const Vector2d row(1, half_width * std::sqrt(1 - skin_lines[i] * skin_lines[i]));
-    normal += row * row.transpose(), right += parts[i]->middle * row;
-    marker.length += parts[i]->length, sigma += parts[i]->sigma * parts[i]->sigma, ++count;
-  }
-  marker.length /= count, sigma = std::sqrt(sigma / count);
-  marker.is_band = count >= 5;
-  if (marker.is_band) {
-    const Vector2d solution = normal.ldlt().solve(right);
-    if (std::abs(solution[1]) < 1) {
-      marker.along = solution[0], marker.bulge = solution[1];
-      marker.sigma = sigma * std::sqrt(normal.inverse()(0, 0));
-      return marker;
+// Finds a band's parts on all lines.
+class BandFinder {
+ public:
+  BandFinder(const ArmSkin& skin, double bound, double noise)
+      : skin_(skin), bound_(0.5 * bound), noise_(noise) {
+    for (std::size_t line = 0; line < lines; ++line) {
+      own_[line] = median_color(skin.colors[line]);
+      stretches_[line] = stretches(skin.colors[line], own_[line], bound_);
     }
   }
-  marker.along = right[0] / count, marker.sigma = sigma / std::sqrt(count);
-  return marker;
+  [[nodiscard]] const Vector3d& own() const { return own_[middle_line]; }
+
+  // From the middle line outwards: neighbours of a band's parts are its next parts.
+  [[nodiscard]] Parts parts_of(const Stretch& stretch, const Vector3d& direction) const {
+    Parts parts;
+    parts[middle_line] = part_of(middle_line, stretch, direction);
+    if (!parts[middle_line]) return parts;
+    const std::size_t middle = (stretch.first + stretch.last) / 2;
+    const double reach = 0.35 * skin_.half_widths[middle] + 1.5;
+    for (const int side : {-1, 1}) {
+      double place = parts[middle_line]->middle;
+      for (int step = 1; step <= static_cast<int>(middle_line); ++step) {
+        const auto line = static_cast<std::size_t>(static_cast<int>(middle_line) + side * step);
+        const Stretch* near = nearest(stretches_[line], place);
+        if (near == nullptr || std::abs(middle_of(*near) - place) > reach) continue;
+        parts[line] = part_of(line, *near, direction);
+        if (parts[line]) place = parts[line]->middle;
+      }
+    }
+    return parts;
+  }
+
+ private:
+  static double middle_of(const Stretch& stretch) {
+    return 0.5 * static_cast<double>(stretch.first + stretch.last - 1);
+  }
+  static const Stretch* nearest(const std::vector<Stretch>& of, double place) {
+    const auto best = std::ranges::min_element(
+        of, {}, [&](const Stretch& stretch) { return std::abs(middle_of(stretch) - place); });
+    return best == of.end() ? nullptr : &*best;
+  }
+
+  [[nodiscard]] std::optional<Part> part_of(std::size_t line, const Stretch& near,
+                                            const Vector3d& direction) const {
+    const std::vector<Vector3d>& colors = skin_.colors[line];
+    constexpr std::size_t margin = 4;
+    if (near.first < margin || near.last + margin > colors.size()) return std::nullopt;
+    const std::size_t from = near.first - margin, to = near.last + margin;
+    const double before = (colors[from] + colors[from + 1]).dot(direction) / 2;
+    const double after = (colors[to - 1] + colors[to - 2]).dot(direction) / 2;
+    double sum = 0, first = 0, most = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const double share = static_cast<double>(i - from) / static_cast<double>(to - 1 - from);
+      const double value = colors[i].dot(direction) - before - share * (after - before);
+      sum += value, first += value * static_cast<double>(i), most = std::max(most, value);
+    }
+    if (most < bound_ || sum <= 0) return std::nullopt;
+    const auto n = static_cast<double>(to - from);
+    const Part part{first / sum, sum / most, most, noise_ * std::sqrt(n * n * n / 12) / sum};
+    if (part.middle < static_cast<double>(from) || part.middle > static_cast<double>(to)) return std::nullopt;
+    return part;
+  }
+
+  const ArmSkin& skin_;
+  double bound_, noise_;
+  std::array<Vector3d, lines> own_;
+  std::array<std::vector<Stretch>, lines> stretches_;
+};
+
+// Leaves out parts that are much longer, shorter or fainter than those around the middle: of two markers, or
+// beside a round one. Whether the rest is a band's.
+bool keep_alike(Parts& parts) {
+  std::array<double, 3> lengths{}, heights{};
+  std::size_t count = 0;
+  for (std::size_t i = middle_line - 1; i <= middle_line + 1; ++i)
+    if (parts[i]) lengths[count] = parts[i]->length, heights[count++] = parts[i]->height;
+  if (count == 0) return false;
+  const double length = median(std::span(lengths.data(), count)),
+               height = median(std::span(heights.data(), count));
+  for (auto& part : parts)
+    if (part && (part->length > 1.6 * length || part->length < 0.6 * length || part->height < 0.4 * height))
+      part.reset();
+  if (std::ranges::count_if(parts, [](const auto& part) { return part.has_value(); }) < 5) return false;
+  const auto is_alike = [&](const auto& part) {
+    return !part || (part->length > 0.8 * length && part->length < 1.25 * length);
+  };
+  // A round one is shorter to its sides.
+  return (parts.front() && parts.back()) ||
+         ((parts.front() || parts.back()) && parts[1] && parts[lines - 2]) ||
+         std::ranges::all_of(parts, is_alike);
+}
+
+// middle(y) = x + bulge h sqrt(1 - y^2) + tilt y, least squares over the parts that there are. A tilt is
+// none of a straight arm's, and shifts x only where the parts are uneven.
+struct BandFit {
+  double along = 0, bulge = 0, tilt = 0;
+  double misfit = 0;      // Of the parts' middles, a standard deviation, px.
+  double part_sigma = 0;  // What it should be, px.
+  double gain = 0;        // Of x's standard deviation over a part's.
+  double mean_front = 0;  // Of h sqrt(1 - y^2), px.
+};
+BandFit fitted(const Parts& parts, double half_width) {
+  const auto row_of = [&](std::size_t line) {
+    const double y = ArmSkin::lines[line];
+    return Vector3d(1, half_width * std::sqrt(1 - y * y), y);
+  };
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  double count = 0, variance = 0, square = 0;
+  BandFit fit;
+  for (std::size_t i = 0; i < lines; ++i) {
+    if (!parts[i]) continue;
+    const Vector3d row = row_of(i);
+    normal += row * row.transpose(), right += parts[i]->middle * row;
+    variance += parts[i]->sigma * parts[i]->sigma, ++count;
+    fit.mean_front += row[1];
+  }
+  const Vector3d solution = normal.ldlt().solve(right);
+  for (std::size_t i = 0; i < lines; ++i) {
+    if (!parts[i]) continue;
+    const double miss = parts[i]->middle - row_of(i).dot(solution);
+    square += miss * miss;
+  }
+  fit.along = solution[0], fit.bulge = solution[1], fit.tilt = solution[2];
+  fit.misfit = std::sqrt(square / (count - 3)), fit.part_sigma = std::sqrt(variance / count);
+  fit.gain = std::sqrt(normal.inverse()(0, 0)), fit.mean_front /= count;
+  return fit;
+}
+
+// The parts of a band, which see it together; without the outermost of one side where that is of something
+// else.
+MarkerSighting band_of(Parts parts, double half_width) {
+  BandFit fit = fitted(parts, half_width);
+  if (fit.misfit > 2 * fit.part_sigma &&
+      std::ranges::count_if(parts, [](const auto& part) { return part.has_value(); }) > 5) {
+    const Parts all = parts;
+    const BandFit whole = fit;
+    for (const std::size_t line : {std::size_t{0}, lines - 1}) {
+      if (!all[line]) continue;
+      Parts fewer = all;
+      fewer[line].reset();
+      const BandFit other = fitted(fewer, half_width);
+      if (other.misfit < 0.4 * whole.misfit && other.misfit < fit.misfit) fit = other, parts = fewer;
+    }
+  }
+  MarkerSighting band;
+  double count = 0;
+  for (const auto& part : parts)
+    if (part) band.length += part->length, ++count;
+  band.length /= count;
+  band.bulge = std::clamp(fit.bulge, -1.0, 1.0);
+  const double beyond = (fit.bulge - band.bulge) * fit.mean_front;
+  band.along = fit.along + beyond;
+  // A misfit counts where it is more than chance.
+  const double part_sigma = fit.misfit > 1.2 * fit.part_sigma ? fit.misfit : fit.part_sigma;
+  // Where the arm bends within its width the parts tilt by a pixel and more, and x is off by half of that (as
+  // drawn random arms are).
+  const double bent = 0.5 * fit.tilt * std::min(std::abs(fit.tilt), 1.0);
+  band.sigma = std::sqrt(std::pow(fit.gain * part_sigma, 2) + beyond * beyond + bent * bent);
+  return band;
+}
+
+// Whether a stretch of the middle line goes down in between: two markers whose blur runs together.
+bool has_dip(const std::vector<Vector3d>& colors, const Stretch& stretch, const Vector3d& own, double noise) {
+  const auto size = [&](std::size_t i) { return (colors[i] - own).norm(); };
+  double most = 0, before = 0, after = 0, deepest = 0;
+  std::size_t top = stretch.first;
+  for (std::size_t i = stretch.first; i < stretch.last; ++i)
+    if (size(i) > most) most = size(i), top = i;
+  // From both ends to the top it should only rise.
+  for (std::size_t i = stretch.first; i < top; ++i)
+    before = std::max(before, size(i)), deepest = std::max(deepest, before - size(i));
+  for (std::size_t i = stretch.last - 1; i > top; --i)
+    after = std::max(after, size(i)), deepest = std::max(deepest, after - size(i));
+  return deepest > std::max(0.3 * most, 8 * noise);
+}
+
+void look_for_merged(std::vector<MarkerSighting>& markers) {
+  for (const bool are_bands : {true, false}) {
+    std::vector<double> lengths;
+    lengths.reserve(markers.size());
+    for (const MarkerSighting& marker : markers)
+      if (marker.is_band == are_bands) lengths.push_back(marker.length);
+    if (lengths.size() < 2) continue;
+    std::ranges::sort(lengths);
+    // Of two the shorter one is taken for one.
+    const double usual = lengths[lengths.size() < 4 ? (lengths.size() - 1) / 2 : lengths.size() / 2];
+    for (MarkerSighting& marker : markers)
+      if (marker.is_band == are_bands && marker.length > 1.8 * usual) marker.may_be_merged = true;
+  }
 }
 
 void look_for_gaps(MarkerSightings& found) {
-  std::vector<MarkerSighting>& markers = found.markers;
-  if (markers.size() < 4) return;
-  std::vector<double> lengths, gaps;
-  for (const MarkerSighting& marker : markers) lengths.push_back(marker.length);
-  for (std::size_t i = 1; i < markers.size(); ++i) gaps.push_back(markers[i].along - markers[i - 1].along);
-  std::vector<double> sorted = lengths;
-  std::ranges::sort(sorted);
-  for (MarkerSighting& marker : markers)
-    marker.may_be_merged = marker.length > 1.8 * sorted[sorted.size() / 2];
+  const std::vector<MarkerSighting>& markers = found.markers;
+  std::vector<std::size_t> ends;  // The markers behind the gaps; those side by side have none between them.
+  std::vector<double> gaps;
+  ends.reserve(markers.size()), gaps.reserve(markers.size());
+  for (std::size_t i = 1; i < markers.size(); ++i) {
+    const double gap = markers[i].along - markers[i - 1].along;
+    if (gap > 0.5 * std::min(markers[i].length, markers[i - 1].length))
+      ends.push_back(i), gaps.push_back(gap);
+  }
+  if (gaps.size() < 3) return;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     // Spacing changes slowly where the arm turns away: compare with the gaps beside.
     const double before = i > 0 ? gaps[i - 1] : gaps[i + 1],
                  after = i + 1 < gaps.size() ? gaps[i + 1] : gaps[i - 1];
     if (gaps[i] > 1.7 * std::max(before, after))
-      found.notes.push_back(fmt::format("a marker may be missing between markers {} and {}", i + 1, i + 2));
+      found.notes.push_back(
+          fmt::format("a marker may be missing between markers {} and {}", ends[i], ends[i] + 1));
   }
 }
 
@@ -181,7 +259,7 @@ void look_for_gaps(MarkerSightings& found) {
 MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm) {
   MarkerSightings found;
   if (arm.axis.size() < 8) return found;
-  const Skin skin(picture, arm);
+  const ArmSkin skin(picture, arm);
   if (skin.size() < 12) return found;
   // The ground is in every pixel of a thinner arm.
   constexpr double thinnest = 4;  // px
@@ -192,50 +270,41 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
                                       thickness, thinnest));
     return found;
   }
-  const Vector3d own = median_color(skin.colors[middle_line]);
   const double bound = std::max(least_difference, 5 * arm.noise);
-  std::size_t dropped = 0;
-  for (const Stretch& stretch : stretches(skin.colors[middle_line], own, bound)) {
+  const BandFinder finder(skin, bound, arm.noise);
+  std::vector<Stretch> bands, others;
+  for (const Stretch& stretch : stretches(skin.colors[middle_line], finder.own(), bound)) {
     if (is_ground(stretch, skin.size())) continue;
     const std::size_t middle = (stretch.first + stretch.last) / 2;
-    const Vector3d color = skin.colors[middle_line][middle], direction = (color - own).normalized();
-    std::array<std::optional<Part>, skin_lines.size()> parts;
-    // Along the other skin_lines the band is shifted by no more than the arm's half width.
-    for (std::size_t line = 0; line < skin_lines.size(); ++line) {
-      Stretch near = stretch;
-      if (line != middle_line) {
-        const auto reach = static_cast<std::size_t>(0.6 * skin.half_widths[middle]) + 1;
-        const Stretch wide{stretch.first - std::min(stretch.first, reach),
-                           std::min(stretch.last + reach, skin.size())};
-        // The stretch of this line that is nearest.
-        double best = 1e9;
-        for (const Stretch& other :
-             stretches(skin.colors[line], median_color(skin.colors[line]), 0.5 * bound)) {
-          if (other.last <= wide.first || other.first >= wide.last) continue;
-          const double distance =
-              std::abs(0.5 * static_cast<double>(other.first + other.last) - static_cast<double>(middle));
-          if (distance < best) best = distance, near = other;
-        }
-        if (best > 1e8) continue;
-      }
-      parts[line] = part_of(skin.colors[line], near, direction, 0.5 * bound, arm.noise);
-    }
-    if (!parts[middle_line] ||
-        std::ranges::count_if(parts, [](const auto& part) { return part.has_value(); }) < 2) {
-      ++dropped;
+    const Vector3d color = skin.colors[middle_line][middle];
+    Parts parts = finder.parts_of(stretch, (color - finder.own()).normalized());
+    if (!keep_alike(parts)) {
+      others.push_back(stretch);
       continue;
     }
-    MarkerSighting marker = joined(parts, skin.half_widths[middle]);
-    marker.pixel = skin.at(marker.along);
-    marker.color = color;
-    found.markers.push_back(marker);
+    MarkerSighting band = band_of(parts, skin.half_widths[middle]);
+    band.pixel = skin.at(band.along);
+    band.color = color;
+    band.may_be_merged = has_dip(skin.colors[middle_line], stretch, finder.own(), arm.noise);
+    found.markers.push_back(band);
+    bands.push_back(stretch);
   }
+  const std::vector<MarkerSighting> spots = find_spots(picture, arm, skin, bands, bound);
+  found.markers.insert(found.markers.end(), spots.begin(), spots.end());
+  const auto is_spot = [&](const Stretch& stretch) {
+    return std::ranges::any_of(spots, [&](const MarkerSighting& spot) {
+      return spot.along + spot.length > static_cast<double>(stretch.first) &&
+             spot.along - spot.length < static_cast<double>(stretch.last);
+    });
+  };
+  const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
   if (dropped > 0)
     found.notes.push_back(
-        fmt::format("{} spot{} of another colour left out: at an end of the arm, or too small to be "
-                    "a marker",
+        fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, or "
+                    "too small to be a marker",
                     dropped, dropped > 1 ? "s" : ""));
   std::ranges::stable_sort(found.markers, {}, &MarkerSighting::along);
+  look_for_merged(found.markers);
   look_for_gaps(found);
   return found;
 }

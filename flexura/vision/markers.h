@@ -12,9 +12,11 @@ namespace flexura {
 
 /// A coloured band around the arm, or a spot on it.
 struct MarkerSighting {
-  /// A band: where the backbone is seen in its middle. A spot: its middle on the axis.
+  /// A band: where the backbone is seen in its middle. A spot: the centre of what is seen of it, wherever on
+  /// the skin that is; nothing is known of the backbone there.
   Eigen::Vector2d pixel = {0, 0};
-  double along = 0;   ///< Way along the axis from its first sample, px.
+  double along = 0;   ///< Way along the axis from its first sample to the foot of `pixel`, px.
+  double aside = 0;   ///< From there to `pixel` along the axis's normal, px; 0 for bands.
   double length = 0;  ///< Along the axis, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
   /// How far the band's front bulges along the axis, in half widths of the arm: the sine of the angle by
@@ -24,7 +26,7 @@ struct MarkerSighting {
   Eigen::Vector3d color = {
       0, 0, 0};         ///< Red, green, blue of its middle, of 0 to 255; a gray picture's three times.
   bool is_band = true;  ///< Seen across the arm; otherwise a spot.
-  /// Much longer than others of its kind nearby: probably two in one.
+  /// Much longer than others, or of two parts: probably two in one.
   bool may_be_merged = false;
 };
 

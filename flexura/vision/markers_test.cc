@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,10 @@
 
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/picture_file.h"
+#include "tests/support/drawn_arms.h"
+#include "tests/support/random_cases.h"
 #include "tests/support/seen_arms.h"
+#include "tests/support/study_numbers.h"
 
 namespace flexura {
 namespace {
@@ -97,6 +101,19 @@ TEST(Markers, TwoThatRunTogetherAreOneThatIsMarked) {
     EXPECT_EQ(found.markers[i].may_be_merged, i == 4) << i;
 }
 
+TEST(Markers, TwoThatRunTogetherAmongThreeAreMarked) {
+  for (const double gap : {0.0, 0.003}) {
+    std::vector<MarkerRing> bands = even_bands(0.25);
+    bands.resize(3);
+    const double next = bands[1].s_to + gap;
+    bands.insert(bands.begin() + 2, {next, next + 0.024, red});
+    const MarkerSightings found = BandedPicture(bands).found();
+    ASSERT_EQ(found.markers.size(), 3U);
+    for (std::size_t i = 0; i < found.markers.size(); ++i)
+      EXPECT_EQ(found.markers[i].may_be_merged, i == 1) << i << ' ' << gap;
+  }
+}
+
 TEST(Markers, TwoOfOtherColoursThatTouchAreNotMixed) {
   std::vector<MarkerRing> bands = even_bands(0.18);
   bands[2].albedo = green;
@@ -123,6 +140,116 @@ TEST(Markers, SpeckOnTheArmIsNoBand) {
   std::size_t bands = 0;
   for (const MarkerSighting& marker : found.markers) bands += marker.is_band ? 1 : 0;
   EXPECT_EQ(bands, seen.scene.arm.markers.size());
+}
+
+// A straight, slanting arm 24 px thick with red discs on it, blurred by the pixel alone.
+struct SpottedPicture {
+  static constexpr double half_width = 12;
+
+  explicit SpottedPicture(const std::vector<Eigen::Vector3d>& discs, TestRandom& random)
+      : picture(320, 400, 3) {
+    const Eigen::Vector2d along = Eigen::Vector2d(-0.05, -1).normalized(), normal(-along.y(), along.x());
+    for (const Eigen::Vector3d& disc : discs) centers.emplace_back(base + disc[0] * along + disc[1] * normal);
+    for (int v = 0; v < picture.height(); ++v) {
+      for (int u = 0; u < picture.width(); ++u) {
+        const Eigen::Vector2d to = Eigen::Vector2d(u, v) - base;
+        const double arm =
+            share(std::abs(to.dot(normal)) - half_width) * share(std::abs(to.dot(along) - 150) - 150);
+        double disc = 0;
+        for (std::size_t i = 0; i < discs.size(); ++i)
+          disc = std::max(disc, share((Eigen::Vector2d(u, v) - centers[i]).norm() - discs[i][2]));
+        for (int c = 0; c < 3; ++c) {
+          const double skin = 25 + disc * (c == 0 ? 165 : 5), light = 220 + arm * (skin - 220);
+          picture.at(u, v, c) = static_cast<std::uint8_t>(
+              std::lround(std::clamp(light + 2 * normal_number(random), 0.0, 255.0)));
+        }
+      }
+    }
+  }
+  [[nodiscard]] MarkerSightings found() const {
+    ArmFinder finder;
+    const ArmSighting& arm = finder.find(gray_picture(picture));
+    EXPECT_TRUE(arm.is_found()) << arm.reason;
+    return find_markers(picture, arm);
+  }
+
+  Eigen::Vector2d base = {168, 350};
+  std::vector<Eigen::Vector2d> centers;
+  Image<std::uint8_t> picture;
+};
+
+TEST(Markers, SpotsAreFoundWhereverOnTheSkinTheyLie) {
+  std::vector<double> misses;
+  double over_sigma = 0;
+  for_random_cases(20, [&](TestRandom& random) {
+    std::vector<Eigen::Vector3d> discs;  // Along, aside, radius.
+    for (int i = 0; i < 4; ++i) {
+      const double radius = random.uniform(2.5, 6.5), aside = 11 - radius;
+      discs.emplace_back(40 + 70 * i + random.uniform(-15, 15), random.uniform(-aside, aside), radius);
+    }
+    const SpottedPicture seen(discs, random);
+    const MarkerSightings found = seen.found();
+    ASSERT_EQ(found.markers.size(), discs.size());
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+      const MarkerSighting& spot = found.markers[i];
+      const Eigen::Vector2d miss = spot.pixel - seen.centers[i];
+      EXPECT_FALSE(spot.is_band) << i;
+      EXPECT_LT(miss.norm(), 0.3) << i << ": aside " << discs[i][1] << ", radius " << discs[i][2];
+      EXPECT_NEAR(spot.aside, discs[i][1], 0.3) << i;
+      EXPECT_NEAR(spot.length, 2 * discs[i][2], 1.5) << i;
+      misses.push_back(miss.norm());
+      over_sigma += std::pow(miss.y() / spot.sigma, 2);
+    }
+  });
+  EXPECT_LT(root_mean_square(misses), 0.1);
+  EXPECT_LT(std::sqrt(over_sigma / static_cast<double>(misses.size())), 2);
+}
+
+TEST(Markers, TwoSpotsSideBySideAreTwo) {
+  for_random_cases(10, [](TestRandom& random) {
+    const double radius = random.uniform(2.5, 4), along = random.uniform(100, 110);
+    const SpottedPicture seen({{along, -6, radius}, {along + 0.5, 6, radius}, {200, 0, radius}}, random);
+    const MarkerSightings found = seen.found();
+    ASSERT_EQ(found.markers.size(), 3U);
+    for (const Eigen::Vector2d& center : seen.centers) {
+      double nearest = 1e9;
+      for (const MarkerSighting& spot : found.markers)
+        nearest = std::min(nearest, (spot.pixel - center).norm());
+      EXPECT_LT(nearest, 0.2);
+    }
+  });
+}
+
+// Arms bent anyhow: turned to the camera, crossing themselves, with bands that are partly hidden.
+TEST(Markers, BandsAreAsFarOffAsTheirSigmaSays) {
+  std::size_t count = 0, beyond = 0, far_off = 0, spots = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    SeenArmOptions options;
+    options.bands = options.color = true;
+    const SeenArm seen = random_seen_arm(random, options);
+    ArmFinder finder;
+    ArmSighting arm = finder.find(gray_picture(seen.picture));
+    if (!arm.is_found()) return;
+    to_backbone_image(seen.view.lens, arm.axis);
+    Renderer renderer;
+    renderer.prepare(seen.scene, seen.view);
+    const std::vector<MarkerView> views = marker_views(renderer);
+    for (const MarkerSighting& marker : find_markers(seen.picture, arm).markers) {
+      if (!marker.is_band) {
+        ++spots;
+        continue;
+      }
+      double miss = 1e9;
+      for (const MarkerView& view : views)
+        if (view.center.pixel && view.area > 0)
+          miss = std::min(miss, (*view.center.pixel - marker.pixel).norm());
+      ++count, beyond += miss > 4 * marker.sigma ? 1 : 0, far_off += marker.sigma > 1 ? 1 : 0;
+    }
+  });
+  EXPECT_GT(count, 350U / one_case_of);
+  EXPECT_LE(beyond, count / 100);
+  EXPECT_LE(far_off, count / 20);
+  EXPECT_LE(spots, count / 50);
 }
 
 TEST(Markers, WhatIsBesideTheArmIsNone) {

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flexura/base/image.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// Red, green, blue of 0 to 255 at a place between pixels, linear in between; a gray picture's three times.
+[[nodiscard]] Eigen::Vector3d color_at(const Image<std::uint8_t>& picture, const Eigen::Vector2d& pixel);
+
+/// By colour channels. Not empty.
+[[nodiscard]] Eigen::Vector3d median_color(const std::vector<Eigen::Vector3d>& colors);
+
+/// Samples [first, last) of a line along the arm.
+struct Stretch {
+  std::size_t first, last;
+};
+/// Those whose colour is more than `bound` away from the arm's `own`.
+[[nodiscard]] std::vector<Stretch> stretches(const std::vector<Eigen::Vector3d>& colors,
+                                             const Eigen::Vector3d& own, double bound);
+
+/// The arm's skin laid out flat: places and colours along its axis and beside it, a pixel apart.
+struct ArmSkin {
+  /// Lines along the arm, in half widths from its axis.
+  static constexpr std::array<double, 7> lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};
+  static constexpr std::size_t middle_line = 3;
+
+  std::vector<Eigen::Vector2d> axis, normals;
+  std::vector<double> half_widths;
+  std::vector<bool> is_seen;  ///< Both borders are; otherwise the axis is a guess here.
+  std::array<std::vector<Eigen::Vector3d>, lines.size()> colors;
+
+  ArmSkin(const Image<std::uint8_t>& picture, const ArmSighting& arm);
+
+  [[nodiscard]] std::size_t size() const { return axis.size(); }
+  /// A place on the axis.
+  [[nodiscard]] Eigen::Vector2d at(double along) const;
+};
+
+}  // namespace flexura

@@ -19,7 +19,7 @@ constexpr double least_marker_sigma = 0.2;
 MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& markers) {
   MarkerScene scene;
   for (const MarkerSighting& marker : markers) {
-    // What is no band has no middle that is known well, and what may be two is neither.
+    // A spot has no known place on the backbone, and what may be two is neither.
     auto& place = scene.markers.emplace_back();
     if (marker.is_band && !marker.may_be_merged) place = MarkerScene::Place{marker.pixel, marker.color};
   }

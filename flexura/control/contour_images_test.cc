@@ -257,6 +257,21 @@ TEST(ContourError, IsTheWayOfAnEdgeThatTurns) {
   });
 }
 
+TEST(HalfwayNormals, AreThoseBetweenAndNoneOfOppositesAndOfNone) {
+  for_random_cases(30, [](TestRandom& random) {
+    const double from = random.uniform(-3, 3), turn = random.uniform(-3, 3);
+    const auto unit = [](double angle) { return Eigen::Vector2d(std::cos(angle), std::sin(angle)); };
+    Eigen::Matrix2Xd one(2, 3), other(2, 3), middle(2, 3);
+    one << unit(from), unit(from), unit(from);
+    other << unit(from + turn), -unit(from), Eigen::Vector2d::Constant(std::nan(""));
+    halfway_normals(one, other, middle);
+    EXPECT_NEAR((middle.col(0) - unit(from + 0.5 * turn)).norm(), 0, 1e-12);
+    EXPECT_FALSE(middle.col(1).allFinite());
+    EXPECT_FALSE(middle.col(2).allFinite());
+    EXPECT_THROW(halfway_normals(one, other.leftCols(2), middle), std::invalid_argument);
+  });
+}
+
 TEST(ContourImages, AreNoneWhereTheArmPointsAtTheCamera) {
   Arm arm;
   arm.kind = ArmKind::spatial;

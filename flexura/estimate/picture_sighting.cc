@@ -118,7 +118,8 @@ Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::
   Sighting seen = sighting_of(arm, view);
   ArmSighting corrected = arm;
   to_backbone_image(view.lens, corrected.axis);
-  for (const MarkerSighting& marker : find_markers(picture, corrected).markers) {
+  constexpr bool with_spots = false;  // Nothing is known of the backbone there.
+  for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
     if (!marker.is_band || marker.may_be_merged) continue;
     seen.bands.push_back({marker.pixel, heading_at(corrected.axis, marker.pixel),
                           std::hypot(marker.sigma, band_sigma), marker.color});

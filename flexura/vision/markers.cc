@@ -256,7 +256,7 @@ void look_for_gaps(MarkerSightings& found) {
 
 }  // namespace
 
-MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm) {
+MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm, bool with_spots) {
   MarkerSightings found;
   if (arm.axis.size() < 8) return found;
   const ArmSkin skin(picture, arm);
@@ -289,7 +289,8 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
     found.markers.push_back(band);
     bands.push_back(stretch);
   }
-  const std::vector<MarkerSighting> spots = find_spots(picture, arm, skin, bands, bound);
+  std::vector<MarkerSighting> spots;
+  if (with_spots) spots = find_spots(picture, arm, skin, bands, bound);
   found.markers.insert(found.markers.end(), spots.begin(), spots.end());
   const auto is_spot = [&](const Stretch& stretch) {
     return std::ranges::any_of(spots, [&](const MarkerSighting& spot) {
@@ -298,7 +299,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
     });
   };
   const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
-  if (dropped > 0)
+  if (with_spots && dropped > 0)
     found.notes.push_back(
         fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, or "
                     "too small to be a marker",

@@ -106,7 +106,7 @@ TEST(Circle, IsVerifiedUpToTheShareOfASecondHarmonic) {
     for (int i = 0; i < count; ++i) {
       const double phi = 2 * pi * i / count;
       const double radius =
-          150 + std::sqrt(2) * (second * std::cos(2 * (phi - phase)) + fourth * std::cos(4 * phi));
+          150 + std::numbers::sqrt2 * (second * std::cos(2 * (phi - phase)) + fourth * std::cos(4 * phi));
       points.emplace_back(radius * std::cos(phi), radius * std::sin(phi));
     }
     return fit_circle(points)->is_verified;

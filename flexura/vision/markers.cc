@@ -62,8 +62,8 @@ class BandFinder {
     const double reach = 0.35 * skin_.half_widths[middle] + 1.5;
     for (const int side : {-1, 1}) {
       double place = parts[middle_line]->middle;
-      for (int step = 1; step <= static_cast<int>(middle_line); ++step) {
-        const auto line = static_cast<std::size_t>(static_cast<int>(middle_line) + side * step);
+      for (std::size_t step = 1; step <= middle_line; ++step) {
+        const std::size_t line = side < 0 ? middle_line - step : middle_line + step;
         const Stretch* near = nearest(stretches_[line], place);
         if (near == nullptr || std::abs(middle_of(*near) - place) > reach) continue;
         parts[line] = part_of(line, *near, direction);

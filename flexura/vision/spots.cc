@@ -97,8 +97,9 @@ class SpotFinder {
       states_[sample] = state;
       region_.push_back(sample);
     };
-    for (std::size_t next = 0; next < region_.size(); ++next) {
-      const std::size_t at = region_[next], line = at % lines_;
+    std::size_t next = 0;
+    while (next < region_.size()) {
+      const std::size_t at = region_[next++], line = at % lines_;
       visit(line > 0, at - 1);
       visit(line + 1 < lines_, at + 1);
       visit(at >= lines_, at - lines_);
@@ -129,7 +130,8 @@ class SpotFinder {
     }
     const double mean = first / sum, spread = spread_of(sum, first, second);
     const double ratio = spread_of(sum, across, across_second) / spread;
-    if (area < least_area || !(ratio > 1 / longest && ratio < longest)) return std::nullopt;
+    const bool is_compact = ratio > 1 / longest && ratio < longest;
+    if (area < least_area || !is_compact) return std::nullopt;
     // What is seen of a band that is partly hidden is longer across the arm than along it; what is seen of
     // the ground along a border is the opposite.
     const bool touches = edges[0] > 0 || edges[1] > 0, is_cut = std::max(edges[0], edges[1]) > 2 * spread;
@@ -140,7 +142,7 @@ class SpotFinder {
     spot.pixel = center / sum;
     spot.color = color_at(picture_, spot.pixel);
     spot.length = 4 * spread;  // As of a disc.
-    const auto near = static_cast<std::size_t>(mean + 0.5);
+    const auto near = static_cast<std::size_t>(std::lround(mean));
     const Vector2d tangent = (skin_.axis[near + 1] - skin_.axis[near - 1]).normalized();
     spot.along = mean + (spot.pixel - skin_.at(mean)).dot(tangent);
     spot.aside = (spot.pixel - skin_.at(spot.along)).dot(skin_.normals[near]);

@@ -258,11 +258,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
   answer.push_back({"backbone", {}, {std::move(points), {}}});
   add_angles(direction_angles(backbone, count), "", answer);
   add_plane_angles(sightings, count, answer);
-  answer.push_back(
-      {"length",
-       {},
-       number_node(settings.prior.is_length_known && !settings.has_bends ? settings.prior.arm.length()
-                                                                         : backbone.length())});
+  answer.push_back({"length", {}, number_node(backbone.length())});
   answer.push_back({"sigma", {}, number_node(root_mean_square(found.sigma))});
   answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
   answer.push_back({"rms_px", {}, number_node(found.rms)});
@@ -299,7 +295,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
     found.notes.emplace_back(
         "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
         "one; --base tells");
-  for (std::size_t i = 0; found.is_found && i < pictures.size(); ++i) {
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto same = std::ranges::find_if(
         pictures.first(i), [&](const PictureFile& other) { return other.bytes == pictures[i].bytes; });
     if (same != pictures.first(i).end())

@@ -349,13 +349,9 @@ TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
 
 TEST_F(Estimate, SaysThatAPictureIsGivenTwice) {
   arguments_.images[1] = arguments_.images[0];
-  std::ostringstream out;
-  const int status = estimate_command(arguments_, out);
-  const Node found = parse_json(out.str(), "answer");
-  if (status == exit_done) {
-    EXPECT_NE(write_json(*found.find("notes")).find("pictures 1 and 2 are the same"), std::string::npos);
-    EXPECT_FALSE(*found.find("trusted")->as<bool>());
-  }
+  const Node found = answer(exit_done);
+  EXPECT_NE(write_json(*found.find("notes")).find("pictures 1 and 2 are the same"), std::string::npos);
+  EXPECT_FALSE(*found.find("trusted")->as<bool>());
 }
 
 TEST_F(Estimate, SaysThatTheBaseIsGuessed) {

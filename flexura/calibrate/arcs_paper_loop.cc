@@ -8,6 +8,7 @@
 #include "flexura/base/degree.h"
 
 namespace flexura {
+
 ArcsPaperLoop::ArcsPaperLoop(LookLoop& loop) : loop_(loop) {
   ArmPictureConfig picture = loop.config().picture;
   for (const int white : loop.config().white) {

@@ -96,8 +96,8 @@ TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
   });
 }
 
-// A lens that is `focal` times as long as it is believed to be: each turn leaves 1 - focal of what is
-// missing.
+// A lens that is `focal` times as long as it is believed to be: each turn goes too far by focal - 1 of
+// what is missing.
 std::string wrong_lens(TestRandom& random, double focal) {
   // To the side that no screen hides.
   const double tilt = -random.uniform(14, 17) * degree;

@@ -13,7 +13,6 @@
 #include "flexura/base/degree.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/servo_run.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
@@ -122,8 +121,9 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
     if (const auto& by = result.principal_point[i])
       points.push_back(fmt::format(
           "The principal point of camera {} is {:.2f} px to the right of and {:.2f} px below where the file "
-          "has it; {} has it there.",
-          run.cameras[i], by->x(), by->y(), rig_file_name));
+          "has it{}.",
+          run.cameras[i], by->x(), by->y(),
+          result.is_done ? "; the rig file of this calibration has it there" : ""));
   if (run.truth) points.push_back(remainder_text("In the simulated truth", *run.truth));
   for (const std::string& note : result.notes) points.push_back(note);
   return points;

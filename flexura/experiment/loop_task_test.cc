@@ -271,6 +271,9 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
     EXPECT_NEAR(left.zoom_ratio, 1, 0.01);
     EXPECT_EQ(result.notes.size(), 1U) << "both lenses zoom, and tell their principal points";
     for (std::size_t i = 0; i < 2; ++i) {
+      ASSERT_TRUE(result.principal_point[i]);
+      const Eigen::Vector2d off(rig.wrong[i].cx, rig.wrong[i].cy);
+      EXPECT_LT((*result.principal_point[i] - off).norm(), 1);
       EXPECT_LT(left.aim[i].norm(), 0.02);
       EXPECT_NEAR(*result.roll[i], left.roll[i], 0.3 * degree);
     }

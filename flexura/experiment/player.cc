@@ -176,12 +176,21 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
 
 Player::Performed Player::calibrate(std::size_t task, const RecordSteps& record_steps) {
   CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_steps);
-  // A loop's principal points are beside the file's: nothing for a rig that was found.
-  if (run.is_done() && (!run.loop || !is_rig_found_)) believed_ = run.found();
-  is_rig_found_ = is_rig_found_ || (run.is_done() && !run.loop);
+  if (run.is_done()) learn(run);
   calibrations_.push_back(std::move(run));
   const CalibrationRun& done = calibrations_.back();
   return {done.motion, done.is_done() ? "" : fmt::format("{}: {}", done.name, done.reason())};
+}
+
+// A rig; or from a loop principal points alone, which are beside the file's: nothing for a rig that was
+// found.
+void Player::learn(const CalibrationRun& run) {
+  const RigModel found = run.found();
+  if (!run.loop) believed_ = found, is_rig_found_ = true;
+  for (std::size_t i = 0; run.loop && !is_rig_found_ && i < 2; ++i) {
+    const std::size_t camera = run.loop->stances[i].camera;
+    if (run.loop->principal_point[i]) believed_.cameras[camera] = found.cameras[camera];
+  }
 }
 
 Player::Performed Player::servo(std::size_t task, const RecordSteps& record_steps) {

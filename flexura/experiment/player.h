@@ -67,6 +67,7 @@ class Player {
     std::string failure;
   };
   [[nodiscard]] Performed calibrate(std::size_t task, const RecordSteps& record_steps);
+  void learn(const CalibrationRun& run);
   [[nodiscard]] Performed servo(std::size_t task, const RecordSteps& record_steps);
 
   const Experiment& experiment_;
@@ -82,7 +83,7 @@ class Player {
   std::vector<Event> events_;  // Still to be told, in the order of time.
   std::vector<CalibrationRun> calibrations_;
   std::vector<ServoRun> servos_;
-  RigModel believed_;                                 // By the file, or the last calibration that found more.
+  RigModel believed_;                                 // By the file, or calibrations that found more.
   bool is_rig_found_ = false;                         // By one of the default method, with mounts and lenses.
   std::size_t dynamics_told_ = 0, samples_told_ = 0;  // Runs of dynamics in the log, samples of the next.
   std::size_t step_ = 0;                              // The next one.

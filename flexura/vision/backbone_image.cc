@@ -49,7 +49,8 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     const double wanted = chord.dot(tangent) / tangent.squaredNorm();
     const double most = 0.2 * chord.norm() / std::max(first.norm(), second.norm());
     // Where the width is not measured, nothing can be said of it.
-    const bool is_measured = axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
+    const bool is_measured =
+        std::isfinite(wanted) && axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
     const double slide = is_measured ? std::clamp(wanted, -most, most) : 0;
     const Vector3d middle = here[0] - slide * first + here[1] + slide * second;
     const auto pixel = middle.allFinite() ? lens.project(middle) : std::nullopt;

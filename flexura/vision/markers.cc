@@ -283,6 +283,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
       continue;
     }
     MarkerSighting band = band_of(parts, skin.half_widths[middle]);
+    if (!std::isfinite(band.sigma)) continue;  // Of an arm that is no wider than a line there.
     band.pixel = skin.at(band.along);
     band.color = color;
     band.may_be_merged = has_dip(skin.colors[middle_line], stretch, finder.own(), arm.noise);
@@ -300,10 +301,10 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   };
   const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
   if (with_spots && dropped > 0)
-    found.notes.push_back(
-        fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, or "
-                    "too small to be a marker",
-                    dropped, dropped > 1 ? "s" : ""));
+    found.notes.push_back(fmt::format(
+        "{} spot{} of another colour left out: at an end of the arm, half hidden, touching another, or "
+        "too small to be a marker",
+        dropped, dropped > 1 ? "s" : ""));
   std::ranges::stable_sort(found.markers, {}, &MarkerSighting::along);
   look_for_merged(found.markers);
   look_for_gaps(found);

@@ -12,15 +12,12 @@
 #include <utility>
 
 #include "flexura/estimate/band_match.h"
-#include "flexura/estimate/correspondence.h"
+#include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
 
 namespace flexura {
 namespace {
-
-// In sigmas: a fit whose points lie farther from the shape is no fit.
-constexpr double most_scale = 8;
 
 // The end nearer to where the base is seen comes first.
 Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
@@ -29,34 +26,6 @@ Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   const bool is_reversed =
       (seen.points.back().pixel - *base).norm() < (seen.points.front().pixel - *base).norm();
   return is_reversed ? reversed(seen) : seen;
-}
-
-// The turn of a view that is in doubt after which the base is seen where the arm begins.
-ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
-  ViewError error;
-  if (!(seen.doubt.turn > 0) || !seen.ends[0]) return error;
-  const auto ray = seen.view.lens.unproject(seen.ends[0]->pixel);
-  if (!ray) return error;
-  const Eigen::Vector3d looked = ray->homogeneous().normalized(),
-                        there = (seen.view.X_WC.inverse() * p_WB).normalized();
-  // Farther off it is no base, but where the arm comes out from behind something.
-  constexpr double most = 3;  // Of the doubt.
-  const Eigen::Vector3d turn = looked.cross(there);
-  if (turn.norm() < most * seen.doubt.turn) error.turn = turn;
-  return error;
-}
-
-// Whether what is wrong with the views is no more than they are doubted.
-bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape) {
-  constexpr double most = 5;         // standard deviations
-  constexpr double rounding = 1e-4;  // Of what is not doubted at all.
-  for (std::size_t i = 0; i < std::min(sightings.size(), shape.views.size()); ++i) {
-    const auto& [turn, focal] = sightings[i].doubt;
-    const ViewError& error = shape.views[i];
-    if (!(error.turn.norm() <= most * turn + rounding) || !(std::abs(error.focal) <= most * focal + rounding))
-      return false;
-  }
-  return true;
 }
 
 bool have_axes(std::span<const Sighting> sightings) {
@@ -105,6 +74,17 @@ std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) 
   return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
 }
 
+// Pictures that show more than the shape explains, by more than cameras that are a little wrong would do.
+void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
+  constexpr double little = 0.01;  // px^2
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const double square = misfit(sightings[i], error_of(result.shape, i), result.shape);
+    if (square > little + result.rms * result.rms)
+      result.notes.push_back(
+          fmt::format("picture {} shows more than this shape: something else, or another shape", i + 1));
+  }
+}
+
 ShapeEstimate unseen(Shape shape) {
   ShapeEstimate none;
   none.shape = std::move(shape);
@@ -112,19 +92,10 @@ ShapeEstimate unseen(Shape shape) {
   return none;
 }
 
-Shape scaled(Shape shape, double factor) {
-  for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
-  return shape;
-}
-
 }  // namespace
 
 ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
     : prior_(std::move(prior)), config_(config) {}
-
-bool ShapeEstimator::is_good(const ShapeFit& fit) const {
-  return fit.is_settled && fit.doubted < 0.1 && (fit.scale < most_scale || fit.rms < 0.5 * config_.most_rms);
-}
 
 std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
   std::vector<Sighting> result;
@@ -150,95 +121,17 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
   return result;
 }
 
-std::vector<Shape> ShapeEstimator::starts(std::span<const Sighting> sightings) const {
-  std::vector<Shape> shapes;
-  std::vector<ViewError> views;
-  for (const Sighting& seen : sightings)
-    views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
-                                                  : ViewError{});
-  if (sightings.size() >= 2) {
-    std::array<Sighting, 2> aimed = {sightings[0], sightings[1]};
-    for (std::size_t i = 0; i < 2; ++i) aimed[i].view = corrected(aimed[i].view, views[i]);
-    const Correspondence pairs = correspondence(aimed[0], aimed[1]);
-    std::vector<Eigen::Vector3d> points;
-    points.reserve(pairs.points.size());
-    for (const SpacePoint& point : pairs.points) points.push_back(point.position);
-    if (prior_.is_base_position_known && !points.empty()) points.front() = prior_.arm.X_WB.position;
-    const auto is_other = [&](const Eigen::Vector3d& p) { return p != points.front(); };
-    if (std::ranges::any_of(points, is_other)) {
-      shapes.push_back(shape_along(prior_, points));
-      shapes.push_back(scaled(shapes.front(), 0.5));
-    }
-  }
-  shapes.push_back(straight_shape(prior_));
-  for (Shape& shape : shapes) shape.views = views;
-  const auto is_turned = [](const ViewError& error) { return error.turn.norm() > 0; };
-  if (!std::ranges::any_of(views, is_turned)) return shapes;
-  // What was taken for the base may be something else.
-  const std::size_t aimed = shapes.size();
-  for (std::size_t i = 0; i < aimed; ++i) shapes.emplace_back(shapes[i]).views.clear();
-  return shapes;
-}
-
-std::vector<Shape> ShapeEstimator::look_alikes(std::span<const Sighting> sightings,
-                                               const Shape& shape) const {
-  std::vector<Shape> shapes;
-  // A fit that went astray may have shrunk an arm of unknown length to nothing.
-  constexpr double least = 1e-6;  // m
-  double length = 0;
-  for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
-    length += shape.arm.sections[i].length * shape.state.stretches[i];
-  if (!(length > least) || !std::isfinite(length)) return shapes;
-  const std::size_t sections = prior_.arm.sections.size();
-  constexpr std::size_t most = 4;  // Of many short sections every so many.
-  for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
-    for (const Sighting& seen : sightings) shapes.push_back(mirrored(prior_, shape, i, seen.view));
-  return shapes;
-}
-
 ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
-  std::vector<Sighting> seen = prepared(sightings);
-  if (seen.empty() || !have_axes(seen)) return unseen(straight_shape(prior_));
-  std::optional<ShapeFit> best;
-  double best_merit = 0;
-  std::vector<Sighting> best_seen;
-  // What speaks against a shape, px^2.
-  const auto merit_of = [](std::span<const Sighting> what, const ShapeFit& fit) {
-    constexpr double impossible = 1e9;
-    return fit.cost + astray(what, fit.shape) + (are_as_doubted(what, fit.shape) ? 0.0 : impossible);
-  };
-  const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
-  for (std::size_t way = 0; way < ways; ++way) {
-    if (way == 1) seen[1] = reversed(seen[1]);
-    ShapeProblem problem(prior_, seen);
-    for (const Shape& start : starts(seen)) {
-      ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
-      const double merit = merit_of(seen, fit);
-      const bool is_last = is_good(fit) && are_as_doubted(seen, fit.shape);
-      if (!best || merit < best_merit) best = std::move(fit), best_merit = merit, best_seen = seen;
-      if (is_last) break;
-    }
-  }
-  // What one picture shows in part may be one of several shapes: where all is not explained the others are
-  // tried.
-  constexpr int rounds = 2;
-  constexpr double explained = 0.25;  // px^2
-  const auto is_explained = [&] { return is_good(*best) && best_merit < explained; };
-  bool is_better = true;
-  for (int round = 0; round < rounds && is_better && !is_explained(); ++round) {
-    is_better = false;
-    ShapeProblem problem(prior_, best_seen);
-    for (const Shape& start : look_alikes(best_seen, Shape(best->shape))) {
-      ShapeFit fit = descent_.descend(problem, start, config_.most_iterations);
-      const double merit = merit_of(best_seen, fit);
-      if (merit < best_merit) best = std::move(fit), best_merit = merit, is_better = true;
-      if (is_explained()) break;
-    }
-  }
-  ShapeProblem problem(prior_, best_seen);
-  if (!problem.linearise(best->shape)) best->cost = std::numeric_limits<double>::infinity();
-  const double cost = best->cost;
-  return with_bands(best_seen, answer(problem, std::move(*best)), cost, nullptr);
+  std::vector<Sighting> prepared_ones = prepared(sightings);
+  if (prepared_ones.empty() || !have_axes(prepared_ones)) return unseen(straight_shape(prior_));
+  ShapeSearch search(prior_, config_.most_iterations, config_.most_rms, descent_);
+  auto [fit, seen] = search.best(std::move(prepared_ones));
+  ShapeProblem problem(prior_, seen);
+  if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
+  const double cost = fit.cost;
+  ShapeEstimate result = with_bands(seen, answer(problem, std::move(fit)), cost, nullptr);
+  if (result.is_found) add_misfit(seen, result);
+  return result;
 }
 
 ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const Shape& before) {
@@ -246,9 +139,9 @@ ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const 
   if (!are_enough(seen)) return unseen(before);
   ShapeProblem problem(prior_, seen);
   ShapeFit fit = descent_.descend(problem, before, config_.most_iterations, StartKind::near);
-  if (!is_good(fit)) {
+  if (!fit.is_good(config_.most_rms)) {
     ShapeFit other = descent_.descend(problem, before, config_.most_iterations);
-    if (is_good(other) || other.cost < fit.cost) fit = std::move(other);
+    if (other.is_good(config_.most_rms) || other.cost < fit.cost) fit = std::move(other);
     if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
   }
   const double cost = fit.cost;
@@ -315,7 +208,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.reason = fmt::format("picture {} shows something else than the arm", i + 1);
     return result;
   }
-  result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < most_scale);
+  result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
         "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {:.2f} px off",

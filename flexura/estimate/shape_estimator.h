@@ -68,10 +68,6 @@ class ShapeEstimator {
   [[nodiscard]] ShapeEstimate update(std::span<const Sighting> sightings, const ShapeBelief& before);
 
  private:
-  [[nodiscard]] bool is_good(const ShapeFit& fit) const;
-  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
-  // Shapes that one of the cameras would see alike.
-  [[nodiscard]] std::vector<Shape> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
   // `problem` is that at the fit's shape.
   [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;
   // `first` without the bands, again with those that it can tell apart; their words on it where they cannot

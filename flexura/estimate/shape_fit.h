@@ -21,6 +21,12 @@ struct ShapeFit {
   double surprise = 0;         ///< Of a belief: root mean square of what speaks against it, in its sigmas.
   int contradicted = 0;        ///< Ends and markers that are seen elsewhere than the shape has them.
   Eigen::MatrixXd covariance;  ///< Of the unknowns; of infinite entries where the sightings tell nothing.
+
+  static constexpr double most_scale = 8;  ///< In sigmas: what lies farther from its points is no fit.
+  /// Whether nothing better need be looked for. `most_rms`: of points that are believed, px.
+  [[nodiscard]] bool is_good(double most_rms) const {
+    return is_settled && doubted < 0.1 && (scale < most_scale || rms < 0.5 * most_rms);
+  }
 };
 
 /// Whether all that is seen is believed at first, however far off the start is, or what lies beyond the

@@ -16,6 +16,16 @@
 namespace flexura {
 namespace {
 
+// Which end is the base is told.
+std::vector<Sighting> sightings_of(const SeenShape& one) {
+  std::vector<Sighting> seen;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
+    seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+  }
+  return seen;
+}
+
 // Errors of bends against the covariances that came with them.
 struct Consistency {
   std::vector<double> shares;
@@ -39,12 +49,7 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   Consistency all, thin;
   for_random_cases(cases, [&](TestRandom& random) {
     const SeenShape one = random_seen_shape(random);
-    std::vector<Sighting> seen;
-    for (std::size_t i = 0; i < 2; ++i) {
-      ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
-      seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
-    }
-    const ShapeEstimate found = ShapeEstimator(ShapePrior{.arm = one.bent.arm}).estimate(seen);
+    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(sightings_of(one));
     if (!found.is_found || !found.notes.empty()) return;
     errors.push_back(relative_shape_error(found.shape, one.bent.backbone()));
     all.add(found, one.bent.state);
@@ -72,12 +77,7 @@ TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
     SCOPED_TRACE(seed);
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);
-    std::vector<Sighting> seen;
-    for (std::size_t i = 0; i < 2; ++i) {
-      ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
-      seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
-    }
-    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(seen);
+    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(sightings_of(one));
     EXPECT_NE(found.is_found, !found.reason.empty());
     EXPECT_NE(found.is_found, found.notes.empty());
   }
@@ -90,14 +90,23 @@ TEST(ShapesInPictures, OfUnknownLengthWithoutATipAreNotTrusted) {
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);
     const Eigen::Vector3d base = one.bent.arm.X_WB.position;
-    std::vector<Sighting> seen;
-    for (std::size_t i = 0; i < 2; ++i) {
-      ArmFinder finder({.threshold = {}, .base = one.views[i].project(base)});
-      seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
-    }
-    const ShapeEstimate found = ShapeEstimator(unknown_arm(base, {})).estimate(seen);
+    const ShapeEstimate found = ShapeEstimator(unknown_arm(base, {})).estimate(sightings_of(one));
     ASSERT_TRUE(found.is_found);
     EXPECT_GT(relative_shape_error(found.shape, one.bent.backbone()), 5e-3);
+    EXPECT_FALSE(found.is_trusted());
+  }
+}
+
+// One picture shows these end on, folded over themselves, and the fold looks like their tip: the axes alone
+// fit other shapes as well, 2 to 9 % of the length off, which the figures speak against.
+TEST(ShapesInPictures, ThatHideTheirTipsAreFoundByTheirFigures) {
+  for (const std::uint64_t seed : {719U, 2025U, 3646U, 4123U, 5666U, 6531U, 7855U, 9146U, 9988U}) {
+    SCOPED_TRACE(seed);
+    TestRandom random(seed);
+    const SeenShape one = random_seen_shape(random);
+    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(sightings_of(one));
+    ASSERT_TRUE(found.is_found);
+    EXPECT_LT(relative_shape_error(found.shape, one.bent.backbone()), 2e-3);
     EXPECT_FALSE(found.is_trusted());
   }
 }

@@ -44,10 +44,15 @@ double spacing(const Sighting& seen) {
   return way / count;
 }
 
+double bounded(double off) {
+  constexpr double far = 3;  // px
+  return std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
+}
+
 // How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
 // px^2.
 double astray(const Sighting& seen, const ViewError& error, const Shape& shape) {
-  constexpr double far = 3, gap = 2;  // px
+  constexpr double gap = 2;  // px
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
   const double apart = gap + spacing(seen);
   double sum = 0;
@@ -58,12 +63,51 @@ double astray(const Sighting& seen, const ViewError& error, const Shape& shape) 
     for (const SeenBorder& border : seen.borders)
       nearest = std::min(nearest, pixel ? (border.pixel - *pixel).norm() : nearest);
     const double off = std::max(0.0, nearest - half_width - apart);
-    sum += std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
+    sum += bounded(off);
   }
   return sum / static_cast<double>(places.size());
 }
 
+// How far a pixel is from the image of the tube through these places, px; 0 within it. `near` is where to
+// look first, and becomes where that was.
+double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixel, std::size_t& near) {
+  double nearest = std::numeric_limits<double>::infinity();
+  const std::size_t stretches = places.size() - 1, start = near;
+  for (std::size_t k = 0; k < stretches && nearest > 0; ++k) {
+    const std::size_t i = (start + k) % stretches;
+    const auto &a = places[i], &b = places[i + 1];
+    if (!a.pixel || !b.pixel) continue;
+    const Eigen::Vector2d way = *b.pixel - *a.pixel, off = pixel - *a.pixel;
+    const double square = way.squaredNorm(),
+                 t = square > 0 ? std::clamp(way.dot(off) / square, 0.0, 1.0) : 0.0,
+                 here = (off - t * way).norm() - (1 - t) * a.half_width - t * b.half_width;
+    if (here < nearest) nearest = here, near = i;
+  }
+  return std::max(0.0, nearest);
+}
+
 }  // namespace
+
+double misfit(const Sighting& seen, const ViewError& error, const Shape& shape) {
+  const auto has_radius = [](const Section& section) { return section.radius[0] > 0; };
+  if (seen.figure.places.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
+  constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
+  const std::vector<SeenPlace> places = seen_places(seen, error, shape);
+  double sum = 0, unseen = 0, count = 0;
+  std::size_t near = 0;
+  for (const Eigen::Vector2d& pixel : seen.figure.places)
+    sum += bounded(std::max(0.0, outside(places, pixel, near) - close));
+  for (const auto& [pixel, half_width] : places) {
+    if (!pixel || !(pixel->minCoeff() > 0) || !(pixel->x() < seen.view.width) ||
+        !(pixel->y() < seen.view.height))
+      continue;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& place : seen.figure.places)
+      nearest = std::min(nearest, (place - *pixel).squaredNorm());
+    unseen += bounded(std::max(0.0, std::sqrt(nearest) - seen.figure.spacing - close)), ++count;
+  }
+  return sum / static_cast<double>(seen.figure.places.size()) + unseen / std::max(count, 1.0);
+}
 
 ViewError error_of(const Shape& shape, std::size_t sighting) {
   return sighting < shape.views.size() ? shape.views[sighting] : ViewError{};
@@ -73,6 +117,12 @@ double astray(std::span<const Sighting> sightings, const Shape& shape) {
   double sum = 0;
   for (std::size_t i = 0; i < sightings.size(); ++i)
     if (!sightings[i].borders.empty()) sum += astray(sightings[i], error_of(shape, i), shape);
+  return sum;
+}
+
+double misfit(std::span<const Sighting> sightings, const Shape& shape) {
+  double sum = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i) sum += misfit(sightings[i], error_of(shape, i), shape);
   return sum;
 }
 

@@ -15,6 +15,14 @@ namespace flexura {
 /// px^2; summed over the pictures that show more than an axis (Sighting::borders).
 [[nodiscard]] double astray(std::span<const Sighting> sightings, const Shape& shape);
 
+/// How much of what is seen is no image of the shape, and of its image is not seen: mean square of the
+/// distances, bounded for each, px^2, of the places of the figure (Sighting::figure) from the shape's image
+/// and of places along that from the figure, as far as they lie within the picture. 0 where no figure is
+/// known, or the arm has no radius.
+[[nodiscard]] double misfit(const Sighting& seen, const ViewError& error, const Shape& shape);
+/// The sum over the pictures.
+[[nodiscard]] double misfit(std::span<const Sighting> sightings, const Shape& shape);
+
 /// Whether the borders of a sighting are the shape's, most of them, and the shape is seen within them.
 [[nodiscard]] bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -77,6 +78,17 @@ Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> poin
     R_WS *= arc_pose(bend, prior.arm.sections[i].length).rotation;
   }
   return shape;
+}
+
+std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend, int ways) {
+  std::vector<Shape> shapes;
+  const bool is_planar = shape.arm.kind == ArmKind::planar;
+  for (int k = 0; k < (is_planar ? 2 : ways); ++k) {
+    const double way = 2 * std::numbers::pi * k / (is_planar ? 2 : ways);
+    shapes.push_back(shape);
+    shapes.back().state.bends[section] = {bend * std::cos(way), is_planar ? 0 : bend * std::sin(way)};
+  }
+  return shapes;
 }
 
 Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section, const View& view) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "flexura/estimate/shape_variables.h"
 
@@ -17,6 +18,11 @@ namespace flexura {
 /// sight: what `view` shows stays about the same, and what others show does not.
 [[nodiscard]] Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section,
                              const View& view);
+
+/// `shape` with one section bent otherwise, `ways` of them around by so much, rad: for parts that are hidden
+/// or seen end on, of which no picture tells at first where they go.
+[[nodiscard]] std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend,
+                                                int ways);
 
 /// The prior's arm, straight.
 [[nodiscard]] Shape straight_shape(const ShapePrior& prior);

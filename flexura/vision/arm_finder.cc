@@ -109,6 +109,7 @@ struct ArmFinder::Work {
   void order_ends();
   void note_others();
   void add_unexplained(const Image<std::uint8_t>& gray);
+  void add_places();
 };
 
 ArmFinder::ArmFinder(ArmFinderConfig config) : work_(std::make_unique<Work>()) {
@@ -126,6 +127,7 @@ void ArmFinder::Work::segment(const Image<std::uint8_t>& gray) {
   seen.axis.clear();
   seen.notes.clear();
   seen.unexplained.clear();
+  seen.places.clear();
   seen.ends = {};
   seen.blur = seen.noise = seen.contrast = seen.covered = 0;
   seen.is_closed = false;
@@ -155,6 +157,7 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
     if (follow(picture, scale, component)) {
       followed = order[i];
       note_others();
+      add_places();
       return;
     }
     if (i == 0) first_reason = seen.reason;
@@ -307,6 +310,16 @@ void ArmFinder::Work::note_others() {
         fmt::format("the tube explains {:.0f} % of its silhouette: something else touches it, or it "
                     "crosses itself",
                     100 * seen.covered));
+}
+
+// Enough of them to tell whether a shape covers the figure, each row of a narrow part among them.
+void ArmFinder::Work::add_places() {
+  constexpr double about = 120;
+  double width = 0;
+  for (const AxisSample& sample : seen.axis) width += sample.width / static_cast<double>(seen.axis.size());
+  const auto area = static_cast<double>(components.list[followed].area);
+  seen.spacing = static_cast<int>(std::clamp(std::sqrt(area / about), 1.0, std::max(1.0, width / 3)));
+  strew(components, followed, seen.spacing, seen.places);
 }
 
 // Of the figure that was followed, or of the largest.

@@ -146,6 +146,19 @@ const Run* Components::run_at(int u, int v) const {
   return &*(after - 1);
 }
 
+void strew(const Components& components, std::uint32_t component, int spacing,
+           std::vector<Eigen::Vector2d>& places) {
+  places.clear();
+  for (const Run& run : components.runs) {
+    if (run.component != component || run.v % spacing != 0) continue;
+    places.emplace_back(run.first, run.v);
+    if (run.last - run.first < 2) continue;
+    for (int u = run.first + spacing - run.first % spacing; u < run.last - 1; u += spacing)
+      places.emplace_back(u, run.v);
+    places.emplace_back(run.last - 1, run.v);
+  }
+}
+
 Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config, Components& components,
                   BlockThresholds& blocks, std::size_t samples) {
   components.runs.clear(), components.list.clear();

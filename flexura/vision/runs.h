@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -44,6 +45,11 @@ struct Components {
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint8_t> levels_;
 };
+
+/// Places strewn over a component, px: on every `spacing`-th row every `spacing`-th pixel, and both ends of
+/// each run. What is as wide has no pixel farther from one of them than 1.5 of that.
+void strew(const Components& components, std::uint32_t component, int spacing,
+           std::vector<Eigen::Vector2d>& places);
 
 /// Threshold and components of a picture; none where the threshold has a reason. `samples`: of the histogram;
 /// all pixels count where so many find no figure.

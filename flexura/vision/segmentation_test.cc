@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -116,6 +118,42 @@ TEST(Components, AreThoseOfAFloodFill) {
     }
     ASSERT_EQ(components.list.size(), areas.size());
     for (std::size_t i = 0; i < areas.size(); ++i) EXPECT_EQ(components.list[i].area, areas[i]);
+  });
+}
+
+// Of figures that are as wide as they lie apart: on each, and near each of its pixels.
+TEST(Components, HavePlacesStrewnEvenlyOverThem) {
+  for_random_cases(20, [](TestRandom& random) {
+    Image<std::uint8_t> gray(120, 90, 1, 200);
+    const int spacing = random.integer(1, 6);
+    for (int k = 0; k < 3; ++k) {
+      const int u0 = random.integer(0, 80), v0 = random.integer(0, 60), width = random.integer(spacing, 40),
+                height = random.integer(spacing, 30);
+      for (int v = v0; v < v0 + height; ++v)
+        for (int u = u0; u < u0 + width; ++u) gray.at(u, v) = 20;
+    }
+    Components components;
+    BlockThresholds blocks;
+    ASSERT_EQ(segment(gray, {}, components, blocks).reason, "");
+    std::vector<Eigen::Vector2d> places;
+    for (std::uint32_t i = 0; i < components.list.size(); ++i) {
+      strew(components, i, spacing, places);
+      for (const Eigen::Vector2d& place : places) {
+        const auto* run = components.run_at(static_cast<int>(place.x()), static_cast<int>(place.y()));
+        ASSERT_NE(run, nullptr);
+        EXPECT_EQ(run->component, i);
+      }
+      for (const auto& run : components.runs) {
+        if (run.component != i) continue;
+        for (int u = run.first; u < run.last; ++u) {
+          const auto distance = [&](const Eigen::Vector2d& place) {
+            return (place - Eigen::Vector2d(u, run.v)).norm();
+          };
+          ASSERT_FALSE(places.empty());
+          EXPECT_LE(distance(*std::ranges::min_element(places, {}, distance)), 1.5 * spacing);
+        }
+      }
+    }
   });
 }
 

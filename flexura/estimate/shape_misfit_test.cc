@@ -1,0 +1,123 @@
+// Whether the figure in a picture is a shape's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_silhouette.h"
+#include "flexura/estimate/shape_start.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/sightings.h"
+
+namespace flexura {
+namespace {
+
+constexpr double spacing = 4;  // px
+
+// Places on the image of a tube of three_section_arm's radius.
+SeenFigure figure_of(const Backbone& backbone, const View& view) {
+  SeenFigure figure{{}, 1.5 * spacing};
+  constexpr int count = 120;
+  for (int k = 0; k <= count; ++k) {
+    const Pose X_WS = backbone.pose(std::min(backbone.length() * k / count, backbone.length()));
+    const Eigen::Vector3d sight = (X_WS.position - view.X_WC.position).normalized(),
+                          across = sight.cross(X_WS.rotation.col(2)).normalized();
+    for (const double share : {-1.0, 0.0, 1.0})
+      figure.places.push_back(view.project(X_WS.position + share * 0.02 * across).value());
+  }
+  return figure;
+}
+
+struct Seen {
+  ShapePrior prior{.arm = three_section_arm()};
+  Shape truth;
+  std::vector<Sighting> sightings;
+};
+Seen random_seen(TestRandom& random) {
+  Seen seen;
+  seen.truth = {seen.prior.arm, random_bends(random, seen.prior.arm, 1.0), {}};
+  const Backbone backbone(seen.truth.arm, seen.truth.state);
+  seen.sightings = sightings_of(backbone, random, 0.02);
+  for (Sighting& one : seen.sightings) one.figure = figure_of(backbone, one.view);
+  return seen;
+}
+
+TEST(ShapeMisfit, IsNoneOfTheShapeAndSomeOfAnother) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Seen seen = random_seen(random);
+    EXPECT_LT(misfit(seen.sightings, seen.truth), 1e-6);
+    // At the tip by some 5 px and more: two ways and back are seen by one camera at least.
+    const Eigen::Vector2d bend = seen.truth.state.bends[2];
+    for (Shape& other : bent_otherwise(seen.truth, 2, bend.norm() + 0.3, 4))
+      if ((other.state.bends[2] - bend).norm() > 0.3) {
+        EXPECT_GT(misfit(seen.sightings, other), 0.002) << (other.state.bends[2] - bend).norm();
+      }
+  });
+}
+
+TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndWhatIsNotSeenOfIt) {
+  TestRandom random(1);
+  const Seen seen = random_seen(random);
+  Sighting more = seen.sightings[0], less = more, none = more;
+  for (double u = 0; u < 40; u += spacing) more.figure.places.emplace_back(10 + u, 10);
+  std::erase_if(less.figure.places,
+                [&](const Eigen::Vector2d& place) { return (place - less.ends[1]->pixel).norm() < 60; });
+  none.figure.places.clear();
+  // All that is more is far off, and bounded: 3 px each.
+  EXPECT_NEAR(misfit(more, {}, seen.truth), 9.0 * 10 / static_cast<double>(more.figure.places.size()), 0.2);
+  EXPECT_GT(misfit(less, {}, seen.truth), 0.3);
+  EXPECT_EQ(misfit(none, {}, seen.truth), 0);
+  // The picture's border cuts the arm: what is beyond is not missing.
+  Sighting cut = seen.sightings[0];
+  const double middle = 0.5 * (cut.ends[0]->pixel.x() + cut.ends[1]->pixel.x());
+  ASSERT_GT(std::abs(cut.ends[1]->pixel.x() - middle), 60);
+  cut.view.width = static_cast<int>(middle);
+  std::erase_if(cut.figure.places, [&](const Eigen::Vector2d& place) { return place.x() > middle; });
+  EXPECT_LT(misfit(cut, {}, seen.truth), 1e-6);
+  Shape thin = seen.truth;
+  for (Section& section : thin.arm.sections) section.radius = {0, 0};
+  EXPECT_EQ(misfit(seen.sightings[0], {}, thin), 0);
+  more.figure.places.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0);
+  EXPECT_TRUE(std::isfinite(misfit(more, {}, seen.truth)));
+}
+
+TEST(ShapeMisfit, IsToldWhereThePictureShowsMore) {
+  for_random_cases(20, [](TestRandom& random) {
+    Seen seen = random_seen(random);
+    ShapeEstimator estimator(seen.prior);
+    const ShapeEstimate alone = estimator.estimate(seen.sightings);
+    ASSERT_TRUE(alone.is_trusted());
+    for (double u = 0; u < 80; u += spacing) seen.sightings[1].figure.places.emplace_back(10 + u, 10);
+    const ShapeEstimate beside = estimator.estimate(seen.sightings);
+    ASSERT_TRUE(beside.is_found);
+    EXPECT_FALSE(beside.is_trusted());
+    const auto is_told = [](const std::string& note) { return note.starts_with("picture 2 shows more"); };
+    EXPECT_TRUE(std::ranges::any_of(beside.notes, is_told));
+    EXPECT_LT(shape_error(beside.shape, Backbone(seen.truth.arm, seen.truth.state)), 1e-3);
+  });
+}
+
+TEST(ShapeStart, BendsOneSectionAnyWay) {
+  TestRandom random(3);
+  const Seen seen = random_seen(random);
+  const std::vector<Shape> shapes = bent_otherwise(seen.truth, 1, 0.7, 8);
+  ASSERT_EQ(shapes.size(), 8U);
+  for (const Shape& shape : shapes) {
+    EXPECT_NEAR(shape.state.bends[1].norm(), 0.7, 1e-12);
+    EXPECT_EQ(shape.state.bends[0], seen.truth.state.bends[0]);
+    EXPECT_EQ(shape.state.bends[2], seen.truth.state.bends[2]);
+  }
+  EXPECT_NEAR((shapes[0].state.bends[1] + shapes[4].state.bends[1]).norm(), 0, 1e-12);
+  Shape planar = seen.truth;
+  planar.arm.kind = ArmKind::planar;
+  ASSERT_EQ(bent_otherwise(planar, 1, 0.7, 8).size(), 2U);
+  EXPECT_EQ(bent_otherwise(planar, 1, 0.7, 8)[1].state.bends[1].y(), 0);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "flexura/estimate/shape_fit.h"
+#include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/sighting.h"
+
+namespace flexura {
+
+/// Whether what is wrong with the views is no more than they are doubted.
+[[nodiscard]] bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape);
+
+/// Looks for the shape that sightings show, when nothing tells where it is: shapes are tried one after
+/// another until one explains what is seen (docs/estimation.md, The start).
+class ShapeSearch {
+ public:
+  /// `most_iterations` of each descent; `most_rms`: of a good fit (ShapeFit::is_good), px.
+  ShapeSearch(const ShapePrior& prior, int most_iterations, double most_rms, ShapeDescent& descent)
+      : prior_(prior), most_iterations_(most_iterations), most_rms_(most_rms), descent_(descent) {}
+
+  /// The best that was found, and the sightings in the order of the arm that goes with it.
+  struct Result {
+    ShapeFit fit;
+    std::vector<Sighting> seen;
+  };
+  /// At least one sighting. Where the base is unknown the second is followed both ways.
+  [[nodiscard]] Result best(std::vector<Sighting> seen);
+
+ private:
+  struct Try {
+    ShapeFit fit;
+    double merit = 0;  // What speaks against it, px^2.
+    double misfit = 0;
+  };
+  [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start);
+  [[nodiscard]] bool is_explained(const Try& one) const;
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
+  // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.
+  [[nodiscard]] std::vector<Shape> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
+
+  const ShapePrior& prior_;
+  int most_iterations_;
+  double most_rms_;
+  ShapeDescent& descent_;
+};
+
+}  // namespace flexura

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -49,14 +50,15 @@ bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape) {
   return true;
 }
 
-ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start) {
+ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, double most) {
   constexpr double impossible = 1e9;
   Try one{descent_.descend(problem, start, most_iterations_)};
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
+  one.merit = one.fit.cost + astray(seen, shape) + (are_as_doubted(seen, shape) ? 0.0 : impossible);
+  if (!(one.merit < most)) return one;
   one.misfit = misfit(seen, shape);
-  one.merit =
-      one.fit.cost + astray(seen, shape) + one.misfit + (are_as_doubted(seen, shape) ? 0.0 : impossible);
+  one.merit += one.misfit;
   return one;
 }
 
@@ -68,6 +70,7 @@ bool ShapeSearch::is_explained(const Try& one) const {
 }
 
 ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::optional<Try> best;
   std::vector<Sighting> best_seen;
   const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
@@ -75,7 +78,7 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     if (way == 1) seen[1] = reversed(seen[1]);
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen)) {
-      Try one = tried(problem, start);
+      Try one = tried(problem, start, best ? best->merit : infinity);
       const bool is_last = one.fit.is_good(most_rms_) && are_as_doubted(seen, one.fit.shape);
       if (!best || one.merit < best->merit) best = std::move(one), best_seen = seen;
       if (is_last) break;
@@ -89,7 +92,7 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     is_better = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Shape& start : look_alikes(best_seen, Shape(best->fit.shape))) {
-      Try one = tried(problem, start);
+      Try one = tried(problem, start, best->merit);
       if (one.merit < best->merit) best = std::move(one), is_better = true;
       if (is_explained(*best)) break;
     }

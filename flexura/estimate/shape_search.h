@@ -34,7 +34,8 @@ class ShapeSearch {
     double merit = 0;  // What speaks against it, px^2.
     double misfit = 0;
   };
-  [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start);
+  // Of one whose merit is no less than `most` without it the misfit is not looked at.
+  [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start, double most);
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.

@@ -74,13 +74,14 @@ BlurredStep::BlurredStep(double blur, double phase, int first) {
   step_of_bell_ = static_cast<float>(take_out(bell, step));
   bell_scale_ = static_cast<float>(normalize(bell));
   constant_ = narrow(constant), slope_ = narrow(slope), step_ = narrow(step), bell_ = narrow(bell);
+  used_count_ = static_cast<float>(first + 1 + after);
   free_ = std::max(1, first + 1 + after - (has_slope ? 4 : 3));
 }
 
 StepFit BlurredStep::fit(const std::array<float, taps>& values) const {
   // Taken from their mean, so that single precision suffices for what is left of their squares.
   Column v{};
-  const float mean = dot(values, used_) / dot(used_, used_);
+  const float mean = dot(values, used_) / used_count_;
   for (std::size_t i = 0; i < taps; ++i) v[i] = used_[i] * (values[i] - mean);
   const float slope = dot(v, slope_), step = dot(v, step_), bell = dot(v, bell_);
   const float shift = bell / bell_scale_, contrast = (step - step_of_bell_ * shift) / step_scale_;
@@ -102,7 +103,7 @@ std::vector<std::uint8_t> BlurredSteps::blur_places() {
 const BlurredStep& BlurredSteps::of(double blur, double phase, int first, double& at) {
   const int place = std::clamp(static_cast<int>(blur * (places / widest)), 0, places - 1);
   const std::size_t i = blur_of_place_[static_cast<std::size_t>(place)];
-  const int j = static_cast<int>(std::lround(std::clamp(phase + 0.5, 0.0, 1.0) * phases));
+  const int j = static_cast<int>(std::clamp(phase + 0.5, 0.0, 1.0) * phases + 0.5);
   const int k = std::clamp(first, 1, BlurredStep::before) - 1;
   at = static_cast<double>(j) / phases - 0.5;
   auto& step = steps_[(i * (phases + 1) + static_cast<std::size_t>(j)) * BlurredStep::before +

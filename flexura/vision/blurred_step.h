@@ -43,7 +43,7 @@ class BlurredStep {
   // The model's columns made orthonormal in this order: constant, slope, step, and the bell that a shift
   // adds.
   Column constant_{}, slope_{}, step_{}, bell_{}, used_{};
-  float step_scale_ = 1, bell_scale_ = 1, step_of_bell_ = 0;
+  float used_count_ = 1, step_scale_ = 1, bell_scale_ = 1, step_of_bell_ = 0;
   int free_ = 1;
 };
 

@@ -14,14 +14,15 @@ using Eigen::Vector2d;
 
 constexpr int seed_count = 7;
 
+// The pixel that a place from -1 on lies in.
+int nearest(double place) { return static_cast<int>(place + 1.5) - 1; }
+
 // The last place within the figure from `from` along `direction`, no farther than `limit` px.
 double way_out(const Components& components, const Vector2d& from, const Vector2d& direction, double limit) {
   double reach = 0;
   for (; reach < limit; reach += 1) {
     const Vector2d here = from + (reach + 1) * direction;
-    if (components.run_at(static_cast<int>(std::lround(here.x())), static_cast<int>(std::lround(here.y()))) ==
-        nullptr)
-      break;
+    if (components.run_at(nearest(here.x()), nearest(here.y())) == nullptr) break;
   }
   return reach + 0.5;
 }

@@ -74,14 +74,16 @@ std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) 
   return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
 }
 
-// Pictures that show more than the shape explains, by more than cameras that are a little wrong would do.
+// Pictures that show something else than the shape, beyond disks and rings that its arm may bear, and by more
+// than cameras that are a little wrong would do.
 void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
   constexpr double little = 0.01;  // px^2
+  constexpr double with_disks = 2;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const double square = misfit(sightings[i], error_of(result.shape, i), result.shape);
+    const double square = misfit(sightings[i], error_of(result.shape, i), result.shape, with_disks);
     if (square > little + result.rms * result.rms)
-      result.notes.push_back(
-          fmt::format("picture {} shows more than this shape: something else, or another shape", i + 1));
+      result.notes.push_back(fmt::format(
+          "picture {} is not all as this shape would be seen: of something else, or another shape", i + 1));
   }
 }
 

@@ -16,6 +16,7 @@ namespace {
 struct SeenPlace {
   std::optional<Eigen::Vector2d> pixel;
   double half_width = 0;  // px
+  double widest = 0;      // The same in the direction in which a pinhole's picture is stretched most, px.
 };
 std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error, const Shape& shape) {
   constexpr int count = 80;
@@ -26,9 +27,10 @@ std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error,
     radius = std::max({radius, section.radius[0], section.radius[1]});
   std::vector<SeenPlace> places;
   for (int k = 0; k <= count; ++k) {
-    const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position;
-    places.push_back(
-        {view.project(place), radius * view.lens.intrinsics().fx / (place - view.X_WC.position).norm()});
+    const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position,
+                          p = view.X_WC.inverse() * place;
+    const double half_width = radius * view.lens.intrinsics().fx / p.norm(), slant = p.norm() / p.z();
+    places.push_back({view.project(place), half_width, half_width * slant * slant});
   }
   return places;
 }
@@ -56,7 +58,7 @@ double astray(const Sighting& seen, const ViewError& error, const Shape& shape) 
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
   const double apart = gap + spacing(seen);
   double sum = 0;
-  for (const auto& [pixel, half_width] : places) {
+  for (const auto& [pixel, half_width, widest] : places) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const CurvePoint& point : seen.points)
       nearest = std::min(nearest, pixel ? (point.pixel - *pixel).norm() : nearest);
@@ -68,9 +70,10 @@ double astray(const Sighting& seen, const ViewError& error, const Shape& shape) 
   return sum / static_cast<double>(places.size());
 }
 
-// How far a pixel is from the image of the tube through these places, px; 0 within it. `near` is where to
-// look first, and becomes where that was.
-double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixel, std::size_t& near) {
+// How far a pixel is from the image of a tube `wider` times as wide through these places, px; 0 within it.
+// `near` is where to look first, and becomes where that was.
+double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixel, double wider,
+               std::size_t& near) {
   double nearest = std::numeric_limits<double>::infinity();
   const std::size_t stretches = places.size() - 1, start = near;
   for (std::size_t k = 0; k < stretches && nearest > 0; ++k) {
@@ -80,7 +83,7 @@ double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixe
     const Eigen::Vector2d way = *b.pixel - *a.pixel, off = pixel - *a.pixel;
     const double square = way.squaredNorm(),
                  t = square > 0 ? std::clamp(way.dot(off) / square, 0.0, 1.0) : 0.0,
-                 here = (off - t * way).norm() - (1 - t) * a.half_width - t * b.half_width;
+                 here = (off - t * way).norm() - wider * ((1 - t) * a.widest + t * b.widest);
     if (here < nearest) nearest = here, near = i;
   }
   return std::max(0.0, nearest);
@@ -88,7 +91,7 @@ double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixe
 
 }  // namespace
 
-double misfit(const Sighting& seen, const ViewError& error, const Shape& shape) {
+double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, double wider) {
   const auto has_radius = [](const Section& section) { return section.radius[0] > 0; };
   if (seen.figure.places.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
   constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
@@ -96,14 +99,15 @@ double misfit(const Sighting& seen, const ViewError& error, const Shape& shape) 
   double sum = 0, unseen = 0, count = 0;
   std::size_t near = 0;
   for (const Eigen::Vector2d& pixel : seen.figure.places)
-    sum += bounded(std::max(0.0, outside(places, pixel, near) - close));
-  for (const auto& [pixel, half_width] : places) {
+    sum += bounded(std::max(0.0, outside(places, pixel, wider, near) - close));
+  for (const SeenPlace& place : places) {
+    const std::optional<Eigen::Vector2d>& pixel = place.pixel;
     if (!pixel || !(pixel->minCoeff() > 0) || !(pixel->x() < seen.view.width) ||
         !(pixel->y() < seen.view.height))
       continue;
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector2d& place : seen.figure.places)
-      nearest = std::min(nearest, (place - *pixel).squaredNorm());
+    for (const Eigen::Vector2d& there : seen.figure.places)
+      nearest = std::min(nearest, (there - *pixel).squaredNorm());
     unseen += bounded(std::max(0.0, std::sqrt(nearest) - seen.figure.spacing - close)), ++count;
   }
   return sum / static_cast<double>(seen.figure.places.size()) + unseen / std::max(count, 1.0);

@@ -17,9 +17,10 @@ namespace flexura {
 
 /// How much of what is seen is no image of the shape, and of its image is not seen: mean square of the
 /// distances, bounded for each, px^2, of the places of the figure (Sighting::figure) from the shape's image
-/// and of places along that from the figure, as far as they lie within the picture. 0 where no figure is
-/// known, or the arm has no radius.
-[[nodiscard]] double misfit(const Sighting& seen, const ViewError& error, const Shape& shape);
+/// and of places along that from the figure, as far as they lie within the picture. The image counts as
+/// `wider` times as wide. 0 where no figure is known, or the arm has no radius.
+[[nodiscard]] double misfit(const Sighting& seen, const ViewError& error, const Shape& shape,
+                            double wider = 1);
 /// The sum over the pictures.
 [[nodiscard]] double misfit(std::span<const Sighting> sightings, const Shape& shape);
 

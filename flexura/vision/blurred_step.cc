@@ -103,7 +103,7 @@ std::vector<std::uint8_t> BlurredSteps::blur_places() {
 const BlurredStep& BlurredSteps::of(double blur, double phase, int first, double& at) {
   const int place = std::clamp(static_cast<int>(blur * (places / widest)), 0, places - 1);
   const std::size_t i = blur_of_place_[static_cast<std::size_t>(place)];
-  const int j = static_cast<int>(std::clamp(phase + 0.5, 0.0, 1.0) * phases + 0.5);
+  const int j = static_cast<int>(std::lround(std::clamp(phase + 0.5, 0.0, 1.0) * phases));
   const int k = std::clamp(first, 1, BlurredStep::before) - 1;
   at = static_cast<double>(j) / phases - 0.5;
   auto& step = steps_[(i * (phases + 1) + static_cast<std::size_t>(j)) * BlurredStep::before +

@@ -60,7 +60,7 @@ TEST(ShapeMisfit, IsNoneOfTheShapeAndSomeOfAnother) {
   });
 }
 
-TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndWhatIsNotSeenOfIt) {
+TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   TestRandom random(1);
   const Seen seen = random_seen(random);
   Sighting more = seen.sightings[0], less = more, none = more;
@@ -70,7 +70,8 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndWhatIsNotSeenOfIt) {
   none.figure.places.clear();
   // All that is more is far off, and bounded: 3 px each.
   EXPECT_NEAR(misfit(more, {}, seen.truth), 9.0 * 10 / static_cast<double>(more.figure.places.size()), 0.2);
-  EXPECT_GT(misfit(less, {}, seen.truth), 0.3);
+  // Something may hide the tip.
+  EXPECT_LT(misfit(less, {}, seen.truth), 1e-6);
   EXPECT_EQ(misfit(none, {}, seen.truth), 0);
   // The picture's border cuts the arm: what is beyond is not missing.
   Sighting cut = seen.sightings[0];

@@ -96,21 +96,11 @@ double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, 
   if (seen.figure.places.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
   constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
-  double sum = 0, unseen = 0, count = 0;
+  double sum = 0;
   std::size_t near = 0;
   for (const Eigen::Vector2d& pixel : seen.figure.places)
     sum += bounded(std::max(0.0, outside(places, pixel, wider, near) - close));
-  for (const SeenPlace& place : places) {
-    const std::optional<Eigen::Vector2d>& pixel = place.pixel;
-    if (!pixel || !(pixel->minCoeff() > 0) || !(pixel->x() < seen.view.width) ||
-        !(pixel->y() < seen.view.height))
-      continue;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector2d& there : seen.figure.places)
-      nearest = std::min(nearest, (there - *pixel).squaredNorm());
-    unseen += bounded(std::max(0.0, std::sqrt(nearest) - seen.figure.spacing - close)), ++count;
-  }
-  return sum / static_cast<double>(seen.figure.places.size()) + unseen / std::max(count, 1.0);
+  return sum / static_cast<double>(seen.figure.places.size());
 }
 
 ViewError error_of(const Shape& shape, std::size_t sighting) {

@@ -15,10 +15,9 @@ namespace flexura {
 /// px^2; summed over the pictures that show more than an axis (Sighting::borders).
 [[nodiscard]] double astray(std::span<const Sighting> sightings, const Shape& shape);
 
-/// How much of what is seen is no image of the shape, and of its image is not seen: mean square of the
-/// distances, bounded for each, px^2, of the places of the figure (Sighting::figure) from the shape's image
-/// and of places along that from the figure, as far as they lie within the picture. The image counts as
-/// `wider` times as wide. 0 where no figure is known, or the arm has no radius.
+/// How much of the figure (Sighting::figure) is no image of the shape: mean square of its places' distances
+/// from that, bounded for each, px^2. The image counts as `wider` times as wide. What is not seen of the
+/// shape does not count: something may hide it. 0 where no figure is known, or the arm has no radius.
 [[nodiscard]] double misfit(const Sighting& seen, const ViewError& error, const Shape& shape,
                             double wider = 1);
 /// The sum over the pictures.

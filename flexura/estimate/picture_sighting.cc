@@ -89,7 +89,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
   seen.view = view;
   seen.reach.sigma = smoothed;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
-  seen.figure = {arm.places, 1.5 * arm.spacing};
+  seen.figure = arm.places;
   std::vector<AxisSample> axis = arm.axis;
   const std::vector<bool> tells = telling(axis);
   // The axis lies half-way between the borders: each is known by the root of two worse.

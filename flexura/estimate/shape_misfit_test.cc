@@ -20,15 +20,15 @@ namespace {
 constexpr double spacing = 4;  // px
 
 // Places on the image of a tube of three_section_arm's radius.
-SeenFigure figure_of(const Backbone& backbone, const View& view) {
-  SeenFigure figure{{}, 1.5 * spacing};
+std::vector<Eigen::Vector2d> figure_of(const Backbone& backbone, const View& view) {
+  std::vector<Eigen::Vector2d> figure;
   constexpr int count = 120;
   for (int k = 0; k <= count; ++k) {
     const Pose X_WS = backbone.pose(std::min(backbone.length() * k / count, backbone.length()));
     const Eigen::Vector3d sight = (X_WS.position - view.X_WC.position).normalized(),
                           across = sight.cross(X_WS.rotation.col(2)).normalized();
     for (const double share : {-1.0, 0.0, 1.0})
-      figure.places.push_back(view.project(X_WS.position + share * 0.02 * across).value());
+      figure.push_back(view.project(X_WS.position + share * 0.02 * across).value());
   }
   return figure;
 }
@@ -64,12 +64,12 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   TestRandom random(1);
   const Seen seen = random_seen(random);
   Sighting more = seen.sightings[0], less = more, none = more;
-  for (double u = 0; u < 40; u += spacing) more.figure.places.emplace_back(10 + u, 10);
-  std::erase_if(less.figure.places,
+  for (double u = 0; u < 40; u += spacing) more.figure.emplace_back(10 + u, 10);
+  std::erase_if(less.figure,
                 [&](const Eigen::Vector2d& place) { return (place - less.ends[1]->pixel).norm() < 60; });
-  none.figure.places.clear();
+  none.figure.clear();
   // All that is more is far off, and bounded: 3 px each.
-  EXPECT_NEAR(misfit(more, {}, seen.truth), 9.0 * 10 / static_cast<double>(more.figure.places.size()), 0.2);
+  EXPECT_NEAR(misfit(more, {}, seen.truth), 9.0 * 10 / static_cast<double>(more.figure.size()), 0.2);
   // Something may hide the tip.
   EXPECT_LT(misfit(less, {}, seen.truth), 1e-6);
   EXPECT_EQ(misfit(none, {}, seen.truth), 0);
@@ -78,12 +78,12 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   const double middle = 0.5 * (cut.ends[0]->pixel.x() + cut.ends[1]->pixel.x());
   ASSERT_GT(std::abs(cut.ends[1]->pixel.x() - middle), 60);
   cut.view.width = static_cast<int>(middle);
-  std::erase_if(cut.figure.places, [&](const Eigen::Vector2d& place) { return place.x() > middle; });
+  std::erase_if(cut.figure, [&](const Eigen::Vector2d& place) { return place.x() > middle; });
   EXPECT_LT(misfit(cut, {}, seen.truth), 1e-6);
   Shape thin = seen.truth;
   for (Section& section : thin.arm.sections) section.radius = {0, 0};
   EXPECT_EQ(misfit(seen.sightings[0], {}, thin), 0);
-  more.figure.places.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0);
+  more.figure.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0);
   EXPECT_TRUE(std::isfinite(misfit(more, {}, seen.truth)));
 }
 
@@ -93,7 +93,7 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
     ShapeEstimator estimator(seen.prior);
     const ShapeEstimate alone = estimator.estimate(seen.sightings);
     ASSERT_TRUE(alone.is_trusted());
-    for (double u = 0; u < 80; u += spacing) seen.sightings[1].figure.places.emplace_back(10 + u, 10);
+    for (double u = 0; u < 80; u += spacing) seen.sightings[1].figure.emplace_back(10 + u, 10);
     const ShapeEstimate beside = estimator.estimate(seen.sightings);
     ASSERT_TRUE(beside.is_found);
     EXPECT_FALSE(beside.is_trusted());
@@ -109,10 +109,10 @@ TEST(ShapeMisfit, IsNotToldOfDisksOrOfWideLenses) {
   for_random_cases(20, [](TestRandom& random) {
     Seen seen = random_seen(random);
     for (Sighting& one : seen.sightings) {
-      const std::vector<Eigen::Vector2d> places = one.figure.places;
+      const std::vector<Eigen::Vector2d> places = one.figure;
       for (std::size_t k = 0; k + 2 < places.size(); k += 30)
         for (const std::size_t side : {k, k + 2})
-          one.figure.places.emplace_back(places[side] + 0.8 * (places[side] - places[k + 1]));
+          one.figure.emplace_back(places[side] + 0.8 * (places[side] - places[k + 1]));
     }
     EXPECT_GT(misfit(seen.sightings, seen.truth), 0);
     const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);

@@ -92,15 +92,17 @@ double outside(const std::vector<SeenPlace>& places, const Eigen::Vector2d& pixe
 }  // namespace
 
 double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, double wider) {
-  const auto has_radius = [](const Section& section) { return section.radius[0] > 0; };
-  if (seen.figure.places.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
+  const auto has_radius = [](const Section& section) {
+    return section.radius[0] > 0 || section.radius[1] > 0;
+  };
+  if (seen.figure.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
   constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
   double sum = 0;
   std::size_t near = 0;
-  for (const Eigen::Vector2d& pixel : seen.figure.places)
+  for (const Eigen::Vector2d& pixel : seen.figure)
     sum += bounded(std::max(0.0, outside(places, pixel, wider, near) - close));
-  return sum / static_cast<double>(seen.figure.places.size());
+  return sum / static_cast<double>(seen.figure.size());
 }
 
 ViewError error_of(const Shape& shape, std::size_t sighting) {

@@ -53,12 +53,6 @@ struct SeenBorder {
   double sigma = 0.5;              ///< Standard deviation across the border, px; > 0.
 };
 
-/// The figure that the arm is in one picture: places strewn evenly over it.
-struct SeenFigure {
-  std::vector<Eigen::Vector2d> places = {};  ///< px; none where it is not known.
-  double spacing = 1;                        ///< No pixel of the figure is farther from one of them, px.
-};
-
 /// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is:
 /// its frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
 struct ViewError {
@@ -93,7 +87,8 @@ struct Sighting {
   /// it, then left; as measured, not where the backbone is.
   std::array<std::vector<CurvePoint>, 2> edges = {};
   ErrorReach reach = {};  ///< Of the points' errors.
-  SeenFigure figure = {};
+  /// Places strewn over the figure that the arm is, px; none where it is not known.
+  std::vector<Eigen::Vector2d> figure = {};
 };
 
 /// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of

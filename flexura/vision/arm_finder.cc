@@ -312,14 +312,15 @@ void ArmFinder::Work::note_others() {
                     100 * seen.covered));
 }
 
-// Enough of them to tell whether a shape covers the figure, each row of a narrow part among them.
+// Enough of them to tell whether a shape covers the figure. Of parts that are thinner than a third of the
+// arm some may have none.
 void ArmFinder::Work::add_places() {
   constexpr double about = 120;
   double width = 0;
   for (const AxisSample& sample : seen.axis) width += sample.width / static_cast<double>(seen.axis.size());
   const auto area = static_cast<double>(components.list[followed].area);
-  seen.spacing = static_cast<int>(std::clamp(std::sqrt(area / about), 1.0, std::max(1.0, width / 3)));
-  strew(components, followed, seen.spacing, seen.places);
+  const auto spacing = static_cast<int>(std::clamp(std::sqrt(area / about), 1.0, std::max(1.0, width / 3)));
+  strew(components, followed, spacing, seen.places);
 }
 
 // Of the figure that was followed, or of the largest.

@@ -66,9 +66,8 @@ struct ArmSighting {
   /// Where that is little: the points of the figure's outer border that they do not explain; all of them
   /// where there is no axis.
   std::vector<BorderPoint> unexplained;
-  /// Places strewn over the silhouette, px, and how far apart (runs.h, strew); none where there is no axis.
+  /// Places strewn over the silhouette, px (runs.h, strew); none where there is no axis.
   std::vector<Eigen::Vector2d> places;
-  int spacing = 1;
 
   [[nodiscard]] bool is_found() const { return !axis.empty(); }
 };

@@ -103,6 +103,48 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
   });
 }
 
+// A picture that shows the first seven tenths: where the arm is lost there may look like its tip, and what is
+// wrong then is told.
+TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
+  constexpr int cases = 200;
+  int right = 0;
+  for_random_cases(cases, [&](TestRandom& random) {
+    Seen seen = random_seen(random);
+    const Backbone backbone(seen.truth.arm, seen.truth.state);
+    const bool is_taken_for_tip = random.uniform(0, 1) < 0.5;
+    Sighting& part = seen.sightings[static_cast<std::size_t>(random.uniform(0, 2))];
+    part.points.resize(84), part.figure.resize(std::size_t{3} * 84);
+    part.ends[1].reset();
+    if (is_taken_for_tip) part.ends[1] = SeenEnd{part.points.back().pixel};
+    const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);
+    const bool is_right = found.is_found && shape_error(found.shape, backbone) < 2e-3;
+    right += is_right ? one_case_of : 0;
+    EXPECT_TRUE(is_right || !found.is_trusted());
+    EXPECT_FALSE(is_taken_for_tip && found.is_trusted());
+  });
+  EXPECT_GE(right, 0.85 * cases);
+}
+
+// A tube whose tip is a fifth as wide as its base is seen as wide as it is there.
+TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Seen seen = random_seen(random);
+    Shape tapered = seen.truth;
+    const std::size_t count = tapered.arm.sections.size();
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t end = 0; end < 2; ++end)
+        tapered.arm.sections[i].radius.at(end) =
+            0.02 * (1 - 0.8 * static_cast<double>(i + end) / static_cast<double>(count));
+    // The figure is of the whole width: what is beside the tip is not explained any more, what is at the base
+    // is.
+    Sighting base = seen.sightings[0], tip = base;
+    base.figure.resize(30), tip.figure.erase(tip.figure.begin(), tip.figure.end() - 30);
+    EXPECT_LT(misfit(base, {}, tapered), 1e-6);
+    EXPECT_GT(misfit(tip, {}, tapered), 0.1);
+    EXPECT_LT(misfit(tip, {}, seen.truth), 1e-6);
+  });
+}
+
 // Guide disks and rings are wider than the arm that bears them, and wide lenses stretch what is far from
 // their middle.
 TEST(ShapeMisfit, IsNotToldOfDisksOrOfWideLenses) {
@@ -141,6 +183,7 @@ TEST(ShapeStart, BendsOneSectionAnyWay) {
   planar.arm.kind = ArmKind::planar;
   ASSERT_EQ(bent_otherwise(planar, 1, 0.7, 8).size(), 2U);
   EXPECT_EQ(bent_otherwise(planar, 1, 0.7, 8)[1].state.bends[1].y(), 0);
+  EXPECT_EQ(bent_otherwise(planar, 1, 0, 1).size(), 1U);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "flexura/estimate/correspondence.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
+#include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
@@ -29,6 +30,47 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   const Eigen::Vector3d turn = looked.cross(there);
   if (turn.norm() < most * seen.doubt.turn) error.turn = turn;
   return error;
+}
+
+// How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it
+// may lie anywhere, px^2.
+double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
+  constexpr double most = 1;  // px^2
+  const Backbone backbone(shape.arm, shape.state);
+  double sum = 0;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const View view = corrected(sightings[i].view, error_of(shape, i));
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (!sightings[i].ends[end]) continue;
+      const auto pixel = view.project(backbone.pose(end == 0 ? 0 : backbone.length()).position);
+      const double square = pixel ? (*pixel - sightings[i].ends[end]->pixel).squaredNorm()
+                                  : std::numeric_limits<double>::infinity();
+      sum += std::isfinite(square) ? square / (1 + square / most) : most;
+    }
+  }
+  return sum;
+}
+
+// Of the shapes whose last section is bent otherwise the few that figures and ends speak against least.
+std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, const Shape& shape) {
+  constexpr double step = 0.2, most = 1.6;  // rad
+  constexpr int ways = 12;
+  constexpr std::size_t few = 8;
+  const std::size_t last = shape.arm.sections.size() - 1;
+  struct Other {
+    Shape shape;
+    double against = 0;  // px^2
+  };
+  std::vector<Other> others;
+  for (double bend = 0; bend < most; bend += step)
+    for (Shape& other : bent_otherwise(shape, last, bend, bend > 0 ? ways : 1)) {
+      const double against = misfit(sightings, other) + ends_elsewhere(sightings, other);
+      others.push_back({std::move(other), against});
+    }
+  std::ranges::stable_sort(others, {}, &Other::against);
+  std::vector<Shape> shapes;
+  for (std::size_t i = 0; i < std::min(few, others.size()); ++i) shapes.push_back(std::move(others[i].shape));
+  return shapes;
 }
 
 Shape scaled(Shape shape, double factor) {
@@ -52,21 +94,27 @@ bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape) {
 
 ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, double most) {
   constexpr double impossible = 1e9;
+  // Where points and figure tell shapes apart these decide.
+  constexpr double of_ends = 0.001;
   Try one{descent_.descend(problem, start, most_iterations_)};
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
-  one.merit = one.fit.cost + astray(seen, shape) + (are_as_doubted(seen, shape) ? 0.0 : impossible);
+  one.ends = ends_elsewhere(seen, shape);
+  one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + astray(seen, shape);
+  one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends +
+              (are_as_doubted(seen, shape) ? 0.0 : impossible);
   if (!(one.merit < most)) return one;
   one.misfit = misfit(seen, shape);
   one.merit += one.misfit;
   return one;
 }
 
-// Beyond the distances of the points that are believed.
 bool ShapeSearch::is_explained(const Try& one) const {
-  constexpr double most = 0.02, most_misfit = 0.002;  // px^2
-  return one.fit.is_good(most_rms_) && one.merit - one.fit.rms * one.fit.rms < most &&
-         one.misfit < most_misfit;
+  // One tip that hides is nothing unusual.
+  constexpr double most = 0.02, most_misfit = 0.0005, most_ends = 1.3;  // px^2
+  constexpr double most_scale = 2;
+  return one.fit.is_good(most_rms_) && one.fit.scale < most_scale && one.unexplained < most &&
+         one.misfit < most_misfit && one.ends < most_ends;
 }
 
 ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
@@ -87,13 +135,15 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   // What one picture shows in part may be one of several shapes: where all is not explained the others are
   // tried.
   constexpr int rounds = 2;
+  constexpr double worse = 1.5, little = 0.01;  // px
   bool is_better = true;
   for (int round = 0; round < rounds && is_better && !is_explained(*best); ++round) {
     is_better = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Shape& start : look_alikes(best_seen, Shape(best->fit.shape))) {
       Try one = tried(problem, start, best->merit);
-      if (one.merit < best->merit) best = std::move(one), is_better = true;
+      const bool fits_as_well = one.fit.rms < worse * best->fit.rms + little;
+      if (fits_as_well && one.merit < best->merit) best = std::move(one), is_better = true;
       if (is_explained(*best)) break;
     }
   }
@@ -143,10 +193,12 @@ std::vector<Shape> ShapeSearch::look_alikes(std::span<const Sighting> sightings,
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
     for (const Sighting& seen : sightings) shapes.push_back(mirrored(prior_, shape, i, seen.view));
   if (sections > most) return shapes;
-  for (const double bend : {0.0, 0.6, 1.2}) {
-    const std::vector<Shape> others = bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1);
+  const auto append = [&](const std::vector<Shape>& others) {
     shapes.insert(shapes.end(), others.begin(), others.end());
-  }
+  };
+  for (const double bend : {0.0, 0.6, 1.2})
+    append(bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1));
+  append(last_bent_otherwise(sightings, shape));
   return shapes;
 }
 

@@ -31,8 +31,10 @@ class ShapeSearch {
  private:
   struct Try {
     ShapeFit fit;
-    double merit = 0;  // What speaks against it, px^2.
-    double misfit = 0;
+    double merit = 0;        // What speaks against it, px^2.
+    double unexplained = 0;  // Of points and borders, beyond the distances of those that are believed, px^2.
+    double misfit = 0;       // px^2
+    double ends = 0;         // How far off ends are seen, px^2.
   };
   // Of one whose merit is no less than `most` without it the misfit is not looked at.
   [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start, double most);

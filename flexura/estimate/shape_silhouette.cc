@@ -22,14 +22,22 @@ std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error,
   constexpr int count = 80;
   const Backbone backbone(shape.arm, shape.state);
   const View view = corrected(seen.view, error);
-  double radius = 0;
-  for (const Section& section : shape.arm.sections)
-    radius = std::max({radius, section.radius[0], section.radius[1]});
+  const double focal = std::max(view.lens.intrinsics().fx, view.lens.intrinsics().fy);
   std::vector<SeenPlace> places;
+  // How far along the arm the section begins, and goes on, m.
+  std::size_t section = 0;
+  double begin = 0, length = shape.arm.sections[0].length * shape.state.stretches[0];
   for (int k = 0; k <= count; ++k) {
-    const Eigen::Vector3d place = backbone.pose(backbone.length() * k / count).position,
-                          p = view.X_WC.inverse() * place;
-    const double half_width = radius * view.lens.intrinsics().fx / p.norm(), slant = p.norm() / p.z();
+    const double s = backbone.length() * k / count;
+    while (s > begin + length && section + 1 < shape.arm.sections.size()) {
+      begin += length, ++section;
+      length = shape.arm.sections[section].length * shape.state.stretches[section];
+    }
+    const double share = length > 0 ? std::clamp((s - begin) / length, 0.0, 1.0) : 0.0;
+    const auto& ends = shape.arm.sections[section].radius;
+    const double radius = (1 - share) * ends[0] + share * ends[1];
+    const Eigen::Vector3d place = backbone.pose(s).position, p = view.X_WC.inverse() * place;
+    const double half_width = radius * focal / p.norm(), slant = p.norm() / p.z();
     places.push_back({view.project(place), half_width, half_width * slant * slant});
   }
   return places;

@@ -83,8 +83,9 @@ Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> poin
 std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend, int ways) {
   std::vector<Shape> shapes;
   const bool is_planar = shape.arm.kind == ArmKind::planar;
-  for (int k = 0; k < (is_planar ? 2 : ways); ++k) {
-    const double way = 2 * std::numbers::pi * k / (is_planar ? 2 : ways);
+  const int count = is_planar ? std::min(2, ways) : ways;
+  for (int k = 0; k < count; ++k) {
+    const double way = 2 * std::numbers::pi * k / count;
     shapes.push_back(shape);
     shapes.back().state.bends[section] = {bend * std::cos(way), is_planar ? 0 : bend * std::sin(way)};
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "flexura/calibrate/etalon_loop.h"
@@ -184,6 +185,16 @@ PaperTrouble EtalonPaperLoop::run() {
     if (auto trouble = vertical(i)) return trouble;
   }
   if (auto trouble = zoom()) return trouble;
+  // Nothing as printed asks whether what is counted is all of the cylinder.
+  for (std::size_t i = 0; i < 2; ++i) {
+    const EtalonCounts& last = counts_[i];
+    if (std::min({last.left, last.right, last.above, last.below}) == 0)
+      return fmt::format(
+          "all procedures stop, but the cylinder touches the border of camera {}'s picture: what was counted "
+          "is "
+          "that of a part of it",
+          loop_.name(i));
+  }
   loop_.result().zoom_ratio.reset();  // White pixels are no magnification.
   loop_.result().notes.emplace_back(
       "as printed: where the cameras stand around the cylinder was not measured, for the white pixels beside "

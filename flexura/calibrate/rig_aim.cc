@@ -197,7 +197,8 @@ class Seeker {
     constexpr double visible = 1e-3;
     if (std::abs(cosine) > visible)
       result.notes.push_back(fmt::format(
-          "the lines of sight are {:.4f} rad off 90 degrees where the stages end: the axes pass the target",
+          "the lines of sight are {:.4f} rad off 90 degrees where the stages end: the axes pass beside the "
+          "target",
           std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
   }
 

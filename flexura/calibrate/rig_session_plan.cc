@@ -215,6 +215,21 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   if (left > far_off + step_of_heads + likely * step.sigmas.angle)
     return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
                        left / degree, why);
+  // What the stages cannot do the heads do, and then look beside the arm.
+  constexpr double most_aside = 0.1;  // Of the distance.
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double distance = (target(model) - view_of(model, wanted.stances[i]).X_WC.position).norm(),
+                 aside = wanted.remainder.aim[i].norm();
+    if (aside > most_aside * distance)
+      return fmt::format(
+          "where the stages end the cameras' lines of sight are {:.1f} deg apart, and of orthogonal axes "
+          "that of "
+          "camera {} passes {:.2f} m beside the {}: mount the cameras more nearly at a right angle, or let "
+          "the "
+          "stages travel farther{}",
+          angle / degree, model.cameras[wanted.stances[i].camera].name, aside,
+          config_.etalon ? "cylinder" : "arm", why);
+  }
   for (const RigStance& stance : wanted.stances)
     if (!is_in_view(model, stance, config_.poses.empty() ? home : config_.poses.front()))
       return fmt::format("camera {} would not see the {} in the wanted configuration{}",

@@ -7,10 +7,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/estimate/band_match.h"
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
@@ -85,6 +87,16 @@ void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
       result.notes.push_back(fmt::format(
           "picture {} is not all as this shape would be seen: of something else, or another shape", i + 1));
   }
+}
+
+// A whole turn: from there on a section meets itself.
+constexpr double most_bend = 2 * std::numbers::pi;
+
+std::size_t most_bent(const Shape& shape) {
+  const auto& bends = shape.state.bends;
+  const auto most =
+      std::ranges::max_element(bends, {}, [](const Eigen::Vector2d& bend) { return bend.norm(); });
+  return static_cast<std::size_t>(most - bends.begin());
 }
 
 ShapeEstimate unseen(Shape shape) {
@@ -193,6 +205,11 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   const double sigma = root_mean_square(result.sigma);
   if (!(sigma < config_.hopeless * length)) {
     result.reason = "the images do not tell the shape";
+    return result;
+  }
+  if (const std::size_t section = most_bent(fit.shape); fit.shape.state.bends[section].norm() > most_bend) {
+    result.reason = fmt::format("the shape that fits best bends section {} by {:.0f} degrees: no arm does",
+                                section + 1, fit.shape.state.bends[section].norm() / degree);
     return result;
   }
   if (!are_as_doubted(problem.sightings(), fit.shape)) {

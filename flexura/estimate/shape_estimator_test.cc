@@ -173,6 +173,21 @@ TEST(ShapeEstimator, KnowsLessWhereTheArmIsCut) {
   });
 }
 
+// The last section is in neither picture: how it bends is not known to nothing, but not known.
+TEST(ShapeEstimator, DoesNotTellASectionThatNoPictureShows) {
+  for_random_cases(40, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.0));
+    const double most = random.uniform(0.3, 0.66);
+    std::vector<Sighting> seen;
+    for (const View& view : two_views())
+      seen.push_back(sighting_of(truth, view, random, 0.02, {0, random.uniform(0.5, 1) * most}));
+    const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
+    EXPECT_FALSE(found.is_found);
+    EXPECT_FALSE(found.reason.empty());
+  });
+}
+
 // An axis that stops short in both pictures, as at a tip that points away from them: the arm's length is then
 // that of what is seen of it, however exactly that is known.
 TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {

@@ -42,6 +42,14 @@ double correlation_factor(std::span<const double> series) {
   return factor;
 }
 
+// Whether a symmetric matrix has an inverse, to rounding. LDLT::rcond() does not say: solve() has zero where
+// a pivot is none, as if that unknown were known.
+bool is_regular(const Eigen::LDLT<Eigen::MatrixXd>& solver) {
+  constexpr double rounding = 1e-15;
+  return solver.info() == Eigen::Success &&
+         solver.vectorD().minCoeff() > rounding * solver.vectorD().maxCoeff() && solver.rcond() > rounding;
+}
+
 }  // namespace
 
 double ShapeDescent::cutoff(const ShapeProblem& problem) {
@@ -169,7 +177,7 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
   damped_.selfadjointView<Eigen::Lower>().rankUpdate(told_);
   damped_ += (normal_ - damped_) / variance;
   solver_.compute(damped_);
-  if (solver_.info() != Eigen::Success || !(solver_.rcond() > 1e-15))
+  if (!is_regular(solver_))
     return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
   return solver_.solve(Eigen::MatrixXd::Identity(count, count));
 }
@@ -178,7 +186,7 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
 Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
   solver_.compute(normal_);
-  if (solver_.info() != Eigen::Success || !(solver_.rcond() > 1e-15))
+  if (!is_regular(solver_))
     return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
   damped_ = solver_.solve(Eigen::MatrixXd::Identity(count, count));
   load_scatter(problem);

@@ -53,8 +53,8 @@ double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
 
 // Of the shapes whose last section is bent otherwise the few that figures and ends speak against least.
 std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, const Shape& shape) {
-  constexpr double step = 0.2, most = 1.6;  // rad
-  constexpr int ways = 12;
+  constexpr double step = 0.2;  // rad
+  constexpr int steps = 8, ways = 12;
   constexpr std::size_t few = 8;
   const std::size_t last = shape.arm.sections.size() - 1;
   struct Other {
@@ -62,12 +62,14 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
     double against = 0;  // px^2
   };
   std::vector<Other> others;
-  for (double bend = 0; bend < most; bend += step)
-    for (Shape& other : bent_otherwise(shape, last, bend, bend > 0 ? ways : 1)) {
+  for (int k = 0; k < steps; ++k)
+    for (Shape& other : bent_otherwise(shape, last, k * step, k > 0 ? ways : 1)) {
       const double against = misfit(sightings, other) + ends_elsewhere(sightings, other);
       others.push_back({std::move(other), against});
     }
   std::ranges::stable_sort(others, {}, &Other::against);
+  // Of an arm without radius and ends nothing speaks against any.
+  if (!(others.back().against > others.front().against)) return {};
   std::vector<Shape> shapes;
   for (std::size_t i = 0; i < std::min(few, others.size()); ++i) shapes.push_back(std::move(others[i].shape));
   return shapes;
@@ -136,14 +138,14 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   // tried.
   constexpr int rounds = 2;
   constexpr double worse = 1.5, little = 0.01;  // px
+  const double most_rms = worse * best->fit.rms + little;
   bool is_better = true;
   for (int round = 0; round < rounds && is_better && !is_explained(*best); ++round) {
     is_better = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Shape& start : look_alikes(best_seen, Shape(best->fit.shape))) {
       Try one = tried(problem, start, best->merit);
-      const bool fits_as_well = one.fit.rms < worse * best->fit.rms + little;
-      if (fits_as_well && one.merit < best->merit) best = std::move(one), is_better = true;
+      if (one.fit.rms < most_rms && one.merit < best->merit) best = std::move(one), is_better = true;
       if (is_explained(*best)) break;
     }
   }

@@ -160,11 +160,11 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                    "middle of the first one.",
                .count = {1, 100},
                .default_text = "six, that bend every part of the arm to every side"})
-          .field(
-              "images", &CalibrateTask::images,
-              {.meaning = "Pictures a camera, at most; with bundle and bundle-etalon the last one verifies.",
-               .range = between(3, image_limit),
-               .default_text = "12 with both bundles, 60 with etalon and arcs, 400 as printed"})
+          .field("images", &CalibrateTask::images,
+                 {.meaning = "Pictures a camera, at most; with bundle and bundle-etalon the last one "
+                             "verifies, and those of a search come on top.",
+                  .range = between(3, image_limit),
+                  .default_text = "12 with both bundles, 60 with etalon and arcs, 400 as printed"})
           .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
           .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
           .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})

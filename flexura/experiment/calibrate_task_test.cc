@@ -204,6 +204,22 @@ TEST(CalibrateTask, StopsWhereBothCamerasLookFromOneSide) {
   bench.expect_back();
 }
 
+// Stages that travel a little farther leave more between the lines of sight, and the heads would turn away
+// from the arm for the rest.
+TEST(CalibrateTask, StopsWhereOrthogonalAxesPassBesideTheArm) {
+  std::string text = small_calibration("images = 5\n" + three_poses, "");
+  const std::string side = "position = [-2.5, 0.5, 0]", stage = "limits = [-0.5, 0.5]";
+  text.replace(text.find(side), side.size(), "position = [-1.25, 0.5, 2.165]");
+  for (std::size_t at = text.find(stage); at != std::string::npos; at = text.find(stage))
+    text.replace(at, stage.size(), "limits = [-0.6, 0.6]");
+  CalibrationBench bench(text);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("m beside the arm"));
+  EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+  bench.expect_back();
+}
+
 TEST(CalibrateTask, StopsWhereAHeadDoesNotFollow) {
   CalibrationBench bench(small_calibration("images = 5\n" + three_poses, ""));
   RigPorts ports = bench.ports();

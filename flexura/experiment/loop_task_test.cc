@@ -226,6 +226,16 @@ TEST(EtalonPaperLoop, DoesNotSeeThatACameraStandsBesideTheLine) {
   EXPECT_NEAR(std::abs(bench.truth(result).angle), 1.91 * degree, 0.5 * degree);
 }
 
+// Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
+TEST(EtalonPaperLoop, IsNotDoneWhereTheBorderCutsTheCylinder) {
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", small({WrongStart{}, WrongStart{}}),
+                                    "radius = 0.1\nheight = 2.6\n"));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("touches the border"));
+  bench.expect_back();
+}
+
 TEST(EtalonPaperLoop, StopsWhereTwoAxesShowForEver) {
   const WrongStart front{.pan = 0.26, .shift = {0.4, 0, 0}};
   CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\nloop.slide = 0.04\nloop.accepted = 25\n",

@@ -190,9 +190,8 @@ PaperTrouble EtalonPaperLoop::run() {
     const EtalonCounts& last = counts_[i];
     if (std::min({last.left, last.right, last.above, last.below}) == 0)
       return fmt::format(
-          "all procedures stop, but the cylinder touches the border of camera {}'s picture: what was counted "
-          "is "
-          "that of a part of it",
+          "all procedures stop, but the cylinder touches the border of camera {}'s picture: a part was "
+          "counted",
           loop_.name(i));
   }
   loop_.result().zoom_ratio.reset();  // White pixels are no magnification.

@@ -193,10 +193,11 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
                                                const RigStep& step, const ArmState& home) const {
   constexpr double known = 3 * degree, steepest = 50 * degree;
   if (step.sigmas.angle > known) return std::nullopt;
-  std::array<Eigen::Vector3d, 2> sights;
+  std::array<Eigen::Vector3d, 2> sights;  // From each camera to the target, m.
   for (std::size_t i = 0; i < 2; ++i)
-    sights[i] = (target(model) - view_of(model, wanted.stances[i]).X_WC.position).normalized();
-  const double angle = std::acos(std::clamp(sights[0].dot(sights[1]), -1.0, 1.0));
+    sights[i] = target(model) - view_of(model, wanted.stances[i]).X_WC.position;
+  const double cosine = sights[0].normalized().dot(sights[1].normalized()),
+               angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   if (std::min(angle, std::numbers::pi - angle) < steepest)
     return fmt::format(
         "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, and heads "
@@ -218,15 +219,14 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   // What the stages cannot do the heads do, and then look beside the arm.
   constexpr double most_aside = 0.1;  // Of the distance.
   for (std::size_t i = 0; i < 2; ++i) {
-    const double distance = (target(model) - view_of(model, wanted.stances[i]).X_WC.position).norm(),
-                 aside = wanted.remainder.aim[i].norm();
-    if (aside > most_aside * distance)
+    const double aside = wanted.remainder.aim[i].norm();
+    if (aside > most_aside * sights[i].norm())
       return fmt::format(
-          "where the stages end the cameras' lines of sight are {:.1f} deg apart, and of orthogonal axes "
-          "that of "
-          "camera {} passes {:.2f} m beside the {}: mount the cameras more nearly at a right angle, or let "
-          "the "
-          "stages travel farther{}",
+          "where the stages end the lines of sight are {:.1f} deg apart: of orthogonal axes that of camera "
+          "{} "
+          "would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, or let the "
+          "stages "
+          "travel farther{}",
           angle / degree, model.cameras[wanted.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);
   }

@@ -55,6 +55,17 @@ TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
               HasSubstr("the head of camera front does not follow: pan was sent to"));
 }
 
+// Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
+TEST(EtalonPaperLoop, IsNotDoneWhereTheBorderCutsTheCylinder) {
+  LoopRig rig;
+  rig.size = 0.5;
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", rig, "radius = 0.1\nheight = 2.6\n"));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("touches the border"));
+  bench.expect_back();
+}
+
 INSTANTIATE_TEST_SUITE_P(OfThePaper, StoppedLoop,
                          testing::Values("etalon", "etalon-paper", "arcs", "arcs-paper"),
                          [](const auto& one) {

@@ -74,8 +74,7 @@ class CalibrationBench : public RigBench {
       stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
     return stances;
   }
-  /// Whether heads and stages say that they are where the file starts them.
-  /// The arm, too, where it is one that the file starts straight.
+  /// Whether heads, stages and the arm, straight, say that they are where the file starts them.
   void expect_back() { expect_back(ports()); }
   static void expect_back(const RigPorts& ports) {
     for (const CameraPorts& camera : ports.cameras) {
@@ -84,7 +83,6 @@ class CalibrationBench : public RigBench {
       EXPECT_NEAR(head.tilt, 0, 1e-9);
       EXPECT_NEAR(camera.stage->read().value().state.offset.norm(), 0, 1e-9);
     }
-    if (ports.arm == nullptr) return;
     const auto arm = ports.arm->read();
     ASSERT_FALSE(arm.fault());
     for (const Eigen::Vector2d& bend : arm.value().state.bends) EXPECT_NEAR(bend.norm(), 0, 1e-6);

@@ -33,6 +33,17 @@ void tell(const EtalonView& view, const LookLoop& loop, RigSight& sight) {
                   {"width, px", view.width}};
 }
 
+// Whether limits end a move by more than a step before what was asked for.
+bool falls_short(const Camera& camera, const RigStance& asked, const RigStance& next) {
+  const auto is_beyond = [](double off, double resolution) { return std::abs(off) > resolution + 1e-9; };
+  const auto& [pan, tilt, zoom] = camera.head_axes();
+  const auto stage = camera.stage_axes();
+  const Eigen::Vector3d off = next.stage.offset - asked.stage.offset;
+  return is_beyond(next.head.pan - asked.head.pan, pan.resolution) ||
+         is_beyond(next.head.tilt - asked.head.tilt, tilt.resolution) ||
+         is_beyond(off.x(), stage[0].resolution) || is_beyond(off.y(), stage[1].resolution);
+}
+
 }  // namespace
 
 LoopTrouble begin_with_etalon(LookLoop& loop) {
@@ -56,7 +67,7 @@ struct EtalonLoop::Offset {
   const char* step;
   double px;                         // As measured.
   double want;                       // As a motion: rad, or m.
-  double accepted;                   // Likewise.
+  double accepted, most;             // Likewise; most: of one step.
   const char* how;                   // In words.
   Eigen::Vector<double, 4> by_want;  // Of pan, tilt, stage x and y, for each unit of `want`.
 };
@@ -65,21 +76,33 @@ std::array<EtalonLoop::Offset, 4> EtalonLoop::offsets(std::size_t i) const {
   const EtalonView& view = views_[i];
   const double by_px = 1 / lens(i).fx, accepted = loop_.config().accepted;
   const double distance = view.distance, turn = 1 / distance;
+  constexpr double half_turn = 0.5;  // rad
+  const double half_way = 0.5 * distance;
   // A camera that slides keeps looking at the cylinder: position and orientation do not undo each other.
-  return {Offset{"horizontal orientation", view.middle, view.sight, accepted * by_px, "pan", {-1, 0, 0, 0}},
-          Offset{"horizontal positioning",
-                 view.line,
-                 distance * view.bearing,
-                 accepted * distance * view.bearing_by_px,
-                 "slide to the left",
-                 {-turn, 0, -1, 0}},
-          Offset{"vertical orientation", view.height, view.drop, accepted * by_px, "tilt", {0, -1, 0, 0}},
-          Offset{"vertical positioning",
-                 view.taper,
-                 distance * view.climb,
-                 accepted * distance * view.climb_by_px,
-                 "slide downwards",
-                 {0, turn, 0, 1}}};
+  return {
+      Offset{"horizontal orientation",
+             view.middle,
+             view.sight,
+             accepted * by_px,
+             half_turn,
+             "pan",
+             {-1, 0, 0, 0}},
+      Offset{"horizontal positioning",
+             view.line,
+             distance * view.bearing,
+             accepted * distance * view.bearing_by_px,
+             half_way,
+             "slide to the left",
+             {-turn, 0, -1, 0}},
+      Offset{
+          "vertical orientation", view.height, view.drop, accepted * by_px, half_turn, "tilt", {0, -1, 0, 0}},
+      Offset{"vertical positioning",
+             view.taper,
+             distance * view.climb,
+             accepted * distance * view.climb_by_px,
+             half_way,
+             "slide downwards",
+             {0, turn, 0, 1}}};
 }
 
 // As it is believed to be by now.
@@ -121,8 +144,8 @@ LoopTrouble EtalonLoop::into_view(std::size_t i) {
 }
 
 LoopTrouble EtalonLoop::align(std::size_t i) {
-  constexpr double half_turn = 0.5, half_way = 0.5;  // rad; m for each m of distance.
   std::vector<ShrinkingSteps> steps;
+  const auto begun = [](const Offset& offset) { return ShrinkingSteps(offset.accepted, offset.most); };
   if (auto trouble = look(i)) return trouble;
   for (;;) {
     if (auto trouble = into_view(i)) return trouble;
@@ -130,8 +153,7 @@ LoopTrouble EtalonLoop::align(std::size_t i) {
     bool is_moved = false;
     for (std::size_t j = 0; j < all.size() && !is_moved; ++j) {
       const Offset& offset = all[j];
-      if (steps.size() == j)
-        steps.emplace_back(offset.accepted, j % 2 == 0 ? half_turn : half_way * views_[i].distance);
+      if (steps.size() == j) steps.push_back(begun(offset));
       if (std::abs(offset.want) <= offset.accepted) continue;
       ShrinkingSteps tried = steps[j];
       if (tried.take(offset.want) == LoopState::stuck)
@@ -141,18 +163,13 @@ LoopTrouble EtalonLoop::align(std::size_t i) {
       asked.head.pan += by[0], asked.head.tilt += by[1];
       asked.stage.offset += Eigen::Vector3d(by[2], by[3], 0);
       const RigStance next = loop_.commandable_stance(i, asked);
-      const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
-      const bool is_short = std::abs(next.head.pan - asked.head.pan) > pan.resolution + 1e-9 ||
-                            std::abs(next.head.tilt - asked.head.tilt) > tilt.resolution + 1e-9 ||
-                            std::abs(next.stage.offset.x() - asked.stage.offset.x()) >
-                                loop_.camera(i).stage_axes()[0].resolution + 1e-9 ||
-                            std::abs(next.stage.offset.y() - asked.stage.offset.y()) >
-                                loop_.camera(i).stage_axes()[1].resolution + 1e-9;
-      if (is_short)
+      if (falls_short(loop_.camera(i), asked, next))
         return fmt::format("{} of camera {}: what can be commanded ends {:.4g} px before it holds",
                            offset.step, loop_.name(i), std::abs(offset.px));
       if (loop_.stands_there(i, next)) continue;  // Nothing finer can be commanded.
       steps[j] = tried;
+      // What a slide leaves to the head is none of the head's own steps.
+      if (j % 2 == 1) steps[j - 1] = begun(all[j - 1]);
       loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px",
                    fmt::format("{} by {:.5g} {}", offset.how, tried.move(), j % 2 == 0 ? "rad" : "m"));
       if (auto trouble = loop_.go(i, next)) return trouble;
@@ -161,8 +178,9 @@ LoopTrouble EtalonLoop::align(std::size_t i) {
     if (!is_moved) break;
     if (auto trouble = look(i)) return trouble;
   }
-  loop_.decide(i, "orientation and positioning", std::abs(views_[i].middle) + std::abs(views_[i].line), 0,
-               "px", "all four offsets hold in one picture, or nothing finer can be commanded");
+  for (const Offset& offset : offsets(i))
+    loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px",
+                 std::abs(offset.want) <= offset.accepted ? "holds" : "nothing finer can be commanded");
   loop_.result().roll[i] = views_[i].roll;
   return std::nullopt;
 }

@@ -1,5 +1,6 @@
 // Where the paper's loops end, and where not (docs/calibration-paper.md, "When a loop ends"): the loops
 // themselves before simulated rigs.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexura/base/degree.h"
@@ -64,6 +67,108 @@ TEST(LoopBoundaries, EtalonRunsAwayWhereTheStageIsTurnedByMore) {
     const std::vector<double> line = offsets_of(result, "horizontal positioning");
     ASSERT_GE(line.size(), 2U);
     EXPECT_NEAR(line[1] / line[0], 1 - std::cos(turned), 0.12) << turned / degree;
+    bench.expect_back();
+  });
+}
+
+// The same of heights: the first camera starts `up` m above the cylinder's middle, its stage turned in tilt.
+std::string tilted_stage(double turned, double up) {
+  LoopRig rig;
+  WrongStart& wrong = rig.wrong[0];
+  wrong = {.tilt = turned, .shift = {0, up, 0}, .tilt_zero = -turned};
+  // Beyond upright a mount that looks along there hangs upside down.
+  if (std::abs(turned) > std::numbers::pi / 2) wrong.roll = std::numbers::pi;
+  rig.travel = 1;
+  return etalon_rig("method = \"etalon\"\nimages = 90\n", rig);
+}
+
+// What the first camera's stage was sent down by, m, in order.
+std::vector<double> slides_down(const LoopResult& result) {
+  std::vector<double> slides;
+  const std::string_view what = "slide downwards by ";
+  for (const LoopDecision& decision : result.steps)
+    if (decision.camera == 0 && decision.next.starts_with(what))
+      slides.push_back(std::stod(decision.next.substr(what.size())));
+  return slides;
+}
+
+TEST(LoopBoundaries, EtalonEndsInHeightWhereTheStageIsTiltedByLessThanARightAngle) {
+  for_random_cases(4, [](TestRandom& random) {
+    const double turned = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(40, 70) * degree;
+    CalibrationBench bench(tilted_stage(turned, (random.integer(0, 1) == 1 ? 1 : -1) * 0.15));
+    const LoopResult result = bench.calibrate();
+    ASSERT_TRUE(result.is_done) << result.reason;
+    EXPECT_LT(std::abs(bench.truth(result).angle), 0.2 * degree);
+    EXPECT_LT(bench.truth(result).aim[0].norm(), 0.01);
+    const std::vector<double> down = slides_down(result);
+    ASSERT_GE(down.size(), 2U);
+    for (std::size_t i = 1; i < down.size() && std::abs(down[i - 1]) > 0.08; ++i)
+      EXPECT_NEAR(down[i] / down[i - 1], 1 - std::cos(turned), 0.12) << turned / degree;
+  });
+}
+
+TEST(LoopBoundaries, EtalonRunsAwayInHeightWhereTheStageIsTiltedByMore) {
+  for_random_cases(5, [](TestRandom& random) {
+    const double turned = (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(97, 115) * degree;
+    CalibrationBench bench(tilted_stage(turned, 0.1));
+    const LoopResult result = bench.calibrate();
+    EXPECT_FALSE(result.is_done);
+    EXPECT_THAT(result.reason, HasSubstr("vertical positioning of camera front runs away"));
+    const std::vector<double> down = slides_down(result);
+    ASSERT_GE(down.size(), 2U);
+    // Half of what grows is taken from there on.
+    EXPECT_NEAR(2 * down[1] / down[0], 1 - std::cos(turned), 0.15) << turned / degree;
+    bench.expect_back();
+  });
+}
+
+// Lenses whose focal lengths truly grow as the zoom's power `power`, before a cylinder that the first camera
+// sees from `nearer` m nearer.
+std::string wrong_zoom(double power, double nearer) {
+  std::string rows;
+  for (double ratio = 1; ratio < 10.05; ratio += 0.1)
+    rows += fmt::format("{{ ratio = {0}, fx = {1}, fy = {1} }}, ", ratio, 800 * std::pow(ratio, power));
+  LoopRig rig;
+  rig.wrong[0].shift = {0, 0, -nearer};
+  std::string text = etalon_rig("method = \"etalon\"\nimages = 60\n", rig);
+  const std::string lens = "distortion = [0, 0, 0, 0, 0] }";
+  for (std::size_t at = text.find(lens, text.find("[[truth.camera]]")); at != std::string::npos;
+       at = text.find(lens, at + 1))
+    text.insert(at + lens.size() - 2, ", zoom = [" + rows + "]");
+  return text;
+}
+
+// Logarithms of the ratios that were seen, in order.
+std::vector<double> zoom_offsets(const LoopResult& result) {
+  std::vector<double> offsets;
+  for (const LoopDecision& decision : result.steps)
+    if (decision.step == "zoom") offsets.push_back(std::log1p(decision.offset));
+  return offsets;
+}
+
+TEST(LoopBoundaries, EtalonsZoomEndsWhereLensesGrowByLessThanTwiceWhatIsBelieved) {
+  for_random_cases(6, [](TestRandom& random) {
+    const double power = random.uniform(0.4, 1.6);
+    CalibrationBench bench(wrong_zoom(power, (random.integer(0, 1) == 1 ? 1 : -1) * 0.15));
+    const LoopResult result = bench.calibrate();
+    ASSERT_TRUE(result.is_done) << power << ": " << result.reason;
+    EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.01);
+    const std::vector<double> off = zoom_offsets(result);
+    ASSERT_GE(off.size(), 2U);
+    EXPECT_NEAR(off[1] / off[0], 1 - power, 0.05) << power;
+  });
+}
+
+TEST(LoopBoundaries, EtalonsZoomDoesNotEndWhereLensesGrowByMore) {
+  for_random_cases(4, [](TestRandom& random) {
+    const double power = random.uniform(2.2, 2.5);
+    CalibrationBench bench(wrong_zoom(power, (random.integer(0, 1) == 1 ? 1 : -1) * 0.15));
+    const LoopResult result = bench.calibrate();
+    EXPECT_FALSE(result.is_done);
+    EXPECT_THAT(result.reason, HasSubstr("zoom"));
+    const std::vector<double> off = zoom_offsets(result);
+    ASSERT_GE(off.size(), 3U);
+    for (std::size_t i = 1; i < 3; ++i) EXPECT_NEAR(off[i] / off[i - 1], 1 - power, 0.1) << power;
     bench.expect_back();
   });
 }

@@ -120,6 +120,42 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
   });
 }
 
+// A row of one camera's zoom table whose focal length is one per cent off, and no other.
+TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
+  for_random_cases(4, [](TestRandom& random) {
+    RigModel believed = believed_rig();
+    for (CameraConfig& camera : believed.cameras)
+      for (const double ratio : {1.0, 1.5, 2.0}) camera.lens.zoom.emplace_back().ratio = ratio;
+    RigTrialConfig config;
+    config.focal = 0;
+    RigModel truth = true_rig(believed, config, random);
+    const std::size_t wrong = random.integer(0, 1);
+    const double off = random.integer(0, 1) == 1 ? 0.01 : -0.01;
+    LensConfig& lens = truth.cameras[wrong].lens;
+    lens.zoom[1].fx = lens.zoom[1].fy = lens.fx * 1.5 * (1 + off);
+    RigTrial trial(truth, config, random);
+    take_plan(trial);
+    RigPrior prior = rough_prior(believed);
+    for (CameraPrior& camera : prior.cameras) camera.focal = 0;
+    RigProblem problem(believed, prior, trial.seen());
+    const RigCalibration found = calibrate_rig(problem);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LE(found.rms, 1.05);
+    const RigVariables& variables = problem.variables();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Eigen::Index rows = variables.column(variables.camera_slots(i) + zoom_row_slot);
+      // How much more the second row's focal length is than the first one's.
+      const double sigma = std::sqrt(found.covariance(rows, rows) + found.covariance(rows + 1, rows + 1) -
+                                     2 * found.covariance(rows, rows + 1));
+      EXPECT_LE(sigma, 0.002);
+      EXPECT_LE(std::abs(found.x[rows + 1] - found.x[rows] - (i == wrong ? std::log(1 + off) : 0)),
+                4 * sigma);
+      // Nothing was seen at the last row's zoom.
+      EXPECT_NEAR(std::sqrt(found.covariance(rows + 2, rows + 2)), prior.cameras[i].zoom_row, 1e-3);
+    }
+  });
+}
+
 TEST(RigCalibration, LeavesOutWhatIsNotTheArm) {
   for_random_cases(2, [](TestRandom& random) {
     RigTrial trial = planned_trial({}, random);

@@ -94,9 +94,7 @@ class Session {
       // As long as nothing is known, the arm may have bent out of view.
       if (!found_ && misses_[i] > 0) {
         if (auto trouble = search(i)) return trouble;
-        if (misses_[i] > 0 && result_.looks == 1)
-          return fmt::format("the {} is out of view of camera {}, also {:.3g} rad to all sides: {}", what_,
-                             name(i), config_.search, sight_.seen.reason);
+        if (misses_[i] > 0 && result_.looks == 1) return not_found(i);
       }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
@@ -122,6 +120,13 @@ class Session {
   }
   [[nodiscard]] const std::string& name(std::size_t i) const {
     return believed_.cameras[config_.cameras[i]].name;
+  }
+  [[nodiscard]] std::string not_found(std::size_t i) const {
+    const std::string where =
+        eyes_->whereabouts()
+            ? fmt::format("camera {} cannot have all of the {} in its picture", name(i), what_)
+            : fmt::format("the {} is out of view of camera {}", what_, name(i));
+    return fmt::format("{}, also {:.3g} rad to all sides: {}", where, config_.search, sight_.seen.reason);
   }
 
   // Takes a picture and measures it; what is of use becomes an image of the observations.

@@ -77,6 +77,32 @@ TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
   }
 }
 
+// From all that a guess may be off by together, focal lengths by a tenth among it.
+TEST(CalibrateTaskFully, FindsFocalLengthsThatAreATenthOff) {
+  for_random_cases(4, [](TestRandom& random) {
+    WrongRig wrong = wrong_rig(random);
+    for (WrongStart* start : {&wrong.front, &wrong.side})
+      start->focal = random.integer(0, 1) == 1 ? 1.1 : 1 / 1.1;
+    CalibrationBench bench(
+        arcs_rig("method = \"bundle\"\n", arcs_cameras({wrong.front, wrong.side}), wrong.longer));
+    RigPorts ports = bench.ports();
+    WrongArm arm(*ports.arm, wrong.gains);
+    ports.arm = &arm;
+    const RigSessionResult result = bench.calibrate_bundle(ports);
+    ASSERT_TRUE(result.is_done) << result.reason;
+    const RigSigmas& sigmas = result.steps.back().sigmas;
+    const RigModel truth = bench.true_model();
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_LE(sigmas.focal[i], 0.005);
+      EXPECT_LE(std::abs(std::log(result.found.model.cameras[i].lens.fx / truth.cameras[i].lens.fx)),
+                4 * sigmas.focal[i]);
+    }
+    const RigRemainder left = bench.truth(result.target);
+    EXPECT_LT(std::abs(left.angle), 0.2 * degree);
+    EXPECT_NEAR(left.zoom_ratio, 1, 0.005);
+  });
+}
+
 const std::string three_poses =
     "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
     "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";

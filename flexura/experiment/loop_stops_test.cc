@@ -1,9 +1,11 @@
-// What stops the paper's loops, each of them: the reason is said, and everything is sent back.
+// What stops the paper's loops, each of them, and the bundle before the cylinder: the reason is said, and
+// everything is sent back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "flexura/base/degree.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
 
@@ -55,6 +57,39 @@ TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
               HasSubstr("the head of camera front does not follow: pan was sent to"));
 }
 
+INSTANTIATE_TEST_SUITE_P(OfThePaper, StoppedLoop,
+                         testing::Values("etalon", "etalon-paper", "arcs", "arcs-paper"),
+                         [](const auto& one) {
+                           std::string name = one.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+// By the arm that is seen; four equal lines cannot tell (docs/calibration-paper.md, "etalon").
+TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
+  LoopRig rig = arcs_cameras({});
+  rig.wrong[1] = {.pan = 1.41, .shift = {-0.4 - rig.at[1][0], 0, 2.45 - rig.at[1][2]}}, rig.size = 0.5;
+  CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("what can be commanded ends"));
+  bench.expect_back();
+}
+
+// They take the next line for their own, a right angle around.
+TEST(EtalonLoop, CannotTellThatACameraStandsARightAngleAround) {
+  LoopRig rig;
+  rig.wrong[1] = {.pan = 1.41, .shift = {1.1, 0, 1.45}}, rig.size = 0.5;
+  CalibrationBench loop(etalon_rig("method = \"etalon\"\n", rig));
+  const LoopResult result = loop.calibrate();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_NEAR(loop.truth(result).angle, -90 * degree, 0.2 * degree);
+  CalibrationBench bundle(etalon_rig("method = \"bundle-etalon\"\n", rig));
+  const RigSessionResult at_once = bundle.calibrate_bundle(bundle.ports());
+  ASSERT_TRUE(at_once.is_done) << at_once.reason;
+  EXPECT_NEAR(bundle.truth(at_once.target).angle, -90 * degree, 0.2 * degree);
+}
+
 // Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
 TEST(EtalonPaperLoop, IsNotDoneWhereTheBorderCutsTheCylinder) {
   LoopRig rig;
@@ -66,13 +101,60 @@ TEST(EtalonPaperLoop, IsNotDoneWhereTheBorderCutsTheCylinder) {
   bench.expect_back();
 }
 
-INSTANTIATE_TEST_SUITE_P(OfThePaper, StoppedLoop,
-                         testing::Values("etalon", "etalon-paper", "arcs", "arcs-paper"),
-                         [](const auto& one) {
-                           std::string name = one.param;
-                           std::erase(name, '-');
-                           return name;
-                         });
+struct StoppedBundle {
+  static std::string rig(const WrongStart& wrong, const std::string& task = "",
+                         const std::string& sensor = "", const std::string& etalon = "") {
+    LoopRig rig;
+    rig.wrong = {WrongStart{.pan = 0.1}, wrong}, rig.size = 0.5, rig.sensor = sensor;
+    return etalon_rig("method = \"bundle-etalon\"\n" + task, rig, etalon);
+  }
+  static void expect_stop(CalibrationBench& bench, const RigPorts& ports,
+                          const testing::Matcher<std::string>& reason) {
+    const RigSessionResult result = bench.calibrate_bundle(ports);
+    EXPECT_FALSE(result.is_done);
+    EXPECT_THAT(result.reason, reason);
+    EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+    bench.expect_back();
+  }
+};
+
+TEST(BundleEtalon, StopsWhereTheCylinderIsOutOfView) {
+  CalibrationBench bench(StoppedBundle::rig({.pan = 1.2}));
+  StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("the cylinder is out of view of camera side"));
+}
+
+TEST(BundleEtalon, StopsWhereTheCylinderTouchesTheBorder) {
+  CalibrationBench bench(StoppedBundle::rig({}, "", "", "radius = 0.1\nheight = 2.6\n"));
+  StoppedBundle::expect_stop(bench, bench.ports(),
+                             HasSubstr("camera front cannot have all of the cylinder in its picture"));
+}
+
+TEST(BundleEtalon, StopsWhereNoFrameComes) {
+  CalibrationBench bench(StoppedBundle::rig({}, "frame_timeout = 1\n", ", drop = 1"));
+  StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("camera front gave no frame for 1 s"));
+}
+
+TEST(BundleEtalon, StopsWhereAHeadDoesNotTurn) {
+  CalibrationBench bench(StoppedBundle::rig({}));
+  RigPorts ports = bench.ports();
+  StuckPan stuck(*ports.cameras[0].head);
+  ports.cameras[0].head = &stuck;
+  StoppedBundle::expect_stop(bench, ports, HasSubstr("the head of camera front does not follow"));
+}
+
+TEST(BundleEtalon, StopsWhereBothCamerasLookFromOneSide) {
+  LoopRig rig;
+  rig.size = 0.5, rig.travel = 0.2;
+  std::string text = etalon_rig("method = \"bundle-etalon\"\n", rig);
+  const std::string side = "position = [-1.5, 0.5, 0]";
+  for (std::size_t at = text.find(side); at != std::string::npos; at = text.find(side))
+    text.replace(at, side.size(), "position = [-0.4, 0.5, 1.45]");
+  const std::string look = "look_at = [-0.5, 0.5, ";
+  for (std::size_t at = text.find(look); at != std::string::npos; at = text.find(look))
+    text.replace(at, text.find(']', at) + 1 - at, "look_at = [0, 0.5, 0]");
+  CalibrationBench bench(text);
+  StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("both cameras look from one side"));
+}
 
 }  // namespace
 }  // namespace flexura

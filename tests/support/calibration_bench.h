@@ -74,8 +74,13 @@ class CalibrationBench : public RigBench {
       stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
     return stances;
   }
-  /// Whether heads, stages and the arm, straight, say that they are where the file starts them.
-  void expect_back() { expect_back(ports()); }
+  /// Whether heads, zooms, stages and the arm, straight, say that they are where the file starts them.
+  void expect_back() {
+    expect_back(ports());
+    for (std::size_t i = 0; i < ports().cameras.size(); ++i)
+      EXPECT_NEAR(ports().cameras[i].head->read().value().state.zoom,
+                  experiment().cameras()[i].initial.zoom.value_or(1), 1e-9);
+  }
   static void expect_back(const RigPorts& ports) {
     for (const CameraPorts& camera : ports.cameras) {
       const auto head = camera.head->read().value().state;

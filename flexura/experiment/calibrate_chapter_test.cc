@@ -1,0 +1,91 @@
+// What the report shows of a calibration: offsets falling, and both cameras before and after.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/calibrate_results.h"
+#include "flexura/experiment/calibrate_task.h"
+#include "tests/support/calibration_bench.h"
+#include "tests/support/loop_files.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Drawing& drawing_of(const Chapter& chapter, const std::string& name) {
+  const auto found = std::ranges::find(chapter.drawings, name, &NamedDrawing::name);
+  if (found == chapter.drawings.end()) throw std::runtime_error("no drawing " + name);
+  return found->drawing;
+}
+
+// The part of a drawing's text between `from` and the next `to`.
+std::string part(const Drawing& drawing, const std::string& from, const std::string& to) {
+  const std::size_t begin = drawing.body.find(from) + from.size();
+  return drawing.body.substr(begin, drawing.body.find(to, begin) - begin);
+}
+
+// The corners of the first line of this class, px of the page.
+std::vector<Eigen::Vector2d> line_of(const Drawing& drawing, const std::string& css_class) {
+  std::size_t at = drawing.body.find("class=\"line " + css_class);
+  if (at == std::string::npos) return {};
+  at = drawing.body.find(" d=\"", at) + 4;
+  const std::string path = drawing.body.substr(at, drawing.body.find('"', at) - at);
+  // Only a line's own commands: legends are made of others.
+  if (path.find_first_of("hHvV") != std::string::npos) return {};
+  std::vector<Eigen::Vector2d> points;
+  std::string numbers = path;
+  std::ranges::replace_if(
+      numbers, [](char c) { return c == 'M' || c == 'L' || c == ','; }, ' ');
+  std::istringstream words(numbers);
+  for (Eigen::Vector2d point; words >> point.x() >> point.y();) points.push_back(point);
+  return points;
+}
+
+double middle_column(const std::vector<Eigen::Vector2d>& line) {
+  const auto [least, most] =
+      std::ranges::minmax(line, {}, [](const Eigen::Vector2d& point) { return point.x(); });
+  return 0.5 * (least.x() + most.x());
+}
+
+TEST(CalibrationChapter, ShowsOffsetsFallingAndBothCamerasBeforeAndAfter) {
+  LoopRig rig;
+  rig.size = 0.5;
+  rig.wrong = {WrongStart{.pan = 0.08, .shift = {0.05, 0, 0}}, WrongStart{.pan = -0.07}};
+  CalibrationBench bench(etalon_rig("method = \"etalon\"\n", rig));
+  CalibrationRun run;
+  run.name = "cylinder", run.is_before_etalon = true, run.cameras = {"front", "side"};
+  run.believed = bench.believed();
+  run.loop = bench.calibrate();
+  ASSERT_TRUE(run.loop->is_done) << run.loop->reason;
+  const Chapter chapter = calibration_chapter(run, 0);
+  EXPECT_EQ(chapter.heading, "Calibration: cylinder");
+  for (const std::string camera : {"front", "side"}) {
+    const testing::ScopedTrace trace(__FILE__, __LINE__, camera);
+    const Drawing& before = drawing_of(chapter, "calibration-1-" + camera + "-before");
+    const Drawing& after = drawing_of(chapter, "calibration-1-" + camera + "-after");
+    EXPECT_NE(part(before, "href=\"", "\""), part(after, "href=\"", "\"")) << "the same picture";
+    // The silhouette is beside the cross in the middle before, and around it after.
+    const double middle_before = middle_column(line_of(before, "s5")),
+                 middle_after = middle_column(line_of(after, "s5"));
+    EXPECT_GT(std::abs(middle_column(line_of(before, "s2")) - middle_before), 15);
+    EXPECT_LT(std::abs(middle_column(line_of(after, "s2")) - middle_after), 2);
+    // Powers of ten: from tens of pixels to what is accepted, or what a head's step leaves.
+    const Drawing& offsets = drawing_of(chapter, "calibration-1-offsets-" + camera);
+    EXPECT_THAT(offsets.body, HasSubstr("horizontal orientation (px)"));
+    const std::vector<Eigen::Vector2d> falling = line_of(offsets, "s0");
+    ASSERT_GE(falling.size(), 2U);
+    EXPECT_GT(falling.back().x(), falling.front().x());
+    EXPECT_GT(falling.back().y(), falling.front().y() + 50) << "downwards on the page";
+  }
+}
+
+}  // namespace
+}  // namespace flexura

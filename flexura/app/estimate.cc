@@ -149,6 +149,19 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
   return finder.find(gray_picture(photograph.bytes));
 }
 
+// Where a lens's axis meets the picture far from its middle, the camera was probably measured with pictures
+// of another size.
+std::optional<std::string> doubt_of_size(const View& view) {
+  const Intrinsics lens = view.lens.intrinsics();
+  const auto is_aside = [](double at, int size) { return at < 0.25 * size || at > 0.75 * size; };
+  if (!is_aside(lens.cx, view.width) && !is_aside(lens.cy, view.height)) return std::nullopt;
+  return fmt::format(
+      "the principal point ({:.4g}, {:.4g}) is far from the middle of this picture of {} x {} px: is the "
+      "camera's "
+      "description one for pictures of another size?",
+      lens.cx, lens.cy, view.width, view.height);
+}
+
 Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateSettings& settings) {
   Look look;
   const auto& [name, file] = picture;
@@ -163,6 +176,7 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   ArmFinder finder(config);
   const ArmSighting found = sighted(photograph, finder);
   look.reason = found.reason, look.notes = found.notes;
+  if (auto doubt = doubt_of_size(view)) look.notes.push_back(std::move(*doubt));
   look.sighting = sighting_of(found, view, photograph.bytes);
   look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();

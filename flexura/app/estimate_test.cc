@@ -66,6 +66,10 @@ class Estimate : public testing::Test {
     arguments_.cameras = (folder_.path() / "cameras.toml").string();
     arguments_.images = {photographed("arm", "front"), photographed("arm", "side")};
   }
+  static Image<std::uint8_t> picture_of(const std::string& name) {
+    const std::string file = read_text_file(name, most_picture_bytes);
+    return decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name).bytes;
+  }
   // A picture of what an experiment file shows.
   std::string photographed(const std::string& experiment, const std::string& camera) {
     const auto file = [&](const std::string& name) { return (folder_.path() / name).string(); };
@@ -324,9 +328,7 @@ TEST_F(Estimate, SaysWhyThereIsNone) {
 TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const auto changed = [&](std::size_t i, const std::string& name, const auto& change) {
-    const std::string file = read_text_file(arguments_.images[i], most_picture_bytes);
-    Image<std::uint8_t> picture =
-        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name).bytes;
+    Image<std::uint8_t> picture = picture_of(arguments_.images[i]);
     change(picture);
     arguments_.images[i] = (folder_.path() / name).string();
     write_new_file(arguments_.images[i], png(picture));
@@ -345,6 +347,24 @@ TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
       for (int u = 560; u < 574; ++u) darken(picture, u, v);
   });
   EXPECT_LT(error(answer(exit_done)), 1e-3);
+}
+
+// Pictures of half the size, which the cameras' file does not tell.
+TEST_F(Estimate, SaysThatCamerasAreForPicturesOfAnotherSize) {
+  const Node right = answer(exit_done);
+  EXPECT_EQ(write_json(right).find("another size"), std::string::npos);
+  for (std::string& image : arguments_.images) {
+    const Image<std::uint8_t> whole = picture_of(image);
+    Image<std::uint8_t> half(whole.width() / 2, whole.height() / 2, whole.channels());
+    for (int v = 0; v < half.height(); ++v)
+      for (int u = 0; u < half.width(); ++u)
+        for (int c = 0; c < half.channels(); ++c) half.at(u, v, c) = whole.at(2 * u, 2 * v, c);
+    image += ".half.png";
+    write_new_file(image, png(half));
+  }
+  std::ostringstream out;
+  (void)estimate_command(arguments_, out);
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("for pictures of another size?"));
 }
 
 TEST_F(Estimate, SaysThatAPictureIsGivenTwice) {

@@ -29,8 +29,7 @@ bool is_round(const std::optional<CircleFit>& circle, const std::optional<Ellips
   constexpr double least_around = 1.0 / 3;
   return (circle && circle->rms < roughest * circle->radius &&
           circle->arc > least_around * 2 * std::numbers::pi) ||
-         (ellipse && ellipse->rms < roughest * ellipse->semi_axes.y() &&
-          share_around(*ellipse, used) > least_around);
+         (is_on_ellipse(ellipse) && share_around(*ellipse, used) > least_around);
 }
 
 }  // namespace

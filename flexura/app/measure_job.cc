@@ -28,8 +28,13 @@ Node circle_node(const std::optional<CircleFit>& fit) {
       .take();
 }
 
+bool is_on_ellipse(const std::optional<EllipseFit>& fit) {
+  constexpr double roughest = 0.03;
+  return fit && fit->rms < roughest * fit->semi_axes.y();
+}
+
 Node ellipse_node(const std::optional<EllipseFit>& fit) {
-  if (!fit) return {};
+  if (!is_on_ellipse(fit)) return {};
   const Eigen::Matrix<double, 5, 1> sigma = fit->covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const auto pair = [](double a, double b) { return Node{Node::Array{number_node(a), number_node(b)}, {}}; };
   return TableMaker()

@@ -27,6 +27,8 @@ inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 6
 
 /// [u, v], px.
 [[nodiscard]] Node pixel_pair(const Eigen::Vector2d& value);
+/// Whether points lie on an ellipse by and large: within 3 % of its shorter semi-axis, root mean square.
+[[nodiscard]] bool is_on_ellipse(const std::optional<EllipseFit>& fit);
 /// As docs/vision.md has them; null where there is none.
 [[nodiscard]] Node circle_node(const std::optional<CircleFit>& fit);
 [[nodiscard]] Node ellipse_node(const std::optional<EllipseFit>& fit);

@@ -72,11 +72,13 @@ TEST(Measure, VerifiesNoCircleForAnAxisThatIsNoArc) {
     if (circle.find("verified") != nullptr) {
       EXPECT_FALSE(*circle.find("verified")->as<bool>());
     }
+    EXPECT_TRUE(found.answer.find("ellipse")->empty());
   }
   const auto arc = [](double u) { return 320 - std::sqrt(200.0 * 200 - (u - 160) * (u - 160)); };
   const Measurement found = measured(png(gray_arm(arc, 12, random)));
   EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 200, 0.5);
   EXPECT_TRUE(*found.answer.find("circle")->find("verified")->as<bool>());
+  EXPECT_LT(number_at(found.answer, "ellipse", "rms"), 0.1);
   // A straight one has none.
   const auto line = [](double u) { return 100 + 0.1 * u; };
   EXPECT_TRUE(measured(png(gray_arm(line, 12, random))).answer.find("circle")->empty());

@@ -108,7 +108,7 @@ void RigVariables::add_camera(const CameraConfig& camera, const CameraPrior& pri
   for (std::size_t i = 0; i < coefficients.size(); ++i)
     add(name + coefficients[i], prior.distortion[i], usual.distortion[0]);
   for (std::size_t i = 0; i < camera.lens.zoom.size(); ++i)
-    add(fmt::format("{}focal length of zoom row {}", name, i), prior.zoom_row, usual.zoom_row);
+    add(fmt::format("{}focal length of zoom row {}", name, i + 1), prior.zoom_row, usual.zoom_row);
 }
 
 void RigVariables::add_arm(const ArmPrior& prior) {
@@ -116,9 +116,9 @@ void RigVariables::add_arm(const ArmPrior& prior) {
   arm_ = slots_.size();
   const std::size_t sections = guess_.arm.sections.size();
   for (std::size_t i = 0; i < sections; ++i)
-    add(fmt::format("arm: length of section {}", i), prior.length, usual.length);
+    add(fmt::format("arm: length of section {}", i + 1), prior.length, usual.length);
   for (std::size_t i = 0; i < sections; ++i)
-    add(fmt::format("arm: bend gain of section {}", i), prior.bend_gain, usual.bend_gain);
+    add(fmt::format("arm: bend gain of section {}", i + 1), prior.bend_gain, usual.bend_gain);
 }
 
 void RigVariables::add_pose(std::size_t number, const ArmState& pose, const ArmPrior& prior) {
@@ -128,7 +128,7 @@ void RigVariables::add_pose(std::size_t number, const ArmState& pose, const ArmP
     const double sigma = std::hypot(prior.bend, prior.bend_share * pose.bends[i].norm());
     for (std::size_t j = 0; j < 2; ++j) {
       const bool is_held = j == 1 && guess_.arm.kind == ArmKind::planar;
-      add(fmt::format("pose {}: bend of section {}, {}", number, i, directions[j]), is_held ? 0 : sigma,
+      add(fmt::format("pose {}: bend of section {}, {}", number + 1, i + 1, directions[j]), is_held ? 0 : sigma,
           usual.bend);
     }
   }
@@ -138,7 +138,7 @@ void RigVariables::add_stance(std::size_t number, const RigStance& stance, const
   stances_.push_back(slots_.size());
   const Camera camera(guess_.cameras[stance.camera]);
   const auto add_axis = [&](const char* what, const AxisConfig& axis) {
-    add(fmt::format("stance {}: {}", number, what), prior.steps * axis.resolution, axis.resolution);
+    add(fmt::format("stance {}: {}", number + 1, what), prior.steps * axis.resolution, axis.resolution);
   };
   if (stance.turned_as) {
     const std::size_t before = stances_[*stance.turned_as];

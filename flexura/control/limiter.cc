@@ -21,10 +21,12 @@ CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState
     : arm_(std::move(arm)), settings_(std::move(settings)), limits_(limit_watches(arm_)), sent_(start) {
   if (!(settings_.step > 0) || !std::isfinite(settings_.step))
     throw std::invalid_argument("a limiter's step must be finite and above 0");
+  if (!(settings_.list_step >= 0) || !std::isfinite(settings_.list_step))
+    throw std::invalid_argument("a command list's step must be finite and not below 0");
   if (!fits(arm_, start) || !is_possible(start))
     throw std::invalid_argument("a limiter starts in a finite state of its arm");
-  motors_ = motors_at(start);
-  motor_rates_ = Eigen::VectorXd::Zero(motors_.size());
+  last_step_.motors = motors_at(start);
+  last_step_.rates = last_step_.swing = Eigen::VectorXd::Zero(last_step_.motors.size());
   std::string broken = breach({start});
   if (broken.empty() && settings_.looks_ahead) broken = contact({start});
   if (!broken.empty()) throw std::invalid_argument("a limiter starts within the limits: " + broken);
@@ -88,11 +90,9 @@ void CommandLimiter::reset() {
 LimitedCommand CommandLimiter::send(Plan plan, std::string reason, bool is_untouched) {
   LimitedCommand command;
   command.is_at_rest = plan.way.size() == 1 && are_equal(plan.way.front(), sent_);
-  const Eigen::VectorXd before = motors_;
+  if (settings_.drive) last_step_ = motor_step(sent_, last_step_.motors, plan.way.front());
   sent_ = plan.way.front();
   way_to_rest_.assign(plan.way.begin() + 1, plan.way.end());
-  motors_ = motors_at(sent_);
-  motor_rates_ = (motors_ - before) / settings_.step;
   ++steps_;
   command.state = sent_;
   command.is_untouched = is_untouched;
@@ -142,14 +142,24 @@ CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead
 
 int CommandLimiter::braking_steps(const ArmState& next) const {
   if (!settings_.drive) return 1;
-  const Eigen::VectorXd rates = (motors_at(next) - motors_) / settings_.step;
+  const Eigen::VectorXd rates = (motors_at(next) - last_step_.motors) / settings_.step;
   double steps = 1;
   for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
     const StepperMotor& motor = settings_.drive->axes[i].motor;
-    const double change = motor_acceleration(motor) * settings_.step;  // microsteps/s in one step
+    const double change = motor_acceleration(motor) * turning_time();  // microsteps/s in one step
     steps = std::max(steps, std::ceil(std::abs(rates[static_cast<Eigen::Index>(i)]) / change * (1 + 1e-9)));
   }
   return static_cast<int>(std::min(steps, 1e6));
+}
+
+// Within which a change of rate from one command to the next counts as acceleration, s. In a list whose rows
+// are shorter than a step, one row; in one whose rows are longer, several changes fall into two rows, at most
+// with the weights 1, 1 - step/row, ... to both sides.
+double CommandLimiter::turning_time() const {
+  const double row = settings_.list_step > 0 ? settings_.list_step : settings_.step;
+  double weights = 1;
+  for (int k = 1; k * settings_.step < row; ++k) weights += 2 * (1 - k * settings_.step / row);
+  return row / weights;
 }
 
 std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
@@ -169,26 +179,41 @@ std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
   return settings_.drive ? breach_of_motors(way) : std::string();
 }
 
+// A step's rates are even where tendons go with the bends, and where they do not (guide disks) they rise or
+// fall by `swing` to both sides of their mean.
+CommandLimiter::MotorStep CommandLimiter::motor_step(const ArmState& from, const Eigen::VectorXd& motors_from,
+                                                     const ArmState& to) const {
+  MotorStep step;
+  step.motors = motors_at(to);
+  step.rates = (step.motors - motors_from) / settings_.step;
+  step.swing = Eigen::VectorXd::Zero(step.rates.size());
+  if (settings_.drive->disks)
+    step.swing = (step.motors + motors_from - 2 * motors_at(between(from, to, 0.5))) / (0.5 * settings_.step);
+  return step;
+}
+
 std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) const {
   const Drive& drive = *settings_.drive;
   constexpr double slack = 1 + 0.5 * limit_tolerance;
-  Eigen::VectorXd before = motors_, rates_before = motor_rates_;
+  const ArmState* from = &sent_;
+  MotorStep before = last_step_;
   // One step more at the end: the arm stands.
   for (std::size_t k = 0; k <= way.size(); ++k) {
-    const Eigen::VectorXd now = motors_at(way[std::min(k, way.size() - 1)]);
-    const Eigen::VectorXd rates = (now - before) / settings_.step;
+    const ArmState& to = way[std::min(k, way.size() - 1)];
+    const MotorStep now = motor_step(*from, before.motors, to);
     for (std::size_t i = 0; i < drive.axes.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const StepperMotor& motor = drive.axes[i].motor;
       const auto say = [&](const char* what) {
         return fmt::format("motor {}: {}", drive.axis_name(i), what);
       };
-      if (!(std::abs(now[at]) <= motor.max_position)) return say("position");
-      if (!(std::abs(rates[at]) <= motor_rate(motor) * slack)) return say("speed");
-      if (!(std::abs(rates[at] - rates_before[at]) <= motor_acceleration(motor) * settings_.step * slack))
-        return say("acceleration");
+      if (!(std::abs(now.motors[at]) <= motor.max_position)) return say("position");
+      const double swing = std::abs(now.swing[at]), swings = swing + std::abs(before.swing[at]);
+      if (!(std::abs(now.rates[at]) + swing <= motor_rate(motor) * slack)) return say("speed");
+      const double change = std::abs(now.rates[at] - before.rates[at]) + 2 * swings;
+      if (!(change <= motor_acceleration(motor) * turning_time() * slack)) return say("acceleration");
     }
-    before = now, rates_before = rates;
+    before = now, from = &to;
   }
   return {};
 }

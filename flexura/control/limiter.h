@@ -14,8 +14,11 @@ namespace flexura {
 
 /// What a limiter keeps to besides the arm's own limits.
 struct LimiterSettings {
-  double step = 1.0 / 30;                ///< Time from one command to the next, s; > 0.
-  std::optional<Drive> drive = {};       ///< Its motors' speeds, step rates, accelerations and positions.
+  double step = 1.0 / 30;           ///< Time from one command to the next, s; > 0.
+  std::optional<Drive> drive = {};  ///< Its motors' speeds, step rates, accelerations and positions.
+  /// From row to row of the command list that the motors follow, s: a rate that changes changes within that.
+  /// 0: as `step`.
+  double list_step = 0;
   std::vector<Obstacle> obstacles = {};  ///< Which no way may touch, with looks_ahead.
   bool looks_ahead = true;  ///< Every way is checked for contact (check_motions) until the arm would rest.
   int most_braking = 200;   ///< The most steps that coming to rest may take.
@@ -79,6 +82,12 @@ class CommandLimiter {
     bool is_allowed = false;
     std::string reason;  // why not
   };
+  struct MotorStep {
+    Eigen::VectorXd motors;        // At its end, microsteps.
+    Eigen::VectorXd rates, swing;  // microsteps/s
+  };
+  [[nodiscard]] MotorStep motor_step(const ArmState& from, const Eigen::VectorXd& motors_from,
+                                     const ArmState& to) const;
   [[nodiscard]] ArmState within_limits(const ArmState& asked, std::string& reason) const;
   [[nodiscard]] Plan plan(const ArmState& next, bool looks_ahead) const;
   [[nodiscard]] std::string breach(const std::vector<ArmState>& way) const;
@@ -86,6 +95,7 @@ class CommandLimiter {
   [[nodiscard]] std::string contact(const std::vector<ArmState>& way) const;
   [[nodiscard]] Eigen::VectorXd motors_at(const ArmState& state) const;
   [[nodiscard]] int braking_steps(const ArmState& next) const;
+  [[nodiscard]] double turning_time() const;
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
 
   Arm arm_;
@@ -93,7 +103,7 @@ class CommandLimiter {
   std::vector<LimitWatch> limits_;
   ArmState sent_;
   std::vector<ArmState> way_to_rest_;
-  Eigen::VectorXd motors_, motor_rates_;  // microsteps, microsteps/s; empty without drives
+  MotorStep last_step_;  // Empty without drives.
   long steps_ = 0;
   std::optional<ArmState> observed_, asked_;
   std::optional<LimiterFault> fault_;

@@ -67,18 +67,18 @@ ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
 
 // Everything that a run's check finds in a sequence of commands.
 SafetyReport judged(const Arm& arm, const LimiterSettings& settings, const std::vector<ArmState>& sent) {
-  std::vector<double> times;
+  std::vector<double> times, rows;
   times.reserve(sent.size());
   for (std::size_t i = 0; i < sent.size(); ++i) times.push_back(settings.step * static_cast<double>(i));
   const MotionPtr motion = keyframe_motion(times, sent, Interpolation::linear);
+  const double row = settings.list_step > 0 ? settings.list_step : settings.step;
+  for (int i = 0; i * row < times.back() * (1 + 1e-12); ++i) rows.push_back(std::min(i * row, times.back()));
   SafetyReport report =
       check_motions(arm, settings.obstacles, sent.front(), {{motion, 0, "sent"}}, settings.step);
   if (settings.drive) {
-    const auto state_at = [&](double t) {
-      return sent[static_cast<std::size_t>(std::lround(t / settings.step))];
-    };
+    const auto state_at = [&](double t) { return motion->at(t); };
     const auto none = [](double, double) -> std::optional<std::vector<SectionRates>> { return std::nullopt; };
-    check_drive(arm, *settings.drive, state_at, times, none, report);
+    check_drive(arm, *settings.drive, state_at, rows, none, report);
   }
   return report;
 }
@@ -100,6 +100,8 @@ TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
     const Arm arm = limited_arm(random);
     LimiterSettings settings{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
     if (random.integer(0, 3) > 0) settings.drive = limited_drive(random, arm);
+    // A command list by another clock.
+    if (random.integer(0, 2) > 0) settings.list_step = settings.step * random.uniform(0.2, 3);
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, settings, straight);
     std::vector<ArmState> sent{straight};

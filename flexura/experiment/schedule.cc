@@ -63,6 +63,7 @@ void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& t
 void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
   const auto shapes = servo_target_shapes(servo, arm_, from);
   add(servo, known ? known : servo_motion(shapes, arm_, from));
+  legs_.back().is_steered = true;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
     const auto& position = servo.target[i].position;
@@ -111,9 +112,12 @@ SafetyReport Schedule::check(Progress* progress) const {
     std::vector<double> times;
     times.reserve(steps_ + 1);
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
+    std::vector<std::array<double, 2>> limited;
+    for (const Leg& leg : legs_)
+      if (leg.is_steered) limited.push_back({leg.start, leg.end()});
     check_drive(
         arm_, *drive_, [this](double time) { return state_at(time); }, times,
-        [this](double start, double end) { return rates(start, end); }, report);
+        [this](double start, double end) { return rates(start, end); }, report, limited);
   }
   report.sort();
   return report;

@@ -18,10 +18,11 @@ namespace flexura {
 
 /// One task, placed in time.
 struct Leg {
-  std::string name;  ///< The task's; its kind where it has none (task_name).
-  std::string kind;  ///< "move", ...
-  double start = 0;  ///< s
-  MotionPtr motion;  ///< Never null; its times count from `start`.
+  std::string name;         ///< The task's; its kind where it has none (task_name).
+  std::string kind;         ///< "move", ...
+  double start = 0;         ///< s
+  MotionPtr motion;         ///< Never null; its times count from `start`.
+  bool is_steered = false;  ///< By sight: a limiter decides on the way what is sent.
 
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };

@@ -177,6 +177,7 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   if (is_colored) config.markers = band_places(experiment, believed.arm);
   config.step = task.step.value_or(1 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
   if (experiment.drive) config.drive = experiment.drive->drive();
+  config.list_step = experiment.clock.step;
   config.obstacles = obstacles(experiment.obstacle);
   // Between two pictures of a slow camera nobody is blind.
   const double blind =

@@ -23,11 +23,11 @@ void require_one_entry_a_section(const Arm& arm, const ArmState& state) {
 void require_usable(const Arc& arc, std::size_t index) {
   if (!arc.bend.allFinite()) {
     throw std::invalid_argument(
-        fmt::format("section {}: the bend ({}, {}) is not finite", index, arc.bend.x(), arc.bend.y()));
+        fmt::format("section {}: the bend ({}, {}) is not finite", index + 1, arc.bend.x(), arc.bend.y()));
   }
   if (!(arc.length > 0.0) || !std::isfinite(arc.length)) {
     throw std::invalid_argument(
-        fmt::format("section {}: the stretched length {} is not a positive number", index, arc.length));
+        fmt::format("section {}: the stretched length {} is not a positive number", index + 1, arc.length));
   }
 }
 

@@ -63,9 +63,10 @@ struct MotorPlace {
 
 // What a caveat tells of an axis beside its violations.
 struct AxisNotes {
-  bool has_single_steps = false;  // Rows of one microstep were let pass.
-  bool is_rounded_over = false;   // Nothing but the rounding breaks a limit.
-  bool takes_up_play = false;     // Where it is too fast or too sudden.
+  bool has_single_steps = false;    // Rows of one microstep were let pass.
+  bool is_rounded_over = false;     // Nothing but the rounding breaks a limit.
+  bool takes_up_play = false;       // Where it is too fast or too sudden.
+  bool is_over_in_limited = false;  // By play or rounding alone, where a limiter decided.
 };
 
 // Follows one axis from row to row.
@@ -88,7 +89,11 @@ class AxisCheck {
     position_.add({time, time}, std::abs(place.position), report);
   }
   // `last` and `now` are the steps before and up to this row; the first step comes after one of standing.
-  void row(Span last, Span now, const MotorPlace& place, SafetyReport& report) {
+  void row(Span last, Span now, const MotorPlace& place, bool is_limited, SafetyReport& report) {
+    if (is_limited) {
+      limited_row(last, now, place, report);
+      return;
+    }
     const double time = now.end - now.start;
     const double wanted = (place.target - last_.target) / time;
     const double taken_up = (place.target - place.without_play) - (last_.target - last_.without_play);
@@ -112,6 +117,17 @@ class AxisCheck {
   }
 
  private:
+  void limited_row(Span last, Span now, const MotorPlace& place, SafetyReport& report) {
+    const double time = now.end - now.start;
+    const double rate = (place.without_play - last_.without_play) / time;
+    step_rate_.add(now, std::abs(rate), report), speed_.add(now, std::abs(rate) * to_radians_, report);
+    change_rate(now.start, (now.end - last.start) / 2, rate, report);
+    if (std::abs(place.position - last_.position) / time > most_ && std::abs(rate) <= most_)
+      notes_.is_over_in_limited = true;
+    position_.add({now.end, now.end}, std::abs(place.position), report);
+    last_ = place;
+    took_up_ = false;
+  }
   // The rate of a row, microsteps/s. A single microstep is the least that a motor can do: where the row is so
   // short that already this is too fast, what counts is how fast the motion is that was rounded.
   double judged_rate(double moved, double wanted, double time) {
@@ -221,7 +237,7 @@ void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t 
 }
 
 void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
-  const auto say = [&](bool AxisNotes::* note, const std::string& what) {
+  const auto say = [&](bool AxisNotes::*note, const std::string& what) {
     std::vector<char> is_meant;
     is_meant.reserve(axes.size());
     for (const AxisCheck& axis : axes) is_meant.push_back(axis.notes().*note ? 1 : 0);
@@ -239,12 +255,16 @@ void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double st
       "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
       "the "
       "shorter that is, the more it asks");
+  say(&AxisNotes::is_over_in_limited,
+      "motors of {}: what was sent while the arm was steered keeps to the limits; where a tendon reverses, "
+      "taking up its play, and rounding, asked for more within one step of the clock, {:.6g} s");
 }
 
 }  // namespace
 
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
-                 std::span<const double> times, const RateBounds& rates, SafetyReport& report) {
+                 std::span<const double> times, const RateBounds& rates, SafetyReport& report,
+                 std::span<const std::array<double, 2>> limited) {
   if (times.size() < 2) return;
   const std::size_t found_before = report.violations.size();
   const auto first = displacements_in(arm, drive, state_at(times[0]));
@@ -263,7 +283,9 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
     commander.follow(*wanted);
     const Span now{times[k - 1], times[k]};
     places = places_of(commander, drive, *wanted);
-    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, places[i], report);
+    while (!limited.empty() && limited.front()[1] <= now.start) limited = limited.subspan(1);
+    const bool is_limited = !limited.empty() && limited.front()[0] < now.end;
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, places[i], is_limited, report);
     last = now;
   }
   const double step = times[1] - times[0];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -28,7 +29,12 @@ using RateBounds = std::function<std::optional<std::vector<SectionRates>>(double
 /// it is too much, a caveat says that it goes with the step. Taking up the play counts, and a caveat names
 /// the axes where that is what breaks a limit, and those where nothing but the rounding does. Ends before the
 /// first state that is not possible.
+///
+/// In `limited` (start and end in s, rising) a CommandLimiter decided on the way what was sent, which counts
+/// neither play nor rounding: there they are left out of speed and acceleration, and a caveat names the axes
+/// where either would break a limit.
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
-                 std::span<const double> times, const RateBounds& rates, SafetyReport& report);
+                 std::span<const double> times, const RateBounds& rates, SafetyReport& report,
+                 std::span<const std::array<double, 2>> limited = {});
 
 }  // namespace flexura

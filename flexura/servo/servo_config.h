@@ -86,7 +86,8 @@ struct ServoConfig {
   ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
   double step = 1.0 / 30;   ///< From one command to the next, s.
   bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
-  std::optional<Drive> drive = {};  ///< For the limiter (LimiterSettings).
+  std::optional<Drive> drive = {};  ///< For the limiter (LimiterSettings),
+  double list_step = 0;             ///< and its command list's step, s.
   std::vector<Obstacle> obstacles = {};
   ServoPatience patience;
 };

@@ -52,7 +52,8 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
 
 LimiterSettings limiter_settings(const ServoConfig& config) {
   LimiterSettings settings;
-  settings.step = config.step, settings.drive = config.drive, settings.obstacles = config.obstacles;
+  settings.step = config.step, settings.drive = config.drive, settings.list_step = config.list_step;
+  settings.obstacles = config.obstacles;
   return settings;
 }
 

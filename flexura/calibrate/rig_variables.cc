@@ -128,8 +128,8 @@ void RigVariables::add_pose(std::size_t number, const ArmState& pose, const ArmP
     const double sigma = std::hypot(prior.bend, prior.bend_share * pose.bends[i].norm());
     for (std::size_t j = 0; j < 2; ++j) {
       const bool is_held = j == 1 && guess_.arm.kind == ArmKind::planar;
-      add(fmt::format("pose {}: bend of section {}, {}", number + 1, i + 1, directions[j]), is_held ? 0 : sigma,
-          usual.bend);
+      add(fmt::format("pose {}: bend of section {}, {}", number + 1, i + 1, directions[j]),
+          is_held ? 0 : sigma, usual.bend);
     }
   }
 }

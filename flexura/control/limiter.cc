@@ -79,7 +79,7 @@ LimitedCommand CommandLimiter::brake() {
 
 void CommandLimiter::fault(const std::string& reason) {
   if (fault_) return;
-  fault_ = {static_cast<double>(steps_) * settings_.step, reason, observed_, sent_, asked_};
+  fault_ = record(reason);
 }
 
 void CommandLimiter::reset() {
@@ -173,6 +173,9 @@ std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
       const double rate = (state.bends[i] - before->bends[i]).norm() / settings_.step;
       if (rate > arm_.sections[i].max_bend_rate * (1 + 0.5 * limit_tolerance))
         return fmt::format("section {}: bend rate", i + 1);
+      const double stretching = std::abs(state.stretches[i] - before->stretches[i]) / settings_.step;
+      if (stretching > arm_.sections[i].max_stretch_rate * (1 + 0.5 * limit_tolerance))
+        return fmt::format("section {}: stretch rate", i + 1);
     }
     before = &state;
   }

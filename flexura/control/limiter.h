@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/model/arm.h"
@@ -42,7 +43,8 @@ struct LimiterFault {
 };
 
 /// Stands between a law and an arm's drives. Whatever the law asks for, what is sent
-///   - is finite, within the arm's bends, stretches and folding, and changes no faster than its bends may;
+///   - is finite, within the arm's bends, stretches and folding, and changes no faster than its bends and
+///     stretches may;
 ///   - keeps to the motors' speeds, step rates, accelerations and positions (play and rounding are the
 ///     drive's own);
 ///   - can be brought to rest from there within all of these, and with `looks_ahead` without a contact on the
@@ -66,6 +68,10 @@ class CommandLimiter {
   void observe(const ArmState& observed) { observed_ = observed; }
   /// Stops the arm: a port's fault, a lost estimate. Of several the first one is kept.
   void fault(const std::string& reason);
+  /// What would be kept of a fault for this reason now.
+  [[nodiscard]] LimiterFault record(std::string reason) const {
+    return {static_cast<double>(steps_) * settings_.step, std::move(reason), observed_, sent_, asked_};
+  }
   /// What stopped the arm; none since the start or the last reset().
   [[nodiscard]] const std::optional<LimiterFault>& fault() const { return fault_; }
   /// Goes on after a fault. std::logic_error before the arm rests.

@@ -36,6 +36,7 @@ Arm limited_arm(TestRandom& random) {
     section.max_bend = random.uniform(0.5, 1.5);
     section.max_bend_rate = random.uniform(0.3, 2);
     if (random.integer(0, 1) == 1) section.stretch_limits = {0.9, 1.2};
+    if (random.integer(0, 1) == 1) section.max_stretch_rate = random.uniform(0.1, 1);
   }
   return arm;
 }

@@ -42,8 +42,7 @@ std::vector<Eigen::Vector2d> line_of(const Drawing& drawing, const std::string& 
   if (path.find_first_of("hHvV") != std::string::npos) return {};
   std::vector<Eigen::Vector2d> points;
   std::string numbers = path;
-  std::ranges::replace_if(
-      numbers, [](char c) { return c == 'M' || c == 'L' || c == ','; }, ' ');
+  std::ranges::replace_if(numbers, [](char c) { return c == 'M' || c == 'L' || c == ','; }, ' ');
   std::istringstream words(numbers);
   for (Eigen::Vector2d point; words >> point.x() >> point.y();) points.push_back(point);
   return points;

@@ -225,8 +225,10 @@ void check_recorded(const Experiment& experiment, const Node& document) {
       } catch (const InputError& error) {
         const Node& target = task.find("target")->as<Node::Array>()->at(k);
         for (const Problem& problem : error.problems())
-          problems.push_back({target.find("pictures")->where,
-                              fmt::format("task[{}].target[{}].pictures: {}", i, k, problem.what)});
+          problems.push_back(
+              {target.find("pictures")->where,
+               fmt::format("task[{}].target[{}].pictures: {}{}", i, k,
+                           problem.where.source ? *problem.where.source + ": " : "", problem.what)});
       }
     }
   }

@@ -1,6 +1,9 @@
 #include "flexura/experiment/schedule.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flexura/kinematics/shape.h"
@@ -63,11 +66,12 @@ void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& t
 void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
   const auto shapes = servo_target_shapes(servo, arm_, from);
   add(servo, known ? known : servo_motion(shapes, arm_, from));
-  legs_.back().is_steered = true;
+  legs_.back().is_steered = true, legs_.back().is_foreseen = known != nullptr;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
     const auto& position = servo.target[i].position;
     add_missed(shapes[i]->missed * arm_.length(), position ? std::optional(vector(*position)) : std::nullopt);
+    missed_targets_.back().name += fmt::format(": target[{}]", i);
   }
 }
 
@@ -108,6 +112,12 @@ SafetyReport Schedule::check(Progress* progress) const {
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start, leg.name});
   SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_, progress);
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
+  for (const Leg& leg : legs_)
+    if (!leg.is_foreseen)
+      report.caveats.push_back(fmt::format(
+          "{}: judged by a slow and straight way to the shapes that it is told: which way it goes is decided "
+          "while it is steered, within all limits, and judged then",
+          leg.name));
   if (drive_ && report.is_complete) {
     std::vector<double> times;
     times.reserve(steps_ + 1);

@@ -23,6 +23,7 @@ struct Leg {
   double start = 0;         ///< s
   MotionPtr motion;         ///< Never null; its times count from `start`.
   bool is_steered = false;  ///< By sight: a limiter decides on the way what is sent.
+  bool is_foreseen = true;  ///< What it does is known; a servo's way is only once it has been done.
 
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };

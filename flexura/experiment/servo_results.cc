@@ -17,6 +17,9 @@
 namespace flexura {
 namespace {
 
+// What a shape is off that is what was asked for: rounding, a polyline's corners.
+constexpr double hardly = 1e-5;
+
 Node error_node(const ServoError& error) {
   return {Node::Table{{"rms", {}, number_node(error.rms)},
                       {"most", {}, number_node(error.most)},
@@ -31,12 +34,22 @@ Node bends_node(const ArmState& state) {
   return {std::move(bends), {}};
 }
 
+Node numbers_node(const std::vector<double>& values) {
+  Node::Array numbers;
+  for (const double value : values) numbers.push_back(number_node(value));
+  return {std::move(numbers), {}};
+}
+
 // With the last that was seen, sent and asked for.
 Node fault_node(const LimiterFault& fault, double start) {
   Node::Table members{{"time", {}, number_node(start + fault.time)}, {"reason", {}, {fault.reason, {}}}};
-  if (fault.observed) members.push_back({"observed", {}, bends_node(*fault.observed)});
-  members.push_back({"sent", {}, bends_node(fault.sent)});
-  if (fault.asked) members.push_back({"asked", {}, bends_node(*fault.asked)});
+  const auto add = [&](const std::string& what, const ArmState& state) {
+    members.push_back({what, {}, bends_node(state)});
+    members.push_back({what + "_stretches", {}, numbers_node(state.stretches)});
+  };
+  if (fault.observed) add("observed", *fault.observed);
+  add("sent", fault.sent);
+  if (fault.asked) add("asked", *fault.asked);
   return {std::move(members), {}};
 }
 
@@ -96,7 +109,7 @@ NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, 
   for (const CurvePoint& point : sight.seen[i].points) axis.points.push_back(point.pixel);
   constexpr int count = 60;
   wanted.lines.emplace_back().points =
-      backbone_pixels(run.believed.arm, run.result.steps.back().desired, sight.seen[i].view, count);
+      backbone_pixels(run.believed.arm, sight.desired, sight.seen[i].view, count);
   plot.outlines = {seen, wanted};
   return {fmt::format("servo-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
 }
@@ -121,6 +134,7 @@ Node servo_nodes(const std::vector<ServoRun>& runs) {
     if (!result.is_done) members.push_back({"reason", {}, {result.reason, {}}});
     if (result.settled) members.push_back({"settled", {}, number_node(*result.settled)});
     members.push_back({"overshoot", {}, number_node(result.overshoot)});
+    if (result.missed > hardly) members.push_back({"target_missed", {}, number_node(result.missed)});
     if (result.remaining) members.push_back({"remaining", {}, error_node(*result.remaining)});
     if (run.true_remaining) members.push_back({"remaining_in_truth", {}, error_node(*run.true_remaining)});
     if (result.fault) members.push_back({"fault", {}, fault_node(*result.fault, result.start)});
@@ -149,6 +163,11 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
     chapter.points.push_back("In the end, as seen: " + error_text(*result.remaining) + ".");
   if (run.true_remaining)
     chapter.points.push_back("In the end, in the simulated truth: " + error_text(*run.true_remaining) + ".");
+  if (result.missed > hardly)
+    chapter.points.push_back(fmt::format(
+        "The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of its "
+        "length away from what was asked for, root mean square.",
+        100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(fmt::format(
         "{} steps were missed: what was to be done in one took longer than a step.", result.missed_steps));

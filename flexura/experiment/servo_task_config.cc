@@ -26,30 +26,22 @@ constexpr double longest = 1e4;                            // s
 constexpr double shortest_step = 1e-4, longest_step = 10;  // s
 constexpr std::size_t most_targets = 10000, most_points = 10000;
 
-// A curve whose direction has these angles at equal shares of its length, linear in between.
-std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths,
-                                             const std::vector<double>& elevations, const Arm& arm) {
-  constexpr int pieces = 16;  // Between two angles; each is a straight one along its middle's direction.
-  std::vector<Eigen::Vector3d> points = {arm.X_WB.position};
-  const std::size_t spans = azimuths.size() - 1;
-  const double length = arm.length() / static_cast<double>(spans * pieces);
-  for (std::size_t i = 0; i < spans; ++i) {
-    for (int k = 0; k < pieces; ++k) {
-      const double share = (k + 0.5) / pieces;
-      const Eigen::Vector2d angles(azimuths[i] + share * (azimuths[i + 1] - azimuths[i]),
-                                   elevations[i] + share * (elevations[i + 1] - elevations[i]));
-      const Eigen::Vector3d before = points.back();
-      points.emplace_back(before + length * direction_of_angles(angles));
-    }
+// The curve lies along the whole arm: its length is the arm's, but for what chords are shorter than arcs.
+void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfig& arm,
+                 const std::string& path, Reader& reader) {
+  double length = 0, least = 0, most = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) length += (vector(curve[i]) - vector(curve[i - 1])).norm();
+  for (const Section& section : arm.section) {
+    least += section.length * section.stretch_limits[0];
+    most += section.length * section.stretch_limits[1];
   }
-  return points;
-}
-
-ServoTargetShape along(const Arm& arm, std::vector<Eigen::Vector3d> points, const ArmState& from) {
-  InverseOptions options;
-  options.start = from;
-  const InverseResult found = solve_inverse(arm, CurveTarget{std::move(points)}, options);
-  return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
+  constexpr double about = 0.05;
+  if (!(length > 0))
+    reader.problem_at(path, "has no length: expected points that differ");
+  else if (length < (1 - about) * least || length > (1 + about) * most)
+    reader.problem_at(path, fmt::format("is {:.4g} m long: expected the length of the arm, {}", length,
+                                        least < most ? fmt::format("{:.4g} m to {:.4g} m", least, most)
+                                                     : fmt::format("{:.4g} m", most)));
 }
 
 }  // namespace
@@ -196,61 +188,6 @@ std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vecto
   return two_cameras(task.cameras, cameras);
 }
 
-ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm, const ArmState& from) {
-  if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
-  if (target.curve) {
-    std::vector<Eigen::Vector3d> points;
-    for (const auto& point : *target.curve) points.push_back(vector(point));
-    return along(arm, std::move(points), from);
-  }
-  if (!target.position) return {arm_state(arm, target), 0};
-  InverseOptions options;
-  options.start = from;
-  const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, options);
-  return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
-}
-
-std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task, const Arm& arm,
-                                                                 ArmState from) {
-  std::vector<std::optional<ServoTargetShape>> shapes;
-  for (const ServoTargetConfig& target : task.target) {
-    auto& shape = shapes.emplace_back();
-    if (!target.pictures.empty()) continue;
-    shape = servo_target_shape(target, arm, from);
-    from = shape->state;
-  }
-  return shapes;
-}
-
-RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<CameraConfig, 2>& cameras,
-                             const std::filesystem::path& folder) {
-  RecordedViews views;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::filesystem::path path = file_inside(folder, target.pictures[i]);
-    const std::string file = read_text_file(path, most_picture_bytes);
-    const Photograph photograph =
-        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, path.string());
-    const SensorConfig& sensor = cameras[i].sensor;
-    const Image<std::uint8_t>& bytes = photograph.bytes;
-    if (bytes.width() != sensor.width || bytes.height() != sensor.height)
-      throw input_error(path.string(),
-                        fmt::format("{} x {} px: expected {} x {}, as camera {} takes them", bytes.width(),
-                                    bytes.height(), sensor.width, sensor.height, cameras[i].name));
-    if (sensor.bits > 8 && photograph.words.values().empty())
-      throw input_error(path.string(), fmt::format("8 bits a value: expected {}, as camera {} takes them",
-                                                   sensor.bits, cameras[i].name));
-    if (sensor.bits <= 8 && !photograph.words.values().empty())
-      throw input_error(path.string(),
-                        fmt::format("16 bits a value: expected 8, as camera {} takes them", cameras[i].name));
-    if (sensor.bits > 8) {
-      views[i] = photograph.words;
-    } else {
-      views[i] = bytes;
-    }
-  }
-  return views;
-}
-
 namespace {
 
 // The paper's law reads one picture as the plane XOY and the other one as ZOY.
@@ -322,12 +259,7 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
     reader.problem_at(path,
                       "has azimuths and elevations that do not belong together: expected as many of each");
-  if (target.curve) {
-    double length = 0;
-    for (std::size_t i = 1; i < target.curve->size(); ++i)
-      length += (vector((*target.curve)[i]) - vector((*target.curve)[i - 1])).norm();
-    if (!(length > 0)) reader.problem_at(path + ".curve", "has no length: expected points that differ");
-  }
+  if (target.curve) check_curve(*target.curve, arm, path + ".curve", reader);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,25 +62,6 @@ const Table<ServoTask>& fields_of(const ServoTask*);
 /// The two cameras of a task that was checked: places among `cameras`.
 [[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
                                                        const std::vector<CameraConfig>& cameras);
-
-/// The shape that a target without pictures means for `arm`, and how far it stays from what was said, a share
-/// of the arm's length. The search for it begins at `from`.
-struct ServoTargetShape {
-  ArmState state;
-  double missed = 0;  ///< Share of the arm's length; 0 when the shape is what was asked for.
-};
-[[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
-                                                  const ArmState& from);
-
-/// Of all targets in their order, each searched for from the one before; none of those by pictures.
-[[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
-                                                                               const Arm& arm, ArmState from);
-
-/// The pictures of a target that has some, from files in `folder` or below. InputError: what is no picture,
-/// or of another size than its camera takes.
-[[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
-                                           const std::array<CameraConfig, 2>& cameras,
-                                           const std::filesystem::path& folder);
 
 /// Reports what keeps the servo at `path` ("task[2]") from being tried with this arm and these cameras.
 void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,

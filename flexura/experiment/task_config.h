@@ -11,6 +11,7 @@
 #include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/dynamics_task_config.h"
+#include "flexura/experiment/servo_target.h"
 #include "flexura/experiment/servo_task_config.h"
 #include "flexura/experiment/study_config.h"
 #include "flexura/kinematics/motion.h"

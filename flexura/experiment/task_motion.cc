@@ -204,8 +204,10 @@ MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shape
   const auto lasts = [&](const ArmState& a, const ArmState& b) {
     double duration = slow;
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-      const double way = (b.bends[i] - a.bends[i]).norm();
-      duration = std::max(duration, faster * way / arm.sections[i].max_bend_rate);
+      const double bending = (b.bends[i] - a.bends[i]).norm(),
+                   stretching = std::abs(b.stretches[i] - a.stretches[i]);
+      duration = std::max({duration, faster * bending / arm.sections[i].max_bend_rate,
+                           faster * stretching / arm.sections[i].max_stretch_rate});
     }
     return duration;
   };

@@ -23,6 +23,7 @@ struct Section {
   double max_bend = std::numeric_limits<double>::infinity();       ///< Largest |bend|, rad.
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
   std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
+  double max_stretch_rate = std::numeric_limits<double>::infinity();  ///< Largest |d stretch/dt|, 1/s.
 };
 
 /// What changes when the arm moves: each section's bend vector and stretch, base first.

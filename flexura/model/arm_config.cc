@@ -66,6 +66,10 @@ const Table<Section>& fields_of(const Section*) {
                   .default_text = "no limit"})
           .field("stretch_limits", &Section::stretch_limits,
                  {.meaning = "Smallest and largest factor on the length.", .range = above_up_to(0, 100)})
+          .field("max_stretch_rate", &Section::max_stretch_rate,
+                 {.meaning = "Fastest change of the stretch, 1/s.",
+                  .range = above(0),
+                  .default_text = "no limit"})
           .check([](const Section& section, Reader& reader) {
             if (section.stretch_limits[0] > section.stretch_limits[1]) {
               reader.problem_at("stretch_limits", "expected the smaller factor first");

@@ -68,11 +68,13 @@ class BoundedCheck {
                   watch.threshold(), with_rate(value, rate));
       if (!checked_.go_on(limits_share * ++done / jobs)) return;
     }
-    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-      const double limit = arm.sections[i].max_bend_rate;
+    const auto check_rate = [&](Hazard hazard, std::size_t i, double limit, const WatchedQuantity& rate) {
       if (std::isfinite(limit))
-        check_limit({.hazard = Hazard::bend_rate, .section = i, .limit = limit}, 1, threshold_of_rate(limit),
-                    bend_rate(motion_, i));
+        check_limit({.hazard = hazard, .section = i, .limit = limit}, 1, threshold_of_rate(limit), rate);
+    };
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      check_rate(Hazard::bend_rate, i, arm.sections[i].max_bend_rate, bend_rate(motion_, i));
+      check_rate(Hazard::stretch_rate, i, arm.sections[i].max_stretch_rate, stretch_rate(motion_, i));
       check_jumps(i, false);
       check_jumps(i, true);
       if (!checked_.go_on(limits_share * ++done / jobs)) return;

@@ -237,7 +237,7 @@ void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t 
 }
 
 void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
-  const auto say = [&](bool AxisNotes::*note, const std::string& what) {
+  const auto say = [&](bool AxisNotes::* note, const std::string& what) {
     std::vector<char> is_meant;
     is_meant.reserve(axes.size());
     for (const AxisCheck& axis : axes) is_meant.push_back(axis.notes().*note ? 1 : 0);

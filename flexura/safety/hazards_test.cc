@@ -48,6 +48,26 @@ TEST(Hazard, Bend) {
   });
 }
 
+TEST(Hazard, StretchRate) {
+  Arm arm = thin_section();
+  arm.sections[0].stretch_limits = {0.5, 2}, arm.sections[0].max_stretch_rate = 0.3;
+  const auto stretched = [](double stretch) {
+    ArmState one = state(0);
+    one.stretches[0] = stretch;
+    return one;
+  };
+  expect_just(Hazard::stretch_rate, [&](double part) {
+    return check_among(arm,
+                       keyframe_motion({0, 1, 2}, {stretched(1), stretched(1.1), stretched(1.1 + 0.3 * part)},
+                                       Interpolation::linear));
+  });
+  // A law without bounds on its rates, which is sampled.
+  expect_just(Hazard::stretch_rate, [&](double part) {
+    return check_among(arm,
+                       function_motion(1, [&, part](double t) { return stretched(1 + 0.3 * part * t); }));
+  });
+}
+
 TEST(Hazard, BendRate) {
   Arm arm = thin_section();
   arm.sections[0].max_bend_rate = 2;

@@ -23,7 +23,8 @@ class SampledCheck {
         times_(checked.clock_times()),
         watches_(limit_watches(checked.arm)),
         limits_(watches_.size()),
-        rates_(checked.arm.sections.size()),
+        bend_rates_(checked.arm.sections.size()),
+        stretch_rates_(checked.arm.sections.size()),
         contacts_(checked.contacts.size()) {}
 
   void run() {
@@ -69,9 +70,14 @@ class SampledCheck {
   // The mean rate since the step before.
   void look_at_rates(std::size_t k, const ArmState& before, const ArmState& state) {
     const Span span{times_[k - 1], times_[k]};
-    for (std::size_t i = 0; i < rates_.size(); ++i) {
-      const double rate = (state.bends[i] - before.bends[i]).norm() / (span.end - span.start);
-      if (rate > threshold_of_rate(checked_.arm.sections[i].max_bend_rate)) rates_[i].add(k, span, rate);
+    const double time = span.end - span.start;
+    for (std::size_t i = 0; i < bend_rates_.size(); ++i) {
+      const Section& section = checked_.arm.sections[i];
+      const double bending = (state.bends[i] - before.bends[i]).norm() / time,
+                   stretching = std::abs(state.stretches[i] - before.stretches[i]) / time;
+      if (bending > threshold_of_rate(section.max_bend_rate)) bend_rates_[i].add(k, span, bending);
+      if (stretching > threshold_of_rate(section.max_stretch_rate))
+        stretch_rates_[i].add(k, span, stretching);
     }
   }
 
@@ -80,9 +86,11 @@ class SampledCheck {
       const LimitWatch& watch = watches_[w];
       add({.hazard = watch.hazard, .section = watch.section, .limit = watch.limit}, limits_[w], watch.sign);
     }
-    for (std::size_t i = 0; i < rates_.size(); ++i) {
-      const double limit = checked_.arm.sections[i].max_bend_rate;
-      add({.hazard = Hazard::bend_rate, .section = i, .limit = limit}, rates_[i]);
+    for (std::size_t i = 0; i < bend_rates_.size(); ++i) {
+      const Section& section = checked_.arm.sections[i];
+      add({.hazard = Hazard::bend_rate, .section = i, .limit = section.max_bend_rate}, bend_rates_[i]);
+      add({.hazard = Hazard::stretch_rate, .section = i, .limit = section.max_stretch_rate},
+          stretch_rates_[i]);
     }
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       for (const auto& [place, found] : contacts_[c]) {
@@ -102,7 +110,7 @@ class SampledCheck {
   std::vector<double> times_;  // of the steps, in the motion's own time
   std::vector<LimitWatch> watches_;
   std::vector<SampledSpans> limits_;
-  std::vector<SampledSpans> rates_;
+  std::vector<SampledSpans> bend_rates_, stretch_rates_;
   std::vector<std::map<Place, SampledSpans>> contacts_;
 };
 

@@ -26,9 +26,10 @@ struct HazardText {
 
 const HazardText& text_of(Hazard hazard) {
   constexpr double degrees = 1 / degree;
-  static constexpr std::array<HazardText, 13> texts{{{"bend", degrees, " deg"},
+  static constexpr std::array<HazardText, 14> texts{{{"bend", degrees, " deg"},
                                                      {"bend rate", degrees, " deg/s"},
                                                      {"stretch", 1, ""},
+                                                     {"stretch rate", 1, " 1/s"},
                                                      {"folding: curvature times radius", 1, ""},
                                                      {"jump", degrees, " deg"},
                                                      {"no possible value", 1, ""},

@@ -14,6 +14,7 @@ enum class Hazard : std::uint8_t {
   bend,                ///< A section bends more than it may; rad.
   bend_rate,           ///< A section bends faster than it may; rad/s.
   stretch,             ///< A section is longer or shorter than it may be; factor.
+  stretch_rate,        ///< A section changes its length faster than it may; 1/s.
   folding,             ///< The inner side of the tube folds: curvature times radius reaches 1.
   jump,                ///< The law asks for two states at one time; rad (or a factor).
   not_finite,          ///< The law's formula has no finite value, or no length above 0.

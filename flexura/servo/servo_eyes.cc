@@ -1,5 +1,6 @@
 #include "flexura/servo/servo_eyes.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -22,6 +23,14 @@ EstimatorConfig patient_estimator(const ViewDoubt& doubt) {
   EstimatorConfig config;
   config.most_rms = doubt.is_any() ? 5 : 20;
   return config;
+}
+
+// So far off nothing is taken for something else's, where nothing is put down to the cameras.
+void believe(Sighting& seen) {
+  constexpr double off = 2;  // px
+  for (CurvePoint& point : seen.points) point.sigma = std::max(point.sigma, off);
+  for (auto& end : seen.ends)
+    if (end) end->sigma = std::max(end->sigma, off);
 }
 
 }  // namespace
@@ -51,6 +60,7 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
   Sighting seen =
       has_bands ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
   seen.doubt = doubt_;
+  if (!doubt_.is_any()) believe(seen);
   return seen;
 }
 

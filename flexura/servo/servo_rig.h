@@ -35,6 +35,10 @@ class ServoRig {
   /// why.
   [[nodiscard]] bool look();
   [[nodiscard]] const std::array<Frame, 2>& frames() const { return pair_; }
+  /// When a camera's newest picture came, s; -1: none did.
+  [[nodiscard]] double newest(std::size_t i) const {
+    return recent_[i].empty() ? -1 : recent_[i].back().received;
+  }
   /// Of each camera: why it gave no picture when it was last asked, "" otherwise.
   [[nodiscard]] const std::array<std::string, 2>& silence() const { return silence_; }
 

@@ -92,6 +92,7 @@ class Session {
     } catch (const std::exception& error) {
       first = std::current_exception();
       limiter_->fault(error.what());  // Whatever it is, the arm shall not go on.
+      keep(error.what());
     }
     try {
       if (first) watcher_.told(rig_.now(), limiter_->fault()->reason);
@@ -104,7 +105,7 @@ class Session {
     }
     if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
-    result_.fault = limiter_->fault();
+    result_.fault = kept_;
     result_.last = last_;
     if (result_.missed_steps > 0)
       watcher_.told(rig_.now(),
@@ -116,10 +117,14 @@ class Session {
  private:
   ServoRig::Trouble begin() {
     if (auto trouble = rig_.read()) return trouble;
-    for (const ServoGoal& goal : config_.goals)
-      if (goal.missed > config_.tolerance)
-        return fmt::format("not reachable: the nearest shape of this arm stays {:.3g} % of its length away",
-                           100 * goal.missed);
+    for (std::size_t i = 0; i < config_.goals.size(); ++i) {
+      const double missed = config_.goals[i].missed;
+      result_.missed = std::max(result_.missed, missed);
+      if (missed > config_.tolerance)
+        return fmt::format(
+            "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from goal {}",
+            100 * missed, i + 1);
+    }
     goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
     // Pictures as goals take a while to be measured, which is not the loop's.
@@ -140,12 +145,21 @@ class Session {
   }
 
   [[nodiscard]] bool is_over() {
-    if (!result_.reason.empty()) return true;
-    if (judge_->is_done() && !limiter_->fault()) return true;
-    if (watcher_.is_cancelled()) result_.reason = "cancelled";
-    if (const auto& why = judge_->hopeless()) result_.reason = *why;
-    if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
+    if (result_.reason.empty()) {
+      if (judge_->is_done() && !limiter_->fault()) return true;
+      if (watcher_.is_cancelled()) result_.reason = "cancelled";
+      if (const auto& why = judge_->hopeless()) result_.reason = *why;
+      if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
+    }
+    if (!result_.reason.empty()) keep(result_.reason);
     return !result_.reason.empty();
+  }
+
+  // The last observations and commands. Of several reasons the first one's, at its time.
+  void keep(const std::string& reason) {
+    if (kept_) return;
+    kept_ = limiter_->fault() ? *limiter_->fault() : limiter_->record(reason);
+    kept_->time = rig_.now() - result_.start;
   }
 
   // Waits for the next command's time; reads everything. Times that have passed are left out: commands follow
@@ -169,6 +183,7 @@ class Session {
   void fault(const std::string& what) {
     if (!limiter_->fault()) watcher_.told(rig_.now(), what);
     limiter_->fault(what);
+    keep(what);
   }
 
   void step() {
@@ -187,7 +202,7 @@ class Session {
       if (command.reason.empty()) command.reason = at_its_limit(wish);
     }
     if (now - seen_since_ > config_.patience.lost) {
-      result_.reason = "out of view: " + (unseen_because_.empty() ? "no pictures come" : unseen_because_);
+      result_.reason = "out of view: " + (unseen_because_.empty() ? no_pictures() : unseen_because_);
     }
     step.limited = command.reason;
     send(now, std::move(command.state), std::move(step));
@@ -223,12 +238,30 @@ class Session {
     std::string why;
     for (std::size_t i = 0; i < 2 && why.empty(); ++i)
       if (!rig_.silence()[i].empty()) why = fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]);
-    if (why.empty() && now - seen_since_ > config_.patience.blind) why = "no pictures come";
+    if (why.empty() && now - seen_since_ > config_.patience.blind) why = no_pictures();
     if (!why.empty()) tell_unseen(now, why);
   }
 
+  // Whose pictures do not come.
+  [[nodiscard]] std::string no_pictures() const {
+    std::string whose;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!(rig_.newest(i) > seen_since_)) whose += (whose.empty() ? "camera " : " and ") + rig_.name(i);
+    return whose.empty() ? "no pictures come that belong together" : "no pictures come of " + whose;
+  }
+
+  // An estimator counts pictures.
+  [[nodiscard]] std::string by_name(std::string reason) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::string number = fmt::format("picture {} ", i + 1);
+      if (const std::size_t at = reason.find(number); at != std::string::npos)
+        reason.replace(at, number.size(), fmt::format("camera {}'s picture ", rig_.name(i)));
+    }
+    return reason;
+  }
+
   void cannot_see(double now, const ServoSight& sight) {
-    std::string why = sight.estimate.reason;
+    std::string why = by_name(sight.estimate.reason);
     for (std::size_t i = 2; i-- > 0;)
       if (!sight.reasons[i].empty())
         why = fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);
@@ -371,6 +404,7 @@ class Session {
   double seen_since_ = 0;
   long ticks_ = 0;
   bool is_deaf_ = false;  // The arm has refused a command.
+  std::optional<LimiterFault> kept_;
   ArmState sent_;
   ServoResult result_;
 };

@@ -93,11 +93,13 @@ struct ServoResult {
   std::vector<ServoStep> steps;  ///< None of a servo that keeps none.
   /// Steps whose time had passed before the one before them was done: nothing was sent at these.
   long missed_steps = 0;
-  double start = 0;                       ///< s
-  std::optional<double> settled;          ///< Time from the start to 2 % for good, s.
-  double overshoot = 0;                   ///< By how much the tip went past its goal, share of its way.
-  std::optional<ServoError> remaining;    ///< Mean over the last `settle` s.
-  std::optional<LimiterFault> fault;      ///< What is kept of it.
+  double start = 0;                     ///< s
+  double missed = 0;                    ///< The most that a goal's own `missed` is.
+  std::optional<double> settled;        ///< Time from the start to 2 % for good, s.
+  double overshoot = 0;                 ///< By how much the tip went past its goal, share of its way.
+  std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
+  /// What was seen, sent and asked for last before it was given up, for whatever reason; `time` since start.
+  std::optional<LimiterFault> fault;
   std::optional<ServoSight> first, last;  ///< The first of all, and the newest that told a shape.
 };
 

@@ -63,7 +63,8 @@ void BendMotion::go(double time, ArmState target, double duration) {
   Plan plan{time, at(time), std::move(target), {}};
   for (std::size_t i = 0; i < sections_.size(); ++i)
     plan.durations.push_back(
-        std::max(duration, (plan.to.bends[i] - plan.from.bends[i]).norm() / sections_[i].max_bend_rate));
+        std::max({duration, (plan.to.bends[i] - plan.from.bends[i]).norm() / sections_[i].max_bend_rate,
+                  std::abs(plan.to.stretches[i] - plan.from.stretches[i]) / sections_[i].max_stretch_rate}));
   plans_.push_back(std::move(plan));
   while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
 }

@@ -115,7 +115,8 @@ std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles
   const SafetyReport start = check_way(arm, obstacles, from, hold_motion(from, 0));
   for (const Violation& violation : way.violations) {
     // How fast it goes is the rig's own affair.
-    if (violation.hazard == Hazard::bend_rate || violation.hazard == Hazard::jump) continue;
+    constexpr std::array speeds = {Hazard::bend_rate, Hazard::stretch_rate, Hazard::jump};
+    if (std::ranges::find(speeds, violation.hazard) != speeds.end()) continue;
     if (!was_there(violation, start.violations)) return violation.what();
   }
   return {};

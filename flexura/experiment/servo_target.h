@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "flexura/experiment/servo_task_config.h"
+
+namespace flexura {
+
+/// The shape that a target without pictures means for `arm`, and how far it stays from what was said, a share
+/// of the arm's length. The search for it begins at `from`.
+struct ServoTargetShape {
+  ArmState state;
+  /// Share of the arm's length: of a place that of the tip, of a curve and of angles root mean square along
+  /// the arm; 0 when the shape is what was asked for.
+  double missed = 0;
+};
+[[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
+                                                  const ArmState& from);
+
+/// Of all targets in their order, each searched for from the one before; none of those by pictures.
+[[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
+                                                                               const Arm& arm, ArmState from);
+
+/// The pictures of a target that has some, from files in `folder` or below. InputError: what is no picture,
+/// or of another size than its camera takes.
+[[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
+                                           const std::array<CameraConfig, 2>& cameras,
+                                           const std::filesystem::path& folder);
+
+}  // namespace flexura

@@ -12,6 +12,7 @@
 #include "flexura/control/point_images.h"
 #include "flexura/control/shape_features.h"
 #include "flexura/servo/flow_features.h"
+#include "flexura/servo/length_features.h"
 #include "flexura/servo/measured_places.h"
 #include "flexura/vision/eight_bits.h"
 
@@ -188,7 +189,8 @@ std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const R
   std::array<int, 2> whites{};
   for (std::size_t i = 0; i < 2; ++i)
     whites[i] = white_of(believed.cameras.at(config.cameras[i]).sensor.bits);
-  return std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites);
+  return with_lengths(std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites),
+                      believed.arm);
 }
 
 std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, int points) {
@@ -198,15 +200,15 @@ std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, 
     case ServoLawKind::points:
       return std::make_unique<ImageFeatures>(arm, FeatureSet::of_points(points));
     case ServoLawKind::chords:
-      return chord_features(arm, points);
+      return with_lengths(chord_features(arm, points), arm);
     case ServoLawKind::moments:
-      return std::make_unique<ImageFeatures>(arm, FeatureSet::of_moments());
+      return with_lengths(std::make_unique<ImageFeatures>(arm, FeatureSet::of_moments()), arm);
     case ServoLawKind::potential:
-      return plane_features(arm, points);
+      return with_lengths(plane_features(arm, points), arm);
     case ServoLawKind::silhouettes:
       break;
   }
-  return silhouette_features(arm, points);
+  return with_lengths(silhouette_features(arm, points), arm);
 }
 
 }  // namespace flexura

@@ -1,0 +1,74 @@
+#include "flexura/servo/length_features.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+constexpr double weight = 100;  // px for a stretch of 1: about what a section's end moves by then.
+
+class WithLengths : public ServoFeatures {
+ public:
+  WithLengths(std::unique_ptr<ServoFeatures> inner, Eigen::Index sections)
+      : inner_(std::move(inner)), sections_(sections) {}
+
+  void look(const ServoSight& sight) override { inner_->look(sight); }
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+                              Eigen::VectorXd& values) override {
+    return inner_->measured(estimate, seen, part_) && append(estimate, values);
+  }
+  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
+                              Eigen::VectorXd& values) override {
+    return inner_->foreseen(state, views, part_) && append(state, values);
+  }
+  [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                           const ArmState& estimate, const std::array<View, 2>& views,
+                           FeatureError& result) override {
+    split(seen, desired);
+    return inner_->error(seen_, desired_, estimate, views, error_) && append(seen, desired, result);
+  }
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
+                            const std::array<View, 2>& views, FeatureError& result) override {
+    split(seen, desired);
+    return inner_->secant(seen_, desired_, way, views, error_) && append(seen, desired, result);
+  }
+
+ private:
+  bool append(const ArmState& state, Eigen::VectorXd& values) const {
+    values.resize(part_.size() + sections_);
+    values.head(part_.size()) = part_;
+    for (Eigen::Index i = 0; i < sections_; ++i)
+      values[part_.size() + i] = weight * state.stretches[static_cast<std::size_t>(i)];
+    return true;
+  }
+  void split(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired) {
+    seen_ = seen.head(seen.size() - sections_), desired_ = desired.head(desired.size() - sections_);
+  }
+  bool append(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, FeatureError& result) const {
+    const Eigen::Index rows = error_.error.size();
+    result.error.resize(rows + sections_), result.by_state.resize(rows + sections_, error_.by_state.cols());
+    result.error.head(rows) = error_.error, result.by_state.topRows(rows) = error_.by_state;
+    result.error.tail(sections_) = seen.tail(sections_) - desired.tail(sections_);
+    result.by_state.bottomRows(sections_).setZero();
+    for (Eigen::Index i = 0; i < sections_; ++i) result.by_state(rows + i, 3 * i + 2) = weight;
+    return true;
+  }
+
+  std::unique_ptr<ServoFeatures> inner_;
+  Eigen::Index sections_;
+  Eigen::VectorXd part_, seen_, desired_;
+  FeatureError error_;
+};
+
+}  // namespace
+
+std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features, const Arm& arm) {
+  const auto can_stretch = [](const Section& section) {
+    return section.stretch_limits[0] < section.stretch_limits[1];
+  };
+  if (!std::ranges::any_of(arm.sections, can_stretch)) return features;
+  return std::make_unique<WithLengths>(std::move(features), static_cast<Eigen::Index>(arm.sections.size()));
+}
+
+}  // namespace flexura

@@ -59,6 +59,28 @@ TEST(ServoTargets, OneShapeIsReachedByItsBendsItsCurveAndItsAngles) {
   }
 }
 
+// A curve by so few points that the arm's nearest shape is off the polyline, and one that no arm of sections
+// follows.
+TEST(ServoTargets, ACurveIsHeldToTheTolerance) {
+  const auto coarse = [](double tolerance) {
+    std::string points;
+    for (int k = 0; k <= 6; ++k) {
+      const double s = k / 6.0, bend = 2.4;  // One arc.
+      points += fmt::format("{}[{}, {}, 0]", k > 0 ? ", " : "", (1 - std::cos(bend * s)) / bend,
+                            std::sin(bend * s) / bend);
+    }
+    return servo_file(
+        fmt::format("tolerance = {}\nsettle = 1\n[[task.target]]\ncurve = [{}]\n", tolerance, points));
+  };
+  ServoBench loose(coarse(0.01)), strict(coarse(0.001));
+  const ServoResult there = loose.servo();
+  ASSERT_TRUE(there.is_done) << there.reason;
+  EXPECT_GT(there.missed, 0.002);
+  const ServoResult refused = strict.servo();
+  EXPECT_FALSE(refused.is_done);
+  EXPECT_NE(refused.reason.find("not reachable: the nearest shape"), std::string::npos) << refused.reason;
+}
+
 TEST(ServoTargets, APlaceForTheTipIsReached) {
   const Eigen::Vector3d place(0.4, 0.75, 0.2);
   ServoBench bench(

@@ -1,0 +1,77 @@
+// How servos end: by cameras that are believed or silent, and with what is kept of one that is given up.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "flexura/experiment/run.h"
+#include "tests/support/quiet.h"
+#include "tests/support/servo_bench.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+namespace {
+
+// Nothing is doubted, and cameras are wrong by what is many pixels: the arm comes to where they have it.
+TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
+  for (const double pan_deg : {0.1, 0.3, 0.5}) {
+    ServoSetup rig;
+    rig.rest =
+        fmt::format("[[truth.camera]]\nname = \"side\"\nhead = {{ pan = {{ zero_deg = {} }} }}\n", pan_deg);
+    ServoBench bench(servo_file("doubt = { turn = 0, focal = 0 }\n" + servo_target, rig));
+    const ServoResult result = bench.servo();
+    ASSERT_TRUE(result.is_done) << pan_deg << ": " << result.reason;
+    // 2.5 m away.
+    EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms,
+              0.005 + 0.05 * pan_deg);
+  }
+}
+
+// A camera that is silent without saying why.
+class SilentCamera : public CameraPort {
+ public:
+  Outcome<std::optional<Frame>> newest() override { return std::optional<Frame>(); }
+  Outcome<std::optional<Frame>> wait(double) override { return std::optional<Frame>(); }
+};
+
+TEST(ServoEnds, ACameraThatSendsNothingIsNamed) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  SilentCamera silent;
+  ports.cameras[1].camera = &silent;
+  const ServoResult result = bench.servo(ports);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_EQ(result.reason, "out of view: no pictures come of camera side");
+  ASSERT_TRUE(result.fault);
+  EXPECT_EQ(result.fault->reason, result.reason);
+  EXPECT_NEAR(result.fault->time, bench.config().patience.lost, 0.1);
+}
+
+// Whatever ends it: what was seen, sent and asked for last is kept, and in the summary.
+TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
+  const TemporaryFolder temporary;
+  Quiet quiet;
+  const RunResult result =
+      run_experiment(parse_experiment(servo_file("timeout = 1.5\nrate = 0.2\n" + servo_target), "x.toml"),
+                     temporary.path(), quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  const Node& servo = result.summary.find("servos")->as<Node::Array>()->front();
+  const std::string reason = *servo.find("reason")->as<std::string>();
+  EXPECT_NE(reason.find("not settled"), std::string::npos) << reason;
+  const Node* fault = servo.find("fault");
+  ASSERT_NE(fault, nullptr);
+  EXPECT_EQ(*fault->find("reason")->as<std::string>(), reason);
+  EXPECT_NEAR(*fault->find("time")->as<double>() - *servo.find("start")->as<double>(), 1.5, 0.1);
+  for (const char* what : {"observed", "sent", "asked"}) {
+    ASSERT_NE(fault->find(what), nullptr) << what;
+    const auto& first = *fault->find(what)->as<Node::Array>()->front().as<Node::Array>();
+    EXPECT_NEAR(*first[0].as<double>(), 0.8 * (1 - std::exp(-0.2 * 1.5)), 0.05) << what;
+    EXPECT_NE(fault->find(std::string(what) + "_stretches"), nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace flexura

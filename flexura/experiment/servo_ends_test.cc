@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "flexura/experiment/run.h"
+#include "flexura/safety/contact_watch.h"
 #include "tests/support/quiet.h"
 #include "tests/support/servo_bench.h"
 #include "tests/support/temporary_folder.h"
@@ -71,6 +73,25 @@ TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
     EXPECT_NEAR(*first[0].as<double>(), 0.8 * (1 - std::exp(-0.2 * 1.5)), 0.05) << what;
     EXPECT_NE(fault->find(std::string(what) + "_stretches"), nullptr);
   }
+}
+
+// A ball where the wanted shape would be: the arm comes as near as it may, and stands there.
+TEST(ServoEnds, AnObstacleHoldsTheArmBack) {
+  ServoSetup rig;
+  rig.rest = "[[obstacle]]\nname = \"ball\"\nkind = \"sphere\"\ncenter = [0.3, 0.75, 0]\nradius = 0.1\n";
+  ServoBench bench(
+      servo_file("timeout = 3\n[[task.target]]\nbends = [[0.8, 0], [0.4, 0], [0, 0]]\n", rig));
+  ServoNotes notes;
+  const ServoResult result = bench.servo(bench.ports(), notes);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("saturated: section"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("contact with ball"), std::string::npos) << result.reason;
+  const Arm arm = bench.experiment().arm.arm();
+  const ContactWatch watch(arm, obstacles(bench.experiment().obstacle).front());
+  double nearest = 1;
+  for (const auto& [time, state] : notes.sent) nearest = std::min(nearest, watch.contact(state).clearance);
+  EXPECT_GE(nearest, -contact_tolerance);
+  EXPECT_LT(nearest, 0.02);
 }
 
 }  // namespace

@@ -79,8 +79,7 @@ TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
 TEST(ServoEnds, AnObstacleHoldsTheArmBack) {
   ServoSetup rig;
   rig.rest = "[[obstacle]]\nname = \"ball\"\nkind = \"sphere\"\ncenter = [0.3, 0.75, 0]\nradius = 0.1\n";
-  ServoBench bench(
-      servo_file("timeout = 3\n[[task.target]]\nbends = [[0.8, 0], [0.4, 0], [0, 0]]\n", rig));
+  ServoBench bench(servo_file("timeout = 3\n[[task.target]]\nbends = [[0.8, 0], [0.4, 0], [0, 0]]\n", rig));
   ServoNotes notes;
   const ServoResult result = bench.servo(bench.ports(), notes);
   EXPECT_FALSE(result.is_done);

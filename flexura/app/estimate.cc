@@ -153,7 +153,7 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
 // of another size.
 std::optional<std::string> doubt_of_size(const View& view) {
   const Intrinsics lens = view.lens.intrinsics();
-  const auto is_aside = [](double at, int size) { return at < 0.25 * size || at > 0.75 * size; };
+  const auto is_aside = [](double at, int size) { return at < 0.3 * size || at > 0.7 * size; };
   if (!is_aside(lens.cx, view.width) && !is_aside(lens.cy, view.height)) return std::nullopt;
   return fmt::format(
       "the principal point ({:.4g}, {:.4g}) is far from the middle of this picture of {} x {} px: is the "

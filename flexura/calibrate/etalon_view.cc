@@ -93,7 +93,9 @@ EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& int
   } else if (!seen.upper_edge || !seen.lower_edge) {
     view.reason = "the cylinder's ends are not seen";
   } else if (seen.lines.empty()) {
-    view.reason = "no red line is seen on the cylinder";
+    view.reason = picture.channels() == 3
+                      ? "no red line is seen on the cylinder"
+                      : "no line is seen on the cylinder: red ones hardly show in gray pictures";
   }
   if (!view.reason.empty()) return view;
   const double middle = seen.middle(seen.middle_row);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_eyes.h"
 #include "flexura/calibrate/rig_foretelling.h"
 #include "flexura/calibrate/rig_session_plan.h"
@@ -67,6 +68,13 @@ class Session {
     if (auto trouble = move()) return trouble;
     if (auto trouble = calibrate()) return trouble;
     if (!found_) return "what is seen after the move fits nothing: " + result_.steps.back().reason;
+    constexpr double hopeless = degree;
+    if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
+      return fmt::format(
+          "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "
+          "turns of "
+          "the heads tell more",
+          sigma / degree);
     result_.is_done = true;
     return std::nullopt;
   }
@@ -93,8 +101,10 @@ class Session {
       if (auto trouble = picture(i)) return trouble;
       // As long as nothing is known, the arm may have bent out of view.
       if (!found_ && misses_[i] > 0) {
+        const bool is_there = eyes_->whereabouts().has_value();
+        const std::string at_first = sight_.seen.reason;
         if (auto trouble = search(i)) return trouble;
-        if (misses_[i] > 0 && result_.looks == 1) return not_found(i);
+        if (misses_[i] > 0 && result_.looks == 1) return not_found(i, is_there, at_first);
       }
       constexpr int patience = 3;
       if (misses_[i] >= patience)
@@ -121,12 +131,10 @@ class Session {
   [[nodiscard]] const std::string& name(std::size_t i) const {
     return believed_.cameras[config_.cameras[i]].name;
   }
-  [[nodiscard]] std::string not_found(std::size_t i) const {
-    const std::string where =
-        eyes_->whereabouts()
-            ? fmt::format("camera {} cannot have all of the {} in its picture", name(i), what_)
-            : fmt::format("the {} is out of view of camera {}", what_, name(i));
-    return fmt::format("{}, also {:.3g} rad to all sides: {}", where, config_.search, sight_.seen.reason);
+  [[nodiscard]] std::string not_found(std::size_t i, bool is_there, const std::string& why) const {
+    const std::string where = is_there ? fmt::format("camera {} does not see all of the {}", name(i), what_)
+                                       : fmt::format("the {} is out of view of camera {}", what_, name(i));
+    return fmt::format("{}, also {:.3g} rad to all sides: {}", where, config_.search, why);
   }
 
   // Takes a picture and measures it; what is of use becomes an image of the observations.

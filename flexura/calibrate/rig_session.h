@@ -42,6 +42,8 @@ struct RigSessionConfig {
   /// then, the one pose is the arm's own, the target is the cylinder's middle unless there is another, and
   /// looks begin with the shortest focal length.
   std::optional<EtalonConfig> etalon;
+  /// What is bright behind it: pictures that they fill are chosen where there are such.
+  std::vector<ScreenConfig> screens = {};
   bool may_use_stages = true;            ///< Else they stay where they stand.
   std::vector<double> zooms = {1, 2.5};  ///< Ratios of focal length to that at the start, to look with.
   double slide = 0.15;       ///< To both sides, of the camera's distance, as far as the stage travels.

@@ -13,6 +13,38 @@
 
 namespace flexura {
 
+namespace {
+
+// Whether a ray comes to a screen.
+bool meets(const ScreenConfig& screen, const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+  const Eigen::Vector3d normal = vector(screen.normal).normalized();
+  Eigen::Vector3d right = Eigen::Vector3d::UnitY().cross(normal);
+  if (right.norm() < 1e-9) right = Eigen::Vector3d::UnitX();
+  right.normalize();
+  const Eigen::Vector3d up = normal.cross(right);
+  const double distance = (vector(screen.center) - from).dot(normal) / way.dot(normal);
+  if (!(distance > 0) || !std::isfinite(distance)) return false;
+  const Eigen::Vector3d at = from + distance * way - vector(screen.center);
+  return std::abs(at.dot(right)) <= 0.5 * screen.width && std::abs(at.dot(up)) <= 0.5 * screen.height;
+}
+
+// Whether there is a screen behind a picture's corners and the middles of its edges.
+bool is_filled(const View& view, const std::vector<ScreenConfig>& screens) {
+  for (const double u : {0.0, 0.5, 1.0}) {
+    for (const double v : {0.0, 0.5, 1.0}) {
+      const auto ray = view.lens.unproject({u * (view.width - 1), v * (view.height - 1)});
+      if (!ray) return false;
+      const Eigen::Vector3d way = view.X_WC.rotation * ray->homogeneous();
+      if (std::ranges::none_of(
+              screens, [&](const ScreenConfig& screen) { return meets(screen, view.X_WC.position, way); }))
+        return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look) {
   constexpr double turn = 2 * degree, way = 0.05, larger = 0.1;  // rad; m; share.
   const auto is_near = [&](const RigStance& a, const RigStance& b) {
@@ -172,6 +204,14 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     return std::ranges::any_of(missed,
                                [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
   });
+  // Beside a screen it is as dark as the cylinder.
+  const auto lacks_screen = [&](const ViewCandidate& candidate) {
+    return !std::ranges::all_of(candidate.stances, [&](const RigStance& stance) {
+      return is_filled(view_of(found.model, stance), config_.screens);
+    });
+  };
+  if (config_.etalon && !std::ranges::all_of(candidates, lacks_screen))
+    std::erase_if(candidates, lacks_screen);
   ViewConfig view;
   if (config_.etalon) view.sigma = 0.05;  // Of borders and lines, px.
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;

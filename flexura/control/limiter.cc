@@ -16,6 +16,17 @@
 #include "flexura/safety/motion_check.h"
 
 namespace flexura {
+namespace {
+
+// Within which a change of rate from one command to the next counts as acceleration, s. In a list whose rows
+// are shorter than a step, one row; in one whose rows are longer, several changes fall into two rows, at most
+// with the weights 1, and 1 - k step/row to both sides.
+double turning_time(double step, double row) {
+  const double ratio = row / step, others = std::max(0.0, std::ceil(ratio) - 1);
+  return row / (1 + 2 * others - others * (others + 1) / ratio);
+}
+
+}  // namespace
 
 CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState& start)
     : arm_(std::move(arm)), settings_(std::move(settings)), limits_(limit_watches(arm_)), sent_(start) {
@@ -23,6 +34,8 @@ CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState
     throw std::invalid_argument("a limiter's step must be finite and above 0");
   if (!(settings_.list_step >= 0) || !std::isfinite(settings_.list_step))
     throw std::invalid_argument("a command list's step must be finite and not below 0");
+  row_ = settings_.list_step > 0 ? settings_.list_step : settings_.step;
+  turning_time_ = turning_time(settings_.step, row_);
   if (!fits(arm_, start) || !is_possible(start))
     throw std::invalid_argument("a limiter starts in a finite state of its arm");
   last_step_.motors = motors_at(start);
@@ -146,20 +159,10 @@ int CommandLimiter::braking_steps(const ArmState& next) const {
   double steps = 1;
   for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
     const StepperMotor& motor = settings_.drive->axes[i].motor;
-    const double change = motor_acceleration(motor) * turning_time();  // microsteps/s in one step
+    const double change = motor_acceleration(motor) * turning_time_;  // microsteps/s in one step
     steps = std::max(steps, std::ceil(std::abs(rates[static_cast<Eigen::Index>(i)]) / change * (1 + 1e-9)));
   }
   return static_cast<int>(std::min(steps, 1e6));
-}
-
-// Within which a change of rate from one command to the next counts as acceleration, s. In a list whose rows
-// are shorter than a step, one row; in one whose rows are longer, several changes fall into two rows, at most
-// with the weights 1, 1 - step/row, ... to both sides.
-double CommandLimiter::turning_time() const {
-  const double row = settings_.list_step > 0 ? settings_.list_step : settings_.step;
-  double weights = 1;
-  for (int k = 1; k * settings_.step < row; ++k) weights += 2 * (1 - k * settings_.step / row);
-  return row / weights;
 }
 
 std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
@@ -210,11 +213,14 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
       const auto say = [&](const char* what) {
         return fmt::format("motor {}: {}", drive.axis_name(i), what);
       };
-      if (!(std::abs(now.motors[at]) <= motor.max_position)) return say("position");
-      const double swing = std::abs(now.swing[at]), swings = swing + std::abs(before.swing[at]);
+      // A stop stands where it stands: the list goes to it with play and rounding.
+      const double beyond = drive.axes[i].play() + 0.5;
+      if (!(std::abs(now.motors[at]) <= motor.max_position - beyond)) return say("position");
+      const double swing = std::abs(now.swing[at]), swing_before = std::abs(before.swing[at]);
       if (!(std::abs(now.rates[at]) + swing <= motor_rate(motor) * slack)) return say("speed");
-      const double change = std::abs(now.rates[at] - before.rates[at]) + 2 * swings;
-      if (!(change <= motor_acceleration(motor) * turning_time() * slack)) return say("acceleration");
+      const double within = 2 * std::max(swing, swing_before) * std::min(1.0, row_ / settings_.step);
+      const double change = std::abs(now.rates[at] - before.rates[at]) + swing + swing_before + within;
+      if (!(change <= motor_acceleration(motor) * turning_time_ * slack)) return say("acceleration");
     }
     before = now, from = &to;
   }

@@ -45,8 +45,8 @@ struct LimiterFault {
 /// Stands between a law and an arm's drives. Whatever the law asks for, what is sent
 ///   - is finite, within the arm's bends, stretches and folding, and changes no faster than its bends and
 ///     stretches may;
-///   - keeps to the motors' speeds, step rates, accelerations and positions (play and rounding are the
-///     drive's own);
+///   - keeps to the motors' speeds, step rates and accelerations (play and rounding are the drive's own), and
+///     to their positions with both;
 ///   - can be brought to rest from there within all of these, and with `looks_ahead` without a contact on the
 ///     way: that way is kept, and gone when nothing else will do (docs/control.md, "The limiter").
 /// A command that is not finite or of another arm, and every fault() from outside, stops the arm: it goes
@@ -101,7 +101,6 @@ class CommandLimiter {
   [[nodiscard]] std::string contact(const std::vector<ArmState>& way) const;
   [[nodiscard]] Eigen::VectorXd motors_at(const ArmState& state) const;
   [[nodiscard]] int braking_steps(const ArmState& next) const;
-  [[nodiscard]] double turning_time() const;
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
 
   Arm arm_;
@@ -109,7 +108,8 @@ class CommandLimiter {
   std::vector<LimitWatch> limits_;
   ArmState sent_;
   std::vector<ArmState> way_to_rest_;
-  MotorStep last_step_;  // Empty without drives.
+  double row_ = 0, turning_time_ = 0;  // s
+  MotorStep last_step_;                // Empty without drives.
   long steps_ = 0;
   std::optional<ArmState> observed_, asked_;
   std::optional<LimiterFault> fault_;

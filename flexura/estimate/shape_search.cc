@@ -75,6 +75,17 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
   return shapes;
 }
 
+bool has_lengths(const Shape& shape) {
+  const auto is_length = [](const Section& section, double stretch) {
+    const double length = section.length * stretch;
+    return length > 0 && std::isfinite(length);
+  };
+  for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
+    if (!is_length(shape.arm.sections[i], shape.state.stretches[i]) || !shape.state.bends[i].allFinite())
+      return false;
+  return true;
+}
+
 Shape scaled(Shape shape, double factor) {
   for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
   return shape;
@@ -101,6 +112,11 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, d
   Try one{descent_.descend(problem, start, most_iterations_)};
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
+  // A fit may run away to lengths that are none.
+  if (!has_lengths(shape)) {
+    one.merit = std::numeric_limits<double>::infinity();
+    return one;
+  }
   one.ends = ends_elsewhere(seen, shape);
   one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + astray(seen, shape);
   one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends +

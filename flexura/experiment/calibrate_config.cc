@@ -257,6 +257,7 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   config.fewest = std::min<std::size_t>(5, config.picture.markers.size());
   if (task.method == CalibrateMethod::bundle_etalon) {
     config.etalon = stand.etalon.value_or(EtalonConfig{});
+    config.screens = stand.screen.value_or(default_screens(arm.arm().length(), arm.base.position));
     config.poses = {arm_state(arm.arm(), arm.initial)};
     // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
     config.first = 1, config.fewest = 2;

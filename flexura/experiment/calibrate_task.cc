@@ -172,8 +172,9 @@ std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSigh
   return backbone_pixels(run.believed.arm, sight.pose, arc->ideal.view, count);
 }
 
-CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, Filming& filming,
-                               Witness& witness, Progress& progress, const RecordSteps& record_steps) {
+CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, const ArmState& from,
+                               Filming& filming, Witness& witness, Progress& progress,
+                               const RecordSteps& record_steps) {
   const auto& config = std::get<CalibrateTask>(experiment.task.at(task));
   const std::vector<CameraConfig> cameras = experiment.cameras();
   const RigSessionConfig session = session_config(config, experiment.arm, cameras, experiment.stand);
@@ -183,7 +184,7 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, F
   run.believed = rig_model(experiment.arm.arm(), cameras);
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
   RigPorts ports = filming.ports();
-  CommandedMotion motion(ports.clock->now(), ports.arm->read().value().state);
+  CommandedMotion motion(ports.clock->now(), from);
   RecordedClock clock(*ports.clock, record_steps, motion);
   ports.clock = &clock;
   LoggedSession log(run, session.images, witness, progress, motion);

@@ -50,9 +50,9 @@ struct CalibrationRun {
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSight& sight);
 
 /// Does task number `task`, a calibration, on the rig that plays; what it does, sees and decides goes to the
-/// witness.
-[[nodiscard]] CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, Filming& filming,
-                                             Witness& witness, Progress& progress,
-                                             const RecordSteps& record_steps);
+/// witness. `from`: where the arm was sent last.
+[[nodiscard]] CalibrationRun run_calibration(const Experiment& experiment, std::size_t task,
+                                             const ArmState& from, Filming& filming, Witness& witness,
+                                             Progress& progress, const RecordSteps& record_steps);
 
 }  // namespace flexura

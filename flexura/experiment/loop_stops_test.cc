@@ -126,7 +126,7 @@ TEST(BundleEtalon, StopsWhereTheCylinderIsOutOfView) {
 TEST(BundleEtalon, StopsWhereTheCylinderTouchesTheBorder) {
   CalibrationBench bench(StoppedBundle::rig({}, "", "", "radius = 0.1\nheight = 2.6\n"));
   StoppedBundle::expect_stop(bench, bench.ports(),
-                             HasSubstr("camera front cannot have all of the cylinder in its picture"));
+                             HasSubstr("camera front does not see all of the cylinder"));
 }
 
 TEST(BundleEtalon, StopsWhereNoFrameComes) {

@@ -174,8 +174,8 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
   return std::nullopt;
 }
 
-Player::Performed Player::calibrate(std::size_t task, const RecordSteps& record_steps) {
-  CalibrationRun run = run_calibration(experiment_, task, *filming_, witness_, progress_, record_steps);
+Player::Performed Player::calibrate(std::size_t task, const ArmState& from, const RecordSteps& record_steps) {
+  CalibrationRun run = run_calibration(experiment_, task, from, *filming_, witness_, progress_, record_steps);
   if (run.is_done()) learn(run);
   calibrations_.push_back(std::move(run));
   const CalibrationRun& done = calibrations_.back();
@@ -193,8 +193,9 @@ void Player::learn(const CalibrationRun& run) {
   }
 }
 
-Player::Performed Player::servo(std::size_t task, const RecordSteps& record_steps) {
-  servos_.push_back(run_servo(experiment_, task, believed_, *filming_, witness_, progress_, record_steps));
+Player::Performed Player::servo(std::size_t task, const ArmState& from, const RecordSteps& record_steps) {
+  servos_.push_back(
+      run_servo(experiment_, task, believed_, from, *filming_, witness_, progress_, record_steps));
   const ServoRun& done = servos_.back();
   return {done.motion, done.result.is_done ? "" : fmt::format("{}: {}", done.name, done.result.reason)};
 }
@@ -203,7 +204,8 @@ Player::Performed Player::servo(std::size_t task, const RecordSteps& record_step
 bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
   tell_up_to(leg.start);
-  film_to(leg.start, leg.motion->at(0));
+  const ArmState from = leg.motion->at(0);
+  film_to(leg.start, from);
   const RecordSteps record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
     // A step at the end is the next task's.
     for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - same_time;
@@ -211,7 +213,7 @@ bool Player::perform(std::size_t task) {
       step(time, state_at(time));
   };
   const bool is_servo = std::holds_alternative<ServoTask>(experiment_.task[task]);
-  const Performed done = is_servo ? servo(task, record_step) : calibrate(task, record_step);
+  const Performed done = is_servo ? servo(task, from, record_step) : calibrate(task, from, record_step);
   performed_[task] = done.motion;
   const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
   schedule_ = done.failure.empty() ? scheduled(played) : Schedule(experiment_, performed_);

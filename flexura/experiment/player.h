@@ -66,9 +66,9 @@ class Player {
     MotionPtr motion;
     std::string failure;
   };
-  [[nodiscard]] Performed calibrate(std::size_t task, const RecordSteps& record_steps);
+  [[nodiscard]] Performed calibrate(std::size_t task, const ArmState& from, const RecordSteps& record_steps);
   void learn(const CalibrationRun& run);
-  [[nodiscard]] Performed servo(std::size_t task, const RecordSteps& record_steps);
+  [[nodiscard]] Performed servo(std::size_t task, const ArmState& from, const RecordSteps& record_steps);
 
   const Experiment& experiment_;
   Witness& witness_;

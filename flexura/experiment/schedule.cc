@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "flexura/kinematics/shape.h"
@@ -72,6 +71,7 @@ void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const Mot
     const auto& position = servo.target[i].position;
     add_missed(shapes[i]->missed * arm_.length(), position ? std::optional(vector(*position)) : std::nullopt);
     missed_targets_.back().name += fmt::format(": target[{}]", i);
+    missed_targets_.back().limit = servo.tolerance * arm_.length();
   }
 }
 
@@ -122,12 +122,12 @@ SafetyReport Schedule::check(Progress* progress) const {
     std::vector<double> times;
     times.reserve(steps_ + 1);
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
-    std::vector<std::array<double, 2>> limited;
+    std::vector<SteeredSpan> steered;
     for (const Leg& leg : legs_)
-      if (leg.is_steered) limited.push_back({leg.start, leg.end()});
+      if (leg.is_steered) steered.push_back({leg.start, leg.end(), leg.is_foreseen});
     check_drive(
         arm_, *drive_, [this](double time) { return state_at(time); }, times,
-        [this](double start, double end) { return rates(start, end); }, report, limited);
+        [this](double start, double end) { return rates(start, end); }, report, steered);
   }
   report.sort();
   return report;

@@ -29,6 +29,16 @@ std::string drive_with(const std::string& motor, double backlash_deg = 0) {
                     motor, backlash_deg);
 }
 
+// Of an experiment that ends as it shall, with a list for the motors.
+void expect_done(const std::string& text) {
+  const TemporaryFolder folder;
+  Quiet quiet;
+  const RunResult result = run_experiment(parse_experiment(text, "x.toml"), folder.path(), quiet);
+  for (const std::string& reason : result.reasons) ADD_FAILURE() << reason;
+  EXPECT_EQ(result.outcome, RunOutcome::done);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "commands.csv"));
+}
+
 struct SteeredMotors {
   const char* name;
   double clock_step;
@@ -45,12 +55,7 @@ TEST_P(ServoWithDrive, EndsSafeWithACommandList) {
   std::string text = servo_file("law = \"points\"\ntimeout = 60\n" + servo_target, rig);
   const std::string clock = "step = 0.05";
   text.replace(text.find(clock), clock.size(), fmt::format("step = {}", clock_step));
-  const TemporaryFolder folder;
-  Quiet quiet;
-  const RunResult result = run_experiment(parse_experiment(text, "x.toml"), folder.path(), quiet);
-  for (const std::string& reason : result.reasons) ADD_FAILURE() << reason;
-  EXPECT_EQ(result.outcome, RunOutcome::done);
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "commands.csv"));
+  expect_done(text);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -58,10 +63,25 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SteeredMotors{"SuddenMotorsByAFineClock", 0.01, "max_acceleration = 1000", 0},
                     SteeredMotors{"SuddenMotorsByACoarseClock", 0.08, "max_acceleration = 300", 0},
                     SteeredMotors{"SlowMotors", 0.05, "max_speed_deg = 400", 0},
+                    SteeredMotors{"VerySlowMotors", 0.05, "max_speed_deg = 100", 0},
                     SteeredMotors{"WeakMotors", 0.05, "max_acceleration = 30", 0},
                     SteeredMotors{"MotorsWithPlay", 0.02, "max_speed_deg = 3600\nmax_acceleration = 1000",
                                   0.1}),
     [](const auto& one) { return std::string(one.param.name); });
+
+// What drives say of themselves is rounded to their steps; the next task begins where the last one sent them.
+TEST(ServoWithDrive, GoesOnFromWhereTheTaskBeforeEnded) {
+  ServoSetup rig;
+  rig.rest = drive_with("max_acceleration = 1000", 0.1) +
+             "[[task]]\nkind = \"move\"\nduration = 3\nlaw = \"minimum_jerk\"\nto.bends = [[0.123, 0.2], "
+             "[0.1, 0.3], "
+             "[0.4, 0]]\n";
+  expect_done(servo_file(
+      servo_target + "[[task]]\nkind = \"servo\"\n[[task.target]]\nbends = [[0.2, 0], [0.3, 0.1], [0, 0.4]]\n"
+                     "[[task]]\nkind = \"move\"\nduration = 3\nlaw = \"minimum_jerk\"\n"
+                     "to.bends = [[0, 0], [0, 0], [0, 0]]\n",
+      rig));
+}
 
 }  // namespace
 }  // namespace flexura

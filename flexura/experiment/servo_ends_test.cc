@@ -32,6 +32,15 @@ TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
   }
 }
 
+// And cameras that are right lose nothing by it.
+TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
+  ServoBench bench(
+      servo_file("doubt = { turn = 0, focal = 0 }\ntolerance = 0.0005\nsettle = 0.5\n" + servo_target));
+  const ServoResult result = bench.servo();
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.001);
+}
+
 // A camera that is silent without saying why.
 class SilentCamera : public CameraPort {
  public:

@@ -166,7 +166,7 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
   if (result.missed > hardly)
     chapter.points.push_back(fmt::format(
         "The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of its "
-        "length away from what was asked for, root mean square.",
+        "length away from what was asked for.",
         100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(fmt::format(

@@ -186,12 +186,13 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   return config;
 }
 
-ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigModel& believed, Filming& filming,
-                   Witness& witness, Progress& progress, const RecordSteps& record_steps) {
+ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigModel& believed,
+                   const ArmState& from, Filming& filming, Witness& witness, Progress& progress,
+                   const RecordSteps& record_steps) {
   const auto& config = std::get<ServoTask>(experiment.task.at(task));
   RigPorts ports = filming.ports();
-  const ArmState from = ports.arm->read().value().state;
-  const ServoConfig session = servo_config(experiment, config, believed, from);
+  ServoConfig session = servo_config(experiment, config, believed, from);
+  session.sent = from;
   ServoRun run;
   run.name = task_name(experiment.task[task]), run.task = task, run.believed = believed;
   run.settle = config.settle;

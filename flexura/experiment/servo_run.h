@@ -48,9 +48,9 @@ struct ServoRun {
                                                            const View& view, int count);
 
 /// Does task number `task`, a servo, on the rig that plays, which is believed to be `believed`; what it does
-/// and sees goes to the witness.
+/// and sees goes to the witness. `from`: where the arm was sent last.
 [[nodiscard]] ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigModel& believed,
-                                 Filming& filming, Witness& witness, Progress& progress,
+                                 const ArmState& from, Filming& filming, Witness& witness, Progress& progress,
                                  const RecordSteps& record_steps);
 
 }  // namespace flexura

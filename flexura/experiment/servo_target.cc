@@ -39,6 +39,53 @@ std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths
   return points;
 }
 
+std::vector<Eigen::Vector3d> vectors(const std::vector<std::array<double, 3>>& points) {
+  std::vector<Eigen::Vector3d> result;
+  result.reserve(points.size());
+  for (const auto& point : points) result.push_back(vector(point));
+  return result;
+}
+
+// The smooth curve that points are taken from: a cubic between each two of them, along the chord of their
+// neighbours in each point (Catmull-Rom), and along their own chord at ends and at corners of 60 degrees or
+// more.
+std::vector<Eigen::Vector3d> smooth_curve(const std::vector<Eigen::Vector3d>& given) {
+  std::vector<Eigen::Vector3d> points;  // Each once.
+  for (const Eigen::Vector3d& point : given)
+    if (points.empty() || point != points.back()) points.push_back(point);
+  if (points.size() < 3) return given;
+  constexpr int pieces = 16;
+  constexpr double corner = 0.5;  // cos 60 degrees
+  const auto chord = [&](std::size_t i) -> Eigen::Vector3d { return points[i + 1] - points[i]; };
+  // Way for each chord's length, at point i of the chord that begins at k.
+  const auto tangent = [&](std::size_t i, std::size_t k) -> Eigen::Vector3d {
+    const Eigen::Vector3d own = chord(k).normalized();
+    if (i == 0 || i + 1 == points.size()) {
+      // As a parabola through the nearest three has it.
+      const std::size_t other = i == 0 ? 1 : points.size() - 3;
+      const Eigen::Vector3d there = chord(other).normalized();
+      if (own.dot(there) < corner) return own;
+      const double a = chord(k).norm(), b = chord(other).norm();
+      return own + (own - there) * a / (a + b);
+    }
+    const Eigen::Vector3d before = chord(i - 1), after = chord(i);
+    if (before.normalized().dot(after.normalized()) < corner) return own;
+    const double a = before.norm(), b = after.norm();
+    return (before / a * b + after / b * a) / (a + b);
+  };
+  std::vector<Eigen::Vector3d> curve = {points.front()};
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const double length = chord(k).norm();
+    const Eigen::Vector3d from = length * tangent(k, k), to = length * tangent(k + 1, k);
+    for (int j = 1; j <= pieces; ++j) {
+      const double t = static_cast<double>(j) / pieces, u = 1 - t;
+      curve.emplace_back((1 + 2 * t) * u * u * points[k] + t * u * u * from +
+                         t * t * (3 - 2 * t) * points[k + 1] - t * t * u * to);
+    }
+  }
+  return curve;
+}
+
 // How far a backbone is from a curve, root mean square at equal parts of the length of both, m.
 double distance_from(const Backbone& backbone, const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> lengths = {0};  // Up to each point.
@@ -67,12 +114,17 @@ ServoTargetShape along(const Arm& arm, const std::vector<Eigen::Vector3d>& point
 
 }  // namespace
 
+double curve_length(const std::vector<std::array<double, 3>>& points) {
+  const std::vector<Eigen::Vector3d> curve = smooth_curve(vectors(points));
+  double length = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) length += (curve[i] - curve[i - 1]).norm();
+  return length;
+}
+
 ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm, const ArmState& from) {
   if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
   if (target.curve) {
-    std::vector<Eigen::Vector3d> points;
-    for (const auto& point : *target.curve) points.push_back(vector(point));
-    return along(arm, points, from);
+    return along(arm, smooth_curve(vectors(*target.curve)), from);
   }
   if (!target.position) return {arm_state(arm, target), 0};
   InverseOptions options;

@@ -20,6 +20,9 @@ struct ServoTargetShape {
 [[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
                                                   const ArmState& from);
 
+/// How long the smooth curve is from which points along the arm are taken to be, m.
+[[nodiscard]] double curve_length(const std::vector<std::array<double, 3>>& points);
+
 /// Of all targets in their order, each searched for from the one before; none of those by pictures.
 [[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
                                                                                const Arm& arm, ArmState from);

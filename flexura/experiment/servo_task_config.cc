@@ -10,6 +10,7 @@
 #include "flexura/camera/camera.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/experiment/camera_names.h"
+#include "flexura/experiment/servo_target.h"
 #include "flexura/experiment/shape_fields.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
@@ -26,11 +27,11 @@ constexpr double longest = 1e4;                            // s
 constexpr double shortest_step = 1e-4, longest_step = 10;  // s
 constexpr std::size_t most_targets = 10000, most_points = 10000;
 
-// The curve lies along the whole arm: its length is the arm's, but for what chords are shorter than arcs.
+// The curve lies along the whole arm: its length is about the arm's.
 void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfig& arm,
                  const std::string& path, Reader& reader) {
-  double length = 0, least = 0, most = 0;
-  for (std::size_t i = 1; i < curve.size(); ++i) length += (vector(curve[i]) - vector(curve[i - 1])).norm();
+  const double length = curve_length(curve);
+  double least = 0, most = 0;
   for (const Section& section : arm.section) {
     least += section.length * section.stretch_limits[0];
     most += section.length * section.stretch_limits[1];
@@ -39,9 +40,10 @@ void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfi
   if (!(length > 0))
     reader.problem_at(path, "has no length: expected points that differ");
   else if (length < (1 - about) * least || length > (1 + about) * most)
-    reader.problem_at(path, fmt::format("is {:.4g} m long: expected the length of the arm, {}", length,
-                                        least < most ? fmt::format("{:.4g} m to {:.4g} m", least, most)
-                                                     : fmt::format("{:.4g} m", most)));
+    reader.problem_at(path,
+                      fmt::format("is {:.4g} m long: expected the length of the arm, {}, but for 5 %", length,
+                                  least < most ? fmt::format("{:.4g} m to {:.4g} m", least, most)
+                                               : fmt::format("{:.4g} m", most)));
 }
 
 }  // namespace

@@ -33,9 +33,10 @@ class AxisLimit {
                .name = drive.axis_name(axis),
                .limit = limit} {}
 
+  [[nodiscard]] bool is_beyond(double value) const { return value > found_.limit * (1 + limit_tolerance); }
   // Whether it is broken.
   bool add(Span span, double value, SafetyReport& report) {
-    if (value <= found_.limit * (1 + limit_tolerance)) {
+    if (!is_beyond(value)) {
       close(report);
       return false;
     }
@@ -63,10 +64,10 @@ struct MotorPlace {
 
 // What a caveat tells of an axis beside its violations.
 struct AxisNotes {
-  bool has_single_steps = false;    // Rows of one microstep were let pass.
-  bool is_rounded_over = false;     // Nothing but the rounding breaks a limit.
-  bool takes_up_play = false;       // Where it is too fast or too sudden.
-  bool is_over_in_limited = false;  // By play or rounding alone, where a limiter decided.
+  bool has_single_steps = false;       // Rows of one microstep were let pass.
+  bool is_rounded_over = false;        // Nothing but the rounding breaks a limit.
+  bool takes_up_play = false;          // Where it is too fast or too sudden.
+  bool is_over_while_steered = false;  // By play or rounding alone.
 };
 
 // Follows one axis from row to row.
@@ -89,9 +90,9 @@ class AxisCheck {
     position_.add({time, time}, std::abs(place.position), report);
   }
   // `last` and `now` are the steps before and up to this row; the first step comes after one of standing.
-  void row(Span last, Span now, const MotorPlace& place, bool is_limited, SafetyReport& report) {
-    if (is_limited) {
-      limited_row(last, now, place, report);
+  void row(Span last, Span now, const MotorPlace& place, const SteeredSpan* steered, SafetyReport& report) {
+    if (steered != nullptr) {
+      steered_row(last, now, place, steered->is_foreseen, report);
       return;
     }
     const double time = now.end - now.start;
@@ -102,6 +103,7 @@ class AxisCheck {
     const bool is_frequent = step_rate_.add(now, std::abs(rate), report);
     const bool is_fast = speed_.add(now, std::abs(rate) * to_radians_, report) || is_frequent;
     const bool is_sudden = change_rate(now.start, (now.end - last.start) / 2, wanted, report);
+    last_wanted_ = wanted;
     if (is_fast && std::abs(wanted) <= most_) notes_.is_rounded_over = true;
     if ((is_fast && took_up) || (is_sudden && (took_up || took_up_))) notes_.takes_up_play = true;
     position_.add({now.end, now.end}, std::abs(place.position), report);
@@ -117,13 +119,22 @@ class AxisCheck {
   }
 
  private:
-  void limited_row(Span last, Span now, const MotorPlace& place, SafetyReport& report) {
-    const double time = now.end - now.start;
-    const double rate = (place.without_play - last_.without_play) / time;
-    step_rate_.add(now, std::abs(rate), report), speed_.add(now, std::abs(rate) * to_radians_, report);
-    change_rate(now.start, (now.end - last.start) / 2, rate, report);
-    if (std::abs(place.position - last_.position) / time > most_ && std::abs(rate) <= most_)
-      notes_.is_over_in_limited = true;
+  void steered_row(Span last, Span now, const MotorPlace& place, bool is_foreseen, SafetyReport& report) {
+    const double time = now.end - now.start, turning = (now.end - last.start) / 2;
+    const double rate = (place.without_play - last_.without_play) / time,
+                 wanted = (place.target - last_.target) / time;
+    if (is_foreseen) {
+      const bool is_fast = step_rate_.add(now, std::abs(rate), report) ||
+                           speed_.add(now, std::abs(rate) * to_radians_, report);
+      const bool is_sudden = change_rate(now.start, turning, rate, report);
+      const bool is_list_fast = std::abs(place.position - last_.position) / time > most_,
+                 is_list_sudden =
+                     acceleration_.is_beyond(std::abs(wanted - last_wanted_) * to_radians_ / turning);
+      if ((is_list_fast && !is_fast) || (is_list_sudden && !is_sudden)) notes_.is_over_while_steered = true;
+    } else {
+      last_rate_ = rate;
+    }
+    last_wanted_ = wanted;
     position_.add({now.end, now.end}, std::abs(place.position), report);
     last_ = place;
     took_up_ = false;
@@ -146,8 +157,8 @@ class AxisCheck {
   double play_;        // microsteps
   AxisLimit speed_, step_rate_, acceleration_, position_;
   MotorPlace last_;
-  double last_rate_ = 0;  // microsteps/s, before rounding
-  bool took_up_ = false;  // the play, in the last row
+  double last_rate_ = 0, last_wanted_ = 0;  // microsteps/s, before rounding; with play
+  bool took_up_ = false;                    // the play, in the last row
   AxisNotes notes_;
 };
 
@@ -255,16 +266,17 @@ void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double st
       "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
       "the "
       "shorter that is, the more it asks");
-  say(&AxisNotes::is_over_in_limited,
-      "motors of {}: what was sent while the arm was steered keeps to the limits; where a tendon reverses, "
-      "taking up its play, and rounding, asked for more within one step of the clock, {:.6g} s");
+  say(&AxisNotes::is_over_while_steered,
+      "motors of {}: while the arm is steered speeds and accelerations count without play and rounding, as "
+      "its limiter counts them; with these the list asks for more than a limit within one step of the clock, "
+      "{:.6g} s");
 }
 
 }  // namespace
 
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
                  std::span<const double> times, const RateBounds& rates, SafetyReport& report,
-                 std::span<const std::array<double, 2>> limited) {
+                 std::span<const SteeredSpan> steered) {
   if (times.size() < 2) return;
   const std::size_t found_before = report.violations.size();
   const auto first = displacements_in(arm, drive, state_at(times[0]));
@@ -283,9 +295,10 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
     commander.follow(*wanted);
     const Span now{times[k - 1], times[k]};
     places = places_of(commander, drive, *wanted);
-    while (!limited.empty() && limited.front()[1] <= now.start) limited = limited.subspan(1);
-    const bool is_limited = !limited.empty() && limited.front()[0] < now.end;
-    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, places[i], is_limited, report);
+    while (!steered.empty() && steered.front().end <= now.start) steered = steered.subspan(1);
+    const SteeredSpan* span =
+        !steered.empty() && steered.front().start < now.end ? &steered.front() : nullptr;
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].row(last, now, places[i], span, report);
     last = now;
   }
   const double step = times[1] - times[0];

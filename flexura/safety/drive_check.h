@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -16,6 +15,12 @@ namespace flexura {
 /// Bounds on how fast every section of a law changes anywhere in [start, end] s; empty where none are known.
 using RateBounds = std::function<std::optional<std::vector<SectionRates>>(double start, double end)>;
 
+/// A time in which the arm is steered, s.
+struct SteeredSpan {
+  double start = 0, end = 0;
+  bool is_foreseen = true;  ///< What is sent then is known.
+};
+
 /// Adds to `report` where the command list of a motion asks more of a motor than it can do: speed, step rate,
 /// acceleration, position. `times` (s, rising) are those of the list's rows, and `state_at` the arm's states.
 ///
@@ -30,11 +35,12 @@ using RateBounds = std::function<std::optional<std::vector<SectionRates>>(double
 /// the axes where that is what breaks a limit, and those where nothing but the rounding does. Ends before the
 /// first state that is not possible.
 ///
-/// In `limited` (start and end in s, rising) a CommandLimiter decided on the way what was sent, which counts
-/// neither play nor rounding: there they are left out of speed and acceleration, and a caveat names the axes
-/// where either would break a limit.
+/// In `steered` (rising, apart) a CommandLimiter decides on the way what is sent, which counts neither play
+/// nor rounding of speeds and accelerations: there they are left out, and a caveat names the axes where
+/// either asks for more than a limit. Of a span that is not foreseen positions alone count: nobody knows how
+/// fast it goes.
 void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmState(double time)>& state_at,
                  std::span<const double> times, const RateBounds& rates, SafetyReport& report,
-                 std::span<const std::array<double, 2>> limited = {});
+                 std::span<const SteeredSpan> steered = {});
 
 }  // namespace flexura

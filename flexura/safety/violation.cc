@@ -79,6 +79,9 @@ std::string Violation::finding() const {
       return fmt::format("contact with {}, {:.6g}{}", section == other_section ? "itself" : "each other",
                          found, shown.unit);
     case Hazard::workspace:
+      if (limit > 0)
+        return fmt::format("{}, {:.6g}{} from the nearest shape, tolerance {:.6g}{}", shown.name, found,
+                           shown.unit, limit * shown.factor, shown.unit);
       return fmt::format("{}, {:.6g}{} from the nearest pose", shown.name, found, shown.unit);
     case Hazard::not_finite:
       return shown.name;

@@ -6,12 +6,10 @@
 namespace flexura {
 namespace {
 
-constexpr double weight = 100;  // px for a stretch of 1: about what a section's end moves by then.
-
 class WithLengths : public ServoFeatures {
  public:
-  WithLengths(std::unique_ptr<ServoFeatures> inner, Eigen::Index sections)
-      : inner_(std::move(inner)), sections_(sections) {}
+  WithLengths(std::unique_ptr<ServoFeatures> inner, Eigen::Index sections, double weight)
+      : inner_(std::move(inner)), sections_(sections), weight_(weight) {}
 
   void look(const ServoSight& sight) override { inner_->look(sight); }
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
@@ -39,7 +37,7 @@ class WithLengths : public ServoFeatures {
     values.resize(part_.size() + sections_);
     values.head(part_.size()) = part_;
     for (Eigen::Index i = 0; i < sections_; ++i)
-      values[part_.size() + i] = weight * state.stretches[static_cast<std::size_t>(i)];
+      values[part_.size() + i] = weight_ * state.stretches[static_cast<std::size_t>(i)];
     return true;
   }
   void split(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired) {
@@ -51,24 +49,27 @@ class WithLengths : public ServoFeatures {
     result.error.head(rows) = error_.error, result.by_state.topRows(rows) = error_.by_state;
     result.error.tail(sections_) = seen.tail(sections_) - desired.tail(sections_);
     result.by_state.bottomRows(sections_).setZero();
-    for (Eigen::Index i = 0; i < sections_; ++i) result.by_state(rows + i, 3 * i + 2) = weight;
+    for (Eigen::Index i = 0; i < sections_; ++i) result.by_state(rows + i, 3 * i + 2) = weight_;
     return true;
   }
 
   std::unique_ptr<ServoFeatures> inner_;
   Eigen::Index sections_;
+  double weight_;
   Eigen::VectorXd part_, seen_, desired_;
   FeatureError error_;
 };
 
 }  // namespace
 
-std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features, const Arm& arm) {
+std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features, const Arm& arm,
+                                            double weight) {
   const auto can_stretch = [](const Section& section) {
     return section.stretch_limits[0] < section.stretch_limits[1];
   };
   if (!std::ranges::any_of(arm.sections, can_stretch)) return features;
-  return std::make_unique<WithLengths>(std::move(features), static_cast<Eigen::Index>(arm.sections.size()));
+  return std::make_unique<WithLengths>(std::move(features), static_cast<Eigen::Index>(arm.sections.size()),
+                                       weight);
 }
 
 }  // namespace flexura

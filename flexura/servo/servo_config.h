@@ -88,6 +88,8 @@ struct ServoConfig {
   bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
   std::optional<Drive> drive = {};  ///< For the limiter (LimiterSettings),
   double list_step = 0;             ///< and its command list's step, s.
+  /// Where the arm was sent before, if that is known: drives say that to their own steps alone.
+  std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
   ServoPatience patience;
 };

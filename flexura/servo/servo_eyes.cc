@@ -25,12 +25,22 @@ EstimatorConfig patient_estimator(const ViewDoubt& doubt) {
   return config;
 }
 
-// So far off nothing is taken for something else's, where nothing is put down to the cameras.
+// Nothing of it is taken for something else's where it is so far off.
+constexpr double believed_off = 2;  // px
+
 void believe(Sighting& seen) {
-  constexpr double off = 2;  // px
-  for (CurvePoint& point : seen.points) point.sigma = std::max(point.sigma, off);
+  for (CurvePoint& point : seen.points) point.sigma = std::max(point.sigma, believed_off);
+  for (SeenBorder& border : seen.borders) border.sigma = std::max(border.sigma, believed_off);
   for (auto& end : seen.ends)
-    if (end) end->sigma = std::max(end->sigma, off);
+    if (end) end->sigma = std::max(end->sigma, believed_off);
+}
+
+// What the pictures' noise is, px.
+double noise_of(const std::array<Sighting, 2>& seen) {
+  double sum = 0, count = 0;
+  for (const Sighting& one : seen)
+    for (const CurvePoint& point : one.points) sum += point.sigma, ++count;
+  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace
@@ -60,7 +70,6 @@ Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& 
   Sighting seen =
       has_bands ? sighting_of(found, view, eight_bits(picture, whites_[i])) : sighting_of(found, view);
   seen.doubt = doubt_;
-  if (!doubt_.is_any()) believe(seen);
   return seen;
 }
 
@@ -78,12 +87,31 @@ ServoSight ServoEyes::look(const std::array<Frame, 2>& frames, const std::array<
     sight.estimate.reason = "the arm is not seen in every image";
     return sight;
   }
-  sight.estimate = tracker_.look(sight.seen, sight.time, guess);
+  sight.estimate = shape_of(sight, guess);
   if (!sight.estimate.is_found) return sight;
   const std::vector<ViewError>& errors = sight.estimate.shape.views;
   for (std::size_t i = 0; i < errors.size(); ++i)
     sight.seen[i].view = corrected(sight.seen[i].view, errors[i]);
   return sight;
+}
+
+// Of cameras that nobody doubts and that fit no shape by far more than the pictures' noise, the shape that is
+// nearest: from then on, until told to forget.
+ShapeEstimate ServoEyes::shape_of(const ServoSight& sight, const std::optional<ArmState>& guess) {
+  ShapeEstimate found;
+  if (!is_believing_) found = tracker_.look(sight.seen, sight.time, guess);
+  if (found.is_found || doubt_.is_any()) return found;
+  std::array<Sighting, 2> seen = sight.seen;
+  for (Sighting& one : seen) believe(one);
+  if (!is_believing_) tracker_.forget();
+  ShapeEstimate nearest = tracker_.look(seen, sight.time, guess);
+  if (!nearest.is_found && !is_believing_) {
+    tracker_.forget();
+    return found;
+  }
+  is_believing_ = true;
+  for (double& sigma : nearest.sigma) sigma *= std::min(1.0, noise_of(sight.seen) / believed_off);
+  return nearest;
 }
 
 ShapeEstimate ServoEyes::as_believed(const ServoSight& sight, const std::array<View, 2>& views) const {

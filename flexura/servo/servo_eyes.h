@@ -33,9 +33,10 @@ class ServoEyes {
   [[nodiscard]] ShapeEstimate as_believed(const ServoSight& sight, const std::array<View, 2>& views) const;
 
   /// The next pictures are of an arm that may stand anyhow.
-  void forget() { tracker_.forget(); }
+  void forget() { tracker_.forget(), is_believing_ = false; }
 
  private:
+  [[nodiscard]] ShapeEstimate shape_of(const ServoSight& sight, const std::optional<ArmState>& guess);
   [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
                                   std::string& reason);
 
@@ -45,6 +46,7 @@ class ServoEyes {
   ViewDoubt doubt_;
   ShapePrior prior_;
   ShapeTracker tracker_;
+  bool is_believing_ = false;
   struct Finder {
     Eigen::Vector2d base;
     ArmFinder finder;

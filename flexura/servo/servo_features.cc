@@ -190,7 +190,7 @@ std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const R
   for (std::size_t i = 0; i < 2; ++i)
     whites[i] = white_of(believed.cameras.at(config.cameras[i]).sensor.bits);
   return with_lengths(std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites),
-                      believed.arm);
+                      believed.arm, config.law == ServoLawKind::chords ? stretch_px : stretch_rad);
 }
 
 std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, int points) {
@@ -200,15 +200,15 @@ std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, 
     case ServoLawKind::points:
       return std::make_unique<ImageFeatures>(arm, FeatureSet::of_points(points));
     case ServoLawKind::chords:
-      return with_lengths(chord_features(arm, points), arm);
+      return with_lengths(chord_features(arm, points), arm, stretch_px);
     case ServoLawKind::moments:
-      return with_lengths(std::make_unique<ImageFeatures>(arm, FeatureSet::of_moments()), arm);
+      return with_lengths(std::make_unique<ImageFeatures>(arm, FeatureSet::of_moments()), arm, stretch_px);
     case ServoLawKind::potential:
-      return with_lengths(plane_features(arm, points), arm);
+      return with_lengths(plane_features(arm, points), arm, stretch_rad);
     case ServoLawKind::silhouettes:
       break;
   }
-  return with_lengths(silhouette_features(arm, points), arm);
+  return with_lengths(silhouette_features(arm, points), arm, stretch_px);
 }
 
 }  // namespace flexura

@@ -115,16 +115,27 @@ class Session {
   }
 
  private:
+  // But for what drives round and play hides.
+  static bool is_near(const ArmState& a, const ArmState& b) {
+    constexpr double near = 0.02;  // rad; of stretch
+    if (a.bends.size() != b.bends.size()) return false;
+    for (std::size_t i = 0; i < a.bends.size(); ++i)
+      if (!((a.bends[i] - b.bends[i]).norm() < near) || !(std::abs(a.stretches[i] - b.stretches[i]) < near))
+        return false;
+    return true;
+  }
+
   ServoRig::Trouble begin() {
     if (auto trouble = rig_.read()) return trouble;
+    std::size_t farthest = 0;
     for (std::size_t i = 0; i < config_.goals.size(); ++i) {
       const double missed = config_.goals[i].missed;
-      result_.missed = std::max(result_.missed, missed);
-      if (missed > config_.tolerance)
-        return fmt::format(
-            "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from goal {}",
-            100 * missed, i + 1);
+      if (missed > result_.missed) result_.missed = missed, farthest = i;
     }
+    if (result_.missed > config_.tolerance)
+      return fmt::format(
+          "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from goal {}",
+          100 * result_.missed, farthest + 1);
     goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
     // Pictures as goals take a while to be measured, which is not the loop's.
@@ -133,6 +144,7 @@ class Session {
       if (auto trouble = rig_.read()) return trouble;
     }
     sent_ = rig_.said(result_.start);
+    if (config_.sent && is_near(*config_.sent, sent_)) sent_ = *config_.sent;
     try {
       limiter_.emplace(model_.arm, limiter_settings(config_), sent_);
     } catch (const std::invalid_argument& error) {

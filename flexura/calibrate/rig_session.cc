@@ -68,7 +68,7 @@ class Session {
     if (auto trouble = move()) return trouble;
     if (auto trouble = calibrate()) return trouble;
     if (!found_) return "what is seen after the move fits nothing: " + result_.steps.back().reason;
-    constexpr double hopeless = degree;
+    constexpr double hopeless = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
       return fmt::format(
           "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "

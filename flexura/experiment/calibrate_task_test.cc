@@ -220,6 +220,16 @@ TEST(CalibrateTask, StopsWhereOrthogonalAxesPassBesideTheArm) {
   bench.expect_back();
 }
 
+// One pose, a straight one.
+TEST(CalibrateTask, StopsWhereThePicturesDoNotTellTheAngle) {
+  CalibrationBench bench(
+      small_calibration("images = 3\npose = [{ bends = [[0, 0], [0, 0], [0, 0]] }]\n", wrong_cameras));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("the pictures tell the angle between the axes to"));
+  bench.expect_back();
+}
+
 TEST(CalibrateTask, StopsWhereAHeadDoesNotFollow) {
   CalibrationBench bench(small_calibration("images = 5\n" + three_poses, ""));
   RigPorts ports = bench.ports();

@@ -129,6 +129,20 @@ TEST(BundleEtalon, StopsWhereTheCylinderTouchesTheBorder) {
                              HasSubstr("camera front does not see all of the cylinder"));
 }
 
+// With the screens that are there when none are named, whose borders come into pictures that are aimed aside.
+TEST(BundleEtalon, KeepsToWhatTheScreensFill) {
+  std::string text = etalon_rig("method = \"bundle-etalon\"\nimages = 6\n", arcs_cameras({}));
+  for (std::size_t at = text.find("[[stand.screen]]"); at != std::string::npos;
+       at = text.find("[[stand.screen]]"))
+    text.erase(
+        at,
+        text.find('[', at + 16 + std::string("\ncenter = [0, 0.5, -1.5]\nnormal = [0, 0, 1]").size()) - at);
+  ASSERT_EQ(text.find("screen"), std::string::npos) << text;
+  CalibrationBench bench(text);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  EXPECT_TRUE(result.is_done) << result.reason;
+}
+
 TEST(BundleEtalon, StopsWhereNoFrameComes) {
   CalibrationBench bench(StoppedBundle::rig({}, "frame_timeout = 1\n", ", drop = 1"));
   StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("camera front gave no frame for 1 s"));

@@ -129,7 +129,7 @@ TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
     RigTrialConfig config;
     config.focal = 0;
     RigModel truth = true_rig(believed, config, random);
-    const std::size_t wrong = random.integer(0, 1);
+    const std::size_t wrong = random.integer(0, 1) == 1 ? 1 : 0;
     const double off = random.integer(0, 1) == 1 ? 0.01 : -0.01;
     LensConfig& lens = truth.cameras[wrong].lens;
     lens.zoom[1].fx = lens.zoom[1].fy = lens.fx * 1.5 * (1 + off);

@@ -59,7 +59,7 @@ std::vector<Eigen::Vector3d> smooth_curve(const std::vector<Eigen::Vector3d>& gi
   const auto chord = [&](std::size_t i) -> Eigen::Vector3d { return points[i + 1] - points[i]; };
   // Way for each chord's length, at point i of the chord that begins at k.
   const auto tangent = [&](std::size_t i, std::size_t k) -> Eigen::Vector3d {
-    const Eigen::Vector3d own = chord(k).normalized();
+    Eigen::Vector3d own = chord(k).normalized();
     if (i == 0 || i + 1 == points.size()) {
       // As a parabola through the nearest three has it.
       const std::size_t other = i == 0 ? 1 : points.size() - 3;

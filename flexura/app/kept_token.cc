@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::size_t token_size = 32;
 constexpr std::time_t longest_kept = 86400;  // s
+// A file's time and the program's come of different clocks, one of which may tick first.
+constexpr std::time_t most_ahead = 2;  // s
 
 // A file descriptor that is closed with this object.
 class Descriptor {
@@ -55,7 +57,7 @@ std::optional<std::string> read_token(const Descriptor& folder, const std::strin
   const auto status = own(file, S_IFREG);
   if (!status) return std::nullopt;
   const std::time_t age = std::time(nullptr) - status->st_mtime;
-  if (age < 0 || age > longest_kept) return std::nullopt;
+  if (age < -most_ahead || age > longest_kept) return std::nullopt;
   std::array<char, token_size + 1> bytes{};
   const ssize_t count = ::read(file.number(), bytes.data(), bytes.size());
   const std::string text(bytes.data(), count > 0 ? static_cast<std::size_t>(count) : 0);

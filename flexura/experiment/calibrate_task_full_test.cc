@@ -300,6 +300,17 @@ TEST(CalibrateTaskFully, SavesARigBesideWhatIsNone) {
   EXPECT_EQ(read_text_file(folder.path() / "wrong-2.toml", 1 << 20), rig);
 }
 
+// Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
+TEST(EtalonPaperLoopFully, IsNotDoneWhereTheBorderCutsTheCylinder) {
+  LoopRig rig;
+  rig.size = 0.5;
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", rig, "radius = 0.1\nheight = 2.6\n"));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("touches the border"), std::string::npos) << result.reason;
+  bench.expect_back();
+}
+
 // Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw
 // nothing more of the arm.
 TEST(ArcsLoopFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {

@@ -90,17 +90,6 @@ TEST(EtalonLoop, CannotTellThatACameraStandsARightAngleAround) {
   EXPECT_NEAR(bundle.truth(at_once.target).angle, -90 * degree, 0.2 * degree);
 }
 
-// Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
-TEST(EtalonPaperLoop, IsNotDoneWhereTheBorderCutsTheCylinder) {
-  LoopRig rig;
-  rig.size = 0.5;
-  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", rig, "radius = 0.1\nheight = 2.6\n"));
-  const LoopResult result = bench.calibrate();
-  EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("touches the border"));
-  bench.expect_back();
-}
-
 struct StoppedBundle {
   static std::string rig(const WrongStart& wrong, const std::string& task = "",
                          const std::string& sensor = "", const std::string& etalon = "") {

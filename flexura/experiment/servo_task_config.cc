@@ -67,8 +67,9 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .range = between(-1e6, 1e6),
                   .default_text = "not set"})
           .field("curve", &Target::curve,
-                 {.meaning = "Points of the backbone in the world, from the base on to the tip."
-                             " How far the nearest shape may be from the smooth curve through them is `tolerance`.",
+                 {.meaning =
+                      "Points of the backbone in the world, from the base on to the tip."
+                      " How far the nearest shape may be from the smooth curve through them is `tolerance`.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .count = {2, most_points},

@@ -9,6 +9,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
 #include "tests/support/quiet.h"
 #include "tests/support/servo_files.h"
 #include "tests/support/temporary_folder.h"
@@ -68,6 +69,14 @@ INSTANTIATE_TEST_SUITE_P(
                     SteeredMotors{"MotorsWithPlay", 0.02, "max_speed_deg = 3600\nmax_acceleration = 1000",
                                   0.1}),
     [](const auto& one) { return std::string(one.param.name); });
+
+// How fast a servo goes is not known before it has gone: slow motors are no reason not to begin.
+TEST(ServoWithDrive, IsNotRefusedBecauseOfAWayThatNobodyGoes) {
+  ServoSetup rig;
+  rig.rest = drive_with("max_acceleration = 0.4");
+  const Experiment experiment = parse_experiment(servo_file(servo_target, rig), "x.toml");
+  EXPECT_TRUE(Schedule(experiment).check().is_safe());
+}
 
 // What drives say of themselves is rounded to their steps; the next task begins where the last one sent them.
 TEST(ServoWithDrive, GoesOnFromWhereTheTaskBeforeEnded) {

@@ -131,10 +131,12 @@ class AxisCheck {
                  is_list_sudden =
                      acceleration_.is_beyond(std::abs(wanted - last_wanted_) * to_radians_ / turning);
       if ((is_list_fast && !is_fast) || (is_list_sudden && !is_sudden)) notes_.is_over_while_steered = true;
+      last_wanted_ = wanted;
     } else {
-      last_rate_ = rate;
+      // Nobody knows how fast it goes, but that it begins and ends at rest.
+      last_rate_ = last_wanted_ = 0;
+      for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_}) limit->close(report);
     }
-    last_wanted_ = wanted;
     position_.add({now.end, now.end}, std::abs(place.position), report);
     last_ = place;
     took_up_ = false;

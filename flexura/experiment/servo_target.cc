@@ -46,9 +46,9 @@ std::vector<Eigen::Vector3d> vectors(const std::vector<std::array<double, 3>>& p
   return result;
 }
 
-// The smooth curve that points are taken from: a cubic between each two of them, along the chord of their
-// neighbours in each point (Catmull-Rom), and along their own chord at ends and at corners of 60 degrees or
-// more.
+// The smooth curve that points are taken from: a cubic between each two of them, in each point along the
+// parabola through it and its neighbours (Catmull-Rom), but at corners of 60 degrees or more along their
+// chord.
 std::vector<Eigen::Vector3d> smooth_curve(const std::vector<Eigen::Vector3d>& given) {
   std::vector<Eigen::Vector3d> points;  // Each once.
   for (const Eigen::Vector3d& point : given)
@@ -123,9 +123,7 @@ double curve_length(const std::vector<std::array<double, 3>>& points) {
 
 ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm, const ArmState& from) {
   if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
-  if (target.curve) {
-    return along(arm, smooth_curve(vectors(*target.curve)), from);
-  }
+  if (target.curve) return along(arm, smooth_curve(vectors(*target.curve)), from);
   if (!target.position) return {arm_state(arm, target), 0};
   InverseOptions options;
   options.start = from;

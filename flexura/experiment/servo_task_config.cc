@@ -12,13 +12,7 @@
 #include "flexura/experiment/camera_names.h"
 #include "flexura/experiment/servo_target.h"
 #include "flexura/experiment/shape_fields.h"
-#include "flexura/kinematics/inverse.h"
-#include "flexura/kinematics/shape.h"
-#include "flexura/math/arrays.h"
-#include "flexura/math/direction.h"
 #include "flexura/servo/servo_session.h"
-#include "flexura/store/text_file.h"
-#include "flexura/vision/picture_file.h"
 
 namespace flexura {
 namespace {

@@ -31,7 +31,8 @@ struct EstimatorConfig {
 struct ShapeEstimate {
   Shape shape;  ///< Where it was not found no more than a guess.
   bool is_found = false;
-  std::string reason;              ///< Why it is not.
+  std::string reason;         ///< Why it is not.
+  bool is_elsewhere = false;  ///< It is not, for the cameras would have to stand otherwise than is doubted.
   std::vector<std::string> notes;  ///< Why it is to be doubted; empty when nothing speaks against it.
   double rms = 0;                  ///< Of the points' distances from the shape's images, px.
   double doubted = 0;              ///< The share of the points that are taken for something else's.

@@ -93,23 +93,23 @@ Shape scaled(Shape shape, double factor) {
 
 }  // namespace
 
-bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape) {
+std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most = 5;         // standard deviations
   constexpr double rounding = 1e-4;  // Of what is not doubted at all.
   for (std::size_t i = 0; i < std::min(sightings.size(), shape.views.size()); ++i) {
     const auto& [turn, focal] = sightings[i].doubt;
     const ViewError& error = shape.views[i];
     if (!(error.turn.norm() <= most * turn + rounding) || !(std::abs(error.focal) <= most * focal + rounding))
-      return false;
+      return i;
   }
-  return true;
+  return std::nullopt;
 }
 
 ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, double most) {
-  constexpr double impossible = 1e9;
   // Where points and figure tell shapes apart these decide.
   constexpr double of_ends = 0.001;
-  Try one{descent_.descend(problem, start, most_iterations_)};
+  Try one;
+  one.fit = descent_.descend(problem, start, most_iterations_);
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
   // A fit may run away to lengths that are none.
@@ -119,12 +119,17 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, d
   }
   one.ends = ends_elsewhere(seen, shape);
   one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + astray(seen, shape);
-  one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends +
-              (are_as_doubted(seen, shape) ? 0.0 : impossible);
+  one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends;
+  one.is_as_doubted = !view_elsewhere(seen, shape);
+  one.misfit = std::numeric_limits<double>::infinity();
   if (!(one.merit < most)) return one;
   one.misfit = misfit(seen, shape);
   one.merit += one.misfit;
   return one;
+}
+
+bool ShapeSearch::is_better(const Try& one, const Try& other) {
+  return one.is_as_doubted == other.is_as_doubted ? one.merit < other.merit : one.is_as_doubted;
 }
 
 bool ShapeSearch::is_explained(const Try& one) const {
@@ -136,17 +141,25 @@ bool ShapeSearch::is_explained(const Try& one) const {
 }
 
 ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::optional<Try> best;
-  std::vector<Sighting> best_seen;
+  // `otherwise`: one that explains all, by cameras that stand otherwise than is doubted.
+  std::optional<Try> best, otherwise;
+  std::vector<Sighting> best_seen, seen_otherwise;
+  const auto most = [&] {
+    return best && best->is_as_doubted ? best->merit : std::numeric_limits<double>::infinity();
+  };
+  const auto is_best = [&](const Try& one) { return !best || is_better(one, *best); };
+  const auto note = [&](const Try& one, const std::vector<Sighting>& as_seen) {
+    if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
+  };
   const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
   for (std::size_t way = 0; way < ways; ++way) {
     if (way == 1) seen[1] = reversed(seen[1]);
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen)) {
-      Try one = tried(problem, start, best ? best->merit : infinity);
-      const bool is_last = one.fit.is_good(most_rms_) && are_as_doubted(seen, one.fit.shape);
-      if (!best || one.merit < best->merit) best = std::move(one), best_seen = seen;
+      Try one = tried(problem, start, most());
+      note(one, seen);
+      const bool is_last = one.fit.is_good(most_rms_) && one.is_as_doubted;
+      if (is_best(one)) best = std::move(one), best_seen = seen;
       if (is_last) break;
     }
   }
@@ -155,16 +168,18 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   constexpr int rounds = 2;
   constexpr double worse = 1.5, little = 0.01;  // px
   const double most_rms = worse * best->fit.rms + little;
-  bool is_better = true;
-  for (int round = 0; round < rounds && is_better && !is_explained(*best); ++round) {
-    is_better = false;
+  bool has_moved = true;
+  for (int round = 0; round < rounds && has_moved && !is_explained(*best); ++round) {
+    has_moved = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Shape& start : look_alikes(best_seen, Shape(best->fit.shape))) {
-      Try one = tried(problem, start, best->merit);
-      if (one.fit.rms < most_rms && one.merit < best->merit) best = std::move(one), is_better = true;
+      Try one = tried(problem, start, most());
+      note(one, best_seen);
+      if (one.fit.rms < most_rms && is_best(one)) best = std::move(one), has_moved = true;
       if (is_explained(*best)) break;
     }
   }
+  if (otherwise && !is_explained(*best)) return {std::move(otherwise->fit), std::move(seen_otherwise)};
   return {std::move(best->fit), std::move(best_seen)};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,11 +11,13 @@
 
 namespace flexura {
 
-/// Whether what is wrong with the views is no more than they are doubted.
-[[nodiscard]] bool are_as_doubted(std::span<const Sighting> sightings, const Shape& shape);
+/// The first view that would have to be wrong by far more than it is doubted, if there is one.
+[[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings,
+                                                        const Shape& shape);
 
 /// Looks for the shape that sightings show, when nothing tells where it is: shapes are tried one after
-/// another until one explains what is seen (docs/estimation.md, The start).
+/// another until one explains what is seen (docs/estimation.md, The start). Where none does by cameras as
+/// they are doubted, but one by cameras that stand otherwise, it is that one.
 class ShapeSearch {
  public:
   /// `most_iterations` of each descent; `most_rms`: of a good fit (ShapeFit::is_good), px.
@@ -35,9 +39,11 @@ class ShapeSearch {
     double unexplained = 0;  // Of points and borders, beyond the distances of those that are believed, px^2.
     double misfit = 0;       // px^2
     double ends = 0;         // How far off ends are seen, px^2.
+    bool is_as_doubted = false;
   };
   // Of one whose merit is no less than `most` without it the misfit is not looked at.
   [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start, double most);
+  [[nodiscard]] static bool is_better(const Try& one, const Try& other);
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.

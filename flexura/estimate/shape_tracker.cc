@@ -49,27 +49,62 @@ bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
   return estimate.is_found && estimate.rms <= std::max(few, as_usual * usual_rms_);
 }
 
+ShapeEstimate ShapeTracker::followed(std::span<const Sighting> sightings, double time,
+                                     const ArmState& expected) {
+  if (belief_) {
+    ShapeEstimate updated = estimator_.update(sightings, gone_on(sightings, time, expected));
+    is_surprising_ = updated.is_found && !(updated.surprise <= config_.most_surprise);
+    if (is_as_usual(updated) && !is_surprising_) return updated;
+  }
+  return estimator_.follow(sightings,
+                           Shape{arm_, expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
+}
+
+// A fit that begins beside the arm and leaves out what does not suit it would be followed for good.
+bool ShapeTracker::is_to_be_checked(const ShapeEstimate& estimate) {
+  if (estimate.doubted > config_.most_doubted)
+    ++doubtful_;
+  else
+    doubtful_ = 0;
+  return doubtful_ >= config_.patience;
+}
+
+ShapeEstimate ShapeTracker::from_nothing(std::span<const Sighting> sightings) {
+  // What the last pictures were explained by, if cameras stood otherwise, is likely to explain these.
+  const auto explains = [&](const ShapeEstimate& one) {
+    return one.is_elsewhere && one.doubted < config_.most_doubted && one.scale < ShapeFit::most_scale;
+  };
+  if (elsewhere_) {
+    ShapeEstimate again = estimator_.follow(sightings, *elsewhere_);
+    if (explains(again)) return again;
+  }
+  ShapeEstimate anew = estimator_.estimate(sightings);
+  elsewhere_.reset();
+  if (explains(anew)) elsewhere_ = anew.shape;
+  return anew;
+}
+
 ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double time,
                                   const std::optional<ArmState>& expected) {
   ShapeEstimate best;
-  bool is_surprising = false;
-  if (expected && belief_) {
-    best = estimator_.update(sightings, gone_on(sightings, time, *expected));
-    is_surprising = best.is_found && !(best.surprise <= config_.most_surprise);
-    if (is_as_usual(best) && !is_surprising) return best;
+  is_surprising_ = false;
+  if (expected && !elsewhere_) {
+    best = followed(sightings, time, *expected);
+    if (is_as_usual(best) && !is_surprising_) {
+      if (!is_to_be_checked(best)) return best;
+      doubtful_ = 0;
+      ShapeEstimate anew = from_nothing(sightings);
+      const bool is_better = anew.is_found && anew.doubted < 0.5 * best.doubted;
+      return elsewhere_ || is_better ? anew : best;
+    }
   }
-  if (expected) {
-    best = estimator_.follow(
-        sightings, Shape{arm_, *expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
-    if (is_as_usual(best) && !is_surprising) return best;
-  }
-  ShapeEstimate anew = estimator_.estimate(sightings);
+  ShapeEstimate anew = from_nothing(sightings);
   // Where there is none, it is the second that says why, unless it could not be tried.
   const bool is_tried = !expected || std::ranges::all_of(sightings, [](const Sighting& seen) {
     return are_enough({&seen, 1});
   });
   if (!best.is_found && !anew.is_found && !is_tried) return best;
-  return !best.is_found || (anew.is_found && anew.rms < best.rms) ? anew : best;
+  return !best.is_found || ((anew.is_found || elsewhere_) && anew.rms < best.rms) ? anew : best;
 }
 
 ShapeEstimate ShapeTracker::look(std::span<const Sighting> sightings, double time,

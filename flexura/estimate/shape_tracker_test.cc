@@ -115,6 +115,32 @@ TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
   });
 }
 
+// A fit that leaves out what does not suit it is not followed for good: after a few looks that the arm should
+// be elsewhere is found out from nothing.
+TEST(ShapeTracker, FindsOutThatACameraIsWrongFarBeyondDoubt) {
+  int named = 0;
+  for_random_cases(20, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const ArmState state = random_bends(random, prior.arm, 1.5);
+    const Backbone truth(prior.arm, state);
+    std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+    seen[1].view = corrected(seen[1].view, {.turn = Eigen::Vector3d::Zero(), .focal = 0.2});
+    for (Sighting& one : seen) one.doubt = {.turn = 0.02, .focal = 0.02};
+    ShapeTracker tracker(prior, {});
+    ArmState expected = state;
+    for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.2, 0.2);
+    ShapeEstimate found;
+    for (int k = 0; k < 30; ++k) {
+      found = tracker.look(seen, k / 30.0, expected);
+      if (found.is_found) expected = found.shape.state;
+    }
+    EXPECT_FALSE(found.is_found);
+    EXPECT_NE(found.reason, "");
+    if (found.is_elsewhere) ++named;
+  });
+  EXPECT_GE(named, 16);
+}
+
 TEST(ShapeTracker, ForgetsWhenTold) {
   // Of so many seeds some tell a tracker that forgets from one that does not.
   constexpr std::uint64_t seeds = 10;

@@ -41,6 +41,21 @@ TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
   EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.001);
 }
 
+// A lens 20 % shorter than the file has it, where 2 % are doubted: no law comes to rest in what it takes for
+// the wanted shape.
+TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
+  ServoSetup rig;
+  rig.rest = "[[truth.camera]]\nname = \"side\"\nlens = { fx = 320, fy = 320 }\n";
+  for (const char* law : {"shape", "points", "silhouettes", "potential"}) {
+    ServoBench bench(servo_file(fmt::format("law = \"{}\"\n", law) + servo_target, rig));
+    const ServoResult result = bench.servo();
+    EXPECT_FALSE(result.is_done) << law;
+    EXPECT_TRUE(result.reason.starts_with("out of view: camera side's picture would need its camera turned"))
+        << law << ": " << result.reason;
+    EXPECT_NE(result.reason.find("0 % shorter"), std::string::npos) << law << ": " << result.reason;
+  }
+}
+
 // A camera that is silent without saying why.
 class SilentCamera : public CameraPort {
  public:

@@ -213,9 +213,12 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
       const auto say = [&](const char* what) {
         return fmt::format("motor {}: {}", drive.axis_name(i), what);
       };
-      // A stop stands where it stands: the list goes to it with play and rounding.
+      // A stop stands where it stands: the list goes to it with play and rounding. Where the arm begins
+      // nearer to it than that, it goes no nearer.
       const double beyond = drive.axes[i].play() + 0.5;
-      if (!(std::abs(now.motors[at]) <= motor.max_position - beyond)) return say("position");
+      const double already = std::min(std::abs(before.motors[at]), motor.max_position);
+      if (!(std::abs(now.motors[at]) <= std::max(motor.max_position - beyond, already)))
+        return say("position");
       const double swing = std::abs(now.swing[at]), swing_before = std::abs(before.swing[at]);
       if (!(std::abs(now.rates[at]) + swing <= motor_rate(motor) * slack)) return say("speed");
       const double within = 2 * std::max(swing, swing_before) * std::min(1.0, row_ / settings_.step);

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "flexura/kinematics/motion.h"
+#include "flexura/kinematics/motors.h"
+#include "flexura/kinematics/tendons.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
 #include "tests/support/arms.h"
@@ -265,6 +267,52 @@ TEST(Limiter, StartsWithinTheLimitsOnly) {
   EXPECT_NO_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)));
   CommandLimiter limiter(arm, {}, ArmState::straight(1));
   EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the plane"));
+}
+
+// An arm that begins nearer to a motor's stop than the list could come back to by play and rounding is
+// steered away from it, and not back.
+TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
+  for_random_cases(20, [](TestRandom& random) {
+    Arm arm;
+    arm.kind = ArmKind::spatial;
+    arm.sections.resize(3, {.length = 0.3, .radius = {0.02, 0.02}});
+    ArmState start = ArmState::straight(3);
+    for (Eigen::Vector2d& bend : start.bends) bend = random.vector<2>(-0.5, 0.5);
+    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
+    settings.drive = random_drive(random, arm);
+    const auto motors = [&](const ArmState& state) {
+      return motor_positions(*settings.drive, tendon_displacements(arm, *settings.drive, state));
+    };
+    const std::vector<double> begun = motors(start);
+    const double share = random.uniform(0, 1);
+    for (std::size_t i = 0; i < begun.size(); ++i) {
+      Axis& axis = settings.drive->axes[i];
+      axis.motor.max_position = std::abs(begun[i]) + share * (axis.play() + 0.5);
+    }
+    CommandLimiter limiter(arm, settings, start);
+    ArmState farther = start, back = start;
+    for (std::size_t i = 0; i < 3; ++i) farther.bends[i] *= 1.5, back.bends[i] *= 0.5;
+    const auto least_left = [&](const ArmState& state) {
+      const std::vector<double> now = motors(state);
+      double left = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < now.size(); ++i)
+        left = std::min(left, std::abs(begun[i]) - std::abs(now[i]));
+      return left;
+    };
+    const auto steer = [&](const ArmState& wish) {
+      ArmState sent;
+      for (int i = 0; i < 100; ++i) {
+        sent = limiter.next(wish).state;
+        EXPECT_GE(least_left(sent), -1e-6);
+      }
+      return least_left(sent);
+    };
+    steer(farther);
+    EXPECT_GT(steer(back), 0);
+    steer(farther);
+    settings.drive->axes[0].motor.max_position = 0.9 * std::abs(begun[0]);
+    EXPECT_THROW(CommandLimiter(arm, settings, start), std::invalid_argument);
+  });
 }
 
 }  // namespace

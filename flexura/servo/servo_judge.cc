@@ -76,6 +76,8 @@ void ServoJudge::add_error(const ServoStep& step) {
   } else if (time - *worse_since_ > patience) {
     hopeless_ =
         fmt::format("diverging: {:.2g} % of the length off, after {:.2g} %", 100 * latest_, 100 * best_);
+    // What may not turn as fast as a law asks for goes past where it is wanted, again and again.
+    if (limited_for_ > 0) *hopeless_ += fmt::format("; held back by {}", limited_by_);
   }
 }
 

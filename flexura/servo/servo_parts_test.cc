@@ -261,6 +261,18 @@ TEST(ServoJudge, KnowsTheEnd) {
     for (int k = 0; k < 300 && !judge.hopeless(); ++k) judge.add(step_at(k / 30.0, 0.02 + 0.1 * k / 30.0));
     ASSERT_TRUE(judge.hopeless());
     EXPECT_TRUE(judge.hopeless()->starts_with("diverging")) << *judge.hopeless();
+    EXPECT_EQ(judge.hopeless()->find("held back"), std::string::npos) << *judge.hopeless();
+  }
+  {
+    ServoJudge judge(config, 0, 0);
+    for (int k = 0; k < 300 && !judge.hopeless(); ++k) {
+      ServoStep step = step_at(k / 30.0, 0.02 + 0.1 * k / 30.0);
+      step.limited = "motor A: acceleration";
+      judge.add(step);
+    }
+    ASSERT_TRUE(judge.hopeless());
+    EXPECT_TRUE(judge.hopeless()->starts_with("diverging")) << *judge.hopeless();
+    EXPECT_TRUE(judge.hopeless()->ends_with("; held back by motor A: acceleration")) << *judge.hopeless();
   }
   {
     ServoJudge judge(config, 0, 0);

@@ -51,6 +51,12 @@ Eigen::MatrixXd section_moments(const DistributedArm& arm) {
   return drive_map(arm, numbers);
 }
 
+Eigen::MatrixXd drives_of(const DistributedArm& arm, DriveKind kind) {
+  if (kind == DriveKind::torques) return section_torques(arm);
+  if (kind == DriveKind::moments) return section_moments(arm);
+  return {};
+}
+
 ProjectedForce project_on_drives(const Eigen::MatrixXd& G, const Eigen::VectorXd& Q) {
   if (G.rows() != Q.size()) throw std::invalid_argument("drives and forces of different arms");
   ProjectedForce projected;

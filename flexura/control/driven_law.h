@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,15 @@ namespace flexura {
 /// end, 2k + 1 that of q; then the lengths' forces. Tendons that end with section k and are counted from its
 /// base pull so. y = G^T x: what the sections turn by (a clamped base's own angles left out).
 [[nodiscard]] Eigen::MatrixXd section_moments(const DistributedArm& arm);
+
+/// What gives an arm a law's forces.
+enum class DriveKind : std::uint8_t {
+  everywhere,  ///< Each point of the arm is driven by itself.
+  torques,     ///< section_torques
+  moments,     ///< section_moments
+};
+/// G of drives of this kind; empty where everything is driven.
+[[nodiscard]] Eigen::MatrixXd drives_of(const DistributedArm& arm, DriveKind kind);
 
 /// The drives' forces whose effect G f is nearest to generalized forces.
 struct ProjectedForce {

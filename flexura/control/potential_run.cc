@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,7 +25,8 @@ bool is_regular(const DistributedArm& arm) {
 }  // namespace
 
 PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
-                           const std::optional<AngleMeasurement>& measurement, const OdeTolerance& tolerance)
+                           const std::optional<AngleMeasurement>& measurement, const OdeTolerance& tolerance,
+                           const Eigen::MatrixXd& drives)
     : law_(law),
       seen_(arm),
       motion_(
@@ -34,6 +36,11 @@ PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, c
           tolerance) {
   if (start.size() != arm.size() || !start.allFinite())
     throw std::invalid_argument("a run starts at finite coordinates of its arm");
+  if (drives.size() > 0) {
+    if (drives.rows() != arm.size() || !drives.allFinite())
+      throw std::invalid_argument("a run's drives must fit its arm, in finite numbers");
+    given_ = drives * drives.completeOrthogonalDecomposition().pseudoInverse();
+  }
   if (measurement) measured_.emplace(*measurement, arm.nodes());
   motion_.start(start);
   if (!is_regular(motion_.arm())) stopped_ = reason();
@@ -45,6 +52,11 @@ double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, 
     law_.force(seen_, measured_->seen(), v, Q);
   } else {
     law_.force(arm, x, v, Q);
+  }
+  if (given_.size() > 0) {
+    wanted_ = Q;
+    Q.noalias() = given_ * wanted_;
+    largest_ = std::max(largest_, wanted_.norm()), left_over_ = std::max(left_over_, (wanted_ - Q).norm());
   }
   // No step leads beyond: the last one ends right before it.
   if (!is_regular(arm)) Q.setConstant(std::numeric_limits<double>::quiet_NaN());

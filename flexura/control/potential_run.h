@@ -15,13 +15,15 @@ namespace flexura {
 /// A distributed arm under the artificial potential, from rest on (docs/control.md, eq. 6 and 9). Either the
 /// law has the arm's angles, or it has measurements of them: then the potential's force and what compensates
 /// gravity and elasticity are those of the shape as measured last, held from one measurement to the next. The
-/// damping is of the arm's own rates in both cases: it is the drives'.
+/// damping is of the arm's own rates in both cases: it is the drives'. Where a few drives are all there is,
+/// the arm gets the nearest to the law's force that these can give.
 class PotentialRun {
  public:
-  /// `start`: coordinates, at rest. std::invalid_argument: a size that does not fit, numbers that are not
-  /// finite.
+  /// `start`: coordinates, at rest. `drives`: G (driven_law.h); empty: every point is driven.
+  /// std::invalid_argument: a size that does not fit, numbers that are not finite.
   PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
-               const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {});
+               const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {},
+               const Eigen::MatrixXd& drives = {});
   PotentialRun(const PotentialRun&) = delete;  // The motion's force refers to it.
   PotentialRun& operator=(const PotentialRun&) = delete;
 
@@ -35,6 +37,8 @@ class PotentialRun {
   /// Time, coordinates and rates now, and the arm set to them.
   [[nodiscard]] const DistributedMotion& motion() const { return motion_; }
   [[nodiscard]] const PotentialLaw& law() const { return law_; }
+  /// The most of the law's force that the drives could not give, share of the largest that it asked for.
+  [[nodiscard]] double left_over() const { return largest_ > 0 ? left_over_ / largest_ : 0; }
   /// The energies now. Where elasticity is shaped V_e is part of Pi and 0 here.
   [[nodiscard]] LyapunovSample sample() const;
 
@@ -45,7 +49,10 @@ class PotentialRun {
 
   PotentialLaw law_;
   std::optional<MeasuredCoordinates> measured_;
-  DistributedArm seen_;  // Set to the shape as measured last.
+  Eigen::MatrixXd given_;               // What drives give of a force: G G^+. Empty: all of it.
+  Eigen::VectorXd wanted_;              // A force before that.
+  double largest_ = 0, left_over_ = 0;  // |Q|, |Q - G G^+ Q|
+  DistributedArm seen_;                 // Set to the shape as measured last.
   DistributedMotion motion_;
   std::string stopped_;
 };

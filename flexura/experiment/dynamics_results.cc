@@ -123,6 +123,11 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
         points.push_back("The energies tell: " + reason + ".");
     }
   }
+  constexpr double little = 1e-9;
+  if (run.left_over > little)
+    points.push_back(fmt::format(
+        "Up to {:.3g} % of the largest force that the law asked for is what the drives cannot give.",
+        100 * run.left_over));
   points.push_back(fmt::format(
       "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
       "{:.3g} mm.",
@@ -168,6 +173,7 @@ Node dynamics_nodes(const std::vector<DynamicsRun>& runs) {
                         {}}});
     members.push_back({"start_off", {}, number_node(run.plant.start_off())});
     members.push_back({"target_off", {}, number_node(run.plant.target_off())});
+    members.push_back({"left_over", {}, number_node(run.left_over)});
     members.push_back({"arcs_apart", {}, number_node(run.apart)});
     list.push_back({std::move(members), {}});
   }

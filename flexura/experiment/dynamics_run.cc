@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -33,6 +34,19 @@ PotentialGains gains_of(const PotentialConfig& law) {
 
 PotentialLaw law_of(const DynamicsTask& task, const DynamicsPlant& plant) {
   return {plant.distributed(), plant.target(), gains_of(task.law)};
+}
+
+// Which conditions of the theory do not hold.
+std::vector<std::string> violations_of(const DynamicsTask& task, const DynamicsPlant& plant,
+                                       const PotentialLaw& law) {
+  std::vector<std::string> found = law.violations();
+  const Eigen::MatrixXd G = drives_of(plant.distributed(), task.law.drives);
+  if (G.size() == 0) return found;
+  const Eigen::Index rank = G.colPivHouseholderQr().rank();
+  if (rank < G.rows())
+    found.push_back(fmt::format(
+        "{} drives move an arm of {} numbers: they cannot give all of the law's force", rank, G.rows()));
+  return found;
 }
 
 std::optional<AngleMeasurement> measurement_of(const Experiment& experiment, std::size_t number,
@@ -91,6 +105,7 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
       add(sample);
     }
   }
+  run.left_over = plant.left_over();
   if (run.samples.size() > 1) run.verdict = monitor.verdict();
 }
 
@@ -156,7 +171,7 @@ void add_caveats(const Experiment& experiment, const Schedule& schedule, const s
     const ArmState from = leg.motion->at(0);
     if (!is_possible(from)) continue;
     const DynamicsPlant plant(*task, arm, from);
-    for (const std::string& violation : law_of(*task, plant).violations())
+    for (const std::string& violation : violations_of(*task, plant, law_of(*task, plant)))
       report.notes.push_back(fmt::format("{}: {}", leg.name, violation));
   }
 }
@@ -224,15 +239,16 @@ DynamicsRun run_dynamics(const Experiment& experiment, std::size_t number, const
                   .law = law,
                   .is_measured = task.measurement.has_value(),
                   .samples = {},
-                  .violations = law.violations(),
+                  .violations = violations_of(task, plant, law),
                   .stopped = {},
                   .verdict = {},
                   .reasons = {},
                   .remaining = {},
+                  .left_over = 0,
                   .motion = {}};
   if (plant.is_regular()) {
     PotentialRun motion(plant.distributed(), law, plant.start(), measurement_of(experiment, number, task),
-                        tolerance);
+                        tolerance, drives_of(plant.distributed(), task.law.drives));
     follow(run, motion, sample_times(start, task.duration, experiment.clock.step), task.tolerance, progress);
   } else {
     run.stopped = "it starts with an elevation of 90 deg, where the azimuth is none";

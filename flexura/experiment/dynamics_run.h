@@ -45,6 +45,8 @@ struct DynamicsRun {
   std::vector<std::string> reasons;  ///< Why the run is not as the theory has it; empty: it is, or it was
                                      ///< measured and came to its target.
   DynamicsError remaining;           ///< At the end.
+  /// PotentialRun::left_over
+  double left_over = 0;
   double apart = 0;  ///< The largest distance of the arm's tip from that of the arcs it is shown by, m.
   MotionPtr motion;  ///< By those arcs, from the task's start.
 

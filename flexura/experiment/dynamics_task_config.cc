@@ -22,6 +22,11 @@ const std::vector<std::string>& names_of(const AngleBasis*) {
   return names;
 }
 
+const std::vector<std::string>& names_of(const DriveKind*) {
+  static const std::vector<std::string> names{"everywhere", "torques", "moments"};
+  return names;
+}
+
 const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
   using Target = DynamicsTargetConfig;
   static const auto table =
@@ -78,6 +83,11 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
                  {.meaning = "What the law does about the arm's own elasticity: cancels it, makes it part of "
                              "the potential, or ignores it, which the theory does not allow where the target "
                              "bends or stretches the arm."})
+          .field("drives", &P::drives,
+                 {.meaning = "What gives the arm the law's forces: drives everywhere along it, or a torque "
+                             "alike along each section, or a moment from each section's base to its end. The "
+                             "few give what is nearest to the law's force; with basis \"sections\" that is "
+                             "all of it."})
           .field("sign", &P::sign,
                  {.meaning = "Of the potential's force: 1, or -1 to lead away from the target.",
                   .range = between(-1, 1)});

@@ -9,6 +9,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/control/angle_shapes.h"
+#include "flexura/control/driven_law.h"
 #include "flexura/control/potential_law.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/arm_config.h"
@@ -29,6 +30,7 @@ struct PotentialConfig {
   double length_damping = 40;                                         ///< N s/m
   double gravity_compensation = 1;                                    ///< Share of dV_g/dx.
   ElasticityRule elasticity = ElasticityRule::cancelled;
+  DriveKind drives = DriveKind::everywhere;
   std::int64_t sign = 1;  ///< Of the potential's force: 1, or -1 to lead away from the target.
 };
 
@@ -61,6 +63,7 @@ struct DynamicsTask {
 
 const std::vector<std::string>& names_of(const ElasticityRule*);
 const std::vector<std::string>& names_of(const AngleBasis*);
+const std::vector<std::string>& names_of(const DriveKind*);
 const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*);
 const Table<PotentialConfig>& fields_of(const PotentialConfig*);
 const Table<MeasurementConfig>& fields_of(const MeasurementConfig*);

@@ -17,6 +17,7 @@
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
+#include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
@@ -139,12 +140,17 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   std::vector<Sighting> prepared_ones = prepared(sightings);
   if (prepared_ones.empty() || !have_axes(prepared_ones)) return unseen(straight_shape(prior_));
   ShapeSearch search(prior_, config_.most_iterations, config_.most_rms, descent_);
-  auto [fit, seen] = search.best(std::move(prepared_ones));
+  auto [fit, seen, apart] = search.best(std::move(prepared_ones));
   ShapeProblem problem(prior_, seen);
   if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
   const double cost = fit.cost;
   ShapeEstimate result = with_bands(seen, answer(problem, std::move(fit)), cost, nullptr);
   if (result.is_found) add_misfit(seen, result);
+  constexpr double another = 0.01;  // Of its length: nearer ones are the same shape.
+  if (result.is_found && apart > another * Backbone(result.shape.arm, result.shape.state).length()) {
+    result.is_found = false;
+    result.reason = fmt::format("two shapes explain the images, up to {:.2g} m apart", apart);
+  }
   return result;
 }
 

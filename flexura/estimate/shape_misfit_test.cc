@@ -107,7 +107,7 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
 // wrong then is told.
 TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
   constexpr int cases = 200;
-  int right = 0;
+  int right = 0, wrong = 0;
   for_random_cases(cases, [&](TestRandom& random) {
     Seen seen = random_seen(random);
     const Backbone backbone(seen.truth.arm, seen.truth.state);
@@ -119,10 +119,13 @@ TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
     const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);
     const bool is_right = found.is_found && shape_error(found.shape, backbone) < 2e-3;
     right += is_right ? one_case_of : 0;
+    if (found.is_found && !(shape_error(found.shape, backbone) < 1e-2)) ++wrong;
     EXPECT_TRUE(is_right || !found.is_trusted());
     EXPECT_FALSE(is_taken_for_tip && found.is_trusted());
   });
-  EXPECT_GE(right, 0.85 * cases);
+  EXPECT_GE(right, 0.8 * cases);
+  // Of those that two shapes explain, farther apart than that, most are not found.
+  EXPECT_LE(wrong, 0.075 * cases);
 }
 
 // A tube whose tip is a fifth as wide as its base is seen as wide as it is there.

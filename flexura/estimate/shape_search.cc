@@ -51,6 +51,32 @@ double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
   return sum;
 }
 
+// From this shape downhill by the bend of its last section, to what figures and ends speak against least.
+Shape last_bent_to_fit(std::span<const Sighting> sightings, Shape shape) {
+  constexpr double first = 0.1, last = 0.01;  // rad
+  Eigen::Vector2d& bend = shape.state.bends.back();
+  const auto against = [&] { return misfit(sightings, shape) + ends_elsewhere(sightings, shape); };
+  double least = against();
+  const int axes = shape.arm.kind == ArmKind::planar ? 1 : 2;
+  for (double step = first; step > last; step /= 2) {
+    constexpr int most_rounds = 10;
+    bool is_lower = true;
+    for (int round = 0; round < most_rounds && is_lower; ++round) {
+      is_lower = false;
+      for (int k = 0; k < 2 * axes; ++k) {
+        const Eigen::Vector2d before = bend;
+        bend[k / 2] += k % 2 == 0 ? step : -step;
+        const double now = against();
+        if (now < least)
+          least = now, is_lower = true;
+        else
+          bend = before;
+      }
+    }
+  }
+  return shape;
+}
+
 // Of the shapes whose last section is bent otherwise the few that figures and ends speak against least.
 std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double step = 0.2;  // rad
@@ -71,8 +97,22 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
   // Of an arm without radius and ends nothing speaks against any.
   if (!(others.back().against > others.front().against)) return {};
   std::vector<Shape> shapes;
-  for (std::size_t i = 0; i < std::min(few, others.size()); ++i) shapes.push_back(std::move(others[i].shape));
+  for (std::size_t i = 0; i < std::min(few, others.size()); ++i)
+    shapes.push_back(last_bent_to_fit(sightings, std::move(others[i].shape)));
   return shapes;
+}
+
+// The largest of places at the same shares of both, m.
+double distance(const Shape& one, const Shape& other) {
+  constexpr int count = 20;
+  const Backbone a(one.arm, one.state), b(other.arm, other.state);
+  double largest = 0;
+  for (int i = 0; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    const Eigen::Vector3d off = a.pose(share * a.length()).position - b.pose(share * b.length()).position;
+    largest = std::max(largest, off.norm());
+  }
+  return largest;
 }
 
 bool has_lengths(const Shape& shape) {
@@ -105,11 +145,11 @@ std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, c
   return std::nullopt;
 }
 
-ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Shape& start, double most) {
+ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, double most) {
   // Where points and figure tell shapes apart these decide.
   constexpr double of_ends = 0.001;
   Try one;
-  one.fit = descent_.descend(problem, start, most_iterations_);
+  one.fit = descent_.descend(problem, start.shape, most_iterations_, start.kind);
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
   // A fit may run away to lengths that are none.
@@ -156,7 +196,7 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     if (way == 1) seen[1] = reversed(seen[1]);
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen)) {
-      Try one = tried(problem, start, most());
+      Try one = tried(problem, {start}, most());
       note(one, seen);
       const bool is_last = one.fit.is_good(most_rms_) && one.is_as_doubted;
       if (is_best(one)) best = std::move(one), best_seen = seen;
@@ -167,12 +207,13 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   // tried.
   constexpr int rounds = 2;
   constexpr double worse = 1.5, little = 0.01;  // px
+  constexpr double one_end = 0.9;               // px^2, of ends that lie elsewhere
   const double most_rms = worse * best->fit.rms + little;
   bool has_moved = true;
   for (int round = 0; round < rounds && has_moved && !is_explained(*best); ++round) {
     has_moved = false;
     ShapeProblem problem(prior_, best_seen);
-    for (const Shape& start : look_alikes(best_seen, Shape(best->fit.shape))) {
+    for (const Start& start : look_alikes(best_seen, Shape(best->fit.shape))) {
       Try one = tried(problem, start, most());
       note(one, best_seen);
       if (one.fit.rms < most_rms && is_best(one)) best = std::move(one), has_moved = true;
@@ -180,7 +221,28 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     }
   }
   if (otherwise && !is_explained(*best)) return {std::move(otherwise->fit), std::move(seen_otherwise)};
-  return {std::move(best->fit), std::move(best_seen)};
+  const bool may_be_another = is_explained(*best) && best->ends > one_end;
+  Result result{std::move(best->fit), std::move(best_seen)};
+  if (may_be_another) result.apart = apart(result);
+  return result;
+}
+
+// One end of the arm is not where it is seen: that something hides it is one explanation, another shape that
+// is seen alike another.
+double ShapeSearch::apart(const Result& found) {
+  const auto is_doubtful = [](const Sighting& seen) {
+    return seen.doubt.is_any() || !seen.bands.empty() || !seen.markers.empty();
+  };
+  if (!prior_.is_base_position_known || !prior_.is_length_known ||
+      std::ranges::any_of(found.seen, is_doubtful))
+    return 0;
+  double largest = 0;
+  ShapeProblem problem(prior_, found.seen);
+  for (const Start& start : look_alikes(found.seen, found.fit.shape)) {
+    const Try one = tried(problem, start, std::numeric_limits<double>::infinity());
+    if (is_explained(one)) largest = std::max(largest, distance(found.fit.shape, one.fit.shape));
+  }
+  return largest;
 }
 
 std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings) const {
@@ -213,8 +275,9 @@ std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings) cons
   return shapes;
 }
 
-std::vector<Shape> ShapeSearch::look_alikes(std::span<const Sighting> sightings, const Shape& shape) const {
-  std::vector<Shape> shapes;
+std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sighting> sightings,
+                                                         const Shape& shape) const {
+  std::vector<Start> shapes;
   // A fit that went astray may have shrunk an arm of unknown length to nothing.
   constexpr double least = 1e-6;  // m
   double length = 0;
@@ -224,14 +287,15 @@ std::vector<Shape> ShapeSearch::look_alikes(std::span<const Sighting> sightings,
   const std::size_t sections = prior_.arm.sections.size();
   constexpr std::size_t most = 4;  // Of many short sections every so many.
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
-    for (const Sighting& seen : sightings) shapes.push_back(mirrored(prior_, shape, i, seen.view));
+    for (const Sighting& seen : sightings) shapes.push_back({mirrored(prior_, shape, i, seen.view)});
   if (sections > most) return shapes;
-  const auto append = [&](const std::vector<Shape>& others) {
-    shapes.insert(shapes.end(), others.begin(), others.end());
+  const auto append = [&](std::vector<Shape> others, StartKind kind) {
+    for (Shape& other : others) shapes.push_back({std::move(other), kind});
   };
   for (const double bend : {0.0, 0.6, 1.2})
-    append(bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1));
-  append(last_bent_otherwise(sightings, shape));
+    append(bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1), StartKind::far);
+  // They lie on the figure: what the axis has beside it is to be doubted at once.
+  append(last_bent_otherwise(sightings, shape), StartKind::near);
   return shapes;
 }
 

@@ -28,6 +28,9 @@ class ShapeSearch {
   struct Result {
     ShapeFit fit;
     std::vector<Sighting> seen;
+    /// Where an end is not seen where the shape has it, and nothing else tells: how far another shape that
+    /// explains all as well is from it, m; 0: there is none.
+    double apart = 0;
   };
   /// At least one sighting. Where the base is unknown the second is followed both ways.
   [[nodiscard]] Result best(std::vector<Sighting> seen);
@@ -41,13 +44,18 @@ class ShapeSearch {
     double ends = 0;         // How far off ends are seen, px^2.
     bool is_as_doubted = false;
   };
+  struct Start {
+    Shape shape;
+    StartKind kind = StartKind::far;
+  };
   // Of one whose merit is no less than `most` without it the misfit is not looked at.
-  [[nodiscard]] Try tried(ShapeProblem& problem, const Shape& start, double most);
+  [[nodiscard]] Try tried(ShapeProblem& problem, const Start& start, double most);
   [[nodiscard]] static bool is_better(const Try& one, const Try& other);
   [[nodiscard]] bool is_explained(const Try& one) const;
+  [[nodiscard]] double apart(const Result& found);
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.
-  [[nodiscard]] std::vector<Shape> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
+  [[nodiscard]] std::vector<Start> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
 
   const ShapePrior& prior_;
   int most_iterations_;

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/app/commands.h"
@@ -169,6 +170,19 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
   EXPECT_EQ(camera.lens.zoom.size(), 3U);
   const ZoomTable table(camera.lens, width, height);
   EXPECT_NEAR(table.at(600).fx, 360, 4);
+  EXPECT_EQ(found.find("notes"), nullptr);
+  // Ratios that the focal lengths contradict are told.
+  {
+    const auto zooms =
+        std::exchange(arguments_.zooms, {"1=" + path("zoom1"), "1.5=" + path("zoom2"), "5=" + path("zoom3")});
+    const auto rig = std::exchange(arguments_.rig, "");
+    const Node doubted = answer(exit_done);
+    ASSERT_NE(doubted.find("notes"), nullptr);
+    const auto& notes = *doubted.find("notes")->as<Node::Array>();
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its ratio is said to be 5 times"), std::string::npos);
+    arguments_.zooms = zooms, arguments_.rig = rig;
+  }
   // The lens put into cameras that are there already.
   write_new_file(
       folder_.path() / "before.toml",

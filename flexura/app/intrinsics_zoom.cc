@@ -52,6 +52,23 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
   return lens;
 }
 
+// Ratios that were given and that the focal lengths contradict.
+std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms) {
+  constexpr double far = 0.05;  // Share.
+  std::vector<std::string> notes;
+  const MeasuredZoom& first = zooms.front();
+  for (const MeasuredZoom& zoom : zooms) {
+    if (!first.group.ratio || !zoom.group.ratio || !first.fit.is_found || !zoom.fit.is_found) continue;
+    const double said = *zoom.group.ratio / *first.group.ratio,
+                 seen = zoom.focal_length() / first.focal_length();
+    if (!(std::abs(std::log(said / seen)) <= far))
+      notes.push_back(fmt::format(
+          "{}: its ratio is said to be {:.4g} times that of {}, and its focal length is {:.4g} times as long",
+          zoom.group.folder, said, first.group.folder, seen));
+  }
+  return notes;
+}
+
 Node zoom_node(const IntrinsicsArguments& arguments, const std::string& name, const MeasuredZoom& zoom) {
   Node::Table entry;
   if (zoom.group.ratio) entry.push_back({"ratio", {}, number_node(*zoom.group.ratio)});
@@ -104,6 +121,8 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     answer.push_back({"rms_px", {}, number_node(rms)});
     write_files(arguments, {camera}, rms, points, answer);
   }
+  if (const auto notes = notes_on_ratios(zooms); !notes.empty())
+    answer.push_back({"notes", {}, texts_node(notes)});
   Node::Array entries;
   for (const MeasuredZoom& zoom : zooms) entries.push_back(zoom_node(arguments, name, zoom));
   answer.push_back({"zoom", {}, {std::move(entries), {}}});

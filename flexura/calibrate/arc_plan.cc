@@ -152,14 +152,25 @@ LookLoop::Trouble equalize_zooms(LookLoop& loop, const ArcPlan& plan) {
       RigStance next = loop.stance(i);
       next.head.zoom = zoom_by(loop.camera(i), next.head.zoom, 1 / seen.ratio);
       next = loop.commandable_stance(i, next);
-      const bool holds = std::abs(std::log(seen.ratio)) <= loop.config().zoom_accepted ||
-                         loop.stands_there(i, next) || round + 1 == rounds;
-      loop.decide(
-          i, "zoom", seen.ratio - 1, loop.config().zoom_accepted, "share",
-          holds ? fmt::format("the correlation is {:.3f}: it holds, or nothing nearer can be commanded",
-                              seen.peak)
-                : fmt::format("zoom to {:.5g}, for a correlation of {:.3f}", next.head.zoom, seen.peak));
-      if (holds) break;
+      const double off = std::abs(std::log(seen.ratio)), accepted = loop.config().zoom_accepted;
+      std::string end;
+      if (off <= accepted) {
+        end = "it holds";
+      } else if (loop.stands_there(i, next)) {
+        end = "nothing nearer can be commanded";
+      } else if (round + 1 == rounds) {
+        end = fmt::format("it is left there after {} looks: correlation hardly tells zooms closer", rounds);
+      }
+      loop.decide(i, "zoom", seen.ratio - 1, accepted, "share",
+                  end.empty()
+                      ? fmt::format("zoom to {:.5g}, for a correlation of {:.3f}", next.head.zoom, seen.peak)
+                      : fmt::format("the correlation is {:.3f}: {}", seen.peak, end));
+      if (!end.empty() && off > accepted)
+        loop.result().notes.push_back(
+            fmt::format("zoom of camera {}: {:.2g} % off the ideal picture's as last correlated, where "
+                        "{:.2g} % are accepted: {}",
+                        loop.name(i), 100 * off, 100 * accepted, end));
+      if (!end.empty()) break;
       if (auto moved = loop.go(i, next)) return moved;
     }
   }

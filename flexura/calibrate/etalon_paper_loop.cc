@@ -150,6 +150,11 @@ PaperTrouble EtalonPaperLoop::vertical(std::size_t i) {
   if (auto trouble = look(i)) return trouble;
   loop_.decide(i, "full vertical calibration", counts_[i].first - counts_[i].last, config.accepted, "px",
                "stops");
+  if (counts_[i].above == 0 && counts_[i].below == 0)
+    return fmt::format(
+        "vertical calibration of camera {} stops, but the cylinder touches the upper and the lower border of "
+        "its picture: that it is as far from both tells nothing",
+        loop_.name(i));
   return std::nullopt;
 }
 

@@ -315,6 +315,23 @@ class Session {
       result_.remainder =
           remainder(found_->model, {found_->stances[*stance_[0]], found_->stances[*stance_[1]]}, target);
     result_.found = std::move(*found_);
+    if (result_.is_done) note_what_is_unknown(result_.steps.back().sigmas);
+  }
+
+  // What was wanted to be known better.
+  void note_what_is_unknown(const RigSigmas& is) {
+    const RigSigmas& wanted = config_.wanted;
+    const auto note = [&](const std::string& what, double known, double asked, const char* unit) {
+      if (known > asked)
+        result_.wanted.notes.push_back(
+            fmt::format("{} known to {:.2g}{}, where {:.2g} is wanted: more pictures tell it better", what,
+                        known, unit, asked));
+    };
+    note("the angle between the axes is", is.angle / degree, wanted.angle / degree, " degrees");
+    for (std::size_t i = 0; i < 2; ++i)
+      note(fmt::format("the focal length of camera {} is", name(i)), 100 * is.focal[i], 100 * wanted.focal[i],
+           " %");
+    note("the zoom ratio is", 100 * is.zoom_ratio, 100 * wanted.zoom_ratio, " %");
   }
 
   const RigModel& believed_;

@@ -138,7 +138,9 @@ void RigVariables::add_stance(std::size_t number, const RigStance& stance, const
   stances_.push_back(slots_.size());
   const Camera camera(guess_.cameras[stance.camera]);
   const auto add_axis = [&](const char* what, const AxisConfig& axis) {
-    add(fmt::format("stance {}: {}", number + 1, what), prior.steps * axis.resolution, axis.resolution);
+    // Play that the axis is known to have: on either side of where it counts.
+    const double sigma = prior.steps > 0 ? std::hypot(prior.steps * axis.resolution, axis.backlash / 2) : 0;
+    add(fmt::format("stance {}: {}", number + 1, what), sigma, std::max(axis.resolution, axis.backlash));
   };
   if (stance.turned_as) {
     const std::size_t before = stances_[*stance.turned_as];

@@ -83,6 +83,21 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   return command;
 }
 
+// Of a way w in one step the speed is w/step and the distance that is left w/(rate step): a share k of it has
+// k w/step = sqrt(2 a w/(rate step)).
+ArmState CommandLimiter::within_braking(const ArmState& asked, double rate) const {
+  if (!settings_.drive || !fits(arm_, asked) || !is_possible(asked)) return asked;
+  const Eigen::VectorXd way = motors_at(asked) - last_step_.motors;
+  double square = 1;
+  for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
+    const double braking =
+        0.5 * motor_acceleration(settings_.drive->axes[i].motor) * turning_time_ / settings_.step;
+    const double far = std::abs(way[static_cast<Eigen::Index>(i)]);
+    if (far > 0) square = std::min(square, 2 * braking * settings_.step / (rate * far));
+  }
+  return square < 1 ? between(sent_, asked, std::sqrt(square)) : asked;
+}
+
 LimitedCommand CommandLimiter::brake() {
   Plan plan;
   plan.way = way_to_rest_.empty() ? std::vector<ArmState>{sent_} : way_to_rest_;

@@ -61,6 +61,10 @@ class CommandLimiter {
   /// The command for the next step, as near to `asked` as it can be: on the straight line in the rates from
   /// braking to the law's.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
+  /// For laws that go the share `rate` times the step of what is left in each step (rate in 1/s): what such a
+  /// law asks for, or less of it, so that every motor can still brake to where that leads, at half of its
+  /// acceleration. Where no motor has one, `asked` itself.
+  [[nodiscard]] ArmState within_braking(const ArmState& asked, double rate) const;
   /// The command for the next step of an arm that is to come to rest.
   [[nodiscard]] LimitedCommand brake();
 

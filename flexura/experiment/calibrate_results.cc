@@ -195,16 +195,22 @@ bool is_found_rig(const std::filesystem::path& file) {
   }
 }
 
-// The rig of before keeps its text under another name; what is no such file keeps its name, too.
+// The rig of before keeps its text under another name: the oldest under the first. What is no such file keeps
+// its name, too. At any time there is a rig under this name.
 void save(const std::filesystem::path& file, const std::string& text) {
   if (!is_there(file)) {
     write_new_file(file, text);
     return;
   }
-  const std::filesystem::path written = free_name(file);
+  if (!is_found_rig(file)) {
+    write_new_file(free_name(file), text);
+    return;
+  }
+  std::filesystem::copy_file(file, free_name(file));
+  std::filesystem::path fresh = file;
+  fresh += ".new";
+  const std::filesystem::path written = is_there(fresh) ? free_name(fresh) : fresh;
   write_new_file(written, text);
-  if (!is_found_rig(file)) return;
-  std::filesystem::rename(file, free_name(file));
   std::filesystem::rename(written, file);
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -298,6 +299,58 @@ TEST(CalibrateTaskFully, SavesARigBesideWhatIsNone) {
   const std::string rig = read_text_file(folder.path() / "one" / rig_file_name, 1 << 20);
   EXPECT_EQ(read_text_file(folder.path() / "wrong-1.toml", 1 << 20), rig);
   EXPECT_EQ(read_text_file(folder.path() / "wrong-2.toml", 1 << 20), rig);
+}
+
+// A rig that is found anew leaves the one before under another name, the oldest under the first.
+TEST(CalibrateTaskFully, KeepsOlderRigs) {
+  const TemporaryFolder folder;
+  Quiet quiet;
+  std::vector<std::string> found;
+  for (const int seed : {1, 2, 3}) {
+    const std::filesystem::path file = folder.path() / fmt::format("seed{}.toml", seed);
+    write_new_file(file,
+                   fmt::format("seed = {}\n", seed) +
+                       small_calibration("images = 4\nsave = \"rig.toml\"\n" + three_poses, wrong_cameras));
+    const std::filesystem::path results = make_new_folder(folder.path() / fmt::format("out{}", seed));
+    const RunResult result = run_experiment(load_experiment(file), results, quiet);
+    ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+    found.push_back(read_text_file(results / rig_file_name, 1 << 20));
+  }
+  ASSERT_NE(found[0], found[1]);
+  EXPECT_EQ(read_text_file(folder.path() / "rig-1.toml", 1 << 20), found[0]);
+  EXPECT_EQ(read_text_file(folder.path() / "rig-2.toml", 1 << 20), found[1]);
+  EXPECT_EQ(read_text_file(folder.path() / "rig.toml", 1 << 20), found[2]);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "rig-3.toml"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "rig.toml.new"));
+}
+
+// Play that the file declares is no surprise: it is doubted by that much, and what comes of it is told.
+TEST(CalibrateTaskFully, ExpectsThePlayThatHeadsAreKnownToHave) {
+  std::string file = small_calibration("images = 12\n" + three_poses, wrong_cameras);
+  const std::string known = "pan = { limits_deg = [-90, 90],";
+  for (std::size_t at = file.find(known); at != std::string::npos; at = file.find(known, at + known.size()))
+    file.insert(at + 8, "backlash_deg = 0.5, ");
+  CalibrationBench bench(file);
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  ASSERT_TRUE(result.is_done) << result.reason;
+  const RigRemainder left = bench.truth(result.target);
+  EXPECT_LT(std::abs(left.angle), 0.6 * degree);
+  EXPECT_LT(std::abs(left.angle), 4 * result.steps.back().sigmas.angle + 0.25 * degree);
+}
+
+// What is known less well than was wanted is told.
+TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
+  CalibrationBench bench(small_calibration(
+      "images = 4\nwanted = { angle_deg = 0.001, focal = 0.5 }\n" + three_poses, wrong_cameras));
+  const RigSessionResult result = bench.calibrate_bundle(bench.ports());
+  ASSERT_TRUE(result.is_done) << result.reason;
+  const auto tells = [&](const std::string& part) {
+    return std::ranges::any_of(result.wanted.notes,
+                               [&](const std::string& note) { return note.find(part) != std::string::npos; });
+  };
+  EXPECT_TRUE(tells("the angle between the axes is known to"));
+  EXPECT_TRUE(tells("degrees, where 0.001 is wanted"));
+  EXPECT_FALSE(tells("focal length"));
 }
 
 // Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.

@@ -29,6 +29,9 @@ double few_frames(const std::vector<CameraConfig>& cameras) {
   return few / fastest;
 }
 
+// Times are sums of durations: one that is due may have passed by a rounding.
+double left_until(double time, const ClockPort& clock) { return std::max(0.0, time - clock.now()); }
+
 }  // namespace
 
 Filming::Filming(const Experiment& experiment) : Filming(experiment, experiment.true_rig().cameras.size()) {}
@@ -64,7 +67,7 @@ std::vector<FilmedFrame> Filming::new_frames() {
 void Filming::play_to(double time, const ArmState& state, const TakeFrame& take) {
   const RigPorts ports = rig_.ports();
   // The simulated rig has no links that are lost: a fault here is a fault of the program.
-  (void)ports.arm->command(state, time - ports.clock->now()).value();
+  (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
   do {
     ports.clock->wait_until(std::min(time, ports.clock->now() + stretch_));
     for (const FilmedFrame& filmed : new_frames()) take(filmed);
@@ -73,7 +76,7 @@ void Filming::play_to(double time, const ArmState& state, const TakeFrame& take)
 
 void Filming::pass_to(double time, const ArmState& state) {
   const RigPorts ports = rig_.ports();
-  (void)ports.arm->command(state, time - ports.clock->now()).value();
+  (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
   ports.clock->wait_until(time);
 }
 
@@ -100,7 +103,7 @@ double Filming::play_to(double until, const Schedule& schedule) {
     const double time = schedule.time_of_step(step);
     const ArmState state = schedule.state_at(time);
     if (!is_possible(state)) break;
-    (void)ports.arm->command(state, time - ports.clock->now()).value();
+    (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
     ports.clock->wait_until(time);
     played = time;
     if (time >= until) break;

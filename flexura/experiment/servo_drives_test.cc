@@ -5,12 +5,14 @@
 
 #include <filesystem>
 #include <string>
+#include <variant>
 
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
 #include "tests/support/quiet.h"
+#include "tests/support/servo_bench.h"
 #include "tests/support/servo_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -69,6 +71,21 @@ INSTANTIATE_TEST_SUITE_P(
                     SteeredMotors{"MotorsWithPlay", 0.02, "max_speed_deg = 3600\nmax_acceleration = 1000",
                                   0.1}),
     [](const auto& one) { return std::string(one.param.name); });
+
+// A law that asks for more speed than its motors can brake would go past what is wanted, farther each time.
+TEST(ServoWithDrive, ArrivesWithoutOvershootHoweverWeakItsMotorsAre) {
+  for (const double acceleration : {2.0, 5.0, 20.0})
+    for (const char* law : {"shape", "points", "potential"}) {
+      SCOPED_TRACE(fmt::format("{} by {}", acceleration, law));
+      ServoSetup rig;
+      rig.rest = drive_with(fmt::format("max_acceleration = {}", acceleration));
+      ServoBench bench(servo_file(fmt::format("law = \"{}\"\n", law) + servo_target, rig));
+      const ServoResult result = bench.servo();
+      ASSERT_TRUE(result.is_done) << result.reason;
+      EXPECT_LT(result.overshoot, 0.02);
+      EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.005);
+    }
+}
 
 // How fast a servo goes is not known before it has gone: slow motors are no reason not to begin.
 TEST(ServoWithDrive, IsNotRefusedBecauseOfAWayThatNobodyGoes) {

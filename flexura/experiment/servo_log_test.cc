@@ -1,4 +1,5 @@
 // What a servo's log keeps.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -89,6 +90,22 @@ TEST(ServoLog, HasWhatTheLawCompares) {
   }
   EXPECT_GT(to_go(sightings.front()), 15);
   EXPECT_LT(to_go(sightings.back()), 0.5);
+}
+
+// Ends of tasks are sums of durations, an ulp before the clock at times: so after these.
+TEST(ServoLog, ManyServosFollowEachOther) {
+  std::string tasks;
+  for (int k = 0; k < 4; ++k)
+    tasks += fmt::format(
+        "{}settle = 0.9667\ntolerance = 0.05\n[[task.target]]\nbends_deg = [[{}, 0], [0, 0], [0, 0]]\n",
+        k > 0 ? "[[task]]\nkind = \"servo\"\n" : "", k % 2 == 0 ? 10 : 0);
+  std::string text = servo_file(tasks);
+  const std::string clock = "[clock]\nstep = 0.05\n";
+  text.erase(text.find(clock), clock.size());
+  const TemporaryFolder temporary;
+  Quiet quiet;
+  const RunResult result = run_experiment(parse_experiment(text, "x.toml"), temporary.path(), quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::done);
 }
 
 }  // namespace

@@ -23,7 +23,12 @@ Table<S> obstacle_table(const char* kind, const char* meaning) {
                   "So much of the unstretched arm, from its base on, may touch it: for what the arm stands "
                   "on.",
               .unit = Unit::metre,
-              .range = between(0, 1e6)});
+              .range = between(0, 1e6)})
+      .field("color", &S::color,
+             {.meaning =
+                  "Shares of red, green and blue light that it gives back. Cameras that look for a dark arm "
+                  "see what is dark before their screens as well; what is as light as these they do not.",
+              .range = share_range});
   return table;
 }
 

@@ -29,12 +29,17 @@ struct Obstacle {
   std::vector<Side> sides{};  ///< Empty for all but boxes.
 };
 
+/// What an obstacle looks like unless its file says otherwise: shares of red, green and blue light that it
+/// gives back.
+inline constexpr std::array<double, 3> obstacle_color = {0.4, 0.45, 0.4};
+
 /// A half space: all that is not on the side of the plane to which the normal points.
 struct PlaneConfig {
   std::string name = {};   ///< What messages call it; "": its kind and place in the list. Of all kinds.
   double ignore_base = 0;  ///< As Obstacle::ignore_base, m. Of all kinds.
-  std::array<double, 3> point = {0, 0, 0};   ///< Of the plane, in W, m.
-  std::array<double, 3> normal = {0, 1, 0};  ///< Out of it, in W; of any length above 0.
+  std::array<double, 3> point = {0, 0, 0};       ///< Of the plane, in W, m.
+  std::array<double, 3> normal = {0, 1, 0};      ///< Out of it, in W; of any length above 0.
+  std::array<double, 3> color = obstacle_color;  ///< Of all kinds.
 };
 
 /// A ball.
@@ -43,6 +48,7 @@ struct SphereConfig {
   double ignore_base = 0;
   std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
   double radius = 0;                         ///< m
+  std::array<double, 3> color = obstacle_color;
 };
 
 /// All that is within `radius` of a segment.
@@ -52,6 +58,7 @@ struct CapsuleConfig {
   std::array<double, 3> from = {0, 0, 0};  ///< The segment's ends, in W, m; they may be one point.
   std::array<double, 3> to = {0, 0, 0};
   double radius = 0;  ///< m
+  std::array<double, 3> color = obstacle_color;
 };
 
 /// A box; its rotation is a quaternion (w, x, y, z) from its axes into the world's.
@@ -61,6 +68,7 @@ struct BoxConfig {
   std::array<double, 3> center = {0, 0, 0};       ///< In W, m.
   std::array<double, 3> half_sizes = {0, 0, 0};   ///< Half its edges along its own axes, m.
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Of norm 1.
+  std::array<double, 3> color = obstacle_color;
 };
 
 /// One `[[obstacle]]` of a file.

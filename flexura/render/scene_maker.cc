@@ -70,7 +70,10 @@ SceneMaker::SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig
   const auto screens = stand.screen.value_or(default_screens(arm.length(), {base.x(), base.y(), base.z()}));
   for (const ScreenConfig& screen : screens) still_.screens.push_back(screen_of(screen));
   if (stand.etalon) still_.etalon = etalon_of(*stand.etalon);
-  for (const ObstacleConfig& obstacle : obstacles) still_.obstacles.push_back({.shape = obstacle});
+  for (const ObstacleConfig& obstacle : obstacles) {
+    const auto color = std::visit([](const auto& kind) { return kind.color; }, obstacle);
+    still_.obstacles.push_back({.shape = obstacle, .albedo = {color[0], color[1], color[2]}});
+  }
   still_.light = light_of(stand.light);
   still_.background = Color::Constant(stand.background);
 }

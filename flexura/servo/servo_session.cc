@@ -209,7 +209,7 @@ class Session {
     if (!last_ || is_blind || limiter_->fault()) {
       command = limiter_->brake();
     } else {
-      const ArmState wish = asked(now, step);
+      const ArmState wish = limiter_->within_braking(asked(now, step), config_.rate);
       command = limiter_->next(wish);
       if (command.reason.empty()) command.reason = at_its_limit(wish);
     }

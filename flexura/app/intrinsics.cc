@@ -93,18 +93,20 @@ int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& boa
     answer.push_back({"notes", {}, texts_node(notes)});
   if (fit.points > 0) answer.push_back({"rms_px", {}, number_node(fit.rms)});
   add_held_out(fit, answer);
+  Node::Array entries;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    entries.push_back(camera_node(names[i], pictures[i], fit, i, static_cast<int>(arguments.distortion)));
   if (fit.is_found) {
     std::vector<CalibratedCamera> cameras;
     cameras.reserve(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
       cameras.push_back({names[i], first_pose(arguments) * fit.poses[i], lens_config(fit.cameras[i].lens),
                          pictures[i].size, doubt_of(fit, i)});
-    write_files(arguments, cameras, fit.rms, fit.points, answer);
+    Node::Array details = entries;
+    if (is_pair) details.push_back(pair_node(fit));
+    write_files(arguments, cameras, {fit.rms, fit.points, details}, answer);
     if (is_pair) answer.push_back({"pair", {}, pair_node(fit)});
   }
-  Node::Array entries;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    entries.push_back(camera_node(names[i], pictures[i], fit, i, static_cast<int>(arguments.distortion)));
   answer.push_back({"cameras", {}, {std::move(entries), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return fit.is_found ? exit_done : exit_missed;

@@ -13,6 +13,7 @@
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/arrays.h"
+#include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 
@@ -138,12 +139,15 @@ std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
 }
 
 void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
-                 double rms, std::size_t points, Node::Table& answer) {
-  const std::string remark =
-      fmt::format("Measured by flexura intrinsics: rms {:.4g} px over {} points of a board.", rms, points);
+                 const FitRemarks& fit, Node::Table& answer) {
+  const std::string remark = fmt::format(
+      "Measured by flexura intrinsics: rms {:.4g} px over {} points of a board.", fit.rms, fit.points);
+  std::string details = "\n# What the pictures tell, as JSON:\n";
+  for (const Node& one : fit.of_each) details += fmt::format("# {}\n", write_json(one));
   // All of it is made before any of it is written.
-  const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark),
-                    rig = arguments.rig.empty() ? "" : rig_toml(cameras, arguments.rig_from, remark);
+  const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark) + details,
+                    rig =
+                        arguments.rig.empty() ? "" : rig_toml(cameras, arguments.rig_from, remark) + details;
   std::filesystem::path file;
   if (!measured.empty()) {
     file = write_beside(arguments.out, measured);

@@ -63,9 +63,16 @@ const Table<RigFile>& fields_of(const RigFile*);
 [[nodiscard]] std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
                                                         std::vector<std::string> usual);
 
-/// Writes the files that were asked for, all or none, and adds to `answer` which. `rms` px over `points` goes
-/// into their first line.
+/// What remarks in the files tell of the fit.
+struct FitRemarks {
+  double rms = 0;              ///< px
+  std::size_t points = 0;      ///< That it is over.
+  const Node::Array& of_each;  ///< What the command prints of each camera, or of each position of a zoom.
+};
+/// Writes the files that were asked for, all or none, and adds to `answer` which. rms and points go into
+/// their first line; below the cameras the rest is kept, residuals and covariances with it, a line of JSON
+/// for each.
 void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
-                 double rms, std::size_t points, Node::Table& answer);
+                 const FitRemarks& fit, Node::Table& answer);
 
 }  // namespace flexura

@@ -118,6 +118,13 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   };
   EXPECT_NEAR(written[0].doubt.focal, std::max(three_sigmas("fx"), three_sigmas("fy")), 1e-5);
   EXPECT_NEAR(written[0].doubt.turn, std::max(three_sigmas("cx"), three_sigmas("cy")), 1e-4);
+  // Residuals and covariance are kept with it.
+  const std::string head = "\n# What the pictures tell, as JSON:\n# ";
+  const std::size_t at = first.find(head);
+  ASSERT_NE(at, std::string::npos);
+  const Node kept = parse_json(first.substr(at + head.size()), "the remark");
+  EXPECT_EQ(write_json(*kept.find("covariance")), write_json(*camera.find("covariance")));
+  EXPECT_EQ(kept.find("views")->as<Node::Array>()->size(), 6U);
   // Once more, of fewer pictures.
   arguments_.images.pop_back(), arguments_.images.pop_back();
   EXPECT_EQ(*answer(exit_done).find("file")->as<std::string>(), path("cameras-2.toml"));

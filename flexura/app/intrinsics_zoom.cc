@@ -110,6 +110,8 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
   Node::Table answer{{"found", {}, {reason.empty(), {}}}};
   if (!reason.empty()) answer.push_back({"reason", {}, text_node(reason)});
   answer.push_back({"board", {}, board_node(board)});
+  Node::Array entries;
+  for (const MeasuredZoom& zoom : zooms) entries.push_back(zoom_node(arguments, name, zoom));
   if (reason.empty()) {
     double square = 0;
     std::size_t points = 0;
@@ -119,12 +121,10 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     }
     const double rms = std::sqrt(square / static_cast<double>(points));
     answer.push_back({"rms_px", {}, number_node(rms)});
-    write_files(arguments, {camera}, rms, points, answer);
+    write_files(arguments, {camera}, {rms, points, entries}, answer);
   }
   if (const auto notes = notes_on_ratios(zooms); !notes.empty())
     answer.push_back({"notes", {}, texts_node(notes)});
-  Node::Array entries;
-  for (const MeasuredZoom& zoom : zooms) entries.push_back(zoom_node(arguments, name, zoom));
   answer.push_back({"zoom", {}, {std::move(entries), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return reason.empty() ? exit_done : exit_missed;

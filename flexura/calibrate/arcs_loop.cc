@@ -242,9 +242,11 @@ LookLoop::Trouble ArcsLoop::square() {
     for (std::size_t i = 0; i < 2; ++i) {
       const double off = offset(i);
       const bool is_there = loop_.stands_there(i, next[i]), is_far = off > allowed(i);
-      if (is_far && (is_there || is_short[i]))
-        return fmt::format("camera {}: what can be commanded ends {:.4g} px before it holds", loop_.name(i),
-                           off);
+      if (is_far && (is_there || is_short[i])) {
+        const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "seen");
+        return fmt::format("{}camera {}: what can be commanded ends {:.4g} px before it holds",
+                           side ? *side + "; " : "", loop_.name(i), off);
+      }
       const bool is_accepted = off <= loop_.config().accepted || is_there;
       // Small steps that shrink no more are what the pictures do not tell.
       const bool is_noise = off > 0.5 * last[i] && !is_far;

@@ -42,12 +42,17 @@ LookLoop::Trouble LookLoop::begin() {
 }
 
 LookLoop::Trouble LookLoop::look_from_one_side() const {
-  const double beyond = remainder(believed_, {start(0), start(1)}, Eigen::Vector3d::Zero()).angle;
+  return look_from_one_side(believed_, {start(0), start(1)}, "believed");
+}
+
+LookLoop::Trouble LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
+                                               const char* how) {
+  const double beyond = remainder(rig, stances, Eigen::Vector3d::Zero()).angle;
   constexpr double farthest = std::numbers::pi / 4;
   if (std::abs(beyond) <= farthest) return std::nullopt;
   return fmt::format(
-      "both cameras look from {}: their axes are believed to be {:.1f} deg apart, expected 45 to 135",
-      beyond < 0 ? "one side" : "opposite sides", 90 + beyond / degree);
+      "both cameras look from {}: their axes are {} to be {:.1f} deg apart, expected 45 to 135",
+      beyond < 0 ? "one side" : "opposite sides", how, 90 + beyond / degree);
 }
 
 LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {

@@ -32,6 +32,9 @@ class LookLoop {
   Trouble begin();
   /// Why the axes can be believed to make no right angle: they are more than 45 degrees from one.
   [[nodiscard]] Trouble look_from_one_side() const;
+  /// The same of a rig whose cameras stand so; `how` that is known.
+  [[nodiscard]] static Trouble look_from_one_side(const RigModel& rig,
+                                                  const std::array<RigStance, 2>& stances, const char* how);
   /// A fresh picture of what stands; trouble when there were too many.
   Trouble look(std::size_t i, const Measure& measure);
   /// What the simulator has of a camera's arc.

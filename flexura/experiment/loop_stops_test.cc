@@ -72,6 +72,7 @@ TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
   CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
+  EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side: their axes are seen to be"));
   EXPECT_THAT(result.reason, HasSubstr("what can be commanded ends"));
   bench.expect_back();
 }

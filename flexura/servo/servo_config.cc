@@ -1,6 +1,15 @@
 #include "flexura/servo/servo_config.h"
 
+#include <stdexcept>
+
 namespace flexura {
+namespace {
+
+void require(bool is_so, const char* what) {
+  if (!is_so) throw std::invalid_argument(what);
+}
+
+}  // namespace
 
 const std::vector<std::string>& names_of(const ServoLawKind*) {
   static const std::vector<std::string> names = {"shape",   "points",    "chords",
@@ -16,6 +25,32 @@ const std::vector<std::string>& names_of(const ServoMeasure*) {
 const std::vector<std::string>& names_of(const ServoJacobian*) {
   static const std::vector<std::string> names = {"model", "broyden", "recursive"};
   return names;
+}
+
+void check_servo(const ServoConfig& config) {
+  require(!config.goals.empty(), "a servo needs a goal");
+  double before = 0;
+  for (const ServoGoal& goal : config.goals) {
+    require(&goal == &config.goals.front() ? goal.time >= 0 : goal.time > before,
+            "a servo's goals follow each other in time");
+    before = goal.time;
+  }
+  require(config.measure == ServoMeasure::picture || has_chords(config.law),
+          "flow carries the angles of the laws chords and potential alone");
+  require(config.anchor > 0, "a servo's anchor is above 0");
+  const ServoPatience& patience = config.patience;
+  require(config.settle >= 0 && patience.blind > 0 && patience.lost > patience.blind &&
+              patience.timeout > config.settle,
+          "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
+  require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
+          "a servo's points, rate, tolerance and step are above 0");
+}
+
+LimiterSettings limiter_settings(const ServoConfig& config) {
+  LimiterSettings settings;
+  settings.step = config.step, settings.drive = config.drive, settings.list_step = config.list_step;
+  settings.obstacles = config.obstacles;
+  return settings;
 }
 
 }  // namespace flexura

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flexura/base/image.h"
+#include "flexura/control/limiter.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
@@ -97,5 +98,11 @@ struct ServoConfig {
 const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
+
+/// std::invalid_argument, with what is wrong, of a task that no servo can do whatever the rig.
+void check_servo(const ServoConfig& config);
+
+/// Of the limiter behind its law.
+[[nodiscard]] LimiterSettings limiter_settings(const ServoConfig& config);
 
 }  // namespace flexura

@@ -99,6 +99,15 @@ bool ServoRig::look() {
   return false;
 }
 
+std::string ServoRig::by_name(std::string reason) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string number = fmt::format("picture {} ", i + 1);
+    if (const std::size_t at = reason.find(number); at != std::string::npos)
+      reason.replace(at, number.size(), fmt::format("camera {}'s picture ", name(i)));
+  }
+  return reason;
+}
+
 RigStance ServoRig::stance(std::size_t i, double time) const {
   const Stand stand = *stands_[i].at(time);
   return {.camera = cameras_[i], .head = stand.head, .stage = stand.stage};

@@ -55,6 +55,8 @@ class ServoRig {
   /// Place among the rig's cameras.
   [[nodiscard]] std::size_t camera(std::size_t i) const { return cameras_[i]; }
   [[nodiscard]] const std::string& name(std::size_t i) const { return ports_.cameras[cameras_[i]].name; }
+  /// A reason with the cameras' names, where an estimator counts pictures.
+  [[nodiscard]] std::string by_name(std::string reason) const;
 
  private:
   struct Stand {

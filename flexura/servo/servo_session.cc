@@ -24,37 +24,11 @@
 namespace flexura {
 namespace {
 
-void require(bool is_so, const char* what) {
-  if (!is_so) throw std::invalid_argument(what);
-}
-
 void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& config) {
-  require(!config.goals.empty(), "a servo needs a goal");
-  double before = 0;
-  for (const ServoGoal& goal : config.goals) {
-    require(&goal == &config.goals.front() ? goal.time >= 0 : goal.time > before,
-            "a servo's goals follow each other in time");
-    before = goal.time;
-  }
-  require(ports.cameras.size() == believed.cameras.size() && config.cameras[0] != config.cameras[1] &&
-              config.cameras[0] < believed.cameras.size() && config.cameras[1] < believed.cameras.size(),
-          "a servo needs the ports of two cameras of the model");
-  require(config.measure == ServoMeasure::picture || has_chords(config.law),
-          "flow carries the angles of the laws chords and potential alone");
-  require(config.anchor > 0, "a servo's anchor is above 0");
-  const ServoPatience& patience = config.patience;
-  require(config.settle >= 0 && patience.blind > 0 && patience.lost > patience.blind &&
-              patience.timeout > config.settle,
-          "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
-  require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
-          "a servo's points, rate, tolerance and step are above 0");
-}
-
-LimiterSettings limiter_settings(const ServoConfig& config) {
-  LimiterSettings settings;
-  settings.step = config.step, settings.drive = config.drive, settings.list_step = config.list_step;
-  settings.obstacles = config.obstacles;
-  return settings;
+  check_servo(config);
+  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1] ||
+      config.cameras[0] >= believed.cameras.size() || config.cameras[1] >= believed.cameras.size())
+    throw std::invalid_argument("a servo needs the ports of two cameras of the model");
 }
 
 // Of the slower camera, s: within that each takes a picture.
@@ -262,18 +236,8 @@ class Session {
     return whose.empty() ? "no pictures come that belong together" : "no pictures come of " + whose;
   }
 
-  // An estimator counts pictures.
-  [[nodiscard]] std::string by_name(std::string reason) const {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::string number = fmt::format("picture {} ", i + 1);
-      if (const std::size_t at = reason.find(number); at != std::string::npos)
-        reason.replace(at, number.size(), fmt::format("camera {}'s picture ", rig_.name(i)));
-    }
-    return reason;
-  }
-
   void cannot_see(double now, const ServoSight& sight) {
-    std::string why = by_name(sight.estimate.reason);
+    std::string why = rig_.by_name(sight.estimate.reason);
     for (std::size_t i = 2; i-- > 0;)
       if (!sight.reasons[i].empty())
         why = fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);

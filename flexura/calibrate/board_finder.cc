@@ -97,8 +97,8 @@ void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std
 }  // namespace
 
 BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
-  // The same bytes on every machine, whatever it has of processors. (And ThreadSanitizer, which cannot see into
-  // the packaged library, takes what its threads lock on this one's stack for races.)
+  // The same bytes on every machine, whatever it has of processors. (And ThreadSanitizer, which cannot see
+  // into the packaged library, takes what its threads lock on this one's stack for races.)
   cv::setNumThreads(1);
   // OpenCV reads only.
   const cv::Mat picture(gray.height(), gray.width(), CV_8U, const_cast<std::uint8_t*>(gray.values().data()));

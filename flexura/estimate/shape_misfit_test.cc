@@ -119,7 +119,7 @@ TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
     const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);
     const bool is_right = found.is_found && shape_error(found.shape, backbone) < 2e-3;
     right += is_right ? one_case_of : 0;
-    if (found.is_found && !(shape_error(found.shape, backbone) < 1e-2)) ++wrong;
+    if (found.is_found && !(shape_error(found.shape, backbone) < 1e-2)) wrong += one_case_of;
     EXPECT_TRUE(is_right || !found.is_trusted());
     EXPECT_FALSE(is_taken_for_tip && found.is_trusted());
   });

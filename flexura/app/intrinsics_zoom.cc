@@ -56,9 +56,12 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
 std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms) {
   constexpr double far = 0.05;  // Share.
   std::vector<std::string> notes;
-  const MeasuredZoom& first = zooms.front();
+  const auto has_ratio = [](const MeasuredZoom& zoom) { return zoom.group.ratio && zoom.fit.is_found; };
+  const auto given = std::ranges::find_if(zooms, has_ratio);
+  if (given == zooms.end()) return notes;
+  const MeasuredZoom& first = *given;
   for (const MeasuredZoom& zoom : zooms) {
-    if (!first.group.ratio || !zoom.group.ratio || !first.fit.is_found || !zoom.fit.is_found) continue;
+    if (!has_ratio(zoom)) continue;
     const double said = *zoom.group.ratio / *first.group.ratio,
                  seen = zoom.focal_length() / first.focal_length();
     if (!(std::abs(std::log(said / seen)) <= far))
@@ -102,6 +105,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     if (!zoom.fit.is_found && reason.empty()) reason = group.folder + ": " + zoom.fit.reason;
   }
   CalibratedCamera camera{name, first_pose(arguments), {}, zooms.front().pictures.size, {}};
+  const std::vector<std::string> notes = notes_on_ratios(zooms);  // Before those that were not given are.
   if (reason.empty()) {
     camera.lens = zoom_lens(zooms);
     if (const auto fault = ZoomTable::fault(camera.lens))
@@ -123,8 +127,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     answer.push_back({"rms_px", {}, number_node(rms)});
     write_files(arguments, {camera}, {rms, points, entries}, answer);
   }
-  if (const auto notes = notes_on_ratios(zooms); !notes.empty())
-    answer.push_back({"notes", {}, texts_node(notes)});
+  if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
   answer.push_back({"zoom", {}, {std::move(entries), {}}});
   out << write_json({std::move(answer), {}}, 2) << '\n';
   return reason.empty() ? exit_done : exit_missed;

@@ -220,12 +220,17 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   if (const auto view = view_elsewhere(problem.sightings(), fit.shape)) {
     const ViewError& error = fit.shape.views[*view];
-    result.is_elsewhere = true;
-    result.reason = fmt::format(
-        "picture {} would need its camera turned by {:.2g} degrees and {:.2g} % {} in focal length, far more "
-        "than is doubted",
-        *view + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
-        error.focal < 0 ? "shorter" : "longer");
+    result.reason = "the cameras would have to stand otherwise by far more than is doubted";
+    // What explains little tells nothing of cameras.
+    constexpr double most_doubted = 0.1;
+    result.is_elsewhere = fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
+    if (result.is_elsewhere)
+      result.reason = fmt::format(
+          "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, far "
+          "more "
+          "than is doubted",
+          *view + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
+          error.focal < 0 ? "shorter" : "longer");
     return result;
   }
   for (std::size_t i = 0; i < problem.sightings().size(); ++i) {

@@ -154,7 +154,7 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
   const std::span<const Sighting> seen = problem.sightings();
   // A fit may run away to lengths that are none.
   if (!has_lengths(shape)) {
-    one.merit = std::numeric_limits<double>::infinity();
+    one.merit = one.misfit = std::numeric_limits<double>::infinity();
     return one;
   }
   one.ends = ends_elsewhere(seen, shape);
@@ -180,6 +180,14 @@ bool ShapeSearch::is_explained(const Try& one) const {
          one.misfit < most_misfit && one.ends < most_ends;
 }
 
+// By far more than is_explained allows.
+bool ShapeSearch::leaves_much(const Try& one) const {
+  constexpr double most = 0.02, most_misfit = 0.01, most_ends = 2.3;  // px^2
+  constexpr double most_scale = 4;
+  return !one.fit.is_good(most_rms_) || one.fit.scale > most_scale || one.unexplained > most ||
+         one.misfit > most_misfit || one.ends > most_ends;
+}
+
 ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   // `otherwise`: one that explains all, by cameras that stand otherwise than is doubted.
   std::optional<Try> best, otherwise;
@@ -191,6 +199,7 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   const auto note = [&](const Try& one, const std::vector<Sighting>& as_seen) {
     if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
+  const auto is_end = [&] { return best->is_as_doubted && is_explained(*best); };
   const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
   for (std::size_t way = 0; way < ways; ++way) {
     if (way == 1) seen[1] = reversed(seen[1]);
@@ -210,17 +219,18 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
   constexpr double one_end = 0.9;               // px^2, of ends that lie elsewhere
   const double most_rms = worse * best->fit.rms + little;
   bool has_moved = true;
-  for (int round = 0; round < rounds && has_moved && !is_explained(*best); ++round) {
+  for (int round = 0; round < rounds && has_moved && !is_end(); ++round) {
     has_moved = false;
     ShapeProblem problem(prior_, best_seen);
     for (const Start& start : look_alikes(best_seen, Shape(best->fit.shape))) {
       Try one = tried(problem, start, most());
       note(one, best_seen);
       if (one.fit.rms < most_rms && is_best(one)) best = std::move(one), has_moved = true;
-      if (is_explained(*best)) break;
+      if (is_end()) break;
     }
   }
-  if (otherwise && !is_explained(*best)) return {std::move(otherwise->fit), std::move(seen_otherwise)};
+  if (otherwise && (!best->is_as_doubted || leaves_much(*best)))
+    return {std::move(otherwise->fit), std::move(seen_otherwise)};
   const bool may_be_another = is_explained(*best) && best->ends > one_end;
   Result result{std::move(best->fit), std::move(best_seen)};
   if (may_be_another) result.apart = apart(result);

@@ -52,6 +52,7 @@ class ShapeSearch {
   [[nodiscard]] Try tried(ShapeProblem& problem, const Start& start, double most);
   [[nodiscard]] static bool is_better(const Try& one, const Try& other);
   [[nodiscard]] bool is_explained(const Try& one) const;
+  [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
   [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.

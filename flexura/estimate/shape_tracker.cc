@@ -98,12 +98,13 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
       return elsewhere_ || is_better ? anew : best;
     }
   }
+  doubtful_ = 0;
   ShapeEstimate anew = from_nothing(sightings);
   // Where there is none, it is the second that says why, unless it could not be tried.
   const bool is_tried = !expected || std::ranges::all_of(sightings, [](const Sighting& seen) {
     return are_enough({&seen, 1});
   });
-  if (!best.is_found && !anew.is_found && !is_tried) return best;
+  if (!best.reason.empty() && !best.is_found && !anew.is_found && !is_tried) return best;
   return !best.is_found || ((anew.is_found || elsewhere_) && anew.rms < best.rms) ? anew : best;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "flexura/base/degree.h"
@@ -206,12 +207,15 @@ void save(const std::filesystem::path& file, const std::string& text) {
     write_new_file(free_name(file), text);
     return;
   }
-  std::filesystem::copy_file(file, free_name(file));
-  std::filesystem::path fresh = file;
-  fresh += ".new";
-  const std::filesystem::path written = is_there(fresh) ? free_name(fresh) : fresh;
-  write_new_file(written, text);
-  std::filesystem::rename(written, file);
+  const std::filesystem::path kept = free_name(file);
+  std::filesystem::copy_file(file, kept);
+  try {
+    replace_file(file, text);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(kept, ignored);
+    throw;
+  }
 }
 
 }  // namespace

@@ -30,7 +30,11 @@ double few_frames(const std::vector<CameraConfig>& cameras) {
 }
 
 // Times are sums of durations: one that is due may have passed by a rounding.
-double left_until(double time, const ClockPort& clock) { return std::max(0.0, time - clock.now()); }
+double left_until(double time, const ClockPort& clock) {
+  constexpr double rounding = 1e-9;  // s
+  const double left = time - clock.now();
+  return left < 0 && left > -rounding ? 0 : left;
+}
 
 }  // namespace
 

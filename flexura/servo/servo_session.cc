@@ -183,9 +183,10 @@ class Session {
     if (!last_ || is_blind || limiter_->fault()) {
       command = limiter_->brake();
     } else {
-      const ArmState wish = limiter_->within_braking(asked(now, step), config_.rate);
-      command = limiter_->next(wish);
+      const ArmState wish = asked(now, step), slow = limiter_->within_braking(wish, config_.rate);
+      command = limiter_->next(slow);
       if (command.reason.empty()) command.reason = at_its_limit(wish);
+      if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
     }
     if (now - seen_since_ > config_.patience.lost) {
       result_.reason = "out of view: " + (unseen_because_.empty() ? no_pictures() : unseen_because_);

@@ -150,7 +150,8 @@ TEST(HardShapes, TheArmBeforeItself) {
     EXPECT_TRUE(views.hard[0].is_covered());
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_TRUE(views.hard[i].is_told());
-      EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);
+      // Of the unknown one there may be no answer at all: others explain the images, too.
+      if (i == 0 || views.hard[i].found.is_found) EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);
     }
   }
 }

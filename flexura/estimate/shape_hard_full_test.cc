@@ -151,7 +151,9 @@ TEST(HardShapes, TheArmBeforeItself) {
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_TRUE(views.hard[i].is_told());
       // Of the unknown one there may be no answer at all: others explain the images, too.
-      if (i == 0 || views.hard[i].found.is_found) EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);
+      if (i == 0 || views.hard[i].found.is_found) {
+        EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);
+      }
     }
   }
 }

@@ -364,6 +364,17 @@ TEST(EtalonPaperLoopFully, IsNotDoneWhereTheBorderCutsTheCylinder) {
   bench.expect_back();
 }
 
+// From so near that it is cut above and below: no white on either side is no sign of a level camera.
+TEST(EtalonPaperLoopFully, StopsWhereTheCylinderIsCutAboveAndBelow) {
+  LoopRig rig;
+  rig.size = 0.5, rig.wrong[0].shift = {0, 0, -0.88};
+  CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", rig));
+  const LoopResult result = bench.calibrate();
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("touches the upper and the lower border"), std::string::npos) << result.reason;
+  bench.expect_back();
+}
+
 // Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw
 // nothing more of the arm.
 TEST(ArcsLoopFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {

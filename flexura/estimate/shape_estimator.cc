@@ -226,9 +226,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.is_elsewhere = fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
     if (result.is_elsewhere)
       result.reason = fmt::format(
-          "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, far "
-          "more "
-          "than is doubted",
+          "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, "
+          "far more than is doubted",
           *view + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
           error.focal < 0 ? "shorter" : "longer");
     return result;

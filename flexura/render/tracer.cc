@@ -165,8 +165,7 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
   return {};
 }
 
-// Whether the piece of a tube comes out of the flat surface that was hit there: the piece holds the place,
-// well within its planes, or begins at just this disc.
+// Whether a tube's piece comes out of the flat surface hit there: holds the place well, or begins at it.
 bool comes_out_of(const Stage& stage, std::uint32_t index, const Hit& flat, const Eigen::Vector3d& p_CQ) {
   if (flat.part.kind == Part::Kind::disc &&
       at(stage.discs, flat.part.index).arm_piece == static_cast<int>(index))

@@ -18,6 +18,7 @@
 
 namespace flexura {
 
+/// What is known of an arm and of its pictures beforehand.
 struct ArmPictureConfig {
   std::vector<KnownMarker> markers;  ///< Of the arm, base first.
   /// Axis points are taken so far apart that their errors have nothing to do with each other: so many widths

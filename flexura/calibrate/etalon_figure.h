@@ -43,12 +43,13 @@ struct EtalonPoint {
 
 /// A line of W that a camera sees where it sees a part.
 struct EtalonLine {
-  Eigen::Vector3d point, direction;  ///< Direction: unit.
+  Eigen::Vector3d point, direction;  ///< In W: a point of it, m, and its direction, unit.
 };
 
 /// The calibration cylinder as cameras see it.
 class EtalonFigure {
  public:
+  /// Where a file has it, and as large as there.
   explicit EtalonFigure(const EtalonConfig& etalon);
 
   /// The line that a camera at p_WC sees of a part. As the camera moves, sides and rims wander along the

@@ -59,9 +59,10 @@ struct IntrinsicsFit {
 };
 
 /// Calibrates cameras of the given image sizes (width, height) from views of a board with `points` (z = 0 in
-/// B): each alone, by Zhang's closed form and least squares, and then all together with where they stand.
-/// Each camera needs two views at least, that are not parallel; cameras but the first need one together with
-/// the first. std::invalid_argument: views with another number of cameras or points.
+/// B): each alone, by Zhang's closed form (Z. Zhang, 2000) and least squares, and then all together with
+/// where they stand. Each camera needs two views at least, that are not parallel; cameras but the first need
+/// one together with the first. std::invalid_argument: views with another number of cameras or points, other
+/// than 0 to 5 coefficients of distortion.
 [[nodiscard]] IntrinsicsFit fit_intrinsics(std::span<const Eigen::Vector2d> points,
                                            std::span<const BoardView> views,
                                            std::span<const std::array<int, 2>> sizes,

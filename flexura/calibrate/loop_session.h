@@ -68,7 +68,7 @@ struct LoopResult {
 /// at the ports alone. `believed` tells what heads, stages and lenses can do and how long the lenses are.
 /// What goes wrong (also a loop that goes on for ever, or runs away) ends it: heads, stages and arm are sent
 /// back to where they began, and the result says why. The same rig, readings and pictures give the same
-/// result. std::invalid_argument: ports for other cameras than the model's.
+/// result. std::invalid_argument: ports for other cameras than the model's, one camera given for both.
 [[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed,
                                            const LoopConfig& config, RigSessionWatcher& watcher);
 

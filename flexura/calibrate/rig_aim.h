@@ -16,6 +16,7 @@ namespace flexura {
 
 /// The pan and tilt, as the head counts them, that bring a point of W onto the camera's optical axis, from
 /// where the stance's stage and zoom stand. Not drawn to the head's limits or steps.
+/// std::out_of_range: a zoom beyond the ends of the lens's table.
 [[nodiscard]] HeadState aimed(const CameraConfig& model, const RigStance& stance,
                               const Eigen::Vector3d& p_WP);
 
@@ -64,9 +65,10 @@ struct WantedRig {
 /// the heads turn along these. What the stages cannot do, the heads do half each: orthogonal axes come before
 /// axes through the target. Then everything is drawn to what can be commanded; of the positions around it,
 /// those whose axes are the most nearly orthogonal. std::invalid_argument: stances of one camera.
+/// std::out_of_range: a camera that the model has not, a zoom beyond the ends of its table.
 [[nodiscard]] WantedRig wanted_rig(const RigModel& model, const RigWish& wish);
 
-/// What remains when cameras stand like this.
+/// What remains when cameras stand like this, `target` in W, m. std::out_of_range: likewise.
 [[nodiscard]] RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& stances,
                                      const Eigen::Vector3d& target);
 

@@ -22,7 +22,8 @@ struct RigModel {
   std::vector<double> bend_gains;  ///< Factor on each section's commanded bend; empty: all 1.
   std::vector<CameraConfig> cameras;
 
-  /// How the arm stands when it is commanded to `state`, as far as the model knows.
+  /// How the arm stands when it is commanded to `state`, as far as the model knows. std::out_of_range: a
+  /// state of fewer sections than there are gains.
   [[nodiscard]] ArmState bent(const ArmState& state) const;
 };
 
@@ -30,6 +31,7 @@ struct RigModel {
 [[nodiscard]] RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras);
 
 /// The camera's lens with all its numbers, also such as follow from others where the file leaves them out.
+/// std::invalid_argument: as ZoomTable says.
 [[nodiscard]] LensConfig spelled_out(const CameraConfig& camera);
 
 /// The camera with its principal point moved by so much, px, the same at all zooms.
@@ -85,7 +87,8 @@ struct RigStance {
   std::optional<std::size_t> turned_as = {};
 };
 
-/// What a camera of a model that reads this stance sees.
+/// What a camera of a model that reads this stance sees. std::out_of_range: a camera that the model has not,
+/// a zoom outside its lens's table.
 [[nodiscard]] View view_of(const RigModel& model, const RigStance& stance);
 
 }  // namespace flexura

@@ -161,7 +161,8 @@ struct RigSessionResult {
 /// pose to pose by way of the shape in which it began. What goes wrong ends the session: heads, stages and
 /// arm are sent back to where they began, and the result says why. Everything happens through the ports. The
 /// same rig, readings and pictures give the same result. std::invalid_argument: no poses, no markers, fewer
-/// than 3 images or ports for other cameras than the model's.
+/// than 3 images, none from where the heads stand, one camera given for both, or ports for other cameras than
+/// the model's.
 [[nodiscard]] RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
                                                         const RigPrior& prior, const RigSessionConfig& config,
                                                         RigSessionWatcher& watcher);

@@ -43,9 +43,9 @@ class Camera {
   /// X_WM at stage offset 0.
   [[nodiscard]] const Pose& mount() const { return X_WM_; }
 
-  /// How pan, tilt and zoom move, the zoom's defaults filled in from the lens.
+  /// How pan, tilt (rad) and zoom (its own unit) move, the zoom's defaults filled in from the lens.
   [[nodiscard]] const std::array<AxisConfig, 3>& head_axes() const { return head_axes_; }
-  /// How the stage's x, y and z move.
+  /// How the stage's x, y and z move, m.
   [[nodiscard]] const std::array<AxisConfig, 3>& stage_axes() const { return stage_axes_; }
 
   /// Where it stands when a run starts.
@@ -54,7 +54,8 @@ class Camera {
 
   /// The angles of its pan and its tilt axis, zeros included, rad.
   [[nodiscard]] std::array<double, 2> angles(const HeadState& head) const;
-  /// The head that looks along a direction of W, with this zoom. Not drawn to limits or steps.
+  /// The head that looks along a direction of W (of any length but 0), with this zoom. Not drawn to limits or
+  /// steps; of the pans that differ by whole turns the one nearest to the middle of its limits.
   [[nodiscard]] HeadState looking_along(const Eigen::Vector3d& direction, double zoom) const;
 
   /// X_WC: the entrance pupil's position, and the camera's axes. std::out_of_range: a zoom outside the lens's

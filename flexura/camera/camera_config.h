@@ -15,9 +15,9 @@ namespace flexura {
 
 /// Where a camera stands when a run starts.
 struct CameraStartConfig {
-  double pan = 0, tilt = 0;                 ///< rad
-  std::optional<double> zoom;               ///< The least of its limits when left out.
-  std::array<double, 3> stage = {0, 0, 0};  ///< m
+  double pan = 0, tilt = 0;                 ///< As HeadState has them, rad.
+  std::optional<double> zoom;               ///< A position of the lens's; left out: the least of its limits.
+  std::array<double, 3> stage = {0, 0, 0};  ///< Along the mount's axes (right, down, forward), m.
 };
 
 /// One `[[camera]]` of a file.

@@ -18,12 +18,14 @@ struct RotationConfig {
   std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
       std::array<double, 4>{1, 0, 0, 0};
 
-  /// How far the matrix is from a rotation, or the quaternion from one of norm 1.
+  /// How far the matrix is from a rotation (the largest entry of R R^T - 1, and the determinant less 1), or
+  /// the quaternion from one of norm 1. 0: a rotation.
   [[nodiscard]] double error() const;
   /// A rotation by either: a matrix that is off one is drawn to one, a quaternion brought to norm 1.
   [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
+/// Both forms are lists in a file: of three rows, or of four numbers.
 template <>
 struct Codec<RotationConfig> {
   static Type type();

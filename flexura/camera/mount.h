@@ -48,8 +48,8 @@ const Table<SlideConfig>& fields_of(const SlideConfig*);
 const Table<StageConfig>& fields_of(const StageConfig*);
 const Table<MountConfig>& fields_of(const MountConfig*);
 
-/// The axes (columns: right, down, forward) of a camera that looks along `forward` and has W's vertical
-/// upright in its image; none when it looks straight up or down.
+/// The axes in W (columns: right, down, forward) of a camera that looks along `forward` (in W, of any length)
+/// and has W's vertical upright in its image; none when it looks straight up or down, or nowhere.
 [[nodiscard]] std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward);
 
 /// A camera's turn about its optical axis from upright, rad in (-pi, pi], clockwise seen from behind the

@@ -64,12 +64,14 @@ class ZoomTable {
   /// The lens at `zoom`. Past an end by no more than rounding (1e-9 of it) is at that end; further outside
   /// is an std::out_of_range, since no lens is known there: the head's limits keep it from happening.
   [[nodiscard]] Intrinsics at(double zoom) const;
-  /// d intrinsics / d zoom, in the order of `intrinsics_count`. The same errors.
+  /// d intrinsics / d zoom, in the order of `intrinsics_count`, by one position of the zoom. The same errors.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> slope(double zoom) const;
   /// How each number of the lens at `zoom` changes with the same number of row `row` of the file, as it
-  /// stands there or follows from the lens at ratio 1; ratios and counts stay. The same errors.
+  /// stands there or follows from the lens at ratio 1; ratios and counts stay. The same errors; and
+  /// std::out_of_range for a row that is not there.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_row(double zoom, std::size_t row) const;
   /// And with the same number of the lens at ratio 1, directly or through rows that leave it out.
+  /// The same errors.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_lens(double zoom) const;
   /// The ratio at `zoom`, interpolated as the focal lengths are, and its derivative. The same errors.
   [[nodiscard]] double ratio(double zoom) const;

@@ -27,7 +27,7 @@ class Renderer {
               bool is_exact = false);
 
   /// The first step of render(), for those who ask for truth: everything as `view` sees it. What is asked
-  /// then reads `scene`, which must stay as it is until the next call.
+  /// then reads `scene`, which must stay as it is until the next call. The same errors.
   void prepare(const Scene& scene, const View& view);
   /// What was prepared last, as truth.h asks for it; valid until the next call.
   [[nodiscard]] const View& view() const { return view_; }

@@ -47,8 +47,8 @@ struct SensorRows {
 /// any number of threads and on every SimdPath.
 class Sensor {
  public:
-  /// std::invalid_argument: a size below 1, bits other than 1 to 16, a negative or infinite strength, a gain
-  /// or gamma that is not positive; a path that is not available.
+  /// std::invalid_argument: a size below 1 or above 2^20, a PSF above 30 px, bits other than 1 to 16, a
+  /// negative or infinite strength, a gain or gamma that is not positive; a path that is not available.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }
@@ -61,7 +61,8 @@ class Sensor {
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
             Image<std::uint16_t>& image) const;
 
-  /// Rows [first, last) of it alone, into an image of the right size: one thread's part.
+  /// Rows [first, last) of it alone, into an image of the right size: one thread's part. The
+  /// same errors; and std::invalid_argument for rows that are not there.
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<std::uint8_t>& image) const;
   /// The same for words.

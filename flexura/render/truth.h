@@ -18,6 +18,7 @@ namespace flexura {
 
 /// A label as one number: 4096 times the kind's place in SurfaceKind, plus the index.
 [[nodiscard]] std::uint16_t label_value(SurfaceLabel label);
+/// The label that is this number.
 [[nodiscard]] SurfaceLabel label_from_value(std::uint16_t value);
 
 /// What is seen in the middle of one pixel.
@@ -38,7 +39,8 @@ struct TruthMaps {
 /// Makes `maps` to fit the renderer's view and fills them.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
-/// The share of each pixel's square that shows surfaces of `kind`; with an index, those alone.
+/// The share of each pixel's square that shows surfaces of `kind`, 0 to 1; with an index, those alone. One
+/// channel, of the view's size.
 [[nodiscard]] Image<float> coverage(const Renderer& renderer, SurfaceKind kind,
                                     std::optional<std::uint16_t> index = std::nullopt);
 

@@ -36,11 +36,11 @@ struct TubeSample {
 [[nodiscard]] const TubeArc& tube_arc_at(std::span<const TubeArc> tube, double s);
 
 /// The surface of an arm of which poses are known along its backbone: two consecutive samples are joined by
-/// two arcs that meet with one tangent (a biarc), so that the tube is smooth, passes through every sample and
-/// converges to the backbone with the third power of the samples' distance. Samples of a circular arc give
-/// that arc.
-/// std::invalid_argument: fewer than two samples, numbers that are not finite, s that does not rise, samples
-/// in one place, tangents turned back against the way to the next sample.
+/// two arcs that meet with one tangent (a biarc; docs/renderer.md), so that the tube is smooth, passes
+/// through every sample and converges to the backbone with the third power of the samples' distance. Samples
+/// of a circular arc give that arc. std::invalid_argument: fewer than two samples, numbers that are not
+/// finite, s that does not rise, samples in one place, tangents turned back against the way to the next
+/// sample.
 [[nodiscard]] std::vector<TubeArc> tube_through(std::span<const TubeSample> samples);
 
 }  // namespace flexura

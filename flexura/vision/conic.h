@@ -13,7 +13,7 @@ struct CircleFit {
   Eigen::Vector2d center = {0, 0};                       ///< px, in the picture's (u, v).
   double radius = 0;                                     ///< px
   double rms = 0;                                        ///< Of the distances, px.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of center and radius.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of center and radius, px^2.
   double arc = 0;  ///< What the points span of the circle, rad; 2 pi when all of it.
   /// Whether the points verify the circle's equation (section 3.4, step 5): an ellipse would not fit better
   /// than noise makes it in 99 of 100 cases.
@@ -44,8 +44,8 @@ struct CircleFit {
 /// An ellipse through points: the least sum of squared distances.
 struct EllipseFit {
   Eigen::Vector2d center = {0, 0};     ///< px, in the picture's (u, v).
-  Eigen::Vector2d semi_axes = {0, 0};  ///< The longer one first.
-  double angle = 0;                    ///< Of the longer one from u towards v, in (-pi/2, pi/2].
+  Eigen::Vector2d semi_axes = {0, 0};  ///< The longer one first, px.
+  double angle = 0;                    ///< Of the longer one from u towards v, rad in (-pi/2, pi/2].
   double rms = 0;                      ///< Of the distances, px.
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();  ///< In the order above.
 };
@@ -57,8 +57,8 @@ struct EllipseFit {
                                                   std::optional<double> sigma = std::nullopt);
 
 /// The ellipse through at least 6 points: the algebraic one of R. Halir and J. Flusser (1998), then the
-/// Levenberg-Marquardt method on the distances. None where no ellipse fits, or
-/// one 10,000 times as long as wide.
+/// Levenberg-Marquardt method on the distances. None where no ellipse fits, or one 10,000 times as long as
+/// wide.
 [[nodiscard]] std::optional<EllipseFit> fit_ellipse(std::span<const Eigen::Vector2d> points);
 
 /// The same through most of the points, whatever the others are: the ellipse through six of them that most

@@ -28,17 +28,18 @@ struct EtalonSighting {
   UprightLine left, right;  ///< The silhouette's sides.
   double width_above = 0,
          width_below = 0;  ///< Of the silhouette a tenth of its height in, px (docs/vision.md).
-  std::optional<double> upper_edge, lower_edge;  ///< Of the silhouette, near its middle, px.
+  std::optional<double> upper_edge, lower_edge;  ///< v of the silhouette's ends, near its middle, px.
   std::vector<UprightLine> lines;                ///< The red ones, left to right.
   bool touches_border = false;  ///< The silhouette reaches into the picture's outermost ring.
 
-  /// Its middle at a row.
+  /// Its middle, u, at row v, px.
   [[nodiscard]] double middle(double v) const {
     return 0.5 * (left.at + right.at + (left.slope + right.slope) * (v - middle_row));
   }
 };
 
-/// Of a picture, gray or red, green, blue; in a gray one the lines show by their brightness.
+/// Of a picture, gray or red, green, blue, and the same in gray (gray_picture()), which is of the same size.
+/// In a gray one the lines show by their brightness.
 [[nodiscard]] EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
                                          const ThresholdConfig& config = {});
 

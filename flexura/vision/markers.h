@@ -39,7 +39,8 @@ struct MarkerSightings {
 /// The markers along an arm that was found in `picture` (gray, or red, green, blue): what differs from the
 /// arm's own colour. In a gray picture bands show by their brightness. Spots are looked for all over the
 /// skin, which takes several times as long as bands alone; what may have been one is left out of the notes
-/// without.
+/// without. `arm` was found in this very picture. None of an axis of fewer than 8 samples, nor (with a note)
+/// of an arm thinner than 4 px.
 [[nodiscard]] MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm,
                                            bool with_spots = true);
 

@@ -33,7 +33,8 @@ inline constexpr std::size_t most_picture_bytes = std::size_t{1} << 29;
 /// cut short, damaged, of another depth, too large.
 [[nodiscard]] Photograph decode_picture(std::span<const std::uint8_t> file, const std::string& name);
 
-/// The brightness of a picture: 0.2126 red + 0.7152 green + 0.0722 blue.
+/// The brightness of a picture, rounded: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709) of its values
+/// as they are, gamma and all. A gray one comes back as it is.
 [[nodiscard]] Image<std::uint8_t> gray_picture(const Image<std::uint8_t>& picture);
 [[nodiscard]] Image<std::uint16_t> gray_picture(const Image<std::uint16_t>& picture);
 

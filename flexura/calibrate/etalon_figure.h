@@ -69,9 +69,10 @@ class EtalonFigure {
   /// camera faces within 60 degrees, one of each rim. None where it does not show all of the cylinder,
   /// `margin` px from its border at least.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
-  /// Points of its two rims, as many of each, evenly around from where the camera stands: nothing of it is
-  /// seen beyond what bounds these by more than half a hundredth of a rim's width. None likewise.
+  /// Of each rim, in an outline.
   static constexpr std::size_t rim_points = 32;
+  /// Points of its two rims, px, as many of each, evenly around from where the camera stands: nothing of it
+  /// is seen beyond what bounds these by more than half a hundredth of a rim's width. None likewise.
   [[nodiscard]] std::optional<std::array<Eigen::Vector2d, 2 * rim_points>> outline(const View& view,
                                                                                    double margin) const;
   /// The angle by which a red line lies to the right of where the camera stands around the cylinder, rad.

@@ -217,6 +217,21 @@ TEST_F(IntrinsicsCommand, DoesNotTakeForAZoomWhatDoesNotZoom) {
   EXPECT_THAT(*answer(exit_missed).find("reason")->as<std::string>(), HasSubstr("rising"));
 }
 
+TEST_F(IntrinsicsCommand, SaysAtWhichZoomNoCameraIsFound) {
+  for (const char* name : {"wide", "long"}) std::filesystem::create_directory(folder_.path() / name);
+  (void)photograph("wide/", 260);
+  for (const char* name : {"long/a.png", "long/b.png"})
+    (void)write(name, Image<std::uint8_t>(width, height, 1, 200));
+  arguments_.zooms = {"1=" + path("wide"), "2=" + path("long")};
+  arguments_.rig = path("rig.toml");
+  const Node found = answer(exit_missed);
+  EXPECT_FALSE(*found.find("found")->as<bool>());
+  EXPECT_THAT(*found.find("reason")->as<std::string>(), HasSubstr(path("long") + ": no view"));
+  EXPECT_EQ(entry(found, "zoom", 0).find("reason"), nullptr);
+  EXPECT_NE(entry(found, "zoom", 1).find("reason"), nullptr);
+  EXPECT_FALSE(std::filesystem::exists(path("rig.toml")));
+}
+
 TEST_F(IntrinsicsCommand, SaysWhyThereIsNoCamera) {
   for (const char* name : {"a.png", "b.png"})
     arguments_.images.push_back(write(name, Image<std::uint8_t>(width, height, 1, 200)));

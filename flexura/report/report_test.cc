@@ -245,6 +245,14 @@ TEST(Report, DrawsTheChosenCurveAlongTheArm) {
   }
 }
 
+TEST(Report, CountsItsDurationFromWhereItBegins) {
+  ReportData data = paper_run(10);
+  for (double& time : data.times) time += 3;
+  const std::string html = report_html(data);
+  EXPECT_NE(html.find("<dt>duration</dt><dd>5.000 s</dd>"), std::string::npos);
+  EXPECT_NE(html.find("end <small>t = 8.000 s</small>"), std::string::npos);
+}
+
 TEST(Report, DrawsAPlaneWhereItCutsThePlaneOfTheArm) {
   ReportData data = paper_run(10);
   data.obstacles = {PlaneConfig{.name = "slope", .normal = {1, 1, 1}},

@@ -210,6 +210,10 @@ TEST(HttpSession, BecomesAWebSocketOnlyAsItShould) {
   EXPECT_EQ(step_after(get("/socket", bearer + version + key + "Upgrade: websocket\r\n")), "426");
   EXPECT_EQ(step_after(get("/socket", bearer + version + key + "Connection: upgrade\r\nUpgrade: h2c\r\n")),
             "426");
+  // HTTP/1.0 knows no upgrade (RFC 9110, 7.8).
+  std::string old = socket_request(version + key);
+  old.replace(old.find("HTTP/1.1"), 8, "HTTP/1.0");
+  EXPECT_EQ(step_after(old), "426 last");
   EXPECT_EQ(step_after(socket_request(key)), "426");
   EXPECT_EQ(step_after(socket_request("Sec-WebSocket-Version: 8\r\n" + key)), "426");
   EXPECT_EQ(step_after(socket_request(version)), "400");

@@ -79,5 +79,18 @@ TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
   EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);
 }
 
+// Pixels that are not square, and a lens beside the middle.
+TEST(CameraSample, HasTheNumbersOfItsLensEachInItsPlace) {
+  const ViewedRigPtr rig =
+      viewed_rig(replaced(viewed_text, "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }",
+                          "lens = { fx = 80, fy = 90, cx = 30, cy = 20 }"));
+  const CameraSample sample = camera_sample(rig->cameras[0], {}, {0.1, -0.2, 1.5});
+  EXPECT_NEAR(sample.fx, 120, 1e-9);
+  EXPECT_NEAR(sample.fy, 135, 1e-9);
+  EXPECT_EQ(sample.cx, 30);
+  EXPECT_EQ(sample.cy, 20);
+  EXPECT_EQ(sample.head, (HeadState{0.1, -0.2, 1.5}));
+}
+
 }  // namespace
 }  // namespace flexura

@@ -43,6 +43,8 @@ BENCHMARK_CAPTURE(render, color_640x480, setting(640, 480), PixelKind::color);
 BENCHMARK_CAPTURE(render, gray_1920x1080, setting(1920, 1080), PixelKind::gray);
 BENCHMARK_CAPTURE(render, laboratory_gray_640x480, laboratory_setting(640, 480), PixelKind::gray);
 BENCHMARK_CAPTURE(render, laboratory_color_640x480, laboratory_setting(640, 480), PixelKind::color);
+BENCHMARK_CAPTURE(render, tapered_laboratory_gray_640x480, laboratory_setting(640, 480, 0.6),
+                  PixelKind::gray);
 BENCHMARK_CAPTURE(render_and_read, psf_and_noise_640x480, 640, 480);
 BENCHMARK_CAPTURE(render_and_read, psf_and_noise_1920x1080, 1920, 1080);
 

@@ -51,9 +51,14 @@ inline Setting setting(int width, int height) {
 }
 
 /// A laboratory's: the same arm, less bent and with twelve bands in three colours, seen from 2.5 m by one of
-/// two cameras, with the edges of both their screens.
-inline Setting laboratory_setting(int width, int height) {
-  const Arm arm = setting_arm();
+/// two cameras, with the edges of both their screens. `tip`: the radius there over that at the base; in
+/// between the arm tapers evenly.
+inline Setting laboratory_setting(int width, int height, double tip = 1) {
+  Arm arm = setting_arm();
+  const double sections = static_cast<double>(arm.sections.size());
+  for (std::size_t i = 0; i < arm.sections.size(); ++i)
+    for (std::size_t end = 0; end < 2; ++end)
+      arm.sections[i].radius[end] *= 1 + (tip - 1) * static_cast<double>(i + end) / sections;
   const ArmState state{{{0.6, 0.4}, {-0.8, 0.5}, {0.9, -0.6}}, {1, 1, 1}};
   Setting result;
   result.scene.arm.tube = tube_of(arm, Backbone(arm, state));

@@ -115,7 +115,7 @@ TEST(Coverage, OfTubesWhoseRadiusStepsIsThatOfManySamples) {
   errors.expect_small();
 }
 
-// Arms without taper are drawn the quick way, others the exact one.
+// Arms with taper and without.
 double taper_or_none(TestRandom& random, double taper) { return random.integer(0, 1) == 0 ? taper : 0; }
 
 // The arm in black, with rings in white.

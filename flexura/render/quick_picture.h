@@ -121,7 +121,7 @@ class QuickPicture {
   void leave_plane(const PlanePart& plane);
 
   bool plan_rims(const Stage& stage);
-  void fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const;
+  void fill_rim(const Stage& stage, const DiscPart& disc, const TubePiece& piece, SpanRim& rim) const;
   void find_rim(Rim& rim);
   void draw_discs(SpanRow& row);
   bool takes_rim(const Rim& rim, Pixel pixel);

@@ -42,12 +42,8 @@ double distance_between(const Eigen::Vector3d& p, const Eigen::Vector3d& u, cons
   return (w + a * u - b * v).norm();
 }
 
-double widest_of(const TubePiece& piece) {
-  return std::max(piece.radius, piece.radius + piece.widening * piece.length);
-}
-
 bool do_meet(const TubePiece& one, const TubePiece& other) {
-  const double reach = widest_of(one) + widest_of(other);
+  const double reach = one.widest() + other.widest();
   const Eigen::Vector3d middle = one.R_CP * one.bound_center, other_middle = other.R_CP * other.bound_center;
   const double apart = (one.p_CP + middle - other.p_CP - other_middle).norm();
   if (apart > one.bound_radius + other.bound_radius) return false;
@@ -65,7 +61,19 @@ bool is_etalon_alone(const Stage& stage) {
 }
 
 // Whether the quick way may take a piece so bent.
-bool is_gentle(const TubePiece& piece) { return piece.curvature * piece.radius < 0.5; }
+bool is_gentle(const TubePiece& piece) {
+  return piece.curvature * piece.widest() < 0.5 && std::abs(piece.widening) < 0.1;
+}
+
+// How far along the axis the contours of two pieces part that taper differently, m.
+double kink_of(const Stage& stage, const TubePiece& piece) {
+  double change = 0;
+  for (const int next : {piece.before, piece.after})
+    if (next >= 0)
+      change =
+          std::max(change, std::abs(stage.pieces[static_cast<std::size_t>(next)].widening - piece.widening));
+  return 2 * piece.widest() * change;
+}
 
 // Whether a screen comes into a ball.
 bool meets_screen(const Stage& stage, const Eigen::Vector3d& center, double radius) {
@@ -110,7 +118,7 @@ void QuickPicture::find_meetings(const Stage& stage) {
     bool is_gentle_between = true;
     for (std::size_t j = i + 1; j < pieces.size() && is_arm(pieces[j]); ++j) {
       const double gap = pieces[j].s - (pieces[i].s + pieces[i].length);
-      const bool is_near = gap < 1.25 * (widest_of(pieces[i]) + widest_of(pieces[j]));
+      const bool is_near = gap < 1.25 * (pieces[i].widest() + pieces[j].widest());
       const bool is_next = j == i + 1 || (is_near && is_gentle_between);
       if (!is_next && do_meet(pieces[i], pieces[j])) meets_[i] = meets_[j] = 1;
       is_gentle_between = is_gentle_between && is_gentle(pieces[j]);
@@ -126,7 +134,7 @@ bool QuickPicture::is_drawn_skin(const Stage& stage, const TubePiece& piece) con
 
 bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
-  const double widest = widest_of(piece);
+  const double widest = piece.widest();
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
@@ -143,9 +151,9 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   // An etalon's lines are wide: seen more from its end they are bent by more than its pixels' points tell.
   const bool is_etalon = stage.bodies[static_cast<std::size_t>(piece.body)].is_etalon;
   const double most_slant = is_etalon ? 0.5 : 0.9;  // Squares of cosines.
-  bool is_quick = is_drawn_skin(stage, piece) && !piece.is_ball && piece.widening == 0 &&
-                  slant * slant < most_slant && is_gentle(piece) && center.z() > 4 * piece.bound_radius &&
-                  is_near_picture(center) && !meets_screen(stage, center, piece.bound_radius);
+  bool is_quick = is_drawn_skin(stage, piece) && !piece.is_ball && slant * slant < most_slant &&
+                  is_gentle(piece) && center.z() > 4 * piece.bound_radius && is_near_picture(center) &&
+                  !meets_screen(stage, center, piece.bound_radius);
   if (is_quick) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];
@@ -154,8 +162,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
     // other.
     // And not so many that single precision, and what is drawn beyond an end, are seen.
     constexpr float most_pixels = 700;
-    is_quick = 2.1F * skin.piece.reach < skin.piece.radius &&
-               skin.piece.radius < most_pixels * skin.piece.reach && add_edges(stage, piece, skin);
+    is_quick = 2.1F * skin.piece.reach < number(piece.narrowest()) &&
+               number(widest) < most_pixels * skin.piece.reach && add_edges(stage, piece, skin);
   }
   if (!is_quick) {
     leave(*region);
@@ -197,15 +205,16 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   const double rise = normal.dot(d), scale = -1 / rise;
   span.way = linear(normal.dot(start - middle), depth0 * normal.dot(by_u), depth0 * normal.dot(by_v), scale);
   span.curvature = number(piece.curvature), span.radius = number(piece.radius);
+  span.widening = number(piece.widening), span.kink = number(kink_of(stage, piece));
   span.end_sine = number(piece.end_tangent.x()), span.end_cosine = number(piece.end_tangent.z());
   span.end_offset = number(piece.end_offset);
   const double pixel = (center.z() + piece.bound_radius) * pixel_;
   span.reach = span.bent_reach = number(0.9 * pixel);
   // The rays' rise over that plane changes across the image.
-  const double bend = piece.curvature * piece.radius, slant = std::abs(d.dot(chord)) / rise;
+  const double bend = piece.curvature * piece.widest(), slant = std::abs(d.dot(chord)) / rise;
   const double width = piece.bound_radius * piece.bound_radius / center.z();
   const double start_error = half_sagitta + slant * slant * width;
-  plan_steps(bend, 0.05 + bend + start_error / piece.radius, piece.radius / pixel, span);
+  plan_steps(bend, 0.05 + bend + start_error / piece.narrowest(), piece.widest() / pixel, span);
   span.ambient = number(light.ambient);
   span.channels = channels_;
 }

@@ -63,13 +63,14 @@ bool QuickPicture::plan_rims(const Stage& stage) {
     rim.rim.state = end.is_base ? state_base : state_tip;
     skin->piece.rims |= rim.rim.state;
     rim.depth = circle.center.z();
-    fill_rim(stage, disc, rim.rim);
+    fill_rim(stage, disc, stage.pieces[static_cast<std::size_t>(end.piece)], rim.rim);
     find_rim(rim);
   }
   return true;
 }
 
-void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& rim) const {
+void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const TubePiece& piece,
+                            SpanRim& rim) const {
   const Circle& circle = disc.circle;
   const double u0 = std::round(intrinsics_.fx * circle.center.x() / circle.center.z() + intrinsics_.cx);
   const double v0 = std::round(intrinsics_.fy * circle.center.y() / circle.center.z() + intrinsics_.cy);
@@ -87,6 +88,10 @@ void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, SpanRim& r
   // The skin at the rim in direction (x, y) is seen where it faces the camera. A pixel of the other half has
   // to be looked at where its half is near: beside the contour, and everywhere if the image is flat.
   rim.facing[0] = number(circle.x.dot(circle.center)), rim.facing[1] = number(circle.y.dot(circle.center));
+  // Where the tube tapers the skin's normals lean from those of the circle, along the tube.
+  const Eigen::Vector3d tangent =
+      rim.state == state_base ? Eigen::Vector3d(piece.R_CP.col(2)) : piece.R_CP * piece.end_tangent;
+  rim.skin_radius = number(circle.radius - piece.widening * tangent.dot(circle.center));
   const double distance = circle.center.norm();
   const double flat =
       circle.radius * std::abs(circle.normal.dot(circle.center)) / (distance * distance * pixel_);

@@ -35,18 +35,18 @@ struct RingAspect {
 RingAspect steepest_aspect(const TubePiece& piece) {
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const double along = std::abs((piece.R_CP * piece.bound_center).normalized().dot(center.normalized()));
-  return RingAspect(along + 0.5 * piece.curvature * piece.length + 2 * piece.radius / center.z());
+  return RingAspect(along + 0.5 * piece.curvature * piece.length + 2 * piece.widest() / center.z());
 }
 
 // Whether the plane of an edge that does not lie on the piece leaves its ends on one side.
 bool is_clear_of(const RingEdge& edge, const TubePiece& piece) {
-  const double slack = 1e-6 * piece.radius;
+  const double slack = 1e-6 * piece.widest();
   const bool is_before = edge.s<piece.s - slack, is_after = edge.s> piece.s + piece.length + slack;
   if (!is_before && !is_after) return true;
   const auto is_clear = [&](const Eigen::Vector3d& p_P, const Eigen::Vector3d& tangent_P) {
     const Eigen::Vector3d& normal = edge.circle.normal;
     const double beyond = normal.dot(piece.p_CP + piece.R_CP * p_P - edge.circle.center);
-    const double tilt = piece.radius * normal.cross(piece.R_CP * tangent_P).norm() - slack;
+    const double tilt = piece.widest() * normal.cross(piece.R_CP * tangent_P).norm() - slack;
     return is_before ? beyond > tilt : beyond < -tilt;
   };
   return is_clear({0, 0, 0}, {0, 0, 1}) && is_clear(2 * piece.bound_center, piece.end_tangent);
@@ -68,7 +68,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   if (body.is_etalon) return add_lines(stage, piece, skin);
   const ArmLook& arm = stage.scene->arm;
   const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
-  const double margin = std::max(8 * pixel, steepest_aspect(piece).reach(piece.radius, pixel));
+  const double margin = std::max(8 * pixel, steepest_aspect(piece).reach(piece.widest(), pixel));
   const auto& rings = stage.ring_edges;
   const auto begin = std::ranges::lower_bound(rings, piece.s - margin, {}, &RingEdge::s);
   const auto end = std::ranges::upper_bound(rings, piece.s + piece.length + margin, {}, &RingEdge::s);
@@ -85,8 +85,8 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
     if (!is_clear_of(*ring, piece)) return false;
     const Circle& circle = ring->circle;
     const RingAspect aspect(std::abs(circle.normal.dot(circle.center.normalized())) +
-                            2 * piece.radius / circle.center.z());
-    skin.piece.bent_reach = std::max(skin.piece.bent_reach, number(aspect.bent_reach(piece.radius, pixel)));
+                            2 * piece.widest() / circle.center.z());
+    skin.piece.bent_reach = std::max(skin.piece.bent_reach, number(aspect.bent_reach(piece.widest(), pixel)));
     // Points within a pixel do not tell rings finer than pixels apart.
     constexpr double finest = 1.5;  // px
     is_fine = is_fine || aspect.sine * (ring->s - s_before) < finest * pixel;
@@ -97,7 +97,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
     SpanEdge edge{};
     for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = number(normal[i]);
     edge.offset = number(circle.normal.dot(circle.center - piece.p_CP));
-    edge.far = number(aspect.reach(piece.radius, pixel));
+    edge.far = number(aspect.reach(piece.widest(), pixel));
     set_channels(after - before, edge.change);
     edges_.push_back(edge);
     before = after;
@@ -120,14 +120,14 @@ bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& s
   if (etalon.line_width < finest * pixel || half_angle > widest) return leave_lines(stage);
   // d px within the contour an edge runs off by x^2 / (4 d) in x px.
   constexpr double bent = 6;  // px
-  skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.radius, bent * pixel)));
+  skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.widest(), bent * pixel)));
   for (const int axis : {0, 2}) {
     const Eigen::Vector3d normal = piece.R_CP.transpose() * stage.X_CE.rotation.col(axis);
     for (const double side : {-1.0, 1.0}) {
       SpanEdge& edge = edges_.emplace_back();
       for (Eigen::Index i = 0; i < 3; ++i) edge.normal[i] = number(normal[i]);
       edge.offset = number(side * etalon.radius * std::sin(half_angle));
-      edge.far = number(pixel + std::sqrt(2.8 * piece.radius * pixel));
+      edge.far = number(pixel + std::sqrt(2.8 * piece.widest() * pixel));
       set_channels(-side * (etalon.line_albedo - etalon.albedo), edge.change);
     }
   }

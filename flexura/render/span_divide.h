@@ -12,16 +12,30 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
 }
 
 // The part of the pixel within the tube's contour, from where the ray comes nearest to the centreline.
-[[gnu::always_inline]] inline SquarePart part_within(const SpanPiece& piece, const RayLanes& ray,
+template <bool is_tapered>
+[[gnu::always_inline]] inline SquarePart part_within(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                                      const Place& place, const Lowest& lowest) {
-  const float radius = piece.radius;
+  const auto radius = [&] {
+    if constexpr (is_tapered)
+      return lowest.radius;
+    else
+      return piece.radius;
+  }();
   // Of sqrt(h^2 + y^2), which is the radius on the contour. On the centreline, which is in here where the
   // tube is a few pixels wide, there is no gradient; that is far within.
-  const Wide distance = square_root(at_least(1e-6f * radius * radius, lowest.value + radius * radius));
+  const float least = 1e-6f * piece.radius * piece.radius;
+  const Wide distance = square_root(at_least(least, lowest.value + radius * radius));
   const Wide gap = distance - radius;
   const Vector near = along(ray.point, ray.direction, lowest.t);
-  const Wide h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2), k = piece.curvature;
-  const Vector gradient{h * (k * near.x - 1), near.y * (1 + k * h), h * (k * near.z)};
+  const Wide k = piece.curvature;
+  Wide h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2);
+  if (is_tapered) h -= 0.5f * k * (radius * radius);
+  Vector gradient{h * (k * near.x - 1), near.y * (1 + k * h), h * (k * near.z)};
+  if (is_tapered) {
+    const Girth girth = girth_at(piece, near);
+    const Wide factor = k * h * radius + distance;
+    gradient.x -= factor * girth.by_x, gradient.z -= factor * girth.by_z;
+  }
   const Wide scale = (ray.depth + lowest.t) / distance;
   const auto slope = [&](float Linear::* by) {
     const float d[3] = {piece.direction[0].*by, piece.direction[1].*by, piece.direction[2].*by};
@@ -40,11 +54,11 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
                      gap * steepness - bending / (24 * larger_square(normal_u, normal_v)));
 }
 
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders) {
   for (std::size_t i = 0; i < span_step; i += wide_lanes) {
     const Place place = place_of(places, i, piece.u0, piece.v0);
-    const RayLanes ray = ray_of(piece, place);
+    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering + 2);
     const SquarePart within = part_within(piece, ray, place, lowest);
     // In the middle of what is within.
@@ -53,7 +67,7 @@ void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixel
     const Wide x = choose(is_some, within.x, Wide(0)), y = choose(is_some, within.y, Wide(0));
     inner_place.u += place.u_by_u * x + place.u_by_v * y;
     inner_place.v += place.v_by_u * x + place.v_by_v * y;
-    const RayLanes inner = ray_of(piece, inner_place);
+    const RayLanes<is_tapered> inner = ray_of<is_tapered>(piece, inner_place);
     const Lowest inner_lowest = lowest_of(piece, inner, piece.centering + 1);
     const Entry inner_entry = entry_of(piece, inner, inner_lowest);
     const Vector p = along(inner.point, inner.direction, inner_entry.t);
@@ -80,7 +94,12 @@ void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixel
 }
 
 void divide(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders) {
-  piece.channels == 1 ? divide_pixels<1>(piece, places, borders) : divide_pixels<3>(piece, places, borders);
+  if (piece.widening != 0)
+    piece.channels == 1 ? divide_pixels<1, true>(piece, places, borders)
+                        : divide_pixels<3, true>(piece, places, borders);
+  else
+    piece.channels == 1 ? divide_pixels<1, false>(piece, places, borders)
+                        : divide_pixels<3, false>(piece, places, borders);
 }
 
 // Points evenly spread over the pixel, from its middle: a lattice of the golden ratio.
@@ -100,7 +119,7 @@ constexpr Lattice<64> few_points;
 constexpr Lattice<256> many_points;
 
 // The sums go by the points' numbers modulo span_step, so that the width does not change their order.
-template <std::size_t channels, std::size_t count>
+template <std::size_t channels, bool is_tapered, std::size_t count>
 bool sample_at(const Lattice<count>& points, const SpanPiece& piece, const SpanPlaces& places,
                std::size_t index, float* light) {
   const float u_by_u = places.u_by_u[index], u_by_v = places.u_by_v[index];
@@ -113,7 +132,7 @@ bool sample_at(const Lattice<count>& points, const SpanPiece& piece, const SpanP
     Place place{};
     place.u = x * u_by_u + y * u_by_v + (places.u[index] - piece.u0);
     place.v = x * v_by_u + y * v_by_v + (places.v[index] - piece.v0);
-    const RayLanes ray = ray_of(piece, place);
+    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
     const WideMask is_inside = lowest.value < 0;
     const Entry entry = entry_of(piece, ray, lowest);
@@ -134,19 +153,22 @@ bool sample_at(const Lattice<count>& points, const SpanPiece& piece, const SpanP
   return !any(~is_sure);
 }
 
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 bool sample_pixel(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
   // Colours that differ little need few points.
   bool is_faint = true;
   for (std::size_t j = 0; j < piece.edge_count; ++j)
     for (const float change : piece.edges[j].change) is_faint &= change * change < 0.15f * 0.15f;
-  return is_faint ? sample_at<channels>(few_points, piece, places, index, light)
-                  : sample_at<channels>(many_points, piece, places, index, light);
+  return is_faint ? sample_at<channels, is_tapered>(few_points, piece, places, index, light)
+                  : sample_at<channels, is_tapered>(many_points, piece, places, index, light);
 }
 
 bool sample(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
-  return piece.channels == 1 ? sample_pixel<1>(piece, places, index, light)
-                             : sample_pixel<3>(piece, places, index, light);
+  if (piece.widening != 0)
+    return piece.channels == 1 ? sample_pixel<1, true>(piece, places, index, light)
+                               : sample_pixel<3, true>(piece, places, index, light);
+  return piece.channels == 1 ? sample_pixel<1, false>(piece, places, index, light)
+                             : sample_pixel<3, false>(piece, places, index, light);
 }
 
 }  // namespace

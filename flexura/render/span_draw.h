@@ -33,7 +33,8 @@ template <typename Visit>
 }
 
 // Pixels that the kernel cannot be sure of, where the piece may be.
-[[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes& ray,
+template <bool is_tapered>
+[[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const WideMask& is_unsure, int u, SpanRow& row) {
   const WideMask is_lost = is_unsure & is_within(piece, ray.point, 2 * piece.radius);
   if (!any(is_lost)) return;
@@ -64,16 +65,25 @@ template <typename Visit>
 }
 
 // `piece` is a copy, which no store can change: what is the same in all the row is worked out once.
-template <std::size_t channels, bool is_straight>
+template <std::size_t channels, bool is_straight, bool is_tapered>
 void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const float radius = piece.radius, reach = piece.reach;
-  const float near = reach * (2 * radius + reach), inside = -reach * (2 * radius - reach);
-  const float deep = -piece.bent_reach * (2 * radius - piece.bent_reach);
+  // What H is at gaps of +reach, -reach and -bent_reach.
+  const auto near_of = [=](auto r) { return reach * (2 * r + reach); };
+  const auto inside_of = [=](auto r) { return -reach * (2 * r - reach); };
+  const auto deep_of = [&](auto r) { return -piece.bent_reach * (2 * r - piece.bent_reach); };
   float *const depths = row.depth, *const lights = row.light;
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
     const Place place = place_of<is_straight>(row, u, piece.u0, piece.v0);
-    const RayLanes ray = ray_of(piece, place);
+    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering);
+    const auto here_radius = [&] {
+      if constexpr (is_tapered)
+        return lowest.radius;
+      else
+        return radius;
+    }();
+    const auto near = near_of(here_radius), inside = inside_of(here_radius), deep = deep_of(here_radius);
     const WideMask is_near = lowest.value < near;
     if (!any(is_near | ~lowest.is_sure)) return;
     const Entry entry = entry_of(piece, ray, lowest);
@@ -87,15 +97,15 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     if (any(is_border)) {
       // Where the bend changes, each of two pieces may see the ray pass beside the other: in that fifth of a
       // pixel both take it, and what two have taken is left.
-      const WideMask is_passing =
-          is_within(piece, along(ray.point, ray.direction, lowest.t), overlap * radius + 0.2f * reach);
+      const WideMask is_passing = is_within(piece, along(ray.point, ray.direction, lowest.t),
+                                            overlap * radius + 0.2f * reach + piece.kink);
       add_borders(is_border & is_asked & (is_passing | (is_here & (lowest.value < 0))), u, row);
     }
     const Wide depth = ray.depth + entry.t, before = wide_load(depths + u);
     const WideMask is_there = is_inside & is_settled & is_here & is_asked;
     leave_edges(is_there, u, row);
     WideMask is_drawn = is_there & (depth < before);
-    if (deep < inside && any(is_drawn & (lowest.value >= deep))) {
+    if (piece.bent_reach > reach && any(is_drawn & (lowest.value >= deep))) {
       const WideMask is_bent = is_drawn & (lowest.value >= deep) & is_at_edge(piece, p);
       if (any(is_bent)) add_borders(is_bent, u, row);
       is_drawn &= ~is_bent;
@@ -110,12 +120,19 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   });
 }
 
-void draw(const SpanPiece& piece, int begin, int end, SpanRow& row) {
+template <bool is_tapered>
+void draw_tube(const SpanPiece& piece, int begin, int end, SpanRow& row) {
   const bool is_straight = row.lens.u == nullptr;
   if (piece.channels == 1)
-    is_straight ? draw_skin<1, true>(piece, begin, end, row) : draw_skin<1, false>(piece, begin, end, row);
+    is_straight ? draw_skin<1, true, is_tapered>(piece, begin, end, row)
+                : draw_skin<1, false, is_tapered>(piece, begin, end, row);
   else
-    is_straight ? draw_skin<3, true>(piece, begin, end, row) : draw_skin<3, false>(piece, begin, end, row);
+    is_straight ? draw_skin<3, true, is_tapered>(piece, begin, end, row)
+                : draw_skin<3, false, is_tapered>(piece, begin, end, row);
+}
+
+void draw(const SpanPiece& piece, int begin, int end, SpanRow& row) {
+  piece.widening != 0 ? draw_tube<true>(piece, begin, end, row) : draw_tube<false>(piece, begin, end, row);
 }
 
 template <std::size_t channels, bool is_straight>

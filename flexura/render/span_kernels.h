@@ -57,13 +57,15 @@ struct SpanEdge {
   float change[3];  ///< Of the albedo, beyond it.
 };
 
-/// A piece of tube of one radius in its own frame (docs/renderer.md), as the pixels near (u0, v0) see it: the
+/// A piece of tube in its own frame (docs/renderer.md), as the pixels near (u0, v0) see it: the
 /// points of their rays at depth0, and their directions.
 struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
   Linear way;  ///< From there about to the plane along the piece's middle that faces the camera, m of depth.
-  float curvature, radius;
+  float curvature, radius, widening;  ///< The radius at its start, and by how much it grows by arc length;
+  float kink;  ///< m along the axis: as far beyond its ends a contour may be its own, for its neighbours
+               ///< taper otherwise.
   float end_sine, end_cosine, end_offset;
   float reach;         ///< m: contours this near may divide the pixel,
   float bent_reach;    ///< and edges of rings and lines that are this near to a contour, within, are bent; no
@@ -86,9 +88,10 @@ struct SpanRim {
   float u0, v0;
   Linear x, y, z;
   Linear nearness;  ///< 1/depth of the plane.
-  /// The skin at the rim is seen where (x, y) . facing is below minus the tube's radius (m) times the length
-  /// of (x, y); `margin` (m) times it makes sure.
-  float facing[2], margin;
+  /// The skin at the rim is seen where (x, y) . facing is below minus `skin_radius` (m) times the length of
+  /// (x, y); `margin` (m) times it makes sure. It is the tube's radius, and, where the tube tapers, by how
+  /// much its skin turns to the camera.
+  float facing[2], skin_radius, margin;
   float light[3];
   bool is_front;     ///< Seen itself.
   PixelState state;  ///< Of its rim.

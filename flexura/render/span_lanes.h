@@ -12,7 +12,9 @@
 // With the centreline's circle through the origin, tangent to z, its centre at x = 1/curvature, a point p is
 // on the tube of radius r where
 //   H = h^2 + y^2 - r^2 = 0,  h = curvature (|p|^2 - r^2) / 2 - x:
-// on the tube h is the distance from the circle's cylinder, and along a ray H is a polynomial.
+// on the tube h is the distance from the circle's cylinder, and along a ray H is a polynomial. A tapered
+// tube's r is that at the foot of p on the centreline; what is asked of constant r is done without, for
+// speed.
 namespace flexura {
 namespace {
 
@@ -64,7 +66,8 @@ template <bool is_straight>
           wide_load(places.u_by_v + i), wide_load(places.v_by_u + i), wide_load(places.v_by_v + i)};
 }
 
-// A ray, and H along it from `point` on: h = h0 + h1 t + h2 t^2.
+// A ray, and h along it from `point` on: h0 + h1 t + h2 t^2, of a tapered tube without its radius.
+template <bool is_tapered>
 struct RayLanes {
   Vector point, direction;
   Wide depth;  // Of the point.
@@ -72,48 +75,91 @@ struct RayLanes {
 };
 
 // From a point close to the piece's middle.
-[[gnu::always_inline]] inline RayLanes ray_of(const SpanPiece& piece, const Place& place) {
-  RayLanes ray;
+template <bool is_tapered>
+[[gnu::always_inline]] inline RayLanes<is_tapered> ray_of(const SpanPiece& piece, const Place& place) {
+  RayLanes<is_tapered> ray;
   const Vector start{at(piece.point[0], place), at(piece.point[1], place), at(piece.point[2], place)};
   const Vector& d = ray.direction = {at(piece.direction[0], place), at(piece.direction[1], place),
                                      at(piece.direction[2], place)};
   const Wide way = at(piece.way, place);
   const Vector& p = ray.point = along(start, d, way);
   ray.depth = piece.depth0 + way;
-  const float k = piece.curvature, half = 0.5f * k, square = piece.radius * piece.radius;
+  const float k = piece.curvature, half = 0.5f * k, square = is_tapered ? 0 : piece.radius * piece.radius;
   ray.h0 = half * (dot(p, p) - square) - p.x;
   ray.h1 = k * dot(p, d) - d.x;
   ray.h2 = half * dot(d, d);
   return ray;
 }
 
-// H, and half of its derivatives.
-struct Height {
-  Wide value, slope, curving;
+// atan(x) / x of x^2 up to 1 (M. Abramowitz, I. Stegun, 4.4.49: to 2e-8); as of 1 beyond.
+[[gnu::always_inline]] inline Wide arc_by_tangent(const Wide& x_square) {
+  const Wide q = choose(x_square < 1, x_square, Wide(1));
+  return 1 + q * (-0.3333314528f +
+                  q * (0.1999355085f +
+                       q * (-0.1420889944f +
+                            q * (0.1065626393f +
+                                 q * (-0.0752896400f +
+                                      q * (0.0429096138f + q * (-0.0161657367f + q * 0.0028662257f)))))));
+}
+
+// The radius of the tube at the foot of p, and how it changes there by arc length over the length along p.
+struct Girth {
+  Wide radius;
+  Wide by_x, by_z;  // Its gradient.
 };
-[[gnu::always_inline]] inline Height height(const RayLanes& ray, float square, const Wide& t) {
+[[gnu::always_inline]] inline Girth girth_at(const SpanPiece& piece, const Vector& p) {
+  const Wide opposite = piece.curvature * p.z, adjacent = at_least(0.1f, 1 - piece.curvature * p.x),
+             inverse = 1 / adjacent, ratio = opposite * inverse, square = ratio * ratio;
+  const Wide slope = piece.widening * inverse * inverse / (1 + square);
+  return {piece.radius + piece.widening * (p.z * inverse) * arc_by_tangent(square), slope * opposite,
+          slope * adjacent};
+}
+
+// H, half of its derivatives, and the radius.
+struct Height {
+  Wide value, slope, curving, radius;
+};
+[[gnu::always_inline]] inline Height height(const SpanPiece& piece, const RayLanes<false>& ray,
+                                            const Wide& t) {
+  const float square = piece.radius * piece.radius;
   const Wide way = ray.h2 * t, h = ray.h0 + t * (ray.h1 + way), h_slope = ray.h1 + 2 * way;
   const Wide y = ray.point.y + t * ray.direction.y;
   return {h * h + y * y - square, h * h_slope + y * ray.direction.y,
-          h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y};
+          h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y, piece.radius};
+}
+// Of the radius the first derivative: along a ray it hardly bends.
+[[gnu::always_inline]] inline Height height(const SpanPiece& piece, const RayLanes<true>& ray,
+                                            const Wide& t) {
+  const Vector& d = ray.direction;
+  const Vector p = along(ray.point, d, t);
+  const Girth girth = girth_at(piece, p);
+  const float k = piece.curvature;
+  const Wide r = girth.radius, r_slope = girth.by_x * d.x + girth.by_z * d.z;
+  const Wide way = ray.h2 * t, h = ray.h0 + t * (ray.h1 + way) - 0.5f * k * r * r,
+             h_slope = ray.h1 + 2 * way - k * r * r_slope, h_curving = 2 * ray.h2 - k * r_slope * r_slope;
+  return {h * h + p.y * p.y - r * r, h * h_slope + p.y * d.y - r * r_slope,
+          h_slope * h_slope + h * h_curving + d.y * d.y - r_slope * r_slope, r};
 }
 
-// Where H is least, and what it is there.
+// Where H is least, what it is there, and the radius.
 struct Lowest {
-  Wide t, value, half_chord;
+  Wide t, value, half_chord, radius;
   WideMask is_sure;
 };
-[[gnu::always_inline]] inline Lowest lowest_of(const SpanPiece& piece, const RayLanes& ray, int steps) {
-  const float square = piece.radius * piece.radius;
+template <bool is_tapered>
+[[gnu::always_inline]] inline Lowest lowest_of(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
+                                               int steps) {
   Wide t = 0;
   for (int i = 1; i < steps; ++i) {
-    const Height here = height(ray, square, t);
+    const Height here = height(piece, ray, t);
     t -= here.slope / here.curving;
   }
-  const Height here = height(ray, square, t);
+  const Height here = height(piece, ray, t);
   const Wide scale = 1 / here.curving, move = here.slope * scale, value = here.value - here.slope * move;
-  return {t - move, value, square_root(at_least(0, -(value * scale))),
-          (here.curving > 0) & (size_of(move) <= piece.largest_move)};
+  Lowest lowest{t - move, value, square_root(at_least(0, -(value * scale))), here.radius,
+                (here.curving > 0) & (size_of(move) <= piece.largest_move)};
+  if (is_tapered) lowest.radius = girth_at(piece, along(ray.point, ray.direction, lowest.t)).radius;
+  return lowest;
 }
 
 // Where the ray enters, if it does; how far the last step went, m, or, where H does not fall, how far that is
@@ -121,12 +167,12 @@ struct Lowest {
 struct Entry {
   Wide t, move;
 };
-[[gnu::always_inline]] inline Entry entry_of(const SpanPiece& piece, const RayLanes& ray,
+template <bool is_tapered>
+[[gnu::always_inline]] inline Entry entry_of(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                              const Lowest& lowest) {
-  const float square = piece.radius * piece.radius;
   Wide t = lowest.t - lowest.half_chord, move = {};
   for (int i = 0; i < piece.refining; ++i) {
-    const Height here = height(ray, square, t);
+    const Height here = height(piece, ray, t);
     const WideMask is_falling = here.slope < 0;
     const Wide step = choose(is_falling, 0.5f * here.value / here.slope, 0);
     t -= step;
@@ -143,12 +189,23 @@ struct Entry {
 // By which pieces overlap, of their radius.
 constexpr float overlap = 1e-3f;
 
-// The normal, times the radius, of the tube at p on it.
-[[gnu::always_inline]] inline Vector normal_of(const SpanPiece& piece, const RayLanes& ray, const Vector& p,
-                                               const Wide& t) {
+// The normal, times the radius at the piece's start, of the tube at p on it.
+[[gnu::always_inline]] inline Vector normal_of(const SpanPiece& piece, const RayLanes<false>& ray,
+                                               const Vector& p, const Wide& t) {
   const Wide h = ray.h0 + t * (ray.h1 + t * ray.h2);
   const Wide scale = h / (1 + piece.curvature * h);
   return {scale * (piece.curvature * p.x - 1), p.y, scale * (piece.curvature * p.z)};
+}
+[[gnu::always_inline]] inline Vector normal_of(const SpanPiece& piece, const RayLanes<true>& ray,
+                                               const Vector& p, const Wide& t) {
+  const Girth girth = girth_at(piece, p);
+  const Wide r = girth.radius;
+  const Wide h = ray.h0 + t * (ray.h1 + t * ray.h2) - 0.5f * piece.curvature * r * r;
+  const Wide scale = h / (1 + piece.curvature * h);
+  const Vector out{scale * (piece.curvature * p.x - 1) - r * girth.by_x, p.y,
+                   scale * (piece.curvature * p.z) - r * girth.by_z};
+  const Wide size = piece.radius / square_root(at_least(1e-30f, dot(out, out)));
+  return {size * out.x, size * out.y, size * out.z};
 }
 
 // The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length
@@ -190,9 +247,11 @@ struct SquarePart {
 }
 
 // The share of the pixel beyond the edge, from the distance in space and how it changes in the image.
+template <bool is_tapered>
 [[gnu::always_inline]] inline Wide share_beyond(const SpanPiece& piece, const SpanEdge& edge,
-                                                const RayLanes& ray, const Place& place, const Wide& depth,
-                                                const Vector& normal, const Wide& distance) {
+                                                const RayLanes<is_tapered>& ray, const Place& place,
+                                                const Wide& depth, const Vector& normal,
+                                                const Wide& distance) {
   const Wide along_ray = dot(ray.direction, edge.normal);
   const Wide slant = along_ray / dot(normal, ray.direction);
   const auto slope = [&](float Linear::* by) {
@@ -207,10 +266,10 @@ struct SquarePart {
 }
 
 // The light of the skin at p, channel by channel; of its pixel, or of the point alone.
-template <bool is_pixel, std::size_t channels>
-[[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes& ray, const Place& place,
-                                              const Wide& depth, const Vector& p, const Vector& normal,
-                                              Wide (&light)[channels]) {
+template <bool is_pixel, std::size_t channels, bool is_tapered>
+[[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
+                                              const Place& place, const Wide& depth, const Vector& p,
+                                              const Vector& normal, Wide (&light)[channels]) {
   for (std::size_t c = 0; c < channels; ++c) light[c] = piece.albedo[c];
   for (std::size_t i = 0; i < piece.edge_count; ++i) {
     const SpanEdge& edge = piece.edges[i];

@@ -18,12 +18,12 @@ struct SkinPart {
   WideMask is_simple;
   Wide light[channels];
 };
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 [[gnu::always_inline]] inline SkinPart<channels> skin_part(const SpanPiece& piece, Place place, const Wide& x,
                                                            const Wide& y) {
   place.u += place.u_by_u * x + place.u_by_v * y;
   place.v += place.v_by_u * x + place.v_by_v * y;
-  const RayLanes ray = ray_of(piece, place);
+  const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
   const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
   const Entry entry = entry_of(piece, ray, lowest);
   const Vector p = along(ray.point, ray.direction, entry.t);
@@ -37,7 +37,7 @@ template <std::size_t channels>
 
 // Pixels that the rim alone divides: an end in front of its skin or of what is behind the arm, or skin that
 // ends there. The tube's contour is far from them.
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels) {
   constexpr float sharpest = 0.2f, flattest = 0.8f;  // 1/px
   const float gap = 2 * piece.reach;                 // Nearly two pixels.
@@ -48,8 +48,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const SquarePart within =
         part_beyond(-line.normal_u, -line.normal_v,
                     line.bending / (24 * larger_square(line.normal_u, line.normal_v)) - line.distance);
-    const WideMask is_skin_side = is_skin_seen(rim, piece.radius, line.at), is_in_disc = line.at.value < 0;
-    const RayLanes ray = ray_of(piece, place);
+    const WideMask is_skin_side = is_skin_seen(rim, line.at), is_in_disc = line.at.value < 0;
+    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
     const Entry entry = entry_of(piece, ray, lowest);
     // The skin is beyond the rim of an end that is seen, and within that of one that is not.
@@ -57,10 +57,11 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const Wide factor = rim.is_front ? turn : Wide(1);
     const WideMask is_some = rim.is_front ? outside > 1e-6f : within.area > 0;
     const auto toward = [&](const Wide& x) { return choose(is_some, factor * x, Wide(0)); };
-    const SkinPart<channels> skin = skin_part<channels>(piece, place, toward(within.x), toward(within.y));
+    const SkinPart<channels> skin =
+        skin_part<channels, is_tapered>(piece, place, toward(within.x), toward(within.y));
     const WideMask is_skin_known = ~is_some | (skin.is_simple & (size_of(entry.move) < piece.settled));
     const WideMask is_known = rim.is_front ? is_skin_known | ~is_skin_side : is_skin_known & is_skin_side;
-    const WideMask is_plain = is_known & lowest.is_sure & (lowest.value < -gap * (2 * piece.radius - gap)) &
+    const WideMask is_plain = is_known & lowest.is_sure & (lowest.value < -gap * (2 * lowest.radius - gap)) &
                               (size_of(line.bending) < sharpest) & (size_of(line.flatness) < flattest) &
                               (line.at.z > 0);
     store_flags(is_plain, pixels.is_plain + i);
@@ -77,8 +78,12 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
 }
 
 void divide_rim(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels) {
-  piece.channels == 1 ? divide_plain<1>(rim, piece, places, pixels)
-                      : divide_plain<3>(rim, piece, places, pixels);
+  if (piece.widening != 0)
+    piece.channels == 1 ? divide_plain<1, true>(rim, piece, places, pixels)
+                        : divide_plain<3, true>(rim, piece, places, pixels);
+  else
+    piece.channels == 1 ? divide_plain<1, false>(rim, piece, places, pixels)
+                        : divide_plain<3, false>(rim, piece, places, pixels);
 }
 
 // What of the end and of its tube the rays see.
@@ -87,13 +92,13 @@ struct EndSeen {
   WideMask is_some, is_sure;
   Wide depth, light[channels];
 };
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 [[gnu::always_inline]] inline EndSeen<channels> see_end(const SpanRim& rim, const SpanPiece& piece,
                                                         const Place& pixel) {
   const Place on_rim = counted_from(pixel, rim.u0, rim.v0), place = counted_from(pixel, piece.u0, piece.v0);
   const RimPoint at_rim = rim_point(rim, on_rim);
   const WideMask is_disc = (at_rim.value < 0) & (at_rim.z > 0) & WideMask(rim.is_front);
-  const RayLanes ray = ray_of(piece, place);
+  const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
   const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
   const Entry entry = entry_of(piece, ray, lowest);
   const Vector p = along(ray.point, ray.direction, entry.t);
@@ -110,7 +115,7 @@ template <std::size_t channels>
   return seen;
 }
 
-template <std::size_t channels>
+template <std::size_t channels, bool is_tapered>
 bool sample_rim_at(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
                    RimPixels& pixels) {
   const Place middle{places.u[index],      places.v[index],      places.u_by_u[index],
@@ -125,13 +130,13 @@ bool sample_rim_at(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces&
     Place place = middle;
     place.u += x * middle.u_by_u + y * middle.u_by_v;
     place.v += x * middle.v_by_u + y * middle.v_by_v;
-    const EndSeen<channels> seen = see_end<channels>(rim, piece, place);
+    const EndSeen<channels> seen = see_end<channels, is_tapered>(rim, piece, place);
     Wide(&sum)[channels + 1] = sums[i / wide_lanes % (span_step / wide_lanes)];
     for (std::size_t c = 0; c < channels; ++c) sum[c] += seen.light[c];
     sum[channels] += choose(seen.is_some, 1, 0);
     is_sure &= seen.is_sure;
   }
-  const EndSeen<channels> seen = see_end<channels>(rim, piece, middle);
+  const EndSeen<channels> seen = see_end<channels, is_tapered>(rim, piece, middle);
   float values[span_step];
   store(values, choose(seen.is_some, seen.depth, __builtin_inff()));
   pixels.depth[index] = values[0];
@@ -147,8 +152,11 @@ bool sample_rim_at(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces&
 
 bool sample_rim(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
                 RimPixels& pixels) {
-  return piece.channels == 1 ? sample_rim_at<1>(rim, piece, places, index, pixels)
-                             : sample_rim_at<3>(rim, piece, places, index, pixels);
+  if (piece.widening != 0)
+    return piece.channels == 1 ? sample_rim_at<1, true>(rim, piece, places, index, pixels)
+                               : sample_rim_at<3, true>(rim, piece, places, index, pixels);
+  return piece.channels == 1 ? sample_rim_at<1, false>(rim, piece, places, index, pixels)
+                             : sample_rim_at<3, false>(rim, piece, places, index, pixels);
 }
 
 }  // namespace

@@ -26,8 +26,7 @@ void complete(TubePiece& piece, double pixel) {
   }
   // An arc of less than half a turn lies in the ball that has its chord as a diameter.
   piece.bound_center = 0.5 * end;
-  piece.bound_radius =
-      0.5 * end.norm() + std::max(piece.radius, piece.radius + piece.widening * piece.length);
+  piece.bound_radius = 0.5 * end.norm() + piece.widest();
   const double farthest = (piece.bound_center - piece.p_PC).norm() + piece.bound_radius;
   piece.near_radius = piece.bound_radius + near_miss * pixel * farthest;
 }

@@ -54,7 +54,7 @@ bool may_touch(const Cone& cone, const Eigen::Vector3d& p, const Eigen::Vector3d
 bool may_touch(const Cone& cone, const TubePiece& piece) {
   // An arc of up to 30 degrees stays within a fifteenth of its length from its chord.
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
-  const double widest = std::max(piece.radius, piece.radius + piece.widening * piece.length);
+  const double widest = piece.widest();
   return may_touch(cone, piece.p_CP, end, widest + piece.length * piece.length * piece.curvature / 8);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -34,6 +35,11 @@ struct TubePiece {
   double near_radius = 0;    ///< m, and of one that holds all that passes near it in the image too.
   std::size_t tube_arc = 0;  ///< Where it was cut from,
   double start_in_arc = 0;   ///< m from that arc's start.
+
+  /// Its radius at the end, and at the end where it is wider, or narrower, m.
+  [[nodiscard]] double end_radius() const { return radius + widening * length; }
+  [[nodiscard]] double widest() const { return std::max(radius, end_radius()); }
+  [[nodiscard]] double narrowest() const { return std::min(radius, end_radius()); }
 };
 
 /// A ray in a piece's frame; `depth` is what its direction is multiplied by.

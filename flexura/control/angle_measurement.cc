@@ -37,12 +37,15 @@ void MeasuredCoordinates::take(const Eigen::VectorXd& x, const Eigen::VectorXd& 
   moments_.push_back({now, x, v});
   while (moments_.size() > 1 && moments_[1].time <= now - measurement_.delay) moments_.pop_front();
   seen_ = at(now - measurement_.delay);
-  for (Eigen::Index i = 0; i < 2 * nodes_; ++i) {
-    const double noise = measurement_.noise[static_cast<std::size_t>(i / nodes_)];
-    if (noise > 0)
-      seen_[i] += noise * normal_deviate(measurement_.seed, count_, static_cast<std::uint64_t>(i));
-  }
   ++count_;
+  if (measurement_.reading == AngleReading::planes) return;
+  for (Eigen::Index i = 0; i < 2 * nodes_; ++i)
+    seen_[i] +=
+        measurement_.noise[static_cast<std::size_t>(i / nodes_)] * deviate(static_cast<std::uint64_t>(i));
+}
+
+double MeasuredCoordinates::deviate(std::uint64_t which) const {
+  return normal_deviate(measurement_.seed, count_ - 1, which);
 }
 
 // Between two moments on the cubic that has their places and rates.

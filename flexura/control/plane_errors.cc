@@ -31,6 +31,13 @@ PlaneView plane_view(double theta, double q) {
   return {theta, std::atan2(std::sin(q), std::cos(theta) * std::cos(q))};
 }
 
+bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired) {
+  const auto is_told = [](const Eigen::Vector2d& angles) {
+    return std::abs(std::cos(angles[0])) >= least_cosine && std::cos(angles[1]) >= least_cosine;
+  };
+  return is_told(measured) && is_told(desired) && std::cos(measured[0]) * std::cos(desired[0]) > 0;
+}
+
 PlaneError plane_error(const PlaneView& measured, const PlaneView& desired) {
   PlaneError error = measured_angles(measured);
   const double e_1 = measured.alpha_1 - desired.alpha_1, e_2 = measured.alpha_2 - desired.alpha_2;

@@ -25,6 +25,11 @@ struct PlaneError {
   bool is_singular = false;
 };
 
+/// Whether the planes tell the way from one direction to another, each of the angles theta and q, rad: both
+/// at least 10 degrees from a quarter turn of either angle, and no quarter turn of theta between them. Where
+/// they do not, both pictures have to be triangulated.
+[[nodiscard]] bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
+
 /// With the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 - alpha_2d taken over to the angles by
 /// the derivative at the measured ones, as the paper's section 2 has it:
 ///   e_theta = e_1,

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -42,14 +43,18 @@ PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, c
     given_ = drives * drives.completeOrthogonalDecomposition().pseudoInverse();
   }
   if (measurement) measured_.emplace(*measurement, arm.nodes());
+  if (measurement && measurement->reading == AngleReading::planes)
+    planes_.emplace(arm, law.target(), measurement->noise);
   motion_.start(start);
   if (!is_regular(motion_.arm())) stopped_ = reason();
 }
 
 double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
                            Eigen::VectorXd& Q) {
-  if (measured_ && measured_->seen().size() > 0) {
-    law_.force(seen_, measured_->seen(), v, Q);
+  if (planes_ && seen_x_.size() > 0) {
+    law_.force_of_errors(seen_, planes_->e_theta(), planes_->e_q(), seen_x_, v, Q);
+  } else if (measured_ && seen_x_.size() > 0) {
+    law_.force(seen_, seen_x_, v, Q);
   } else {
     law_.force(arm, x, v, Q);
   }
@@ -63,6 +68,17 @@ double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, 
   return law_.dissipation(v);
 }
 
+void PotentialRun::measure() {
+  measured_->take(motion_.x(), motion_.v());
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(seen_.size());
+  seen_x_ = measured_->seen();
+  seen_.set(seen_x_, still);
+  if (!planes_) return;
+  planes_->look(seen_, seen_x_, [this](std::uint64_t i) { return measured_->deviate(i); });
+  seen_x_ = planes_->coordinates();
+  seen_.set(seen_x_, still);
+}
+
 bool PotentialRun::advance(double until, const std::function<bool()>& go_on) {
   bool is_cancelled = false;
   const auto goes_on = [&] {
@@ -72,10 +88,7 @@ bool PotentialRun::advance(double until, const std::function<bool()>& go_on) {
   while (stopped_.empty() && motion_.time() < until) {
     double next = until;
     if (measured_) {
-      if (motion_.time() >= measured_->next()) {
-        measured_->take(motion_.x(), motion_.v());
-        seen_.set(measured_->seen(), Eigen::VectorXd::Zero(seen_.size()));
-      }
+      if (motion_.time() >= measured_->next()) measure();
       next = std::min(until, measured_->next());
     }
     if (!motion_.advance(next, goes_on)) stopped_ = is_cancelled ? "cancelled" : reason();

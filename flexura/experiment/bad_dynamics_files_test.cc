@@ -66,6 +66,8 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
           Bad{bent_target + "law.elasticity = \"forgotten\"\n", "expected one of \"cancelled\", \"shaped\""},
           Bad{bent_target + "law.gravity_compensation = false\n", "expected a number"},
           Bad{bent_target + "law.stifness = 3\n", "did you mean \"stiffness\""},
+          Bad{bent_target + "measurement = { reading = \"eyes\" }\n",
+              "expected one of \"angles\", \"planes\""},
           Bad{bent_target + "measurement = { delay = -1 }\n", "task[0].measurement.delay = -1"},
           Bad{bent_target + "measurement = { delay = 1e6 }\n", "from 0 s to 60 s"},
           Bad{bent_target + "measurement = { noise = nan }\n", "task[0].measurement.noise = nan"},

@@ -90,7 +90,7 @@ TEST_F(Dynamics, IsExportedAsATable) {
   EXPECT_EQ(
       head,
       "time,kinetic_energy,gravity_energy,elastic_energy,potential,lyapunov,taken_by_law,taken_by_medium,"
-      "azimuth_error,elevation_error,tip_error,tip_x,tip_y,tip_z");
+      "azimuth_error,elevation_error,spatial_error,tip_error,tip_x,tip_y,tip_z");
   std::size_t rows = 0;
   for (; std::getline(table, line); ++rows) last = line;
   EXPECT_EQ(rows, samples(result).size());

@@ -20,6 +20,8 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*) {
           .field("azimuth_error", &M::azimuth_error,
                  {.meaning = "theta less that of the target, root mean square along the arm, rad."})
           .field("elevation_error", &M::elevation_error, {.meaning = "q likewise, rad."})
+          .field("spatial_error", &M::spatial_error,
+                 {.meaning = "Both together: of cos q times theta's and of q's, rad."})
           .field("tip_error", &M::tip_error, {.meaning = "The tip's distance from that of the target, m."})
           .field("s", &M::s, {.meaning = "Places along the arm at rest, base to tip, m."})
           .field("azimuths", &M::azimuths, {.meaning = "theta there, rad from +Y towards +X."})

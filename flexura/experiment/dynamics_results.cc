@@ -94,7 +94,8 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
                        {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
                        {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
           charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
-                      {{"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
+                      {{"spatial", [&](const DynamicsSample& at) { return run.error(at).spatial / degree; }},
+                       {"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
                        {"q", [&](const DynamicsSample& at) { return run.error(at).elevation / degree; }}})};
 }
 
@@ -123,6 +124,12 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
         points.push_back("The energies tell: " + reason + ".");
     }
   }
+  if (run.triangulated > 0)
+    points.push_back(
+        fmt::format("Of all points of the arm that were looked at {:.3g} % were within 10 deg of a quarter "
+                    "turn, or across "
+                    "one from where they are to be: there both pictures were triangulated.",
+                    100 * run.triangulated));
   constexpr double little = 1e-9;
   if (run.left_over > little)
     points.push_back(fmt::format(
@@ -169,11 +176,13 @@ Node dynamics_nodes(const std::vector<DynamicsRun>& runs) {
                        {},
                        {Node::Table{{"azimuth", {}, number_node(run.remaining.azimuth)},
                                     {"elevation", {}, number_node(run.remaining.elevation)},
+                                    {"spatial", {}, number_node(run.remaining.spatial)},
                                     {"tip", {}, number_node(run.remaining.tip)}},
                         {}}});
     members.push_back({"start_off", {}, number_node(run.plant.start_off())});
     members.push_back({"target_off", {}, number_node(run.plant.target_off())});
     members.push_back({"left_over", {}, number_node(run.left_over)});
+    if (run.is_measured) members.push_back({"triangulated", {}, number_node(run.triangulated)});
     members.push_back({"arcs_apart", {}, number_node(run.apart)});
     list.push_back({std::move(members), {}});
   }

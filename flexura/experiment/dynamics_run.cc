@@ -57,7 +57,8 @@ std::optional<AngleMeasurement> measurement_of(const Experiment& experiment, std
   return AngleMeasurement{.step = task.measurement->step.value_or(experiment.clock.step),
                           .delay = task.measurement->delay,
                           .noise = {noise, is_planar ? 0 : noise},
-                          .seed = hash(static_cast<std::uint64_t>(experiment.seed), number)};
+                          .seed = hash(static_cast<std::uint64_t>(experiment.seed), number),
+                          .reading = task.measurement->reading};
 }
 
 // The clock's steps within the task, and its end, s since its start.
@@ -105,7 +106,7 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
       add(sample);
     }
   }
-  run.left_over = plant.left_over();
+  run.left_over = plant.left_over(), run.triangulated = plant.triangulated();
   if (run.samples.size() > 1) run.verdict = monitor.verdict();
 }
 
@@ -188,7 +189,9 @@ DynamicsError DynamicsRun::error(const DynamicsSample& sample) const {
   const auto rms = [&](const Eigen::VectorXd& difference) {
     return std::sqrt(weights.dot(difference.cwiseAbs2()) / weights.sum());
   };
-  return {rms(at.theta() - there.theta()), rms(at.q() - there.q()), (at.tip() - there.tip()).norm()};
+  const Eigen::VectorXd e_theta = at.theta() - there.theta(), e_q = at.q() - there.q();
+  const Eigen::VectorXd across = at.q().array().cos() * e_theta.array();
+  return {rms(e_theta), rms(e_q), std::hypot(rms(e_q), rms(across)), (at.tip() - there.tip()).norm()};
 }
 
 DynamicsSampleMessage DynamicsRun::message(const DynamicsSample& sample) const {
@@ -206,6 +209,7 @@ DynamicsSampleMessage DynamicsRun::message(const DynamicsSample& sample) const {
                                 .taken_by_medium = energies.damped,
                                 .azimuth_error = off.azimuth,
                                 .elevation_error = off.elevation,
+                                .spatial_error = off.spatial,
                                 .tip_error = off.tip,
                                 .s = {},
                                 .azimuths = {},
@@ -245,6 +249,7 @@ DynamicsRun run_dynamics(const Experiment& experiment, std::size_t number, const
                   .reasons = {},
                   .remaining = {},
                   .left_over = 0,
+                  .triangulated = 0,
                   .motion = {}};
   if (plant.is_regular()) {
     PotentialRun motion(plant.distributed(), law, plant.start(), measurement_of(experiment, number, task),

@@ -27,6 +27,7 @@ struct DynamicsSample {
 /// How far an arm is from a task's target.
 struct DynamicsError {
   double azimuth = 0, elevation = 0;  ///< Root mean square along the arm, rad.
+  double spatial = 0;                 ///< Both together (docs/control.md, eq. 15), likewise.
   double tip = 0;                     ///< m
 };
 
@@ -47,6 +48,7 @@ struct DynamicsRun {
   DynamicsError remaining;           ///< At the end.
   /// PotentialRun::left_over
   double left_over = 0;
+  double triangulated = 0;  ///< PotentialRun::triangulated
   double apart = 0;  ///< The largest distance of the arm's tip from that of the arcs it is shown by, m.
   MotionPtr motion;  ///< By those arcs, from the task's start.
 

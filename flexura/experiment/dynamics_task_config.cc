@@ -27,6 +27,11 @@ const std::vector<std::string>& names_of(const DriveKind*) {
   return names;
 }
 
+const std::vector<std::string>& names_of(const AngleReading*) {
+  static const std::vector<std::string> names{"angles", "planes"};
+  return names;
+}
+
 const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
   using Target = DynamicsTargetConfig;
   static const auto table =
@@ -100,11 +105,15 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
       Table<M>("measurement",
                "How the law gets to know the arm's angles. The potential, gravity's compensation and that of "
                "elasticity go by what was measured last; the damping is of the arm's own rates.")
+          .field("reading", &M::reading,
+                 {.meaning = "What is read: theta and q themselves at each node, or what two image planes "
+                             "show of each point of the arm; the potential's force is then that of the two "
+                             "plane errors, and where these do not tell both pictures are triangulated."})
           .field("delay", &M::delay,
                  {.meaning = "How late measurements are.", .unit = Unit::second, .range = between(0, 60)})
           .field("noise", &M::noise,
-                 {.meaning = "Standard deviation of each of the arm's angles, from measurement to "
-                             "measurement; q of a planar arm has none.",
+                 {.meaning = "Standard deviation of each of the angles that are read, from measurement to "
+                             "measurement; out of its plane a planar arm has none.",
                   .unit = Unit::radian,
                   .range = between(0, 10)})
           .field("step", &M::step,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "flexura/control/angle_measurement.h"
 #include "flexura/control/angle_shapes.h"
 #include "flexura/control/driven_law.h"
 #include "flexura/control/potential_law.h"
@@ -36,6 +37,7 @@ struct PotentialConfig {
 
 /// How the law gets to know the angles, when it does not have them exactly (AngleMeasurement).
 struct MeasurementConfig {
+  AngleReading reading = AngleReading::angles;
   double delay = 0;            ///< s
   double noise = 0;            ///< rad
   std::optional<double> step;  ///< s; the clock's.
@@ -64,6 +66,7 @@ struct DynamicsTask {
 const std::vector<std::string>& names_of(const ElasticityRule*);
 const std::vector<std::string>& names_of(const AngleBasis*);
 const std::vector<std::string>& names_of(const DriveKind*);
+const std::vector<std::string>& names_of(const AngleReading*);
 const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*);
 const Table<PotentialConfig>& fields_of(const PotentialConfig*);
 const Table<MeasurementConfig>& fields_of(const MeasurementConfig*);

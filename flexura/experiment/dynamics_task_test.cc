@@ -266,6 +266,40 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
   EXPECT_GT(number(*dynamics(late).find("verdict"), "largest_rise"), 100 * rise);
 }
 
+// The paper's law as it has it: two plane errors, gravity's compensation and damping, on the arm of the
+// theory.
+TEST_F(Dynamics, GoesByTheErrorsInTwoImagePlanes) {
+  const std::string text =
+      dynamics_arm() +
+      dynamics_task("duration = 5\ntolerance = 0.01\n" + bent_target +
+                    "measurement = { reading = \"planes\", delay_ms = 60, step = 0.0333 }\n");
+  const RunResult result = run(text);
+  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
+  EXPECT_EQ(number(dynamics(result), "triangulated"), 0);
+  const std::vector<DynamicsSampleMessage> all = samples(result);
+  EXPECT_GT(all.front().spatial_error, 0.2);
+  EXPECT_LT(all.back().spatial_error, 2e-3);
+  for (const DynamicsSampleMessage& sample : all) {
+    EXPECT_LE(sample.spatial_error, std::hypot(sample.azimuth_error, sample.elevation_error) + 1e-12);
+    EXPECT_GE(sample.spatial_error, sample.elevation_error - 1e-12);
+  }
+  EXPECT_EQ(number(*dynamics(result).find("remaining"), "spatial"), all.back().spatial_error);
+  // It is not the law that reads the angles themselves, and ends where that one does.
+  const RunResult read = run(text, {"task.0.measurement.reading=\"angles\"", "record.report=false"});
+  EXPECT_EQ(read.outcome, RunOutcome::done);
+  EXPECT_EQ(number(dynamics(read), "triangulated"), 0);
+  const std::vector<DynamicsSampleMessage> by_angles = samples(read);
+  EXPECT_GT(std::abs(all[20].spatial_error - by_angles[20].spatial_error), 1e-5);
+  // With noise, and past a quarter turn of the azimuth, where both pictures have to be triangulated.
+  const RunResult far = run(text, {"task.0.target.bends=[[1.2, -0.3], [0.8, 0.2], [0.3, -0.2]]",
+                                   "task.0.measurement.noise_deg=0.3"});
+  EXPECT_EQ(far.outcome, RunOutcome::done) << testing::PrintToString(far.reasons);
+  EXPECT_GT(number(dynamics(far), "triangulated"), 0.05);
+  EXPECT_LT(number(*dynamics(far).find("remaining"), "spatial"), 0.02);
+  EXPECT_THAT(read_text_file(far.folder / report_file_name, std::size_t{1} << 26),
+              HasSubstr("there both pictures were triangulated"));
+}
+
 // The straight way to the target is free; that of an arm which its weight draws down is not.
 TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   const std::string text =

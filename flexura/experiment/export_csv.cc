@@ -72,9 +72,9 @@ std::string_view level_name(std::int64_t level) {
 
 // The energies and errors of distributed arms; where they are along the arm is the log's to tell.
 void name_dynamics_columns(CsvText& csv) {
-  for (const char* title :
-       {"time", "kinetic_energy", "gravity_energy", "elastic_energy", "potential", "lyapunov", "taken_by_law",
-        "taken_by_medium", "azimuth_error", "elevation_error", "tip_error", "tip_x", "tip_y", "tip_z"})
+  for (const char* title : {"time", "kinetic_energy", "gravity_energy", "elastic_energy", "potential",
+                            "lyapunov", "taken_by_law", "taken_by_medium", "azimuth_error", "elevation_error",
+                            "spatial_error", "tip_error", "tip_x", "tip_y", "tip_z"})
     csv.cell(std::string_view(title));
   csv.end_row();
 }
@@ -82,7 +82,7 @@ void name_dynamics_columns(CsvText& csv) {
 void add_row(CsvText& csv, const DynamicsSampleMessage& sample) {
   csv.cells(std::array{sample.time, sample.kinetic_energy, sample.gravity_energy, sample.elastic_energy,
                        sample.potential, sample.lyapunov, sample.taken_by_law, sample.taken_by_medium,
-                       sample.azimuth_error, sample.elevation_error, sample.tip_error});
+                       sample.azimuth_error, sample.elevation_error, sample.spatial_error, sample.tip_error});
   if (sample.points.empty())
     throw std::runtime_error(fmt::format("the log's sample of dynamics at {} s has no points", sample.time));
   csv.cells(sample.points.back());

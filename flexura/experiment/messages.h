@@ -241,7 +241,8 @@ struct DynamicsSampleMessage {
   double potential = 0;                                               ///< Pi, J.
   double lyapunov = 0;                                                ///< W = T + Pi, J.
   double taken_by_law = 0, taken_by_medium = 0;                       ///< By damping since the start, J.
-  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad.
+  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad,
+  double spatial_error = 0;                       ///< and of both together (docs/control.md, eq. 15).
   double tip_error = 0;                           ///< m
   std::vector<double> s;                          ///< Places along the arm at rest, m,
   std::vector<double> azimuths, elevations;       ///< and its direction there, rad.

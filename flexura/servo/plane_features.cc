@@ -35,14 +35,6 @@ Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
   return angles;
 }
 
-// The cosine of 80 degrees.
-constexpr double least_cosine = 0.17364817766693033;
-
-// Two planes tell an azimuth and an elevation well: far from both quarter turns.
-bool is_told(double theta, double q) {
-  return std::abs(std::cos(theta)) >= least_cosine && std::cos(q) >= least_cosine;
-}
-
 // alpha_1 and alpha_2 of each chord as both planes show it, then theta and q as the shape has them.
 class PlaneFeatures : public ChordFeatures {
  public:
@@ -118,7 +110,7 @@ class PlaneFeatures : public ChordFeatures {
     const Eigen::Index chords = seen.size() / 4;
     const double theta = seen[2 * chords + k], q = seen[3 * chords + k];
     const double theta_d = desired[2 * chords + k], q_d = desired[3 * chords + k];
-    if (is_told(theta, q) && is_told(theta_d, q_d) && std::cos(theta) * std::cos(theta_d) > 0)
+    if (planes_tell({theta, q}, {theta_d, q_d}))
       return plane_error({seen[k], seen[chords + k]},
                          {near(desired[k], seen[k]), near(desired[chords + k], seen[chords + k])});
     PlaneError error;

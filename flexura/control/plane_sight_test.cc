@@ -1,0 +1,143 @@
+#include "flexura/control/plane_sight.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+
+#include "flexura/base/degree.h"
+#include "flexura/control/plane_errors.h"
+#include "flexura/control/potential_run.h"
+#include "flexura/math/hash.h"
+#include "tests/support/distributed_arms.h"
+
+namespace flexura {
+namespace {
+
+double no_noise(std::uint64_t) { return 0; }
+
+DistributedArm set_to(DistributedArm arm, const Eigen::VectorXd& x) {
+  arm.set(x, Eigen::VectorXd::Zero(arm.size()));
+  return arm;
+}
+
+// Of the angles' errors as a potential has them, at the arm's points: the largest difference.
+double off(const PlaneSight& sight, const DistributedArm& arm, const DistributedArm& target) {
+  return std::max((sight.e_theta() - (arm.theta() - target.theta())).cwiseAbs().maxCoeff(),
+                  (sight.e_q() - (arm.q() - target.q())).cwiseAbs().maxCoeff());
+}
+
+TEST(PlaneSight, ReadsTheArmAndErrsInTheSecondOrderOnly) {
+  double largest_ratio = 0;
+  for_random_cases(50, [&](TestRandom& random) {
+    const DistributedArm arm(random_distributed_arm(random));
+    const Eigen::VectorXd x = random_coordinates(random, arm), way = random_coordinates(random, arm, 0.1);
+    double before = 0;
+    for (const double share : {1.0, 0.5}) {
+      const DistributedArm here = set_to(arm, x), there = set_to(arm, x + share * way);
+      PlaneSight sight(arm, x + share * way, {0, 0});
+      sight.look(here, x, no_noise);
+      EXPECT_LE((sight.coordinates() - x).cwiseAbs().maxCoeff(), 1e-8);
+      if (share == 1) {
+        before = off(sight, here, there);
+      } else if (before > 1e-9) {
+        largest_ratio = std::max(largest_ratio, off(sight, here, there) / before);
+      }
+      EXPECT_LE(off(sight, here, there), 0.05 * share * share);
+    }
+  });
+  EXPECT_LT(largest_ratio, 0.3);  // A quarter, and what is of third order.
+}
+
+TEST(PlaneSight, HasTheNoiseOfItsPlanes) {
+  const double theta = 40 * degree, q = 30 * degree, sigma = 1e-3;
+  const DistributedArm arm({.lengths = {1}, .clamp = {{theta, q}}, .nodes = 2, .points = 4});
+  const Eigen::VectorXd straight = arm.coordinates([&](double) { return Eigen::Vector2d(theta, q); });
+  PlaneSight sight(arm, straight, {sigma, 2 * sigma});
+  const DistributedArm still = set_to(arm, straight);
+  double of_theta = 0, of_q = 0;
+  constexpr int looks = 4000;
+  for (std::uint64_t k = 0; k < looks; ++k) {
+    // Even, of variance 1.
+    sight.look(still, straight, [&](std::uint64_t i) {
+      return std::sqrt(3.0) * (2 * static_cast<double>(hash(k, i) >> 11) * 0x1p-53 - 1);
+    });
+    of_theta += sight.e_theta().squaredNorm() / (4.0 * looks);
+    of_q += sight.e_q().squaredNorm() / (4.0 * looks);
+  }
+  EXPECT_NEAR(std::sqrt(of_theta) / sigma, 1, 0.03);
+  const PlaneView view = plane_view(theta, q);
+  const double by_2 = std::cos(theta) * std::pow(std::cos(q) / std::cos(view.alpha_2), 2);
+  const double by_1 = plane_error(view, view).gain;
+  EXPECT_NEAR(std::sqrt(of_q) / sigma, std::hypot(by_1, 2 * by_2), 0.03);
+  EXPECT_EQ(sight.triangulated(), 0);
+}
+
+TEST(PlaneSight, TriangulatesWhereThePlanesDoNotTell) {
+  const DistributedArm arm({.lengths = {1}, .nodes = 4, .points = 20});
+  const auto bent = [&](double theta, double q) {
+    return arm.coordinates([=](double s) { return Eigen::Vector2d(theta * s, q * s); });
+  };
+  // Of evenly many points: those between 80 and 100 degrees, and all that are across a quarter turn.
+  for (const auto& [theta, theta_d, share] : {std::array{160.0, 160.0, 0.125},
+                                              {70.0, 75.0, 0.0},
+                                              {60.0, 140.0, 0.4285},
+                                              {85.0, 85.0, 0.0588},
+                                              {120.0, 120.0, 0.1667}}) {
+    const Eigen::VectorXd x = bent(theta * degree, 0.3), x_d = bent(theta_d * degree, -0.2);
+    PlaneSight sight(arm, x_d, {0, 0});
+    const DistributedArm here = set_to(arm, x);
+    sight.look(here, x, no_noise);
+    // The points of the integral lie closer to each other at the arm's ends.
+    EXPECT_NEAR(sight.triangulated(), share, 0.1) << theta << " to " << theta_d;
+    EXPECT_EQ(sight.triangulated() > 0, share > 0);
+    EXPECT_LE((sight.coordinates() - x).cwiseAbs().maxCoeff(), 1e-9);
+    const DistributedArm there = set_to(arm, x_d);
+    EXPECT_LT(off(sight, here, there), 0.5);
+    for (Eigen::Index j = 0; j < here.q().size(); ++j) {
+      const Eigen::Vector2d seen(here.theta()[j], here.q()[j]), wanted(there.theta()[j], there.q()[j]);
+      if (planes_tell(seen, wanted)) continue;
+      EXPECT_NEAR(sight.e_q()[j], seen[1] - wanted[1], 1e-12);
+    }
+  }
+}
+
+TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
+  for_random_cases(6, [](TestRandom& random) {
+    DistributedArmModel model = random_distributed_arm(random);
+    model.nodes = random.integer(2, 4);
+    const DistributedArm arm(model);
+    const PotentialLaw law(arm, random_coordinates(random, arm), {});
+    const Eigen::VectorXd start = random_coordinates(random, arm);
+    AngleMeasurement measurement{.step = 0.02, .reading = AngleReading::planes};
+    PotentialRun by_planes(arm, law, start, measurement);
+    ASSERT_TRUE(by_planes.advance(6)) << by_planes.stopped();
+    EXPECT_LE((by_planes.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.02);
+    // Late and with noise it comes near, and the same way each time.
+    measurement.delay = 0.06, measurement.noise = {0.01, 0.01};
+    PotentialRun noisy(arm, law, start, measurement), again(arm, law, start, measurement);
+    ASSERT_TRUE(noisy.advance(6)) << noisy.stopped();
+    ASSERT_TRUE(again.advance(6));
+    EXPECT_LE((noisy.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.1);
+    EXPECT_EQ(noisy.motion().x(), again.motion().x());
+    EXPECT_NE(noisy.motion().x(), by_planes.motion().x());
+  });
+}
+
+// In the plane XOY the first view shows the angle itself.
+TEST(PlaneSight, IsTheLawsOwnInOnePlane) {
+  const DistributedArm arm({.lengths = {0.5, 0.5}, .bending_stiffness = 0.2, .basis = AngleBasis::sections});
+  const auto bent = [&](double theta) {
+    return arm.coordinates([=](double s) { return Eigen::Vector2d(theta * s, 0); });
+  };
+  const PotentialLaw law(arm, bent(2.5), {});
+  PotentialRun by_angles(arm, law, bent(0), {{.step = 0.02}});
+  PotentialRun by_planes(arm, law, bent(0), {{.step = 0.02, .reading = AngleReading::planes}});
+  ASSERT_TRUE(by_angles.advance(1));
+  ASSERT_TRUE(by_planes.advance(1));
+  EXPECT_LE((by_angles.motion().x() - by_planes.motion().x()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+}  // namespace
+}  // namespace flexura

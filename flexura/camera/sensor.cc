@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace flexura {
 namespace {
@@ -17,6 +19,12 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
     reader.problem_at("height", fmt::format("{} x {} pixels: expected at most {}", sensor.width,
                                             sensor.height, max_pixels));
   }
+  for (const auto& [key, spans] : {std::pair{"covered", &sensor.covered}, {"silent", &sensor.silent}})
+    for (std::size_t i = 0; i < spans->size(); ++i)
+      if (!((*spans)[i][0] < (*spans)[i][1]))
+        reader.problem_at(
+            fmt::format("{}[{}]", key, i),
+            fmt::format("ends at {:.6g} s, not after its beginning: expected [from, to]", (*spans)[i][1]));
   const double frame = 1 / sensor.frame_rate;
   if (sensor.exposure > frame) {
     reader.problem_at("exposure",
@@ -58,6 +66,16 @@ void add_frames(Table<SensorConfig>& table) {
               .range = between(0, 1e3)})
       .field("drop", &SensorConfig::drop,
              {.meaning = "Share of the frames that are lost.", .range = between(0, 1)})
+      .field("covered", &SensorConfig::covered,
+             {.meaning =
+                  "Spans of time, [from, to] each since the experiment's start, in which something covers "
+                  "the lens: pictures are dark.",
+              .unit = Unit::second,
+              .range = between(0, 1e6)})
+      .field("silent", &SensorConfig::silent,
+             {.meaning = "Spans of time likewise in which the camera does not answer.",
+              .unit = Unit::second,
+              .range = between(0, 1e6)})
       .field("readout", &SensorConfig::readout,
              {.meaning = "All rows at once; one after another; or the even rows of one instant and the odd "
                          "ones of half a frame later."})
@@ -102,6 +120,10 @@ double row_delay(const SensorConfig& sensor, int v) {
 double last_row_delay(const SensorConfig& sensor) {
   const auto last = static_cast<int>(sensor.height) - 1;
   return std::max(row_delay(sensor, last), row_delay(sensor, std::max(last - 1, 0)));
+}
+
+bool is_within(double time, const std::vector<std::array<double, 2>>& spans) {
+  return std::ranges::any_of(spans, [&](const auto& span) { return time >= span[0] && time < span[1]; });
 }
 
 const std::vector<std::string>& names_of(const PixelKind*) {

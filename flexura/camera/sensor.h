@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,12 +28,14 @@ struct SensorConfig {
   double exposure = 0;     ///< s during which a frame gathers light; motion blurs over it. 0: an instant.
   double delay = 0;        ///< s from the end of the exposure until the frame can be had.
   double drop = 0;         ///< The share of frames that are lost.
-  double gain = 1;         ///< Factor on the light before it is read out; it amplifies shot noise too.
-  double full_well = 0;    ///< Electrons at full scale and gain 1; sets the shot noise. 0: no shot noise.
-  double read_noise = 0;   ///< Standard deviation in values of an 8-bit image.
-  double psf = 0;          ///< Standard deviation of the Gaussian blur of lens and pixel, px.
-  double vignetting = 0;   ///< Share of light lost in the image's corners; grows with the radius squared.
-  double gamma = 1;        ///< Values are light to the power 1/gamma.
+  /// From one time to another, s: something covers the lens, the camera does not answer.
+  std::vector<std::array<double, 2>> covered = {}, silent = {};
+  double gain = 1;        ///< Factor on the light before it is read out; it amplifies shot noise too.
+  double full_well = 0;   ///< Electrons at full scale and gain 1; sets the shot noise. 0: no shot noise.
+  double read_noise = 0;  ///< Standard deviation in values of an 8-bit image.
+  double psf = 0;         ///< Standard deviation of the Gaussian blur of lens and pixel, px.
+  double vignetting = 0;  ///< Share of light lost in the image's corners; grows with the radius squared.
+  double gamma = 1;       ///< Values are light to the power 1/gamma.
   Readout readout = Readout::global;
   double row_time = 0;  ///< s between two rows of a rolling shutter; with Readout::rolling alone.
 
@@ -45,6 +48,9 @@ struct SensorConfig {
 [[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
 /// The same of the row that begins last.
 [[nodiscard]] double last_row_delay(const SensorConfig& sensor);
+
+/// Whether a time, s, is in one of the spans [from, to).
+[[nodiscard]] bool is_within(double time, const std::vector<std::array<double, 2>>& spans);
 
 const std::vector<std::string>& names_of(const PixelKind*);
 const std::vector<std::string>& names_of(const Readout*);

@@ -55,11 +55,14 @@ TEST(Sensor, ReadsWhatItWrites) {
   sensor.exposure = 0.01, sensor.delay = 0.02, sensor.drop = 0.125, sensor.gain = 2, sensor.full_well = 1e4;
   sensor.read_noise = 1.5, sensor.psf = 0.75, sensor.vignetting = 0.25, sensor.gamma = 2.2;
   sensor.readout = Readout::rolling, sensor.row_time = 2e-5;
+  sensor.covered = {{1, 2}, {4, 4.5}};
   const auto read = read_as<SensorConfig>(Codec<SensorConfig>::write(sensor));
   EXPECT_EQ(written(read), written(sensor));
   EXPECT_THAT(written(read), Contains("gamma = 2.2"));
   EXPECT_EQ(read.channels(), 3);
   EXPECT_EQ(read.row_time, 2e-5);
+  EXPECT_EQ(read.covered, sensor.covered);
+  EXPECT_TRUE(read.silent.empty());
 }
 
 TEST(Sensor, TakesTimesInMilliseconds) {
@@ -83,6 +86,23 @@ TEST(Sensor, ReadsTheRowsOfARollingShutterWithinAFrame) {
   EXPECT_THAT(rolling(1.01e-4), ElementsAre(HasSubstr("row_time: 500 rows take longer than a frame: expected "
                                                       "at most 0.0001 s at 20 frames/s")));
   EXPECT_THAT(rolling(0.0), ElementsAre(HasSubstr("row_time: is missing")));
+}
+
+TEST(Sensor, HasSpansThatEndAfterTheirBeginning) {
+  const auto problems = [](const std::string& key, std::vector<std::array<double, 2>> spans) {
+    SensorConfig sensor;
+    (key == "covered" ? sensor.covered : sensor.silent) = std::move(spans);
+    return problems_of(*Codec<SensorConfig>::write(sensor).as<Node::Table>());
+  };
+  for (const std::string key : {"covered", "silent"}) {
+    EXPECT_THAT(problems(key, {{0, 1}, {0.5, 2}}), IsEmpty());
+    EXPECT_THAT(problems(key, {{0, 1}, {2, 2}}),
+                ElementsAre(HasSubstr(key + "[1]: ends at 2 s, not after its beginning")));
+    EXPECT_THAT(problems(key, {{-1, 1}}), ElementsAre(HasSubstr(key)));
+  }
+  const std::vector<std::array<double, 2>> spans = {{1, 2}, {4, 5}};
+  for (const double inside : {1.0, 1.999, 4.0}) EXPECT_TRUE(is_within(inside, spans)) << inside;
+  for (const double outside : {0.999, 2.0, 5.0, 9.0}) EXPECT_FALSE(is_within(outside, spans)) << outside;
 }
 
 TEST(Sensor, HasRowTimesForARollingShutterAlone) {

@@ -153,6 +153,26 @@ TEST(Filming, ShowsTheTruthAndNotWhatIsBelieved) {
 
 const Image<std::uint8_t>& gray(const Frame& frame) { return std::get<Image<std::uint8_t>>(*frame.picture); }
 
+TEST(Filming, SeesNothingBehindACover) {
+  const Film film = film_of(small_pictures);
+  const Film covered =
+      film_of(small_pictures + "[[truth.camera]]\nname = \"front\"\nsensor.covered = [[0.1, 0.3]]\n");
+  ASSERT_EQ(film.size(), covered.size());
+  int dark = 0;
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    const auto& [name, frame] = covered[i];
+    if (name != "front" || frame.time < 0.1 || frame.time >= 0.3) {
+      EXPECT_EQ(*frame.picture, *film[i].second.picture) << i;
+      continue;
+    }
+    const int lightest = *std::ranges::max_element(gray(frame).values());
+    EXPECT_LT(lightest, 10);  // Nothing but its own noise,
+    EXPECT_GT(lightest, 0);   // which it has.
+    ++dark;
+  }
+  EXPECT_EQ(dark, 2);
+}
+
 // One camera of 10 Hz, and what its arm does.
 std::string one_camera(const std::string& sensor, const std::string& rest) {
   return fmt::format(R"(

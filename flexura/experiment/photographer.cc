@@ -53,6 +53,10 @@ void Photographer::gather(const Shot& shot) {
   // Nobody sees so little, and all rows and instants have one picture.
   constexpr double is_still = 1e-3;  // px
   SensorConfig sensor = *shot.sensor;
+  if (is_within(times_of_frame_at(sensor, shot.start).middle, sensor.covered)) {
+    light_ = Image<float>(static_cast<int>(sensor.width), static_cast<int>(sensor.height), sensor.channels());
+    return;
+  }
   double start = shot.start;
   const double speed = fastest_image_motion(shot, maker_.stand());
   if (speed * (sensor.exposure + last_row_delay(sensor)) <= is_still) {

@@ -141,13 +141,15 @@ TEST(Servo, GoesAlongATrajectory) {
   EXPECT_LT(worst, 0.02);
 }
 
+// What is true of the camera "side".
+ServoSetup side_camera(const std::string& sensor) {
+  return {.rest = "[[truth.camera]]\nname = \"side\"\nsensor." + sensor + "\n"};
+}
+
 TEST(Servo, WaitsWhileACameraIsCovered) {
-  ServoBench bench(servo_file(servo_target));
-  RigPorts ports = bench.ports();
-  CoveredCamera covered(*ports.cameras[1].camera, *ports.clock, CoveredCamera::Kind::dark, 0.3, 1.3);
-  ports.cameras[1].camera = &covered;
+  ServoBench bench(servo_file(servo_target, side_camera("covered = [[0.3, 1.3]]")));
   ServoNotes notes;
-  const ServoResult result = bench.servo(ports, notes);
+  const ServoResult result = bench.servo(bench.ports(), notes);
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_TRUE(notes.has("camera side does not see the arm")) << notes.lines.size();
   EXPECT_TRUE(notes.has("the arm is seen again"));
@@ -160,11 +162,8 @@ TEST(Servo, WaitsWhileACameraIsCovered) {
 }
 
 TEST(Servo, GivesUpWithoutACamera) {
-  ServoBench bench(servo_file("lost = 1\n" + servo_target));
-  RigPorts ports = bench.ports();
-  CoveredCamera dead(*ports.cameras[1].camera, *ports.clock, CoveredCamera::Kind::dead, 0.4, 1e9);
-  ports.cameras[1].camera = &dead;
-  const ServoResult result = bench.servo(ports);
+  ServoBench bench(servo_file("lost = 1\n" + servo_target, side_camera("silent = [[0.4, 1e6]]")));
+  const ServoResult result = bench.servo();
   EXPECT_FALSE(result.is_done);
   EXPECT_NE(result.reason.find("out of view: camera side: link lost"), std::string::npos) << result.reason;
   EXPECT_FALSE(bench.ports().arm->read().value().moving);

@@ -35,6 +35,7 @@ SimulatedCamera::SimulatedCamera(const Camera& camera, Shot shot, TakePicture ta
       take_picture_(std::move(take_picture)),
       clock_(&clock) {
   shot_.sensor = &sensor_;
+  for (const auto& [from, to] : sensor_.silent) link_.lose(from, to);
 }
 
 bool SimulatedCamera::is_lost(std::int64_t frame) const {

@@ -61,33 +61,6 @@ class ServoBench : public RigBench {
   }
 };
 
-/// A camera whose pictures are all dark, or that does not answer, from one time to another.
-class CoveredCamera : public CameraPort {
- public:
-  enum class Kind { dark, dead };
-  CoveredCamera(CameraPort& camera, ClockPort& clock, Kind kind, double from, double to)
-      : camera_(camera), clock_(clock), kind_(kind), from_(from), to_(to) {}
-  Outcome<std::optional<Frame>> newest() override { return covered(camera_.newest()); }
-  Outcome<std::optional<Frame>> wait(double timeout) override { return covered(camera_.wait(timeout)); }
-
- private:
-  Outcome<std::optional<Frame>> covered(Outcome<std::optional<Frame>> outcome) {
-    if (clock_.now() < from_ || clock_.now() >= to_) return outcome;
-    if (kind_ == Kind::dead) return PortFault{FaultKind::link_lost, "camera side is dead"};
-    if (outcome.fault() || !outcome.value()) return outcome;
-    Frame frame = *outcome.value();
-    const auto& image = std::get<Image<std::uint8_t>>(*frame.picture);
-    frame.picture =
-        std::make_shared<const Picture>(Image<std::uint8_t>(image.width(), image.height(), image.channels()));
-    return std::optional(frame);
-  }
-
-  CameraPort& camera_;
-  ClockPort& clock_;
-  Kind kind_;
-  double from_, to_;
-};
-
 /// An arm that refuses commands, or says that it is nowhere, from a time on.
 class BrokenArm : public ArmPort {
  public:

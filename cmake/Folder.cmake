@@ -1,13 +1,14 @@
-# flexura_folder(NAME [THREADS] [LINKS targets...] [PRIVATE_LINKS targets...])
+# flexura_folder(NAME [THREADS] [SHARDS n] [LINKS targets...] [PRIVATE_LINKS targets...])
 #
 # Makes the library flexura::NAME from the current folder: every *.cc and *.h in it, but for
 #   *_test.cc       quick tests    -> executable NAME_test,       ctest NAME,      label quick
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
 # THREADS says that its code or its tests start threads: ThreadSanitizer has something to look for in its tests alone.
+# SHARDS: each test executable runs as so many ctests, NAME.1 and so on, so that one folder does not keep the rest waiting.
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "" "LINKS;PRIVATE_LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS" "SHARDS" "LINKS;PRIVATE_LINKS")
   file(GLOB sources CONFIGURE_DEPENDS *.cc *.h)
   set(tests ${sources})
   set(fuzzers ${sources})
@@ -34,9 +35,9 @@ function(flexura_folder name)
     set(full_tests ${tests})
     list(FILTER tests EXCLUDE REGEX "_full_test[.]cc$")
     list(FILTER full_tests INCLUDE REGEX "_full_test[.]cc$")
-    flexura_test(${name}_test ${name} quick ${name} ${tests})
+    flexura_test(${name}_test ${name} quick ${name} ${tests} SHARDS ${arg_SHARDS})
     if(FLEXURA_FULL_TESTS)
-      flexura_test(${name}_full_test ${name}.full full ${name} ${full_tests})
+      flexura_test(${name}_full_test ${name}.full full ${name} ${full_tests} SHARDS ${arg_SHARDS})
     endif()
   endif()
   # A reader of bytes starts no threads: nothing for ThreadSanitizer to find.
@@ -78,12 +79,15 @@ set(FLEXURA_PCH_HEADERS
   <Eigen/Dense> <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <string> <variant>
   <vector>)
 
+# flexura_test(EXECUTABLE CTEST_NAME LABEL FOLDER sources... [SHARDS n])
+#
 # One test executable for a folder and a size; nothing when there are no sources.
 function(flexura_test executable ctest_name label folder)
-  if(NOT ARGN)
+  cmake_parse_arguments(PARSE_ARGV 4 arg "" "SHARDS" "")
+  if(NOT arg_UNPARSED_ARGUMENTS)
     return()
   endif()
-  add_executable(${executable} ${ARGN})
+  add_executable(${executable} ${arg_UNPARSED_ARGUMENTS})
   if(NOT TARGET checkout)
     add_library(checkout STATIC ${PROJECT_SOURCE_DIR}/tests/support/checkout.cc)
     target_include_directories(checkout PRIVATE ${PROJECT_SOURCE_DIR})
@@ -96,12 +100,25 @@ function(flexura_test executable ctest_name label folder)
   target_compile_options(${executable} PRIVATE ${FLEXURA_TEST_OPTIONS})
   flexura_use_pch(${executable} flexura_test_pch LINKS GTest::gmock OPTIONS ${FLEXURA_TEST_OPTIONS}
     HEADERS <gtest/gtest.h> <gmock/gmock.h> ${FLEXURA_PCH_HEADERS})
-  add_test(NAME ${ctest_name} COMMAND ${executable})
   set(timeout 600)
   if(FLEXURA_SANITIZE)
-    set(timeout 1800)
+    set(timeout 1200)
   endif()
-  set_tests_properties(${ctest_name} PROPERTIES LABELS ${label} TIMEOUT ${timeout})
+  set(shards 1)
+  if(arg_SHARDS)
+    set(shards ${arg_SHARDS})
+  endif()
+  foreach(shard RANGE 1 ${shards})
+    set(test ${ctest_name})
+    if(shards GREATER 1)
+      set(test ${ctest_name}.${shard})
+    endif()
+    add_test(NAME ${test} COMMAND ${executable})
+    math(EXPR index "${shard} - 1")
+    # What is cut into pieces is long: it goes first.
+    set_tests_properties(${test} PROPERTIES LABELS ${label} TIMEOUT ${timeout} COST ${shards}
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()
 
 # A file with LLVMFuzzerTestOneInput becomes two programs' worth of use: with FLEXURA_FUZZ it is a libFuzzer

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""Prints the table of docs/performance.md: what each part takes, beside its aim and a peer of the same run.
+
+usage: tools/performance_table.py [BIN] [--repetitions N]
+
+BIN holds the benchmarks (build/bench/bin, which `./dev bench` makes). Each row is the median of N runs (5) in
+CPU time, one program after another; nothing else should run.
+"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+TIME_UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row: what is measured, where, how long it may take (s; None: no aim), and the peer of the same run."""
+
+    what: str
+    program: str
+    name: str
+    aim: float | None = None
+    peer: str = ""
+    peer_name: str = ""
+
+
+def rate(per_second: float) -> float:
+    return 1 / per_second
+
+
+ROWS = [
+    Row(
+        "tip of three sections, one arm a call", "batch_bench",
+        "spatial_single_kinematics", None, "Orocos KDL", "spatial_kdl",
+    ),
+    Row(
+        "the same with its Jacobian", "batch_bench",
+        "jacobian_single_kinematics", 150e-9, "Orocos KDL", "jacobian_kdl",
+    ),
+    Row(
+        "state for a pose, from nothing", "inverse_bench",
+        "inverse_cold/kind:2", 20e-6, "Orocos KDL", "inverse_kdl_cold",
+    ),
+    Row("motion of 10 s checked, four obstacles", "safety_bench", "laboratory_10_s_four_obstacles"),
+    Row("picture, 640 x 480, gray", "render_bench", "render/gray_640x480", rate(6000)),
+    Row("the same, colour", "render_bench", "render/color_640x480", rate(4000)),
+    Row(
+        "the same, gray, with PSF and noise",
+        "render_bench", "render_and_read/psf_and_noise_640x480", rate(3000),
+    ),
+    Row("picture, 1920 x 1080, gray", "render_bench", "render/gray_1920x1080", rate(1200)),
+    Row("the same with PSF and noise", "render_bench", "render_and_read/psf_and_noise_1920x1080", rate(500)),
+    Row("picture of a laboratory", "render_bench", "render/laboratory_gray_640x480"),
+    Row("the same, a tapered arm", "render_bench", "render/tapered_laboratory_gray_640x480"),
+    Row(
+        "an arm found, 640 x 480", "vision_bench",
+        "find_arm/640", rate(8000), "OpenCV, without an axis", "opencv/640",
+    ),
+    Row(
+        "the same, 1920 x 1080", "vision_bench",
+        "find_arm/1920", rate(1800), "OpenCV, without an axis", "opencv/1920",
+    ),
+    Row("a known arm's shape fitted, following", "shape_bench", "fit_following/0", 80e-6),
+    Row("two pictures to a shape, following", "shape_bench", "pictures_following/0", rate(3000)),
+    Row(
+        "a pair of cameras from 13 boards", "intrinsics_bench",
+        "calibrate/real_each_and_both", 20e-3, "OpenCV", "opencv_calibrates/real_each_and_both",
+    ),
+    Row("a step of a law on 50 points", "servo_bench", "points_step/25", 3e-6, "ViSP", "visp_step/25"),
+    Row("a turn of the whole loop, one thread", "loop_bench", "whole_loop/no_rings/1", rate(750)),
+    Row(
+        "the same of an arm with rings", "loop_bench",
+        "whole_loop/rings/1", rate(750), "llvmpipe, OpenCV, ViSP", "packaged/with_llvmpipe_gray",
+    ),
+]
+
+
+def measure(folder: Path, program: str, names: list[str], repetitions: int) -> dict[str, float]:
+    """Medians in s of the benchmarks of one program whose names begin with these."""
+    pattern = "|".join(f"^{re.escape(name)}(/|$)" for name in names)
+    command = [
+        str(folder / program),
+        f"--benchmark_filter={pattern}",
+        f"--benchmark_repetitions={repetitions}",
+        "--benchmark_report_aggregates_only=true",
+        "--benchmark_format=json",
+    ]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode != 0:
+        sys.exit(f"performance_table: {program} failed (status {run.returncode}): {run.stderr.strip()}")
+    found = {}
+    for one in json.loads(run.stdout)["benchmarks"]:
+        if one.get("aggregate_name") == "median":
+            found[one["run_name"]] = one["cpu_time"] * TIME_UNITS[one["time_unit"]]
+    return found
+
+
+def pick(found: dict[str, float], name: str) -> float | None:
+    """The benchmark of this name, or the first one that goes on after it with a slash."""
+    for one, value in found.items():
+        if one == name or one.startswith(name + "/"):
+            return value
+    return None
+
+
+def time_text(seconds: float) -> str:
+    for unit in ("ns", "us", "ms"):
+        value = seconds / TIME_UNITS[unit]
+        if value < 1000:
+            return f"{value:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def line_of(row: Row, found: dict[str, float]) -> str:
+    here = pick(found, row.name)
+    if here is None:
+        sys.exit(f"performance_table: {row.program} has no benchmark {row.name}")
+    aim = "" if row.aim is None else time_text(row.aim)
+    distance = "" if row.aim is None else ("met" if here <= row.aim else f"{here / row.aim:.1f} times")
+    there = pick(found, row.peer_name) if row.peer else None
+    peer = "" if there is None else f"{row.peer}: {time_text(there)}, {there / here:.1f} times"
+    return f"| {row.what} | {time_text(here)} | {aim} | {distance} | {peer} | `{row.name}` |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", nargs="?", type=Path, default=Path("build/bench/bin"))
+    parser.add_argument("--repetitions", type=int, default=5)
+    arguments = parser.parse_args()
+    print("| what | CPU time | aim | distance | a peer in the same run | bench |")
+    print("| --- | ---: | ---: | ---: | --- | --- |")
+    for program in dict.fromkeys(row.program for row in ROWS):
+        rows = [row for row in ROWS if row.program == program]
+        names = [name for row in rows for name in (row.name, row.peer_name) if name]
+        found = measure(arguments.folder, program, names, arguments.repetitions)
+        for row in rows:
+            print(line_of(row, found), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "flexura/app/commands.h"
+#include "flexura/app/estimate_doubts.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
 #include "flexura/estimate/curve_angles.h"
@@ -139,6 +140,7 @@ struct Look {
   std::string reason;  // Why there is none.
   std::vector<std::string> notes;
   std::size_t samples = 0;
+  bool is_of_other_size = false;  // As far as the camera's description tells.
 };
 
 ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
@@ -147,19 +149,6 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
     return finder.find(gray, photograph.white);
   }
   return finder.find(gray_picture(photograph.bytes));
-}
-
-// Where a lens's axis meets the picture far from its middle, the camera was probably measured with pictures
-// of another size.
-std::optional<std::string> doubt_of_size(const View& view) {
-  const Intrinsics lens = view.lens.intrinsics();
-  const auto is_aside = [](double at, int size) { return at < 0.3 * size || at > 0.7 * size; };
-  if (!is_aside(lens.cx, view.width) && !is_aside(lens.cy, view.height)) return std::nullopt;
-  return fmt::format(
-      "the principal point ({:.4g}, {:.4g}) is far from the middle of this picture of {} x {} px: is the "
-      "camera's "
-      "description one for pictures of another size?",
-      lens.cx, lens.cy, view.width, view.height);
 }
 
 Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateSettings& settings) {
@@ -176,7 +165,9 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   ArmFinder finder(config);
   const ArmSighting found = sighted(photograph, finder);
   look.reason = found.reason, look.notes = found.notes;
-  if (auto doubt = doubt_of_size(view)) look.notes.push_back(std::move(*doubt));
+  auto doubt = doubt_of_size(view);
+  look.is_of_other_size = doubt.has_value();
+  if (doubt) look.notes.push_back(std::move(*doubt));
   look.sighting = sighting_of(found, view, photograph.bytes);
   look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();
@@ -316,6 +307,12 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
       found.notes.push_back(
           fmt::format("pictures {} and {} are the same", same - pictures.begin() + 1, i + 1));
   }
+  if (found.is_found && settings.has_bends)
+    if (auto doubt = doubt_of_radius(sightings, found.shape)) found.notes.push_back(std::move(*doubt));
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (looks[i].is_of_other_size)
+      found.notes.push_back(fmt::format(
+          "picture {} may be of another size than its camera is described for: see its own notes", i + 1));
   Node::Array images;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     std::optional<ViewError> error;

@@ -116,10 +116,13 @@ TEST_F(MeasureBy, AFixedLevelAndTheFigureAreHeeded) {
   const Node dark = measured_by(picture, {.level = 200});
   EXPECT_EQ(*dark.find("threshold")->as<double>(), 200);
   // Below the arm, and above the ground, nothing is parted from anything.
-  for (const double level : {5.0, 250.0}) {
+  for (const auto& [level, why] :
+       {std::pair(5.0, "the fixed level 5 is darker than nearly all of the picture: "),
+        std::pair(250.0, "the fixed level 250 is brighter than nearly all of the picture: ")}) {
     const Node none = measured_by(picture, {.level = level}, exit_missed);
     EXPECT_FALSE(*none.find("found")->as<bool>());
-    EXPECT_NE(word(none, "reason"), "");
+    const std::string reason = word(none, "reason"), brightnesses = "its two brightnesses are 34 and 220, ";
+    EXPECT_EQ(reason.substr(0, reason.rfind(", ") + 2), why + brightnesses);
   }
   EXPECT_EQ(word(measured_by(picture, {.figure = "dark"}), "figure"), "dark");
   EXPECT_NE(word(measured_by(picture, {.figure = "bright"}, exit_missed), "reason"), "");

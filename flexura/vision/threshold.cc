@@ -106,6 +106,15 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   return fmt::format("the picture is {}: no two brightnesses stand apart {}", exposure, means);
 }
 
+// Where a fixed level parts nothing, but another would: what the picture has instead.
+std::string reason_against_level(double level, const Threshold& otsu) {
+  const char* where = "parts the picture at the wrong place";
+  if (level < otsu.dark) where = "is darker than nearly all of the picture";
+  if (level > otsu.bright) where = "is brighter than nearly all of the picture";
+  return fmt::format("the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} parts them",
+                     level, where, otsu.dark, otsu.bright, otsu.level);
+}
+
 // The share of bright pixels in the ring that many pixels within the picture's border. `level`: at (u, v).
 template <typename Level>
 double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& level) {
@@ -184,6 +193,9 @@ Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config
   found.mean = count > 0 ? (dark.sum + bright.sum) / count : 0;
   found.spread = count > 0 ? std::sqrt(std::max(0.0, dark.deviations() + bright.deviations()) / count) : 0;
   found.reason = reason_against(histogram, found, count);
+  if (config.method != ThresholdMethod::fixed || found.reason.empty()) return found;
+  const Threshold otsu = threshold_of(histogram);
+  if (otsu.reason.empty()) found.reason = reason_against_level(config.level, otsu);
   return found;
 }
 

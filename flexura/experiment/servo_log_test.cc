@@ -92,6 +92,30 @@ TEST(ServoLog, HasWhatTheLawCompares) {
   EXPECT_LT(to_go(sightings.back()), 0.5);
 }
 
+// Four pixels cannot tell six bends.
+TEST(ServoLog, HasWhereSomeMotionShowsInNothing) {
+  for (const bool are_enough : {false, true}) {
+    const TemporaryFolder temporary;
+    Quiet quiet;
+    const std::string task =
+        fmt::format("law = \"points\"\npoints = {}\ntimeout = 1\ntolerance = 0.002\n", are_enough ? 9 : 1);
+    (void)run_experiment(parse_experiment(servo_file(task + servo_target), "x.toml"), temporary.path(),
+                         quiet);
+    int fresh = 0, singular = 0;
+    const McapReader log(temporary.path() / log_file_name);
+    for (const McapMessage& message : log.messages()) {
+      if (message.channel->topic != servo_steps_topic) continue;
+      const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
+      fresh += step.fresh ? 1 : 0, singular += step.singular ? 1 : 0;
+      if (step.fresh) {
+        EXPECT_NE(step.singular, are_enough) << "at " << step.time << " s";
+      }
+    }
+    EXPECT_GT(fresh, 20);
+    EXPECT_EQ(singular > 0, !are_enough);
+  }
+}
+
 // Ends of tasks are sums of durations, an ulp before the clock at times: so after these.
 TEST(ServoLog, ManyServosFollowEachOther) {
   std::string tasks;

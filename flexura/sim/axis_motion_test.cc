@@ -161,7 +161,8 @@ TEST(AxisMotion, TakesNoLongerThanItMust) {
 }
 
 TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
-  for_random_cases(500, [](TestRandom& random) {
+  int timed = 0, braked = 0;
+  for_random_cases(500, [&](TestRandom& random) {
     RandomCase one(random);
     one.commands.back().is_halt = false;
     one.commands.back().duration = 0;
@@ -180,12 +181,16 @@ TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
       while (high - low > 1e-9) (motion.is_moving(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
       return low - start;
     };
+    ++timed;
     EXPECT_NEAR(end(slow), std::max(end(fast), one.commands.back().duration), 1e-6);
     // Without a jump: what is left before the end is what the brake takes.
     if (!std::isfinite(one.axis.max_acceleration)) return;
+    ++braked;
     const double before = start + end(slow) - 1e-6;
     EXPECT_NEAR(slow.motor(before), target, 1e-6 * one.axis.max_acceleration * 1e-5 + 1e-9);
   });
+  EXPECT_GT(timed, 300 / one_case_of);
+  EXPECT_GT(braked, 100 / one_case_of);
 }
 
 TEST(AxisMotion, WithoutLimitsIsThereAtOnce) {

@@ -183,6 +183,22 @@ TEST(SimulatedHead, MovesAfterItsDelayAndArrives) {
   });
 }
 
+TEST(SimulatedHead, MovesAsLongAsAnyOfItsAxesDoes) {
+  const Camera camera(cameras_at({5, 5})[0]);
+  const HeadState rest = camera.initial_head();
+  for (const HeadState& target : {HeadState{rest.pan + 0.3, rest.tilt, rest.zoom},
+                                  {rest.pan, rest.tilt + 0.3, rest.zoom},
+                                  {rest.pan, rest.tilt, rest.zoom + 0.5}}) {
+    SimulatedClock clock;
+    SimulatedHead head(camera, rest, clock, forever);
+    ASSERT_TRUE(head.command(target));
+    clock.wait_until(0.01);
+    EXPECT_TRUE(head.read().value().moving);
+    clock.wait_until(60);
+    EXPECT_FALSE(head.read().value().moving);
+  }
+}
+
 TEST(SimulatedHead, ItsLensStaysWithinTheTable) {
   for_random_cases(100, [](TestRandom& random) {
     const Camera camera(real_camera(random));

@@ -250,6 +250,8 @@ TEST(EtalonFigure, TellsARigFromRoughGuessesAndHowWell) {
     squares += std::pow((angle.value - should) / sigma, 2), ++count;
   });
   EXPECT_LT(squares, (1 + 4 * std::sqrt(2.0 / count)) * count);
+  // Sigmas that are much too large would hold all of them easily.
+  EXPECT_GT(squares, (one_case_of > 1 ? 0 : 0.2) * count);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(Truth, CoverageOfAllKindsAddsUpToOne) {
       const Image<float> part = coverage(renderer, kind);
       for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += part.values()[i];
     }
-    for (const float value : sum.values()) EXPECT_TRUE(value == 0 || std::abs(value - 1) < 1e-5) << value;
+    for (const float value : sum.values()) EXPECT_NEAR(value, 1, 1e-5);
   });
 }
 

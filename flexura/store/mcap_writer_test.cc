@@ -3,7 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "tests/mcap_testing.h"
 #include "tests/support/full_disk.h"
@@ -35,6 +40,31 @@ TEST(McapWriter, GivesTheSameBytesTwice) {
   const std::string once = small_log();
   EXPECT_GT(once.size(), 500U);
   EXPECT_EQ(once, small_log());
+}
+
+using TwoTimes = std::pair<std::uint64_t, std::uint64_t>;
+
+// The first two numbers of each record of this kind.
+std::vector<TwoTimes> times_in(McapOp kind, const std::string& log) {
+  const auto number = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 8; i-- > 0;) value = value << 8 | static_cast<unsigned char>(log.at(at + i));
+    return value;
+  };
+  std::vector<TwoTimes> times;
+  for (std::size_t at = mcap_magic.size(); at + mcap_record_header < log.size();
+       at += mcap_record_header + number(at + 1)) {
+    if (log[at] != static_cast<char>(kind)) continue;
+    times.emplace_back(number(at + mcap_record_header), number(at + mcap_record_header + 8));
+  }
+  return times;
+}
+
+// By them a reader finds a time without reading all chunks.
+TEST(McapWriter, SaysOfEachChunkFromWhenToWhenItsMessagesAre) {
+  for (const McapOp kind : {McapOp::chunk, McapOp::chunk_index})
+    EXPECT_THAT(times_in(kind, small_log()), ElementsAre(TwoTimes(0, 1000), TwoTimes(2000, 3000),
+                                                         TwoTimes(4000, 5000), TwoTimes(6000, 6000)));
 }
 
 TEST(McapWriter, KeepsAnEmptyLogReadable) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace flexura {
@@ -102,25 +103,21 @@ void Reader::throw_if_any() const {
 }
 
 bool Reader::number(const Node& node, const Spec& spec, double& value) {
+  std::optional<double> written;
+  if (const auto* whole = node.as<std::int64_t>())
+    written = static_cast<double>(*whole);
+  else if (const auto* real = node.as<double>())
+    written = *real;
+  const double scaled = written.value_or(0) * spelling.factor;
+  if (written && std::isfinite(scaled) && spec.range.contains(scaled)) {
+    value = scaled;
+    return true;
+  }
+  // Only now: a file may have millions of numbers.
   const std::string range = spec.range.text(spelling);
   const std::string unit = spelling.symbol.empty() ? "" : fmt::format(" in {}", spelling.symbol);
-  const std::string expected = range.empty() ? "a finite number" + unit : "a number " + range;
-  double written = 0;
-  if (const auto* whole = node.as<std::int64_t>()) {
-    written = static_cast<double>(*whole);
-  } else if (const auto* real = node.as<double>()) {
-    written = *real;
-  } else {
-    unexpected(node, expected);
-    return false;
-  }
-  const double scaled = written * spelling.factor;
-  if (!std::isfinite(scaled) || !spec.range.contains(scaled)) {
-    unexpected(node, expected);
-    return false;
-  }
-  value = scaled;
-  return true;
+  unexpected(node, range.empty() ? "a finite number" + unit : "a number " + range);
+  return false;
 }
 
 bool Reader::integer(const Node& node, const Spec& spec, std::int64_t& value) {
@@ -209,6 +206,19 @@ std::string_view nearest_spelling(std::string_view key, const TableInfo& table, 
   return nearest_name(key, names);
 }
 
+// The table inside this one, or one of several there, that has a field of this name; null where none has.
+const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
+  const auto has_key = [key](const FieldInfo& field) {
+    const TableInfo* inner = field.type.item ? field.type.item->table : field.type.table;
+    UnitSpelling spelling{};
+    return inner != nullptr && std::ranges::any_of(inner->fields, [&](const FieldInfo& candidate) {
+             return has_suffix(candidate, key, spelling);
+           });
+  };
+  const auto found = std::ranges::find_if(table.fields, has_key);
+  return found == table.fields.end() ? nullptr : &*found;
+}
+
 // What is said of a key that no field of the table has, "did you mean ...", and the field that it is meant
 // for.
 struct UnknownKey {
@@ -223,6 +233,9 @@ UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string
                 : fmt::format("wrong unit: expected {}", ways_to_write(*field)),
             field};
   }
+  if (const FieldInfo* inner = table_with(key, table))
+    return {fmt::format("unknown key; it belongs into {} \"{}\"", inner->type.item ? "each" : "the table",
+                        inner->name)};
   std::vector<std::string> names;
   if (const std::string_view near = nearest_spelling(key, table, tag, names); !near.empty()) {
     UnitSpelling spelling{};

@@ -145,6 +145,11 @@ TEST(Table, NamesTheKeyThatWasMeant) {
               ElementsAre(HasSubstr("unknown key; expected one of: colour, seats, open")));
 }
 
+TEST(Table, NamesTheTableWhereAKeyBelongs) {
+  EXPECT_THAT(problems_of({member("radius_mm", 20.0, 7)}),
+              ElementsAre("cart.toml:7:1: radius_mm: unknown key; it belongs into each \"wheel\""));
+}
+
 TEST(Table, RefusesAQuantityWrittenInTwoUnits) {
   EXPECT_THAT(problems_of({member("tilt", 0.5, 3), member("tilt_deg", 3.0, 4)}),
               ElementsAre("cart.toml:4:1: tilt_deg: written twice: tilt stands in line 3 already"));

@@ -87,6 +87,23 @@ TEST(Lens, ShowsNothingBeyondItsRim) {
   EXPECT_FALSE(lens.unproject({intrinsics.cx, intrinsics.cy - 1e9}));
 }
 
+// OpenCV's order: k1, k2, p1, p2, k3. What a tenth of each one alone moves the point (0.5, 0.25) by.
+TEST(Lens, HasItsCoefficientsInTheirOrder) {
+  constexpr std::array<std::array<double, 2>, 5> moved = {{{0.015625, 0.0078125},
+                                                           {0.0048828125, 0.00244140625},
+                                                           {0.025, 0.04375},
+                                                           {0.08125, 0.025},
+                                                           {0.00152587890625, 0.000762939453125}}};
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Intrinsics intrinsics{.fx = 1, .fy = 1, .cx = 0, .cy = 0};
+    intrinsics.distortion[i] = 0.1;
+    const auto pixel = Lens(intrinsics).project({0.5, 0.25, 1});
+    ASSERT_TRUE(pixel) << i;
+    EXPECT_NEAR(pixel->x() - 0.5, moved[i][0], 1e-15) << i;
+    EXPECT_NEAR(pixel->y() - 0.25, moved[i][1], 1e-15) << i;
+  }
+}
+
 TEST(Lens, ItsRimIsWhereTheRadialPartFirstStopsGrowing) {
   for_random_cases(2000, [](TestRandom& random) {
     Intrinsics intrinsics;

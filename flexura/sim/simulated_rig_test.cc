@@ -263,6 +263,38 @@ TEST_F(SimulatedCameraTest, LooksBackAsFarAsItSaysAndNoFarther) {
   EXPECT_GT(count, 10);
 }
 
+// The arm's way is remembered as far back as that, however often it was sent elsewhere meanwhile.
+TEST_F(SimulatedCameraTest, ShowsAFrameAsLateAsItCanBeHadAsItWasAtOnce) {
+  RigConfig config = two_section_rig();
+  config.drive.reset();
+  for (CameraConfig& camera : config.cameras)
+    camera.sensor.frame_rate = 100, camera.sensor.exposure = 0, camera.sensor.drop = 0.9;
+  const auto steered = [&](double end, std::vector<Frame>* film) {
+    SimulatedRig rig(config, config, numbers_renderer, 3);
+    for (double time = 0.001; time < end; time += 0.001) {
+      rig.clock().wait_until(time);
+      ArmState state = ArmState::straight(2);
+      state.bends[0].x() = 0.5 * std::sin(3 * time);
+      EXPECT_TRUE(rig.ports().arm->command(state, 0.001));
+      if (film == nullptr) continue;
+      for (const Frame& frame : rig.camera(0).camera().all_new()) film->push_back(frame);
+    }
+    return film == nullptr ? rig.ports().cameras[0].camera->newest().value() : std::nullopt;
+  };
+  std::vector<Frame> film;
+  (void)steered(5, &film);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < film.size(); ++i) {
+    if (film[i + 1].number - film[i].number < frames_kept) continue;
+    ++count;
+    const auto late = steered((static_cast<double>(film[i].number) + frames_kept - 0.05) / 100, nullptr);
+    ASSERT_TRUE(late);
+    EXPECT_EQ(late->number, film[i].number);
+    EXPECT_TRUE(*late->picture == *film[i].picture);
+  }
+  EXPECT_GT(count, 3);
+}
+
 TEST_F(SimulatedCameraTest, RefusesToWaitForATimeThatIsNotFinite) {
   start(10, 0, 0, 1);
   for (const double timeout : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {

@@ -233,9 +233,6 @@ UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string
                 : fmt::format("wrong unit: expected {}", ways_to_write(*field)),
             field};
   }
-  if (const FieldInfo* inner = table_with(key, table))
-    return {fmt::format("unknown key; it belongs into {} \"{}\"", inner->type.item ? "each" : "the table",
-                        inner->name)};
   std::vector<std::string> names;
   if (const std::string_view near = nearest_spelling(key, table, tag, names); !near.empty()) {
     UnitSpelling spelling{};
@@ -244,6 +241,9 @@ UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string
     return {fmt::format("unknown key; did you mean \"{}\"?", near),
             meant == table.fields.end() ? nullptr : &*meant};
   }
+  if (const FieldInfo* inner = table_with(key, table))
+    return {fmt::format("unknown key; it belongs into {} \"{}\"", inner->type.item ? "each" : "the table",
+                        inner->name)};
   if (table.fields.empty()) return {"unknown key; no more is expected here"};
   std::string known;
   for (const FieldInfo& field : table.fields) known += (known.empty() ? "" : ", ") + field.name;

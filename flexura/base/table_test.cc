@@ -65,6 +65,17 @@ const Table<Cart>& fields_of(const Cart*) {
   return table;
 }
 
+struct Street {
+  std::int64_t seat = 0;
+  std::vector<Cart> cart;
+};
+
+const Table<Street>& fields_of(const Street*) {
+  static const auto table =
+      Table<Street>("street", "Lies.").field("seat", &Street::seat, {}).field("cart", &Street::cart, {});
+  return table;
+}
+
 SourcePosition at(int line, int column) {
   static const auto source = std::make_shared<const std::string>("cart.toml");
   return {source, line, column};
@@ -148,6 +159,13 @@ TEST(Table, NamesTheKeyThatWasMeant) {
 TEST(Table, NamesTheTableWhereAKeyBelongs) {
   EXPECT_THAT(problems_of({member("radius_mm", 20.0, 7)}),
               ElementsAre("cart.toml:7:1: radius_mm: unknown key; it belongs into each \"wheel\""));
+  // What is nearly a key of this table is meant for that one.
+  try {
+    (void)read_as<Street>(table({member("seats", std::int64_t{3}, 7)}));
+    ADD_FAILURE() << "read";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "cart.toml:7:1: seats: unknown key; did you mean \"seat\"?");
+  }
 }
 
 TEST(Table, RefusesAQuantityWrittenInTwoUnits) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -20,26 +21,46 @@ bool is_missing(const std::filesystem::path& path) {
   return std::filesystem::status(path, error).type() == std::filesystem::file_type::not_found;
 }
 
+namespace {
+
+// What somebody types ends; what another device gives (/dev/zero) need not.
+bool is_endless(const std::filesystem::path& file, const std::filesystem::file_status& status) {
+  if (!std::filesystem::is_character_file(status) && !std::filesystem::is_block_file(status)) return false;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  const bool is_terminal = descriptor >= 0 && ::isatty(descriptor) == 1;
+  if (descriptor >= 0) ::close(descriptor);
+  return !is_terminal;
+}
+
+}  // namespace
+
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found)
     throw input_error(file.string(), "no such file");
   if (std::filesystem::is_directory(status)) throw input_error(file.string(), "is a folder: expected a file");
+  if (is_endless(file, status)) throw input_error(file.string(), "is a device: expected a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw input_error(file.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
-  // Read in pieces up to the bound: what is no regular file (a pipe, /dev/zero) does not tell its size.
+  const auto too_large = [&] {
+    return input_error(file.string(),
+                       fmt::format("is larger than {} MiB: expected a smaller file", max_bytes >> 20));
+  };
   std::string text;
+  if (std::filesystem::is_regular_file(status)) {
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error && size > max_bytes) throw too_large();
+    if (!error) text.reserve(size);
+  }
+  // Read in pieces up to the bound: what is no regular file (a pipe) does not tell its size.
   std::string piece(std::size_t{64} << 10, '\0');
   while (stream && text.size() <= max_bytes) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) throw input_error(file.string(), "cannot be read to its end");
-  if (text.size() > max_bytes) {
-    throw input_error(file.string(),
-                      fmt::format("is larger than {} MiB: expected a smaller file", max_bytes >> 20));
-  }
+  if (text.size() > max_bytes) throw too_large();
   return text;
 }
 

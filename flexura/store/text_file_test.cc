@@ -40,6 +40,7 @@ TEST_F(TextFileTest, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT(refusal(folder_.path() / "loop" / "file"), HasSubstr("cannot be read: Too many levels"));
   EXPECT_THAT(refusal(folder_.path() / "nothing"), HasSubstr("no such file"));
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("is a folder"));
+  EXPECT_THAT(refusal("/dev/zero"), HasSubstr("is a device: expected a file"));
   write_new_file(folder_.path() / "long", std::string(101, 'x'));
   EXPECT_THAT(refusal(folder_.path() / "long"), HasSubstr("is larger"));
 }

@@ -205,7 +205,7 @@ bool is_repeated_key(std::string_view description) {
 }
 
 // What is meant by a text without its closing quote, which toml++ tells as a line end that must not be in it,
-// and by the second of two keys.
+// by the second of two keys, by what ends too early, and by a word where a value is expected.
 std::string plain_words(std::string_view description) {
   if (description.find("control characters other than TAB") != std::string_view::npos)
     return "the text does not end on its line: expected a closing quote, and no control characters before it";
@@ -213,6 +213,12 @@ std::string plain_words(std::string_view description) {
     const std::string_view name = description.substr(std::min(description.find('\''), description.size()));
     return fmt::format("{} is written twice: expected each key once", name);
   }
+  if (description.find("could not determine value type") != std::string_view::npos)
+    return "no value: expected a number, a text in quotes, true or false, an array or a table";
+  constexpr std::string_view before = "Error while parsing ", after = ": encountered end-of-file";
+  if (description.starts_with(before) && description.ends_with(after))
+    return fmt::format("the end comes within this {}: expected the rest of it",
+                       description.substr(before.size(), description.size() - before.size() - after.size()));
   return std::string(description);
 }
 

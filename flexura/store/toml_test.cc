@@ -43,6 +43,14 @@ TEST(ParseToml, ReportsWhatIsNotToml) {
               HasSubstr("x.toml:1:10: the text does not end on its line"));
 }
 
+TEST(ParseToml, SaysWhatIsExpectedWhereTheTextEndsOrHoldsAWord) {
+  EXPECT_EQ(toml_error_of("a ="),
+            "x.toml:1:4: the end comes within this key-value pair: expected the rest of it");
+  EXPECT_EQ(toml_error_of("a = [1,"), "x.toml:1:8: the end comes within this array: expected the rest of it");
+  EXPECT_EQ(toml_error_of("a = b"),
+            "x.toml:1:5: no value: expected a number, a text in quotes, true or false, an array or a table");
+}
+
 TEST(ParseToml, CanReadOnWhereAKeyIsWrittenTwice) {
   std::vector<Problem> repeated;
   const Node node = parse_toml("a = 1\na = 2\nb = 3\n[t]\nc = 1\nc = 'x'\nd = 4\n", "x.toml", &repeated);

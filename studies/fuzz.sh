@@ -9,10 +9,16 @@ mapfile -t all < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sor
 targets=("${@:3}")
 [ "${#targets[@]}" -gt 0 ] || targets=("${all[@]}")
 
-# Pictures take 6 ms a scene: in ten parts, as many at a time as there are cores, by a build that is optimised (ASan
-# alone).
+# Pictures take 6 ms a scene: by a build that is optimised (ASan alone). What takes long is run in ten parts, as many
+# at a time as there are cores; those that are done are not run again with the same program, so a run that was stopped
+# goes on.
 is_of_scenes() { [ "$1" = render_fuzz ]; }
-parts_of() { if is_of_scenes "$1"; then echo 10; else echo 1; fi; }
+parts_of() {
+  case $1 in
+    render_fuzz | estimate_fuzz | measure_fuzz) echo 10 ;;
+    *) echo 1 ;;
+  esac
+}
 builds=()
 for target in "${targets[@]}"; do
   if is_of_scenes "$target"; then builds+=(scenes); else builds+=(asan); fi
@@ -36,6 +42,10 @@ run_part() {
   [ "$target" != render_fuzz ] || fresh=0.9
   mkdir -p "$folder"
   cd "$folder"
+  if [ log -nt "$root/build/$build/bin/$target" ] && grep -q ", seed $((seed + part))\$" log &&
+    grep -q "^$((cases / parts)) cases, no failure" log; then
+    return
+  fi
   "$root/build/$build/bin/$target" --corpus "$root/tests/corpus/$target" --cases "$((cases / parts))" \
     --seed "$((seed + part))" --fresh "$fresh" >log 2>&1 || {
     echo "FAILED: $folder/log" >&2

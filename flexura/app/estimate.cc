@@ -295,7 +295,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
     looks.push_back(look_at(pictures[i], cameras[i], settings));
     sightings.push_back(looks.back().sighting);
   }
-  ShapeEstimate found = ShapeEstimator(settings.prior).estimate(sightings);
+  ShapeEstimate found = ShapeEstimator(settings.prior, settings.estimator).estimate(sightings);
   if (found.is_found && !settings.prior.is_base_position_known)
     found.notes.emplace_back(
         "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "

@@ -11,6 +11,7 @@
 #include "flexura/app/threshold_arguments.h"
 #include "flexura/base/node.h"
 #include "flexura/camera/measured_camera.h"
+#include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_variables.h"
 #include "flexura/vision/threshold.h"
 
@@ -26,6 +27,7 @@ struct PictureFile {
 struct EstimateSettings {
   ShapePrior prior;  ///< What is known of the arm.
   ThresholdConfig threshold;
+  EstimatorConfig estimator;
   std::size_t points = 101;  ///< Of the backbone, as it is told; at least 2.
   bool has_bends = false;    ///< Whether the bends of the prior's sections are told: they are the arm's.
 };

@@ -52,7 +52,10 @@ struct Asked {
   flexura::EstimateSettings settings;
 };
 
-// Bits of `ways`: a known base, a known length, known sections, thresholds by block, markers.
+// Bits of `ways`: a known base, a known length, known sections, thresholds by block, markers, few sections,
+// as thorough as the program. Of few sections the last one is bent in all ways where pictures are not
+// explained, and a thorough search goes on where nothing is to be found: both take most of the time, and are
+// left to a few cases.
 flexura::EstimateSettings settings_of(unsigned ways) {
   flexura::EstimateSettings settings;
   std::optional<Eigen::Vector3d> base;
@@ -61,12 +64,13 @@ flexura::EstimateSettings settings_of(unsigned ways) {
   if ((ways & 2U) != 0) length = 1;
   settings.has_bends = (ways & 4U) != 0;
   if (settings.has_bends)
-    settings.prior.arm.sections.resize(2, {.length = 0.5, .radius = {0.02, 0.02}});
+    settings.prior.arm.sections.resize((ways & 32U) != 0 ? 2 : 5, {.length = 0.2, .radius = {0.02, 0.02}});
   else
     settings.prior = flexura::unknown_arm(base, length, 6);
   if ((ways & 8U) != 0) settings.threshold.method = flexura::ThresholdMethod::by_block;
   if ((ways & 16U) != 0) settings.prior.markers = {0.25, 0.5};
   settings.points = 5;
+  if ((ways & 64U) == 0) settings.estimator.most_points = 24, settings.estimator.most_iterations = 12;
   return settings;
 }
 

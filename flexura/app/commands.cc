@@ -110,8 +110,8 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   }
   const RunResult result = run_experiment(experiment, folder, *link, link.get());
   progress.clear();
-  // A film is an extra: a run without ffmpeg is as good.
-  if (experiment.record.cameras) {
+  // A film is an extra: a run without ffmpeg is as good, and who has told it to stop does not wait for one.
+  if (experiment.record.cameras && result.outcome != RunOutcome::cancelled) {
     try {
       (void)export_mp4(folder);
     } catch (const std::exception& error) {
@@ -120,6 +120,9 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (const std::string& reason : result.reasons) tell(err, name_of(result.outcome), reason);
+  if (result.outcome == RunOutcome::cancelled && result.reasons.empty())
+    tell(err, name_of(result.outcome),
+         fmt::format("it was told to stop at {:.6g} s", *result.summary.find("duration")->as<double>()));
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
     tell(err, "results", folder.string());

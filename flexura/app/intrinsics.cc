@@ -45,9 +45,10 @@ void check(const IntrinsicsArguments& arguments) {
   if (kinds != 1)
     throw input_error("IMAGE", "expected pictures of one camera, or --left and --right, or --zoom groups");
   if (arguments.left.size() != arguments.right.size())
-    throw input_error("--right",
-                      fmt::format("{} pictures for {} of --left: expected one for each, taken together",
-                                  arguments.right.size(), arguments.left.size()));
+    throw input_error(
+        "--right",
+        fmt::format("{} picture{} for {} of --left: expected one for each, taken together",
+                    arguments.right.size(), arguments.right.size() == 1 ? "" : "s", arguments.left.size()));
   if (arguments.distortion < 0 || arguments.distortion > 5)
     throw input_error("--distortion",
                       fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));

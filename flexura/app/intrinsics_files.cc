@@ -123,7 +123,8 @@ std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
                                           std::vector<std::string> usual) {
   if (arguments.names.empty()) return usual;
   if (arguments.names.size() != usual.size())
-    throw input_error("--name", fmt::format("{} names: expected {}", arguments.names.size(), usual.size()));
+    throw input_error("--name", fmt::format("{} name{}: expected {}", arguments.names.size(),
+                                            arguments.names.size() == 1 ? "" : "s", usual.size()));
   // Names end up in files that others include.
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const bool is_plain = std::ranges::all_of(arguments.names[i], [](char c) {

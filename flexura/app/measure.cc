@@ -66,8 +66,8 @@ std::vector<std::optional<Lens>> lenses_of(const MeasureArguments& arguments) {
   const auto cameras = read_as<MeasuredCameras>(file).camera;
   if (cameras.size() != 1 && cameras.size() != lenses.size())
     throw InputError({{file.find("camera")->where,
-                       fmt::format("camera: {} for {} pictures: expected one, or one for each picture",
-                                   cameras.size(), lenses.size())}});
+                       fmt::format("camera: {} for {} picture{}: expected one, or one for each picture",
+                                   cameras.size(), lenses.size(), lenses.size() == 1 ? "" : "s")}});
   for (std::size_t i = 0; i < lenses.size(); ++i) lenses[i] = cameras[cameras.size() == 1 ? 0 : i].lens();
   return lenses;
 }

@@ -50,6 +50,22 @@ TEST(Measure, RefusesWhatCountsForNothing) {
   }
 }
 
+TEST(Measure, CountsCamerasAndPicturesInGoodWords) {
+  const TemporaryFolder folder;
+  MeasureArguments arguments;
+  arguments.images = {"x.png"};
+  arguments.camera = (folder.path() / "two.toml").string();
+  write_new_file(arguments.camera,
+                 "[[camera]]\nfx = 1\ncx = 0\ncy = 0\n[[camera]]\nfx = 1\ncx = 0\ncy = 0\n");
+  std::ostringstream out;
+  try {
+    (void)measure_command(arguments, out);
+    ADD_FAILURE() << "measured";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("camera: 2 for 1 picture: expected one"));
+  }
+}
+
 TEST(Measure, DoesNotDrawOverThePictureThatItMeasures) {
   const TemporaryFolder folder;
   MeasureArguments arguments;

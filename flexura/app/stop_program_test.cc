@@ -24,6 +24,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class StoppedProgram : public Program {
  protected:
@@ -51,6 +52,7 @@ TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
     const Ended ended = wait(child);
     EXPECT_EQ(ended.status, 128 + signal);
     EXPECT_EQ(ended.out, "results: long\n");
+    EXPECT_THAT(ended.err, StartsWith("cancelled: it was told to stop at "));
     EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
     const McapReader log(path("long/log.mcap"));
     EXPECT_FALSE(log.truncated());
@@ -81,6 +83,22 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
       EXPECT_LT(std::hypot(steps[k].sent[i][0] - steps[k - 1].sent[i][0],
                            steps[k].sent[i][1] - steps[k - 1].sent[i][1]),
                 rate / 30 + 1e-9);
+}
+
+TEST_F(StoppedProgram, MakesNoFilmBeforeItEnds) {
+  const std::filesystem::path filmer = path("ffmpeg");
+  std::ofstream(filmer) << "#!/bin/sh\nexec cat >filmed\n";
+  std::filesystem::permissions(filmer, std::filesystem::perms::owner_all);
+  before_ = "PATH=" + folder_.path().string() + ":$PATH && ";
+  const pid_t child = running(
+      "[record]\ncameras = true\n[[arm.section]]\nlength = 1\n[[task]]\n"
+      "kind = 'hold'\nduration = 3000\n",
+      1'500'000);
+  kill(child, SIGTERM);
+  EXPECT_EQ(wait(child).status, 128 + SIGTERM);
+  EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
+  EXPECT_FALSE(std::filesystem::exists(path("filmed")));
+  EXPECT_FALSE(std::filesystem::exists(path("long/mp4")));
 }
 
 // The first is on its way while the run is held; the second does not wait for it.

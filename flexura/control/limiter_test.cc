@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/control/limiter_ways.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
@@ -187,6 +188,40 @@ TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
     EXPECT_EQ(limiter.sent().bends, wish.bends);
     EXPECT_TRUE(limiter.next(wish).is_untouched);
   });
+}
+
+// A law at this rate has way/(rate step) left to go: of the motors one is as fast as it can still brake
+// there, with half of its acceleration, and none is faster.
+TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
+  int slowed = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    const Arm arm = limited_arm(random);
+    LimiterSettings settings{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
+    settings.drive = limited_drive(random, arm);
+    settings.drive->disks.reset();
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    const CommandLimiter limiter(arm, settings, straight);
+    ArmState wish = straight;
+    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
+    const double rate = random.uniform(1, 5);
+    const ArmState slow = limiter.within_braking(wish, rate);
+    const auto motors = [&](const ArmState& state) {
+      return motor_positions(*settings.drive, tendon_displacements(arm, *settings.drive, state));
+    };
+    const std::vector<double> begun = motors(straight), far = motors(wish), near = motors(slow);
+    double most = 0;
+    for (std::size_t i = 0; i < begun.size(); ++i) {
+      const double speed = std::abs(near[i] - begun[i]) / settings.step;
+      const double left = std::abs(far[i] - begun[i]) / (rate * settings.step);
+      const double braking = 0.5 * motor_acceleration(settings.drive->axes[i].motor);
+      most = std::max(most, speed * speed / (2 * braking * left));
+    }
+    const bool is_slowed = slow.bends != wish.bends;
+    slowed += is_slowed ? 1 : 0;
+    EXPECT_LE(most, 1 + 1e-6);
+    EXPECT_GE(most, is_slowed ? 1 - 1e-6 : 0);
+  });
+  EXPECT_GT(slowed, 20 / one_case_of);
 }
 
 TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {

@@ -185,6 +185,7 @@ TEST(HardArms, CallsNoEndFreeThatIsNone) {
       ++count, whole += std::min(to_base, to_tip) < 1;
     }
   });
+  EXPECT_GT(count, 70 / one_case_of);
   // A tip that hides behind the arm itself is not seen.
   EXPECT_LE(count - whole, 1 + 0.03 * count);
 }
@@ -208,6 +209,7 @@ TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
     }
   });
   std::printf("free ends: %d, within 1 px %d, more than 4 px off %d\n", count, near, far);
+  EXPECT_GT(count, 140 / one_case_of);
   // Ends that turn to the camera look rounder than they are.
   EXPECT_LE(count - near, 1 + 0.15 * count);
   EXPECT_LE(far, 2 + 0.01 * count);

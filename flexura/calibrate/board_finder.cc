@@ -38,6 +38,27 @@ int half_window(double spacing) {
   return static_cast<int>(std::floor(std::clamp(wanted, least, std::max(least, 0.5 * spacing - 1))));
 }
 
+// Whether neighbours have nothing to do with each other, as behind a lens cap: OpenCV would look for squares
+// in each grain for minutes, in large pictures for hours. A board's squares are some pixels wide.
+bool is_noise(const Image<std::uint8_t>& gray) {
+  const auto values = gray.values();
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value, squares += value * value;
+  const auto count = static_cast<double>(values.size());
+  const double variance = squares / count - sum * sum / (count * count);
+  const auto width = static_cast<std::size_t>(gray.width());
+  const auto share_unlike = [&](std::size_t apart) {
+    std::size_t unlike = 0;
+    for (std::size_t i = apart; i < values.size(); ++i) {
+      const double step = double{1} * values[i] - values[i - apart];
+      unlike += 2 * step * step > variance ? 1 : 0;
+    }
+    return static_cast<double>(unlike) / count;
+  };
+  constexpr double most = 0.5;  // Of noise it is some 0.6; of squares three pixels wide a third.
+  return share_unlike(1) > most && share_unlike(width) > most;
+}
+
 bool find_corners(const cv::Mat& picture, const BoardTarget& board, Corners& corners) {
   if (!cv::findChessboardCorners(picture, {board.columns, board.rows}, corners,
                                  cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
@@ -97,6 +118,7 @@ void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std
 }  // namespace
 
 BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
+  if (is_noise(gray)) return {.pixels = {}, .reason = "the picture is nothing but noise"};
   // The same bytes on every machine, whatever it has of processors. (And ThreadSanitizer, which cannot see
   // into the packaged library, takes what its threads lock on this one's stack for races.)
   cv::setNumThreads(1);

@@ -36,6 +36,21 @@ BoardSighting look(const BoardTarget& board, const Pose& X_CB) {
   return find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), board);
 }
 
+// OpenCV would look for squares among the grains.
+TEST(BoardFinder, DoesNotSearchNoise) {
+  Image<std::uint8_t> noise(width, height);
+  std::uint32_t state = 1;
+  for (std::uint8_t& value : noise.values()) {
+    state = 1664525U * state + 1013904223U;
+    value = static_cast<std::uint8_t>(state >> 30U);  // Of a dark picture: 0 to 3.
+  }
+  BoardTarget board{.columns = 7, .rows = 4};
+  for (const BoardPattern pattern : {BoardPattern::chessboard, BoardPattern::circles}) {
+    board.pattern = pattern;
+    EXPECT_EQ(find_board(noise, board).reason, "the picture is nothing but noise");
+  }
+}
+
 TEST(BoardFinder, FindsCornersToATwelfthOfAPixelInTheBoardsOrder) {
   const BoardTarget board{.columns = 7, .rows = 4};
   for_random_cases(6, [&](TestRandom& random) {

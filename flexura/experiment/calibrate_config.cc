@@ -176,7 +176,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
           .field("stages", &CalibrateTask::stages, {.meaning = "Stages may be moved, as far as they travel."})
           .field("zooms", &CalibrateTask::zooms,
                  {.meaning = "Focal lengths to look with, as factors on that at the start.",
-                  .range = above_up_to(0, 1000),
+                  .range = between(0.1, 100),
                   .count = {1, 10}})
           .field("move_duration", &CalibrateTask::move_duration,
                  {.meaning = "Time of the arm's way to a pose, or back.",

@@ -19,6 +19,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
+#include "tests/support/watched_views.h"
 
 namespace flexura {
 namespace {
@@ -54,29 +55,9 @@ std::string calibration_and_rest() {
 // One run for all: watched, and with its recording.
 class CalibrationView : public ::testing::Test {
  protected:
-  struct Seen {
-    TemporaryFolder folder;
-    ViewedRigPtr rig = viewed_rig(calibration_and_rest());
-    FakeMessenger live;
-  };
-
-  static void SetUpTestSuite() {
-    seen = std::make_unique<Seen>();
-    auto run = std::make_shared<SeenCalibration>();
-    FakeBackground background;
-    LiveSession session(seen->rig, seen->live, background, {.start = 0, .results = {}, .run = run});
-    session.opened(me);
-    double clock = 0;
-    run->look = [&] { session.advance(clock += 0.1); };
-    run_linked(seen->rig->experiment, seen->folder.path(), *run);
-    run->look();
-  }
+  static void SetUpTestSuite() { seen = watched_view<SeenCalibration>(calibration_and_rest()); }
   static void TearDownTestSuite() { seen.reset(); }
 
-  static Node node_of(const std::string& message) {
-    if (message.empty() || message[0] != 3) return ADD_FAILURE() << "no extras", Node{};
-    return parse_json(message.substr(1), "extras");
-  }
   static std::string text_in(const Node& node, const char* key) { return *node.find(key)->as<std::string>(); }
   static const Node::Array& overlays_of(const Node& extras) {
     return *extras.find("overlays")->as<Node::Array>();
@@ -89,10 +70,10 @@ class CalibrationView : public ::testing::Test {
   // Those of the recording at a time.
   static Node extras_at(RecordingSession& session, FakeMessenger& messenger, double time) {
     session.take(me, AtRequest{time}, [](const ViewAnswer&) {});
-    return node_of(*messenger.posts[{me, extras_stream}].back());
+    return extras_in(*messenger.posts[{me, extras_stream}].back());
   }
 
-  static inline std::unique_ptr<Seen> seen;
+  static inline std::unique_ptr<WatchedView> seen;
 };
 
 TEST_F(CalibrationView, ShowsWhatIsMeasuredAndDecidedWhileARunGoesOn) {
@@ -100,7 +81,7 @@ TEST_F(CalibrationView, ShowsWhatIsMeasuredAndDecidedWhileARunGoesOn) {
   std::size_t both = 0;
   Node last;
   for (const auto& message : seen->live.posts[{me, extras_stream}]) {
-    last = node_of(*message);
+    last = extras_in(*message);
     said.push_back(text_in(last, "text"));
     if (overlays_of(last).size() < 2) continue;
     ++both;

@@ -25,6 +25,7 @@
 #include "tests/support/servo_files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
+#include "tests/support/watched_views.h"
 
 namespace flexura {
 namespace {
@@ -44,11 +45,6 @@ std::string filmed_servo() {
 }
 
 const ArmState wanted_shape = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
-
-Node extras_in(const std::string& message) {
-  if (message.empty() || message[0] != 3) return ADD_FAILURE() << "no extras", Node{};
-  return parse_json(message.substr(1), "extras");
-}
 
 const Node::Array& list_in(const Node& node, const char* key) { return *node.find(key)->as<Node::Array>(); }
 
@@ -86,23 +82,7 @@ class SeenRun : public RunLink {
 // One run for all: watched, and with its recording.
 class ServoView : public ::testing::Test {
  protected:
-  struct Seen {
-    TemporaryFolder folder;
-    ViewedRigPtr rig = viewed_rig(filmed_servo());
-    FakeMessenger live;
-  };
-
-  static void SetUpTestSuite() {
-    seen = std::make_unique<Seen>();
-    auto run = std::make_shared<SeenRun>();
-    FakeBackground background;
-    LiveSession session(seen->rig, seen->live, background, {.start = 0, .results = {}, .run = run});
-    session.opened(me);
-    double clock = 0;
-    run->look = [&] { session.advance(clock += 0.1); };
-    run_linked(seen->rig->experiment, seen->folder.path(), *run);
-    run->look();
-  }
+  static void SetUpTestSuite() { seen = watched_view<SeenRun>(filmed_servo()); }
   static void TearDownTestSuite() { seen.reset(); }
 
   static std::vector<Node> live_extras() {
@@ -116,7 +96,7 @@ class ServoView : public ::testing::Test {
     return extras_in(*messenger.posts[{me, extras_stream}].back());
   }
 
-  static inline std::unique_ptr<Seen> seen;
+  static inline std::unique_ptr<WatchedView> seen;
 };
 
 TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {

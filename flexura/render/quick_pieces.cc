@@ -65,14 +65,14 @@ bool is_gentle(const TubePiece& piece) {
   return piece.curvature * piece.widest() < 0.5 && std::abs(piece.widening) < 0.1;
 }
 
-// How far along the axis the contours of two pieces part that taper differently, m.
-double kink_of(const Stage& stage, const TubePiece& piece) {
-  double change = 0;
-  for (const int next : {piece.before, piece.after})
-    if (next >= 0)
-      change =
-          std::max(change, std::abs(stage.pieces[static_cast<std::size_t>(next)].widening - piece.widening));
-  return 2 * piece.widest() * change;
+// How near along the axis to where another piece goes on contours are left to the exact way, m, `pixel` in
+// size: where it bends or tapers otherwise their contours part there. 0 where it does neither, and at a true
+// end.
+double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double pixel) {
+  if (neighbour < 0) return 0;
+  const TubePiece& other = stage.pieces[static_cast<std::size_t>(neighbour)];
+  if (other.tube_arc == piece.tube_arc) return 0;
+  return pixel + 2 * piece.widest() * std::abs(other.widening - piece.widening);
 }
 
 // Whether a screen comes into a ball.
@@ -205,11 +205,13 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   const double rise = normal.dot(d), scale = -1 / rise;
   span.way = linear(normal.dot(start - middle), depth0 * normal.dot(by_u), depth0 * normal.dot(by_v), scale);
   span.curvature = number(piece.curvature), span.radius = number(piece.radius);
-  span.widening = number(piece.widening), span.kink = number(kink_of(stage, piece));
+  span.widening = number(piece.widening), span.widest = number(piece.widest());
   span.end_sine = number(piece.end_tangent.x()), span.end_cosine = number(piece.end_tangent.z());
   span.end_offset = number(piece.end_offset);
   const double pixel = (center.z() + piece.bound_radius) * pixel_;
   span.reach = span.bent_reach = number(0.9 * pixel);
+  span.kink_before = number(kink_of(stage, piece, piece.before, pixel));
+  span.kink_after = number(kink_of(stage, piece, piece.after, pixel));
   // The rays' rise over that plane changes across the image.
   const double bend = piece.curvature * piece.widest(), slant = std::abs(d.dot(chord)) / rise;
   const double width = piece.bound_radius * piece.bound_radius / center.z();

@@ -32,11 +32,12 @@ template <typename Visit>
   }
 }
 
-// Pixels that the kernel cannot be sure of, where the piece may be.
+// Pixels that the kernel cannot be sure of, where the piece may be: the ray's point is near the axis, and a
+// piece that leans towards the camera is met some radii along the ray from there.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const WideMask& is_unsure, int u, SpanRow& row) {
-  const WideMask is_lost = is_unsure & is_within(piece, ray.point, 2 * piece.radius);
+  const WideMask is_lost = is_unsure & is_within(piece, ray.point, 8 * piece.widest);
   if (!any(is_lost)) return;
   set_flag(is_lost, state_exact, row.state + u);
   row.has_exact = true;
@@ -95,11 +96,25 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     if (any(is_unsure)) leave_lost(piece, ray, is_unsure & is_asked, u, row);
     const WideMask is_border = is_near & ~is_inside & lowest.is_sure;
     if (any(is_border)) {
-      // Where the bend changes, each of two pieces may see the ray pass beside the other: in that fifth of a
-      // pixel both take it, and what two have taken is left.
-      const WideMask is_passing = is_within(piece, along(ray.point, ray.direction, lowest.t),
-                                            overlap * radius + 0.2f * reach + piece.kink);
-      add_borders(is_border & is_asked & (is_passing | (is_here & (lowest.value < 0))), u, row);
+      // Two pieces may each see the ray pass beside the other: in that fifth of a pixel both take it, and
+      // what two have taken is left. The parabola's minimum is not so near where a piece leans: a step more.
+      const float slack = overlap * radius + 0.2f * reach;
+      const Height there = height(piece, ray, lowest.t);
+      const Vector passing = along(ray.point, ray.direction, lowest.t - there.slope / there.curving);
+      const WideMask is_passing =
+          is_within(piece, passing, slack + piece.kink_before, slack + piece.kink_after);
+      WideMask is_taken = is_border & is_asked & (is_passing | (is_here & (lowest.value < 0)));
+      if (piece.kink_before + piece.kink_after > 0) {
+        const auto inner = [=](float kink) { return kink > 0 ? -kink : slack; };
+        const WideMask is_at_kink =
+            is_taken & ~is_within(piece, passing, inner(piece.kink_before), inner(piece.kink_after));
+        if (any(is_at_kink)) {
+          set_flag(is_at_kink, state_exact, row.state + u);
+          row.has_exact = true;
+          is_taken &= ~is_at_kink;
+        }
+      }
+      add_borders(is_taken, u, row);
     }
     const Wide depth = ray.depth + entry.t, before = wide_load(depths + u);
     const WideMask is_there = is_inside & is_settled & is_here & is_asked;

@@ -63,9 +63,10 @@ struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
   Linear way;  ///< From there about to the plane along the piece's middle that faces the camera, m of depth.
-  float curvature, radius, widening;  ///< The radius at its start, and by how much it grows by arc length;
-  float kink;  ///< m along the axis: as far beyond its ends a contour may be its own, for its neighbours
-               ///< taper otherwise.
+  float curvature, radius, widening;  ///< The radius at its start, and by how much it grows by arc length.
+  float widest;                       ///< Its largest radius.
+  float kink_before, kink_after;  ///< m along the axis: so near to its start and its end contours are left to
+                                  ///< the exact way, for what goes on there bends or tapers otherwise; or 0.
   float end_sine, end_cosine, end_offset;
   float reach;         ///< m: contours this near may divide the pixel,
   float bent_reach;    ///< and edges of rings and lines that are this near to a contour, within, are bent; no

@@ -181,10 +181,15 @@ template <bool is_tapered>
   return {t, move};
 }
 
-// Whether p is no farther than `slack` beyond the planes across the piece's ends.
-[[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float slack) {
+// Whether p is no farther than so much before the plane across the piece's start and beyond that across its
+// end.
+[[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float before,
+                                                 float after) {
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
-  return (p.z >= -slack) & (beyond <= slack);
+  return (p.z >= -before) & (beyond <= after);
+}
+[[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float slack) {
+  return is_within(piece, p, slack, slack);
 }
 // By which pieces overlap, of their radius.
 constexpr float overlap = 1e-3f;

@@ -1,6 +1,7 @@
 #include "flexura/control/plane_errors.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace flexura {
 namespace {
@@ -35,7 +36,8 @@ bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired
   const auto is_told = [](const Eigen::Vector2d& angles) {
     return std::abs(std::cos(angles[0])) >= least_cosine && std::cos(angles[1]) >= least_cosine;
   };
-  return is_told(measured) && is_told(desired) && std::cos(measured[0]) * std::cos(desired[0]) > 0;
+  return is_told(measured) && is_told(desired) && std::cos(measured[0]) * std::cos(desired[0]) > 0 &&
+         std::abs(measured[0] - desired[0]) < std::numbers::pi;
 }
 
 PlaneError plane_error(const PlaneView& measured, const PlaneView& desired) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "flexura/base/degree.h"
 #include "flexura/control/plane_errors.h"
@@ -123,6 +124,22 @@ TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
     EXPECT_EQ(noisy.motion().x(), again.motion().x());
     EXPECT_NE(noisy.motion().x(), by_planes.motion().x());
   });
+}
+
+// From -70 degrees to 290 there are two quarter turns, beyond which the cosine is the same.
+TEST(PlaneSight, TriangulatesWholeTurns) {
+  EXPECT_TRUE(planes_tell({-1.2, 0.3}, {0.8, -0.2}));
+  EXPECT_FALSE(planes_tell({-1.2, 0.3}, {-1.2 + 2 * std::numbers::pi, 0.3}));
+  EXPECT_FALSE(planes_tell({0, 0.3}, {2 * std::numbers::pi, 0.3}));
+  EXPECT_FALSE(planes_tell({0, 1.45}, {0, 1.2}));
+  const DistributedArm arm({.lengths = {1}, .nodes = 3, .points = 8});
+  const auto bent = [&](double theta) {
+    return arm.coordinates([=](double s) { return Eigen::Vector2d(theta * s, 0.4 * s); });
+  };
+  const PotentialLaw law(arm, bent(5.1), {});
+  PotentialRun run(arm, law, bent(-1.2), {{.step = 0.02, .reading = AngleReading::planes}});
+  ASSERT_TRUE(run.advance(4)) << run.stopped();
+  EXPECT_LE((run.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.05);
 }
 
 // In the plane XOY the first view shows the angle itself.

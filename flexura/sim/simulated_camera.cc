@@ -39,6 +39,7 @@ SimulatedCamera::SimulatedCamera(const Camera& camera, Shot shot, TakePicture ta
 }
 
 bool SimulatedCamera::is_lost(std::int64_t frame) const {
+  if (is_within(frame_times(sensor_, frame).received, sensor_.silent)) return true;
   const std::uint64_t number = hash(shot_.seed, shot_.camera, static_cast<std::uint64_t>(frame));
   return static_cast<double>(number >> 11) * 0x1p-53 < sensor_.drop;
 }

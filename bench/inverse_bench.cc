@@ -22,8 +22,8 @@ enum Kind : std::int64_t { position, direction, pose };
 struct Question {
   ArmState wanted, near;
   TipTarget target;
-  InverseOptions cold;
-  InverseOptions warm;
+  InverseConfig cold;
+  InverseConfig warm;
 };
 
 // SplitMix64, in [0, 1).

@@ -122,16 +122,16 @@ double marker_place(const std::string& word, const ShapePrior& prior) {
   return s;
 }
 
-EstimateSettings estimate_settings(const EstimateArguments& arguments) {
-  EstimateSettings settings;
-  settings.prior = arm_of(arguments);
-  auto& markers = settings.prior.markers;
-  for (const std::string& word : arguments.markers) markers.push_back(marker_place(word, settings.prior));
+EstimateConfig estimate_settings(const EstimateArguments& arguments) {
+  EstimateConfig config;
+  config.prior = arm_of(arguments);
+  auto& markers = config.prior.markers;
+  for (const std::string& word : arguments.markers) markers.push_back(marker_place(word, config.prior));
   std::ranges::sort(markers);
-  settings.threshold = threshold_config(arguments.threshold);
-  settings.points = static_cast<std::size_t>(arguments.points);
-  settings.has_bends = !arguments.arm.empty();
-  return settings;
+  config.threshold = threshold_config(arguments.threshold);
+  config.points = static_cast<std::size_t>(arguments.points);
+  config.has_bends = !arguments.arm.empty();
+  return config;
 }
 
 // One picture: what it shows of the arm.
@@ -151,18 +151,18 @@ ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
   return finder.find(gray_picture(photograph.bytes));
 }
 
-Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateSettings& settings) {
+Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateConfig& config) {
   Look look;
   const auto& [name, file] = picture;
-  const ShapePrior& prior = settings.prior;
+  const ShapePrior& prior = config.prior;
   const Photograph photograph =
       decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
-  ArmFinderConfig config;
-  config.threshold = settings.threshold;
-  if (photograph.is_mask) config.least_sigma = mask_sigma;
-  if (prior.is_base_position_known) config.base = view.project(prior.arm.X_WB.position);
-  ArmFinder finder(config);
+  ArmFinderConfig finding;
+  finding.threshold = config.threshold;
+  if (photograph.is_mask) finding.least_sigma = mask_sigma;
+  if (prior.is_base_position_known) finding.base = view.project(prior.arm.X_WB.position);
+  ArmFinder finder(finding);
   const ArmSighting found = sighted(photograph, finder);
   look.reason = found.reason, look.notes = found.notes;
   auto doubt = doubt_of_size(view);
@@ -251,10 +251,10 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
   answer.push_back({"markers", {}, {std::move(markers), {}}});
 }
 
-void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
-               const EstimateSettings& settings, Node::Table& answer) {
+void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, const EstimateConfig& config,
+               Node::Table& answer) {
   const Backbone backbone(found.shape.arm, found.shape.state);
-  const std::size_t count = settings.points;
+  const std::size_t count = config.points;
   Node::Array points;
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -268,7 +268,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings,
   answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
   answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);
-  if (!settings.has_bends) return;
+  if (!config.has_bends) return;
   Node::Array bends;
   for (const Eigen::Vector2d& bend : found.shape.state.bends)
     bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
@@ -288,15 +288,15 @@ std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count
 }
 
 ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vector<MeasuredCamera>& cameras,
-                           const EstimateSettings& settings) {
+                           const EstimateConfig& config) {
   std::vector<Look> looks;
   std::vector<Sighting> sightings;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    looks.push_back(look_at(pictures[i], cameras[i], settings));
+    looks.push_back(look_at(pictures[i], cameras[i], config));
     sightings.push_back(looks.back().sighting);
   }
-  ShapeEstimate found = ShapeEstimator(settings.prior, settings.estimator).estimate(sightings);
-  if (found.is_found && !settings.prior.is_base_position_known)
+  ShapeEstimate found = ShapeEstimator(config.prior, config.estimator).estimate(sightings);
+  if (found.is_found && !config.prior.is_base_position_known)
     found.notes.emplace_back(
         "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
         "one; --base tells");
@@ -307,7 +307,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
       found.notes.push_back(
           fmt::format("pictures {} and {} are the same", same - pictures.begin() + 1, i + 1));
   }
-  if (found.is_found && settings.has_bends)
+  if (found.is_found && config.has_bends)
     if (auto doubt = doubt_of_radius(sightings, found.shape)) found.notes.push_back(std::move(*doubt));
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (looks[i].is_of_other_size)
@@ -321,7 +321,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
   }
   Node::Table answer{{"found", {}, {found.is_found, {}}}, {"trusted", {}, {found.is_trusted(), {}}}};
   if (found.is_found)
-    add_shape(found, sightings, settings, answer);
+    add_shape(found, sightings, config, answer);
   else
     answer.push_back({"reason", {}, text_node(found.reason)});
   if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});
@@ -332,12 +332,12 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
 int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   check(arguments);
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
-  const EstimateSettings settings = estimate_settings(arguments);
+  const EstimateConfig config = estimate_settings(arguments);
   std::vector<PictureFile> pictures;
   pictures.reserve(arguments.images.size());
   for (const std::string& name : arguments.images)
     pictures.push_back({name, read_text_file(name, most_picture_bytes)});
-  const ShapeAnswer found = estimate_shape(pictures, cameras, settings);
+  const ShapeAnswer found = estimate_shape(pictures, cameras, config);
   out << write_json(found.answer, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;
 }

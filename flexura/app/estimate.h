@@ -24,7 +24,7 @@ struct PictureFile {
 };
 
 /// How a shape is looked for.
-struct EstimateSettings {
+struct EstimateConfig {
   ShapePrior prior;  ///< What is known of the arm.
   ThresholdConfig threshold;
   EstimatorConfig estimator;
@@ -46,7 +46,7 @@ struct ShapeAnswer {
 /// read.
 [[nodiscard]] ShapeAnswer estimate_shape(std::span<const PictureFile> pictures,
                                          const std::vector<MeasuredCamera>& cameras,
-                                         const EstimateSettings& settings);
+                                         const EstimateConfig& config);
 
 /// What `flexura estimate` is told.
 struct EstimateArguments {

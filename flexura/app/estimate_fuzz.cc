@@ -49,29 +49,29 @@ std::string_view take(std::string_view& text, std::string_view end) {
 struct Asked {
   std::string cameras;
   std::vector<flexura::PictureFile> pictures;
-  flexura::EstimateSettings settings;
+  flexura::EstimateConfig config;
 };
 
 // Bits of `ways`: a known base, a known length, known sections, thresholds by block, markers, few sections,
 // as thorough as the program. Of few sections the last one is bent in all ways where pictures are not
 // explained, and a thorough search goes on where nothing is to be found: both take most of the time, and are
 // left to a few cases.
-flexura::EstimateSettings settings_of(unsigned ways) {
-  flexura::EstimateSettings settings;
+flexura::EstimateConfig settings_of(unsigned ways) {
+  flexura::EstimateConfig config;
   std::optional<Eigen::Vector3d> base;
   std::optional<double> length;
   if ((ways & 1U) != 0) base = Eigen::Vector3d::Zero();
   if ((ways & 2U) != 0) length = 1;
-  settings.has_bends = (ways & 4U) != 0;
-  if (settings.has_bends)
-    settings.prior.arm.sections.resize((ways & 32U) != 0 ? 2 : 5, {.length = 0.2, .radius = {0.02, 0.02}});
+  config.has_bends = (ways & 4U) != 0;
+  if (config.has_bends)
+    config.prior.arm.sections.resize((ways & 32U) != 0 ? 2 : 5, {.length = 0.2, .radius = {0.02, 0.02}});
   else
-    settings.prior = flexura::unknown_arm(base, length, 6);
-  if ((ways & 8U) != 0) settings.threshold.method = flexura::ThresholdMethod::by_block;
-  if ((ways & 16U) != 0) settings.prior.markers = {0.25, 0.5};
-  settings.points = 5;
-  if ((ways & 64U) == 0) settings.estimator.most_points = 24, settings.estimator.most_iterations = 12;
-  return settings;
+    config.prior = flexura::unknown_arm(base, length, 6);
+  if ((ways & 8U) != 0) config.threshold.method = flexura::ThresholdMethod::by_block;
+  if ((ways & 16U) != 0) config.prior.markers = {0.25, 0.5};
+  config.points = 5;
+  if ((ways & 64U) == 0) config.estimator.most_points = 24, config.estimator.most_iterations = 12;
+  return config;
 }
 
 Asked asked(std::string_view input) {
@@ -79,7 +79,7 @@ Asked asked(std::string_view input) {
   Asked result;
   result.cameras = take(input, std::string_view("\0", 1));
   const std::string_view ways = take(input, mark);
-  result.settings = settings_of(ways.empty() ? 3U : static_cast<unsigned char>(ways[0]));
+  result.config = settings_of(ways.empty() ? 3U : static_cast<unsigned char>(ways[0]));
   constexpr std::size_t most = 3;
   while (!input.empty() && result.pictures.size() < most)
     result.pictures.push_back({"picture", std::string(take(input, mark))});
@@ -91,7 +91,7 @@ std::string answer(const Asked& asked) {
   try {
     const flexura::Node file = flexura::parse_toml(asked.cameras, "cameras.toml");
     const auto cameras = flexura::standing_cameras(file, asked.pictures.size());
-    const auto found = flexura::estimate_shape(asked.pictures, cameras, asked.settings);
+    const auto found = flexura::estimate_shape(asked.pictures, cameras, asked.config);
     const bool has_shape = found.answer.find("backbone") != nullptr;
     if (found.is_found != has_shape || has_shape == (found.answer.find("reason") != nullptr)) std::abort();
     const std::string text = flexura::write_json(found.answer);

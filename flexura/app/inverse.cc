@@ -156,7 +156,7 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
 }
 
 Node answer(const Arm& arm, const InverseRequest& request) {
-  InverseOptions options;
+  InverseConfig options;
   options.wish = request.wish;
   if (request.start) options.start = arm_state(arm, *request.start);
   options.position_tolerance = request.tolerance;

@@ -29,22 +29,22 @@
 namespace flexura {
 namespace {
 
-MeasureSettings settings_of(const MeasureArguments& arguments) {
-  MeasureSettings settings;
-  settings.what = named<MeasureTarget>("--what", arguments.what);
-  settings.finder.threshold = threshold_config(arguments.threshold);
+MeasureConfig settings_of(const MeasureArguments& arguments) {
+  MeasureConfig config;
+  config.what = named<MeasureTarget>("--what", arguments.what);
+  config.finder.threshold = threshold_config(arguments.threshold);
   if (arguments.base.size() == 2) {
     if (!std::isfinite(arguments.base[0]) || !std::isfinite(arguments.base[1]))
       throw input_error("--base", "expected two finite numbers u,v");
-    settings.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
+    config.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
   }
   constexpr double thinnest = 1e-6, thickest = 1e3;
   const auto is_size = [](double x) { return x >= thinnest && x <= thickest; };
   if (arguments.radius && !is_size(*arguments.radius))
     throw input_error("--radius", fmt::format("{} m: expected a number from {:g} to {:g}", *arguments.radius,
                                               thinnest, thickest));
-  settings.radius = arguments.radius;
-  if (settings.what == MeasureTarget::circle || settings.what == MeasureTarget::etalon) {
+  config.radius = arguments.radius;
+  if (config.what == MeasureTarget::circle || config.what == MeasureTarget::etalon) {
     for (const auto& [option, is_given] : {std::pair{"--base", !arguments.base.empty()},
                                            {"--camera", !arguments.camera.empty()},
                                            {"--radius", arguments.radius.has_value()}})
@@ -52,7 +52,7 @@ MeasureSettings settings_of(const MeasureArguments& arguments) {
         throw input_error(
             option, fmt::format("counts for nothing with --what {}: expected for arms only", arguments.what));
   }
-  return settings;
+  return config;
 }
 
 // The lens of each picture; none without a file of cameras.
@@ -76,26 +76,26 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-int measure_one(const MeasureArguments& arguments, MeasureSettings settings, const std::optional<Lens>& lens,
+int measure_one(const MeasureArguments& arguments, MeasureConfig config, const std::optional<Lens>& lens,
                 std::ostream& out) {
   const std::string& name = arguments.images.front();
-  settings.lens = lens;
-  const Measurement found = measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name,
-                                            settings, !arguments.overlay.empty());
+  config.lens = lens;
+  const Measurement found = measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, config,
+                                            !arguments.overlay.empty());
   if (!arguments.overlay.empty()) replace_file(arguments.overlay, png(found.overlay));
   out << write_json(found.answer, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;
 }
 
-int measure_many(const MeasureArguments& arguments, MeasureSettings settings,
+int measure_many(const MeasureArguments& arguments, MeasureConfig config,
                  const std::vector<std::optional<Lens>>& lenses, std::ostream& out) {
   int status = exit_done;
   for (std::size_t i = 0; i < arguments.images.size(); ++i) {
     const std::string& name = arguments.images[i];
-    settings.lens = lenses[i];
+    config.lens = lenses[i];
     try {
       const Measurement found =
-          measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, settings);
+          measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, config);
       out << write_json(found.answer) << '\n';
       if (!found.is_found && status == exit_done) status = exit_missed;
     } catch (const InputError& error) {
@@ -122,10 +122,10 @@ int measure_command(const MeasureArguments& arguments, std::ostream& out) {
           "--overlay",
           fmt::format("\"{}\" is the picture that is measured: expected another file", arguments.overlay));
   }
-  const MeasureSettings settings = settings_of(arguments);
+  const MeasureConfig config = settings_of(arguments);
   const auto lenses = lenses_of(arguments);
-  return arguments.images.size() == 1 ? measure_one(arguments, settings, lenses.front(), out)
-                                      : measure_many(arguments, settings, lenses, out);
+  return arguments.images.size() == 1 ? measure_one(arguments, config, lenses.front(), out)
+                                      : measure_many(arguments, config, lenses, out);
 }
 
 }  // namespace flexura

@@ -21,7 +21,7 @@ enum class MeasureTarget { arm, etalon, circle, markers };
 const std::vector<std::string>& names_of(const MeasureTarget*);
 
 /// How one picture is measured.
-struct MeasureSettings {
+struct MeasureConfig {
   MeasureTarget what = MeasureTarget::arm;
   ArmFinderConfig finder;
   std::optional<Lens> lens;      ///< Of the camera that took it, when it is known.
@@ -38,7 +38,7 @@ struct Measurement {
 
 /// Measures a picture file's bytes. InputError: not a picture that can be read.
 [[nodiscard]] Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
-                                          const MeasureSettings& settings, bool with_overlay = false);
+                                          const MeasureConfig& config, bool with_overlay = false);
 
 /// What `flexura measure` is told.
 struct MeasureArguments {

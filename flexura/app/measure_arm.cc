@@ -57,9 +57,9 @@ void add_axis(const Job& job, const std::vector<AxisSample>& axis, bool is_backb
       .add("width", {std::move(widths), {}})
       .add("sigma", {std::move(sigmas), {}})
       .add("seen", {std::move(seen), {}});
-  if (!is_backbone || !job.settings.radius) return;
+  if (!is_backbone || !job.config.radius) return;
   Node::Array depths;
-  for (const double depth : backbone_depths(*job.settings.lens, axis, *job.settings.radius))
+  for (const double depth : backbone_depths(*job.config.lens, axis, *job.config.radius))
     depths.push_back(std::isfinite(depth) ? number_node(rounded(depth, 1e6)) : Node{});
   job.answer.add("depth", {std::move(depths), {}});
 }
@@ -91,27 +91,26 @@ std::optional<std::string> saturation(const Job& job) {
 }  // namespace
 
 bool measure_arm(const Job& job) {
-  ArmFinderConfig config = job.settings.finder;
-  if (job.photograph.is_mask) config.least_sigma = mask_sigma;
-  ArmFinder finder(config);
+  ArmFinderConfig finding = job.config.finder;
+  if (job.photograph.is_mask) finding.least_sigma = mask_sigma;
+  ArmFinder finder(finding);
   const bool has_words = job.photograph.words.width() > 0;
   const ArmSighting& arm = has_words ? finder.find(gray_picture(job.photograph.words), job.photograph.white)
                                      : finder.find(job.gray);
   add_threshold(arm.threshold, job.answer);
   std::vector<AxisSample> axis = arm.axis;
-  const bool is_backbone = job.settings.lens && to_backbone_image(*job.settings.lens, axis);
+  const bool is_backbone = job.config.lens && to_backbone_image(*job.config.lens, axis);
   if (!is_backbone) axis = arm.axis;
   ArmSighting corrected = arm;
   corrected.axis = axis;
   MarkerSightings markers;
   if (arm.is_found()) markers = find_markers(job.photograph.bytes, corrected);
-  const bool is_found =
-      arm.is_found() && (job.settings.what == MeasureTarget::arm || !markers.markers.empty());
+  const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   if (!arm.is_found()) return false;
   std::vector<std::string> notes = arm.notes;
-  if (job.settings.lens && !is_backbone)
+  if (job.config.lens && !is_backbone)
     notes.emplace_back(
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
   if (auto note = saturation(job)) notes.push_back(std::move(*note));
@@ -124,7 +123,7 @@ bool measure_arm(const Job& job) {
       .add("contrast", number_node(arm.contrast));
   Node::Array marker_nodes;
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
-  if (job.settings.what == MeasureTarget::arm) {
+  if (job.config.what == MeasureTarget::arm) {
     add_axis(job, axis, is_backbone);
     const AxisPoints points = independent_points(axis);
     job.answer.add("markers", {std::move(marker_nodes), {}})

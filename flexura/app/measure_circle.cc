@@ -35,7 +35,7 @@ bool is_round(const std::optional<CircleFit>& circle, const std::optional<Ellips
 }  // namespace
 
 bool measure_circle(const Job& job) {
-  const FigureBorder figure = largest_figure(job.gray, job.settings.finder.threshold);
+  const FigureBorder figure = largest_figure(job.gray, job.config.finder.threshold);
   add_threshold(figure.threshold, job.answer);
   std::vector<Vector2d> points;
   points.reserve(figure.points.size());

@@ -30,14 +30,14 @@ std::string small_picture(std::span<const std::uint8_t> data) {
 }
 
 std::string answer(const std::string& file, flexura::MeasureTarget what, bool by_block) {
-  flexura::MeasureSettings settings;
-  settings.what = what;
-  if (by_block) settings.finder.threshold.method = flexura::ThresholdMethod::by_block;
-  settings.lens = flexura::Lens(flexura::Intrinsics{});
-  settings.radius = 0.02;
+  flexura::MeasureConfig config;
+  config.what = what;
+  if (by_block) config.finder.threshold.method = flexura::ThresholdMethod::by_block;
+  config.lens = flexura::Lens(flexura::Intrinsics{});
+  config.radius = 0.02;
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
   try {
-    const flexura::Measurement found = flexura::measure_picture(bytes, "fuzz", settings, true);
+    const flexura::Measurement found = flexura::measure_picture(bytes, "fuzz", config, true);
     if (found.is_found == (found.answer.find("reason") != nullptr)) std::abort();
     return flexura::write_json(found.answer);
   } catch (const flexura::InputError& error) {

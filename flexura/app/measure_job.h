@@ -53,7 +53,7 @@ void add_threshold(const Threshold& threshold, TableMaker& answer);
 struct Job {
   const Photograph& photograph;
   const Image<std::uint8_t>& gray;
-  const MeasureSettings& settings;
+  const MeasureConfig& config;
   TableMaker& answer;
   Canvas* canvas;  ///< Null: nothing is drawn.
 };

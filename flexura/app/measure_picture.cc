@@ -15,7 +15,7 @@ const std::vector<std::string>& names_of(const MeasureTarget*) {
 }
 
 Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
-                            const MeasureSettings& settings, bool with_overlay) {
+                            const MeasureConfig& config, bool with_overlay) {
   const Photograph photograph = decode_picture(file, name);
   const Image<std::uint8_t> gray = gray_picture(photograph.bytes);
   std::optional<Canvas> canvas;
@@ -24,13 +24,13 @@ Measurement measure_picture(std::span<const std::uint8_t> file, const std::strin
   const auto whole = [](int value) { return Node{static_cast<std::int64_t>(value), {}}; };
   answer.add("image", text_node(name))
       .add("what", text_node(names_of(
-                       static_cast<const MeasureTarget*>(nullptr))[static_cast<std::size_t>(settings.what)]))
+                       static_cast<const MeasureTarget*>(nullptr))[static_cast<std::size_t>(config.what)]))
       .add("size", {Node::Array{whole(gray.width()), whole(gray.height())}, {}})
       .add("channels", whole(photograph.bytes.channels()))
       .add("bits", whole(photograph.words.width() > 0 ? 16 : 8));
-  const Job job{photograph, gray, settings, answer, canvas ? &*canvas : nullptr};
+  const Job job{photograph, gray, config, answer, canvas ? &*canvas : nullptr};
   Measurement result;
-  switch (settings.what) {
+  switch (config.what) {
     case MeasureTarget::arm:
     case MeasureTarget::markers:
       result.is_found = measure_arm(job);

@@ -100,11 +100,11 @@ TEST_F(MeasureBy, OnlyBlocksFollowAnUnevenScreen) {
   // But for its dim end, whose contrast is a third of the bright one's.
   EXPECT_GT(reach, 220);
   for (const ThresholdMethod method : {ThresholdMethod::otsu, ThresholdMethod::two_mode}) {
-    MeasureSettings settings;
-    settings.finder.threshold.method = method;
+    MeasureConfig config;
+    config.finder.threshold.method = method;
     const std::string file = png(picture);
     const Measurement found = measure_picture(
-        {reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "uneven.png", settings);
+        {reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "uneven.png", config);
     EXPECT_TRUE(!found.is_found || off_and_reach(found.answer, line).second < 200);
   }
 }

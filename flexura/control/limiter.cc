@@ -28,20 +28,20 @@ double turning_time(double step, double row) {
 
 }  // namespace
 
-CommandLimiter::CommandLimiter(Arm arm, LimiterSettings settings, const ArmState& start)
-    : arm_(std::move(arm)), settings_(std::move(settings)), limits_(limit_watches(arm_)), sent_(start) {
-  if (!(settings_.step > 0) || !std::isfinite(settings_.step))
+CommandLimiter::CommandLimiter(Arm arm, LimiterConfig config, const ArmState& start)
+    : arm_(std::move(arm)), config_(std::move(config)), limits_(limit_watches(arm_)), sent_(start) {
+  if (!(config_.step > 0) || !std::isfinite(config_.step))
     throw std::invalid_argument("a limiter's step must be finite and above 0");
-  if (!(settings_.list_step >= 0) || !std::isfinite(settings_.list_step))
+  if (!(config_.list_step >= 0) || !std::isfinite(config_.list_step))
     throw std::invalid_argument("a command list's step must be finite and not below 0");
-  row_ = settings_.list_step > 0 ? settings_.list_step : settings_.step;
-  turning_time_ = turning_time(settings_.step, row_);
+  row_ = config_.list_step > 0 ? config_.list_step : config_.step;
+  turning_time_ = turning_time(config_.step, row_);
   if (!fits(arm_, start) || !is_possible(start))
     throw std::invalid_argument("a limiter starts in a finite state of its arm");
   last_step_.motors = motors_at(start);
   last_step_.rates = last_step_.swing = Eigen::VectorXd::Zero(last_step_.motors.size());
   std::string broken = breach({start});
-  if (broken.empty() && settings_.looks_ahead) broken = contact({start});
+  if (broken.empty() && config_.looks_ahead) broken = contact({start});
   if (!broken.empty()) throw std::invalid_argument("a limiter starts within the limits: " + broken);
 }
 
@@ -56,7 +56,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   if (fault_) return brake();
   std::string reason;
   const ArmState wanted = within_limits(asked, reason);
-  Plan whole = plan(wanted, settings_.looks_ahead);
+  Plan whole = plan(wanted, config_.looks_ahead);
   if (whole.is_allowed) return send(std::move(whole), reason, reason.empty());
   if (reason.empty()) reason = whole.reason;
   // From braking, which is allowed, as far towards the law's wish as is allowed too.
@@ -70,7 +70,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
     if (trial.is_allowed) best = std::move(trial);
   }
   // Contact is looked for last, and from farther back, for it costs more.
-  for (int i = 0; settings_.looks_ahead && best.is_allowed && i < 4; ++i) {
+  for (int i = 0; config_.looks_ahead && best.is_allowed && i < 4; ++i) {
     const std::string touched = contact(best.way);
     if (touched.empty()) break;
     reason = touched;
@@ -86,14 +86,14 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
 // Of a way w in one step the speed is w/step and the distance that is left w/(rate step): a share k of it has
 // k w/step = sqrt(2 a w/(rate step)).
 ArmState CommandLimiter::within_braking(const ArmState& asked, double rate) const {
-  if (!settings_.drive || !fits(arm_, asked) || !is_possible(asked)) return asked;
+  if (!config_.drive || !fits(arm_, asked) || !is_possible(asked)) return asked;
   const Eigen::VectorXd way = motors_at(asked) - last_step_.motors;
   double square = 1;
-  for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
+  for (std::size_t i = 0; i < config_.drive->axes.size(); ++i) {
     const double braking =
-        0.5 * motor_acceleration(settings_.drive->axes[i].motor) * turning_time_ / settings_.step;
+        0.5 * motor_acceleration(config_.drive->axes[i].motor) * turning_time_ / config_.step;
     const double far = std::abs(way[static_cast<Eigen::Index>(i)]);
-    if (far > 0) square = std::min(square, 2 * braking * settings_.step / (rate * far));
+    if (far > 0) square = std::min(square, 2 * braking * config_.step / (rate * far));
   }
   return square < 1 ? between(sent_, asked, std::sqrt(square)) : asked;
 }
@@ -118,7 +118,7 @@ void CommandLimiter::reset() {
 LimitedCommand CommandLimiter::send(Plan plan, std::string reason, bool is_untouched) {
   LimitedCommand command;
   command.is_at_rest = plan.way.size() == 1 && are_equal(plan.way.front(), sent_);
-  if (settings_.drive) last_step_ = motor_step(sent_, last_step_.motors, plan.way.front());
+  if (config_.drive) last_step_ = motor_step(sent_, last_step_.motors, plan.way.front());
   sent_ = plan.way.front();
   way_to_rest_.assign(plan.way.begin() + 1, plan.way.end());
   ++steps_;
@@ -155,7 +155,7 @@ CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead
   Plan plan;
   const int fewest = braking_steps(next);
   for (const int count : {fewest, 2 * fewest + 1}) {
-    if (count > settings_.most_braking) {
+    if (count > config_.most_braking) {
       if (plan.reason.empty()) plan.reason = "the motors' acceleration";
       return plan;
     }
@@ -169,11 +169,11 @@ CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead
 }
 
 int CommandLimiter::braking_steps(const ArmState& next) const {
-  if (!settings_.drive) return 1;
-  const Eigen::VectorXd rates = (motors_at(next) - last_step_.motors) / settings_.step;
+  if (!config_.drive) return 1;
+  const Eigen::VectorXd rates = (motors_at(next) - last_step_.motors) / config_.step;
   double steps = 1;
-  for (std::size_t i = 0; i < settings_.drive->axes.size(); ++i) {
-    const StepperMotor& motor = settings_.drive->axes[i].motor;
+  for (std::size_t i = 0; i < config_.drive->axes.size(); ++i) {
+    const StepperMotor& motor = config_.drive->axes[i].motor;
     const double change = motor_acceleration(motor) * turning_time_;  // microsteps/s in one step
     steps = std::max(steps, std::ceil(std::abs(rates[static_cast<Eigen::Index>(i)]) / change * (1 + 1e-9)));
   }
@@ -188,16 +188,16 @@ std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
       if (watch.sign * watch.value(state) > watch.threshold())
         return fmt::format("section {}: {}", watch.section + 1, name_of(watch.hazard));
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
-      const double rate = (state.bends[i] - before->bends[i]).norm() / settings_.step;
+      const double rate = (state.bends[i] - before->bends[i]).norm() / config_.step;
       if (rate > arm_.sections[i].max_bend_rate * (1 + 0.5 * limit_tolerance))
         return fmt::format("section {}: bend rate", i + 1);
-      const double stretching = std::abs(state.stretches[i] - before->stretches[i]) / settings_.step;
+      const double stretching = std::abs(state.stretches[i] - before->stretches[i]) / config_.step;
       if (stretching > arm_.sections[i].max_stretch_rate * (1 + 0.5 * limit_tolerance))
         return fmt::format("section {}: stretch rate", i + 1);
     }
     before = &state;
   }
-  return settings_.drive ? breach_of_motors(way) : std::string();
+  return config_.drive ? breach_of_motors(way) : std::string();
 }
 
 // A step's rates are even where tendons go with the bends, and where they do not (guide disks) they rise or
@@ -206,15 +206,15 @@ CommandLimiter::MotorStep CommandLimiter::motor_step(const ArmState& from, const
                                                      const ArmState& to) const {
   MotorStep step;
   step.motors = motors_at(to);
-  step.rates = (step.motors - motors_from) / settings_.step;
+  step.rates = (step.motors - motors_from) / config_.step;
   step.swing = Eigen::VectorXd::Zero(step.rates.size());
-  if (settings_.drive->disks)
-    step.swing = (step.motors + motors_from - 2 * motors_at(between(from, to, 0.5))) / (0.5 * settings_.step);
+  if (config_.drive->disks)
+    step.swing = (step.motors + motors_from - 2 * motors_at(between(from, to, 0.5))) / (0.5 * config_.step);
   return step;
 }
 
 std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) const {
-  const Drive& drive = *settings_.drive;
+  const Drive& drive = *config_.drive;
   constexpr double slack = 1 + 0.5 * limit_tolerance;
   const ArmState* from = &sent_;
   MotorStep before = last_step_;
@@ -236,7 +236,7 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
         return say("position");
       const double swing = std::abs(now.swing[at]), swing_before = std::abs(before.swing[at]);
       if (!(std::abs(now.rates[at]) + swing <= motor_rate(motor) * slack)) return say("speed");
-      const double within = 2 * std::max(swing, swing_before) * std::min(1.0, row_ / settings_.step);
+      const double within = 2 * std::max(swing, swing_before) * std::min(1.0, row_ / config_.step);
       const double change = std::abs(now.rates[at] - before.rates[at]) + swing + swing_before + within;
       if (!(change <= motor_acceleration(motor) * turning_time_ * slack)) return say("acceleration");
     }
@@ -249,20 +249,20 @@ std::string CommandLimiter::contact(const std::vector<ArmState>& way) const {
   std::vector<double> times{0};
   std::vector<ArmState> states{sent_};
   for (const ArmState& state : way) {
-    times.push_back(times.back() + settings_.step);
+    times.push_back(times.back() + config_.step);
     states.push_back(state);
   }
   const MotionPtr motion = keyframe_motion(times, states, Interpolation::linear);
   const SafetyReport report =
-      check_motions(arm_, settings_.obstacles, sent_, {{motion, 0, "look-ahead"}}, settings_.step);
+      check_motions(arm_, config_.obstacles, sent_, {{motion, 0, "look-ahead"}}, config_.step);
   for (const Violation& violation : report.violations) return violation.what();
   return {};
 }
 
 Eigen::VectorXd CommandLimiter::motors_at(const ArmState& state) const {
-  if (!settings_.drive) return {};
+  if (!config_.drive) return {};
   const std::vector<double> positions =
-      motor_positions(*settings_.drive, tendon_displacements(arm_, *settings_.drive, state));
+      motor_positions(*config_.drive, tendon_displacements(arm_, *config_.drive, state));
   return Eigen::Map<const Eigen::VectorXd>(positions.data(), static_cast<Eigen::Index>(positions.size()));
 }
 

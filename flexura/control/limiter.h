@@ -14,7 +14,7 @@
 namespace flexura {
 
 /// What a limiter keeps to besides the arm's own limits.
-struct LimiterSettings {
+struct LimiterConfig {
   double step = 1.0 / 30;           ///< Time from one command to the next, s; > 0.
   std::optional<Drive> drive = {};  ///< Its motors' speeds, step rates, accelerations and positions.
   /// From row to row of the command list that the motors follow, s: a rate that changes changes within that.
@@ -56,7 +56,7 @@ class CommandLimiter {
   /// At rest in `start`. std::invalid_argument: a state that does not fit the arm, breaks a limit or
   /// (with looks_ahead) touches something, a step
   /// that is not positive.
-  CommandLimiter(Arm arm, LimiterSettings settings, const ArmState& start);
+  CommandLimiter(Arm arm, LimiterConfig config, const ArmState& start);
 
   /// The command for the next step, as near to `asked` as it can be: on the straight line in the rates from
   /// braking to the law's.
@@ -74,7 +74,7 @@ class CommandLimiter {
   void fault(const std::string& reason);
   /// What would be kept of a fault for this reason now.
   [[nodiscard]] LimiterFault record(std::string reason) const {
-    return {static_cast<double>(steps_) * settings_.step, std::move(reason), observed_, sent_, asked_};
+    return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }
   /// What stopped the arm; none since the start or the last reset().
   [[nodiscard]] const std::optional<LimiterFault>& fault() const { return fault_; }
@@ -108,7 +108,7 @@ class CommandLimiter {
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
 
   Arm arm_;
-  LimiterSettings settings_;
+  LimiterConfig config_;
   std::vector<LimitWatch> limits_;
   ArmState sent_;
   std::vector<ArmState> way_to_rest_;

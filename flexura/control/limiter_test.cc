@@ -70,19 +70,19 @@ ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
 }
 
 // Everything that a run's check finds in a sequence of commands.
-SafetyReport judged(const Arm& arm, const LimiterSettings& settings, const std::vector<ArmState>& sent) {
+SafetyReport judged(const Arm& arm, const LimiterConfig& config, const std::vector<ArmState>& sent) {
   std::vector<double> times, rows;
   times.reserve(sent.size());
-  for (std::size_t i = 0; i < sent.size(); ++i) times.push_back(settings.step * static_cast<double>(i));
+  for (std::size_t i = 0; i < sent.size(); ++i) times.push_back(config.step * static_cast<double>(i));
   const MotionPtr motion = keyframe_motion(times, sent, Interpolation::linear);
-  const double row = settings.list_step > 0 ? settings.list_step : settings.step;
+  const double row = config.list_step > 0 ? config.list_step : config.step;
   for (int i = 0; i * row < times.back() * (1 + 1e-12); ++i) rows.push_back(std::min(i * row, times.back()));
   SafetyReport report =
-      check_motions(arm, settings.obstacles, sent.front(), {{motion, 0, "sent"}}, settings.step);
-  if (settings.drive) {
+      check_motions(arm, config.obstacles, sent.front(), {{motion, 0, "sent"}}, config.step);
+  if (config.drive) {
     const auto state_at = [&](double t) { return motion->at(t); };
     const auto none = [](double, double) -> std::optional<std::vector<SectionRates>> { return std::nullopt; };
-    check_drive(arm, *settings.drive, state_at, rows, none, report);
+    check_drive(arm, *config.drive, state_at, rows, none, report);
   }
   return report;
 }
@@ -102,12 +102,12 @@ TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
   int held_back = 0, moved = 0;
   for_random_cases(60, [&](TestRandom& random) {
     const Arm arm = limited_arm(random);
-    LimiterSettings settings{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
-    if (random.integer(0, 3) > 0) settings.drive = limited_drive(random, arm);
+    LimiterConfig config{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
+    if (random.integer(0, 3) > 0) config.drive = limited_drive(random, arm);
     // A command list by another clock.
-    if (random.integer(0, 2) > 0) settings.list_step = settings.step * random.uniform(0.2, 3);
+    if (random.integer(0, 2) > 0) config.list_step = config.step * random.uniform(0.2, 3);
     const ArmState straight = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, settings, straight);
+    CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
     ArmState wish = straight;
     for (int i = 0; i < 60; ++i) {
@@ -120,7 +120,7 @@ TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
       sent.push_back(command.state);
     }
     come_to_rest(limiter, sent);
-    expect_safe(judged(arm, settings, sent));
+    expect_safe(judged(arm, config, sent));
   });
   EXPECT_GT(held_back, 1000 / one_case_of);
   EXPECT_GT(moved, 1000 / one_case_of);
@@ -131,11 +131,11 @@ TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
   for_random_cases(8, [&](TestRandom& random) {
     Arm arm = limited_arm(random);
     for (Section& section : arm.sections) section.max_bend = 3, section.max_bend_rate = 3;
-    LimiterSettings settings{.step = 0.05};
-    settings.obstacles = obstacles({SphereConfig{.center = {0.18, 0.25, 0}, .radius = 0.06},
-                                    PlaneConfig{.point = {0, 0, -0.1}, .normal = {0, 0, 1}}});
+    LimiterConfig config{.step = 0.05};
+    config.obstacles = obstacles({SphereConfig{.center = {0.18, 0.25, 0}, .radius = 0.06},
+                                  PlaneConfig{.point = {0, 0, -0.1}, .normal = {0, 0, 1}}});
     const ArmState straight = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, settings, straight);
+    CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
     ArmState wish = straight;
     for (int i = 0; i < 40; ++i) {
@@ -146,7 +146,7 @@ TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
       sent.push_back(command.state);
     }
     come_to_rest(limiter, sent);
-    expect_safe(judged(arm, settings, sent));
+    expect_safe(judged(arm, config, sent));
   });
   EXPECT_GT(stopped, 0);
 }
@@ -154,11 +154,11 @@ TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
 TEST(Limiter, PassesWhatIsWithinTheLimitsBitForBit) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = limited_arm(random);
-    LimiterSettings settings{.step = 1.0 / 30};
-    settings.drive = limited_drive(random, arm);
+    LimiterConfig config{.step = 1.0 / 30};
+    config.drive = limited_drive(random, arm);
     // A sine so small and slow that every motor follows it.
     const ArmState straight = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, settings, straight);
+    CommandLimiter limiter(arm, config, straight);
     for (int i = 1; i < 90; ++i) {
       ArmState wish = straight;
       const double share = 0.004 * (1 - std::cos(0.05 * i));
@@ -174,13 +174,13 @@ TEST(Limiter, PassesWhatIsWithinTheLimitsBitForBit) {
 TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = limited_arm(random);
-    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
-    settings.drive = limited_drive(random, arm);
-    for (Axis& axis : settings.drive->axes) {
+    LimiterConfig config{.step = 0.05, .looks_ahead = false};
+    config.drive = limited_drive(random, arm);
+    for (Axis& axis : config.drive->axes) {
       axis.motor.max_position = std::numeric_limits<double>::infinity();
     }
     ArmState wish = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, settings, wish);
+    CommandLimiter limiter(arm, config, wish);
     for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
     bool arrived = false;
     for (int i = 0; i < 3000 && !arrived; ++i) arrived = limiter.next(wish).is_at_rest;
@@ -196,24 +196,24 @@ TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
   int slowed = 0;
   for_random_cases(60, [&](TestRandom& random) {
     const Arm arm = limited_arm(random);
-    LimiterSettings settings{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
-    settings.drive = limited_drive(random, arm);
-    settings.drive->disks.reset();
+    LimiterConfig config{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
+    config.drive = limited_drive(random, arm);
+    config.drive->disks.reset();
     const ArmState straight = ArmState::straight(arm.sections.size());
-    const CommandLimiter limiter(arm, settings, straight);
+    const CommandLimiter limiter(arm, config, straight);
     ArmState wish = straight;
     for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
     const double rate = random.uniform(1, 5);
     const ArmState slow = limiter.within_braking(wish, rate);
     const auto motors = [&](const ArmState& state) {
-      return motor_positions(*settings.drive, tendon_displacements(arm, *settings.drive, state));
+      return motor_positions(*config.drive, tendon_displacements(arm, *config.drive, state));
     };
     const std::vector<double> begun = motors(straight), far = motors(wish), near = motors(slow);
     double most = 0;
     for (std::size_t i = 0; i < begun.size(); ++i) {
-      const double speed = std::abs(near[i] - begun[i]) / settings.step;
-      const double left = std::abs(far[i] - begun[i]) / (rate * settings.step);
-      const double braking = 0.5 * motor_acceleration(settings.drive->axes[i].motor);
+      const double speed = std::abs(near[i] - begun[i]) / config.step;
+      const double left = std::abs(far[i] - begun[i]) / (rate * config.step);
+      const double braking = 0.5 * motor_acceleration(config.drive->axes[i].motor);
       most = std::max(most, speed * speed / (2 * braking * left));
     }
     const bool is_slowed = slow.bends != wish.bends;
@@ -227,10 +227,10 @@ TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
 TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
   for_random_cases(30, [](TestRandom& random) {
     const Arm arm = limited_arm(random);
-    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
-    settings.drive = limited_drive(random, arm);
+    LimiterConfig config{.step = 0.05, .looks_ahead = false};
+    config.drive = limited_drive(random, arm);
     const ArmState straight = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, settings, straight);
+    CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
     ArmState wish = straight, seen = straight;
     for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-2, 2);
@@ -266,7 +266,7 @@ TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
       EXPECT_FALSE(command.reason.empty());
       sent.push_back(command.state);
     }
-    expect_safe(judged(arm, settings, sent));
+    expect_safe(judged(arm, config, sent));
     limiter.reset();
     EXPECT_FALSE(limiter.fault().has_value());
     EXPECT_NE(limiter.next(wish).state.bends, rest.bends);
@@ -295,7 +295,7 @@ TEST(Limiter, StartsWithinTheLimitsOnly) {
   EXPECT_THROW(CommandLimiter(arm, {}, ArmState::straight(2)), std::invalid_argument);
   EXPECT_THROW(CommandLimiter(arm, {}, {{{1.1, 0}}, {1}}), std::invalid_argument);
   EXPECT_THROW(CommandLimiter(arm, {.step = 0}, ArmState::straight(1)), std::invalid_argument);
-  LimiterSettings lamp;
+  LimiterConfig lamp;
   lamp.obstacles = obstacles({SphereConfig{.center = {0, 0.5, 0}, .radius = 0.1}});
   EXPECT_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)), std::invalid_argument);
   lamp.looks_ahead = false;
@@ -313,18 +313,18 @@ TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
     arm.sections.resize(3, {.length = 0.3, .radius = {0.02, 0.02}});
     ArmState start = ArmState::straight(3);
     for (Eigen::Vector2d& bend : start.bends) bend = random.vector<2>(-0.5, 0.5);
-    LimiterSettings settings{.step = 0.05, .looks_ahead = false};
-    settings.drive = random_drive(random, arm);
+    LimiterConfig config{.step = 0.05, .looks_ahead = false};
+    config.drive = random_drive(random, arm);
     const auto motors = [&](const ArmState& state) {
-      return motor_positions(*settings.drive, tendon_displacements(arm, *settings.drive, state));
+      return motor_positions(*config.drive, tendon_displacements(arm, *config.drive, state));
     };
     const std::vector<double> begun = motors(start);
     const double share = random.uniform(0, 1);
     for (std::size_t i = 0; i < begun.size(); ++i) {
-      Axis& axis = settings.drive->axes[i];
+      Axis& axis = config.drive->axes[i];
       axis.motor.max_position = std::abs(begun[i]) + share * (axis.play() + 0.5);
     }
-    CommandLimiter limiter(arm, settings, start);
+    CommandLimiter limiter(arm, config, start);
     ArmState farther = start, back = start;
     for (std::size_t i = 0; i < 3; ++i) farther.bends[i] *= 1.5, back.bends[i] *= 0.5;
     const auto least_left = [&](const ArmState& state) {
@@ -345,8 +345,8 @@ TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
     steer(farther);
     EXPECT_GT(steer(back), 0);
     steer(farther);
-    settings.drive->axes[0].motor.max_position = 0.9 * std::abs(begun[0]);
-    EXPECT_THROW(CommandLimiter(arm, settings, start), std::invalid_argument);
+    config.drive->axes[0].motor.max_position = 0.9 * std::abs(begun[0]);
+    EXPECT_THROW(CommandLimiter(arm, config, start), std::invalid_argument);
   });
 }
 

@@ -163,8 +163,8 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
     chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, as seen: {}.", run.settle,
                                          error_text(*result.remaining)));
   if (run.true_remaining)
-    chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, in the simulated truth: {}.", run.settle,
-                                         error_text(*run.true_remaining)));
+    chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, in the simulated truth: {}.",
+                                         run.settle, error_text(*run.true_remaining)));
   if (result.missed > hardly)
     chapter.points.push_back(fmt::format(
         "The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of its "

@@ -106,7 +106,7 @@ double distance_from(const Backbone& backbone, const std::vector<Eigen::Vector3d
 }
 
 ServoTargetShape along(const Arm& arm, const std::vector<Eigen::Vector3d>& points, const ArmState& from) {
-  InverseOptions options;
+  InverseConfig options;
   options.start = from;
   const InverseResult found = solve_inverse(arm, CurveTarget{points}, options);
   return {found.state, distance_from(Backbone(arm, found.state), points) / arm.length()};
@@ -125,7 +125,7 @@ ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& 
   if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
   if (target.curve) return along(arm, smooth_curve(vectors(*target.curve)), from);
   if (!target.position) return {arm_state(arm, target), 0};
-  InverseOptions options;
+  InverseConfig options;
   options.start = from;
   const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, options);
   return {found.state, found.converged() ? 0 : found.position_error / arm.length()};

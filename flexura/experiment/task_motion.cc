@@ -78,7 +78,7 @@ MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from)
 ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const auto tip = tip_target(task);
   if (!tip) return arm_state(arm, task.to);
-  InverseOptions options;
+  InverseConfig options;
   options.start = from;
   return solve_inverse(arm, TipTarget{.position = *tip}, options).state;
 }

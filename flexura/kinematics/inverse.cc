@@ -25,7 +25,7 @@ constexpr int starts_before_proof = 2;
 
 // A question in the base's frame, with all that its answer needs.
 struct Question {
-  Question(const Arm& the_arm, const TipTarget& the_target, const InverseOptions& the_options)
+  Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_options)
       : arm(the_arm),
         target(the_target),
         options(the_options),
@@ -60,7 +60,7 @@ struct Question {
 
   const Arm& arm;
   const TipTarget& target;
-  const InverseOptions& options;
+  const InverseConfig& options;
   ArmVariables variables;
   double length;
   double position_tolerance;
@@ -231,7 +231,7 @@ std::vector<InverseResult> all_answers(const Question& q) {
 
 }  // namespace
 
-InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseOptions& options) {
+InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseConfig& options) {
   check_question(target, options);
   const Question question(arm, target, options);
   if (target.rotation) return answer<6>(question);
@@ -240,7 +240,7 @@ InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const Inver
 }
 
 std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                 const InverseOptions& options) {
+                                                 const InverseConfig& options) {
   check_question(target, options);
   const Question question(arm, target, options);
   if (target.rotation) return all_answers<6>(question);

@@ -41,7 +41,7 @@ enum class InverseWish {
 [[nodiscard]] double polyline_error(const std::vector<Eigen::Vector3d>& points);
 
 /// Where the search begins, and what counts as found.
-struct InverseOptions {
+struct InverseConfig {
   /// Where the search begins; one arc towards the target when left out.
   std::optional<ArmState> start = {};
   InverseWish wish = InverseWish::none;  ///< For the freedom that the target leaves.
@@ -85,9 +85,9 @@ struct InverseResult {
 /// std::invalid_argument: a target or start that is not finite or does not fit, a direction of zero, both a
 /// direction and a rotation, a rotation that is not one, a curve without length, tolerances not positive.
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
-                                          const InverseOptions& options = {});
+                                          const InverseConfig& options = {});
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
-                                          const InverseOptions& options = {});
+                                          const InverseConfig& options = {});
 
 /// The distinct solutions that options.max_starts descents find, least bent first; empty when there is none.
 /// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
@@ -95,6 +95,6 @@ struct InverseResult {
 /// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
 /// stands for its turns about that: the first section that is bent bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                               const InverseOptions& options = {});
+                                                               const InverseConfig& options = {});
 
 }  // namespace flexura

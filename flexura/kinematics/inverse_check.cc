@@ -10,7 +10,7 @@ void require(bool holds, const char* expected) {
   if (!holds) throw std::invalid_argument(std::string("inverse kinematics: expected ") + expected);
 }
 
-void check_options(const InverseOptions& options) {
+void check_options(const InverseConfig& options) {
   require(!options.position_tolerance || *options.position_tolerance > 0.0, "a positive position tolerance");
   require(options.angle_tolerance > 0.0, "a positive angle tolerance");
   require(options.max_starts >= 1, "at least one start");
@@ -18,7 +18,7 @@ void check_options(const InverseOptions& options) {
 
 }  // namespace
 
-void check_question(const TipTarget& target, const InverseOptions& options) {
+void check_question(const TipTarget& target, const InverseConfig& options) {
   constexpr double orthonormal = 1e-6;
   check_options(options);
   require(target.position.allFinite(), "a finite position");
@@ -33,7 +33,7 @@ void check_question(const TipTarget& target, const InverseOptions& options) {
   }
 }
 
-void check_question(const CurveTarget& target, const InverseOptions& options) {
+void check_question(const CurveTarget& target, const InverseConfig& options) {
   check_options(options);
   double length = 0.0;
   for (std::size_t i = 0; i < target.points.size(); ++i) {

@@ -71,7 +71,7 @@ double polyline_error(const std::vector<Eigen::Vector3d>& points) {
   return bulge + missing;
 }
 
-InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseOptions& options) {
+InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseConfig& options) {
   check_question(target, options);
   const ArmVariables variables(arm);
   const double length = variables.max_length();

@@ -46,11 +46,11 @@ void check_servo(const ServoConfig& config) {
           "a servo's points, rate, tolerance and step are above 0");
 }
 
-LimiterSettings limiter_settings(const ServoConfig& config) {
-  LimiterSettings settings;
-  settings.step = config.step, settings.drive = config.drive, settings.list_step = config.list_step;
-  settings.obstacles = config.obstacles;
-  return settings;
+LimiterConfig limiter_config(const ServoConfig& config) {
+  LimiterConfig limiter;
+  limiter.step = config.step, limiter.drive = config.drive, limiter.list_step = config.list_step;
+  limiter.obstacles = config.obstacles;
+  return limiter;
 }
 
 }  // namespace flexura

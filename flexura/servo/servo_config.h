@@ -87,7 +87,7 @@ struct ServoConfig {
   ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
   double step = 1.0 / 30;   ///< From one command to the next, s.
   bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
-  std::optional<Drive> drive = {};  ///< For the limiter (LimiterSettings),
+  std::optional<Drive> drive = {};  ///< For the limiter (LimiterConfig),
   double list_step = 0;             ///< and its command list's step, s.
   /// Where the arm was sent before, if that is known: drives say that to their own steps alone.
   std::optional<ArmState> sent = {};
@@ -103,6 +103,6 @@ const std::vector<std::string>& names_of(const ServoJacobian*);
 void check_servo(const ServoConfig& config);
 
 /// Of the limiter behind its law.
-[[nodiscard]] LimiterSettings limiter_settings(const ServoConfig& config);
+[[nodiscard]] LimiterConfig limiter_config(const ServoConfig& config);
 
 }  // namespace flexura

@@ -120,7 +120,7 @@ class Session {
     sent_ = rig_.said(result_.start);
     if (config_.sent && is_near(*config_.sent, sent_)) sent_ = *config_.sent;
     try {
-      limiter_.emplace(model_.arm, limiter_settings(config_), sent_);
+      limiter_.emplace(model_.arm, limiter_config(config_), sent_);
     } catch (const std::invalid_argument& error) {
       return fmt::format("the arm cannot be steered from where it is: {}", error.what());
     }

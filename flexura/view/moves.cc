@@ -96,7 +96,7 @@ InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipReque
   TipTarget target;
   target.position = vector(request.position);
   if (request.direction) target.direction = vector(*request.direction);
-  InverseOptions options;
+  InverseConfig options;
   options.start = within_limits(arm, from);
   // From where it is, for a hand that drags wants no leaps; from elsewhere only where that does not do.
   options.max_starts = 1;

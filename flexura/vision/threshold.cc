@@ -181,9 +181,17 @@ Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config
   Threshold found;
   found.method = config.method;
   found.level = config.level;
-  if (config.method == ThresholdMethod::two_mode) found.level = valley_split(histogram) + 0.5;
-  if (config.method == ThresholdMethod::otsu || config.method == ThresholdMethod::by_block)
-    found.level = otsu_split(histogram) + 0.5;
+  switch (config.method) {
+    case ThresholdMethod::fixed:
+      break;
+    case ThresholdMethod::two_mode:
+      found.level = valley_split(histogram) + 0.5;
+      break;
+    case ThresholdMethod::otsu:
+    case ThresholdMethod::by_block:
+      found.level = otsu_split(histogram) + 0.5;
+      break;
+  }
   const auto split = static_cast<std::size_t>(std::clamp(std::floor(found.level) + 1, 0.0, 256.0));
   const Moments dark = moments(histogram, 0, split), bright = moments(histogram, split, 256);
   found.dark = dark.mean(), found.bright = bright.mean();

@@ -29,10 +29,10 @@ inline Image<std::uint8_t> tube() {
 
 /// What is measured in a picture's file.
 inline Measurement measured(const std::string& file, MeasureTarget what = MeasureTarget::arm) {
-  MeasureSettings settings;
-  settings.what = what;
+  MeasureConfig config;
+  config.what = what;
   return measure_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "test.png",
-                         settings, true);
+                         config, true);
 }
 
 }  // namespace flexura

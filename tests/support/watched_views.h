@@ -19,8 +19,8 @@ struct WatchedView {
   FakeMessenger live;
 };
 
-/// Runs an experiment's text to its end. `Run`: a RunLink whose member `look` is called when there is something
-/// to be seen, on the run's own thread.
+/// Runs an experiment's text to its end. `Run`: a RunLink whose member `look` is called when there is
+/// something to be seen, on the run's own thread.
 template <class Run>
 std::unique_ptr<WatchedView> watched_view(const std::string& text) {
   auto seen = std::make_unique<WatchedView>();

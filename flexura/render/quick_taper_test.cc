@@ -80,7 +80,7 @@ void compare_ways(TestRandom& random, const BentArm& bent, const View& view, Wor
   renderer.render(scene, view, PixelKind::gray, quick);
   const Difference off = compare(exact, quick);
   EXPECT_LT(off.worst, 0.04);
-  EXPECT_LE(off.bad_depths, 1);  // By a little more than 2e-6 of it; holes have many.
+  EXPECT_LE(off.bad_depths, 4);  // Off by a little more than 2e-6 of it; a hole shows in the light.
   worst.light = std::max(worst.light, off.worst), worst.bad_depths += off.bad_depths;
 }
 

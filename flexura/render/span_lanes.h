@@ -149,15 +149,19 @@ struct Lowest {
 template <bool is_tapered>
 [[gnu::always_inline]] inline Lowest lowest_of(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                                int steps) {
-  Wide t = 0;
+  Wide t = 0, at_start = {};
   for (int i = 1; i < steps; ++i) {
     const Height here = height(piece, ray, t);
+    if (i == 1) at_start = here.value;
     t -= here.slope / here.curving;
   }
   const Height here = height(piece, ray, t);
+  if (steps <= 1) at_start = here.value;
+  // Where H is higher than where it was begun at, that is another one of its minima.
+  const float rounding = 0.01f * piece.radius * piece.radius;
   const Wide scale = 1 / here.curving, move = here.slope * scale, value = here.value - here.slope * move;
   Lowest lowest{t - move, value, square_root(at_least(0, -(value * scale))), here.radius,
-                (here.curving > 0) & (size_of(move) <= piece.largest_move)};
+                (here.curving > 0) & (size_of(move) <= piece.largest_move) & (value <= at_start + rounding)};
   if (is_tapered) lowest.radius = girth_at(piece, along(ray.point, ray.direction, lowest.t)).radius;
   return lowest;
 }

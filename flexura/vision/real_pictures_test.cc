@@ -157,9 +157,9 @@ TEST(RealPictures, WhatIsNoEllipseIsTheDiscItself) {
     EXPECT_GT(here.ellipse.rms, 0.09) << one;
     EXPECT_LT(rms_of_moved(here, there, false), one == 32 ? 0.075 : 0.055) << one;
     // Not any border would do.
-    Outline inside_out = there;
-    for (auto& [anomaly, misfit] : inside_out.misfits) misfit = -misfit;
-    EXPECT_GT(rms_of_moved(here, inside_out, false), 0.09) << one;
+    Outline reversed = there;
+    for (auto& [anomaly, misfit] : reversed.misfits) misfit = -misfit;
+    EXPECT_GT(rms_of_moved(here, reversed, false), 0.09) << one;
   }
   // While this one was read the camera's motion changed: its rows are shifted by pixels.
   const Outline shaken(47), still(49);

@@ -62,7 +62,7 @@ TEST(PlaneSight, HasTheNoiseOfItsPlanes) {
   for (std::uint64_t k = 0; k < looks; ++k) {
     // Even, of variance 1.
     sight.look(still, straight, [&](std::uint64_t i) {
-      return std::sqrt(3.0) * (2 * static_cast<double>(hash(k, i) >> 11) * 0x1p-53 - 1);
+      return std::numbers::sqrt3 * (2 * static_cast<double>(hash(k, i) >> 11) * 0x1p-53 - 1);
     });
     of_theta += sight.e_theta().squaredNorm() / (4.0 * looks);
     of_q += sight.e_q().squaredNorm() / (4.0 * looks);

@@ -153,13 +153,13 @@ TEST(RealPictures, WhatIsNoEllipseIsTheDiscItself) {
   for (const auto& [one, other] :
        {std::pair(17, 16), std::pair(27, 26), std::pair(30, 31), std::pair(31, 33), std::pair(32, 34),
         std::pair(34, 36), std::pair(35, 37), std::pair(37, 38)}) {
-    const Outline here(one), there(other);
-    EXPECT_GT(here.ellipse.rms, 0.09) << one;
-    EXPECT_LT(rms_of_moved(here, there, false), one == 32 ? 0.075 : 0.055) << one;
+    const Outline border(one), next(other);
+    EXPECT_GT(border.ellipse.rms, 0.09) << one;
+    EXPECT_LT(rms_of_moved(border, next, false), one == 32 ? 0.075 : 0.055) << one;
     // Not any border would do.
-    Outline reversed = there;
+    Outline reversed = next;
     for (auto& [anomaly, misfit] : reversed.misfits) misfit = -misfit;
-    EXPECT_GT(rms_of_moved(here, reversed, false), 0.09) << one;
+    EXPECT_GT(rms_of_moved(border, reversed, false), 0.09) << one;
   }
   // While this one was read the camera's motion changed: its rows are shifted by pixels.
   const Outline shaken(47), still(49);

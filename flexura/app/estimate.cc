@@ -188,12 +188,6 @@ Node image_node(const std::string& name, const MeasuredCamera& camera, const Loo
   return {std::move(entry), {}};
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double square = 0;
-  for (const double value : values) square += value * value / static_cast<double>(values.size());
-  return std::sqrt(square);
-}
-
 // The standard deviation at so many places evenly along the backbone, linear between where it is known.
 Node::Array sigmas_at(const ShapeEstimate& found, std::size_t count, double length) {
   Node::Array sigmas;
@@ -264,7 +258,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, 
   add_angles(direction_angles(backbone, count), "", answer);
   add_plane_angles(sightings, count, answer);
   answer.push_back({"length", {}, number_node(backbone.length())});
-  answer.push_back({"sigma", {}, number_node(root_mean_square(found.sigma))});
+  answer.push_back({"sigma", {}, number_node(found.rms_sigma())});
   answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
   answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);

@@ -311,8 +311,9 @@ LoopTrouble EtalonLoop::square() {
       return fmt::format("camera {} after its last move: {}", loop_.name(i), views_[i].reason);
   }
   // Which way around they stand: the angle between the axes is less or more.
-  const Eigen::Vector3d a = loop_.camera(0).pose(loop_.stance(0).stage, loop_.stance(0).head).rotation.col(2),
-                        b = loop_.camera(1).pose(loop_.stance(1).stage, loop_.stance(1).head).rotation.col(2);
+  const Eigen::Vector3d
+      a = loop_.camera(0).pose({loop_.stance(0).head, loop_.stance(0).stage}).rotation.col(2),
+      b = loop_.camera(1).pose({loop_.stance(1).head, loop_.stance(1).stage}).rotation.col(2);
   const double hand = a.cross(b).y() < 0 ? 1 : -1;
   loop_.result().angle = hand * (across(0) - across(1));
   loop_.result().zoom_ratio = views_[0].magnification / views_[1].magnification;

@@ -45,7 +45,7 @@ TEST(Aim, BringsThePointOntoTheAxis) {
     const Eigen::Vector3d target = random.vector<3>(-0.3, 0.6);
     const RigStance stance{1, {0, 0, random.uniform(1, 3)}, {random.vector<3>(-0.3, 0.3)}};
     const HeadState head = aimed(model.cameras[1], stance, target);
-    const Pose X_WC = Camera(model.cameras[1]).pose(stance.stage, head);
+    const Pose X_WC = Camera(model.cameras[1]).pose({head, stance.stage});
     EXPECT_LE((X_WC.inverse() * target).head<2>().norm(), 1e-12);
     EXPECT_GT((X_WC.inverse() * target).z(), 0);
   });
@@ -66,12 +66,12 @@ std::vector<double> distances_by_stage(const Eigen::Vector3d& turn, const Eigen:
   const Eigen::Quaterniond wrong(so3_exp(turn) * mount.pose().rotation);
   believed.mount.look_at.reset(), believed.mount.rotation = {{wrong.w(), wrong.x(), wrong.y(), wrong.z()}};
   RigStance stance{0, {0, 0, 1}, {start}};
-  const Eigen::Vector3d wanted = Camera(truth).pose({}, stance.head).position;
+  const Eigen::Vector3d wanted = Camera(truth).pose({stance.head, {}}).position;
   std::vector<double> distances;
   for (int i = 0; i <= moves; ++i) {
-    const Eigen::Vector3d now = Camera(truth).pose(stance.stage, stance.head).position;
+    const Eigen::Vector3d now = Camera(truth).pose({stance.head, stance.stage}).position;
     distances.push_back((now - wanted).norm());
-    const Eigen::Vector3d off = now - Camera(believed).pose(stance.stage, stance.head).position;
+    const Eigen::Vector3d off = now - Camera(believed).pose({stance.head, stance.stage}).position;
     for (std::size_t k = 0; k < 3; ++k) believed.mount.position[k] += off[static_cast<Eigen::Index>(k)];
     stance.stage.offset = stage_towards(believed, stance, wanted);
   }

@@ -20,7 +20,7 @@ RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras) {
 }
 
 View view_of(const RigModel& model, const RigStance& stance) {
-  return Camera(model.cameras.at(stance.camera)).view(stance.stage, stance.head);
+  return Camera(model.cameras.at(stance.camera)).view({stance.head, stance.stage});
 }
 
 LensConfig spelled_out(const CameraConfig& camera) {

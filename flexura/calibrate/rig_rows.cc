@@ -46,7 +46,7 @@ RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd&
 
 View RigProjector::view(std::size_t stance) const {
   const RigStance& where = stances_[stance];
-  return cameras_[where.camera].view(where.stage, where.head);
+  return cameras_[where.camera].view({where.head, where.stage});
 }
 
 bool RigProjector::is_in_range(std::size_t stance) const {
@@ -60,7 +60,7 @@ std::optional<RigProjector::Shown> RigProjector::show(std::size_t pose, std::siz
   const RigStance& where = stances_[stance];
   const BackboneJacobian& backbone = jacobians_[pose];
   const auto projection =
-      cameras_[where.camera].project(backbone.pose(point).position, where.stage, where.head);
+      cameras_[where.camera].project(backbone.pose(point).position, {where.head, where.stage});
   if (!projection) return std::nullopt;
   backbone.at(point, jacobian_);
   const auto sections = static_cast<Eigen::Index>(shapes_[pose].arm.sections.size());
@@ -204,7 +204,7 @@ bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
   for (const EtalonPoint& seen : image.etalon) {
     const auto point = etalon_->nearest(seen, view);
     if (!point) return false;
-    const auto projection = cameras_[where.camera].project(*point, where.stage, where.head);
+    const auto projection = cameras_[where.camera].project(*point, {where.head, where.stage});
     if (!projection) return false;
     shown.pixel = projection->pixel;
     add_camera_slots(*projection, image.stance, shown);

@@ -9,6 +9,15 @@
 
 namespace flexura {
 
+CameraStance interpolate(const CameraStance& from, const CameraStance& to, double fraction) {
+  const auto mixed = [fraction](double a, double b) { return a + fraction * (b - a); };
+  CameraStance between;
+  between.head = {mixed(from.head.pan, to.head.pan), mixed(from.head.tilt, to.head.tilt),
+                  mixed(from.head.zoom, to.head.zoom)};
+  between.stage.offset = from.stage.offset + fraction * (to.stage.offset - from.stage.offset);
+  return between;
+}
+
 Camera::Camera(const CameraConfig& config)
     : config_(config),
       lens_(config.lens, config.sensor.width, config.sensor.height),
@@ -33,7 +42,8 @@ std::array<double, 2> Camera::angles(const HeadState& head) const {
   return {head.pan + config_.head.pan.zero, head.tilt + config_.head.tilt.zero};
 }
 
-Pose Camera::pose(const StageState& stage, const HeadState& head) const {
+Pose Camera::pose(const CameraStance& stance) const {
+  const auto& [head, stage] = stance;
   const auto [pan, tilt] = angles(head);
   return X_WM_ * Pose{Eigen::Matrix3d::Identity(), stage.offset} * head_pose(geometry(head.zoom), pan, tilt);
 }
@@ -47,13 +57,14 @@ HeadState Camera::looking_along(const Eigen::Vector3d& direction, double zoom) c
           std::asin(std::clamp(-u.y(), -1.0, 1.0)) - config_.head.tilt.zero, zoom};
 }
 
-View Camera::view(const StageState& stage, const HeadState& head) const {
-  return {Lens(lens_.at(head.zoom)), pose(stage, head), static_cast<int>(config_.sensor.width),
+View Camera::view(const CameraStance& stance) const {
+  return {Lens(lens_.at(stance.head.zoom)), pose(stance), static_cast<int>(config_.sensor.width),
           static_cast<int>(config_.sensor.height)};
 }
 
-std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP, const StageState& stage,
-                                                const HeadState& head) const {
+std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP,
+                                                const CameraStance& stance) const {
+  const auto& [head, stage] = stance;
   const HeadGeometry axes = geometry(head.zoom);
   const auto [pan, tilt] = angles(head);
   const Eigen::Matrix3d R_PM = pan_rotation(pan).transpose();  // P: the panned frame

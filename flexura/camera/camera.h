@@ -31,6 +31,17 @@ struct CameraProjection {
   Eigen::Matrix<double, 2, intrinsics_count> by_lens;
 };
 
+/// Where a camera's head and stage stand.
+struct CameraStance {
+  HeadState head;
+  StageState stage;
+
+  bool operator==(const CameraStance&) const = default;
+};
+
+/// The stance `fraction` of the way from one to another, pan, tilt, zoom and offset each linear.
+[[nodiscard]] CameraStance interpolate(const CameraStance& from, const CameraStance& to, double fraction);
+
 /// A camera on its head and mount, ready to use.
 class Camera {
  public:
@@ -51,6 +62,7 @@ class Camera {
   /// Where it stands when a run starts.
   [[nodiscard]] HeadState initial_head() const;
   [[nodiscard]] StageState initial_stage() const;
+  [[nodiscard]] CameraStance initial_stance() const { return {initial_head(), initial_stage()}; }
 
   /// The angles of its pan and its tilt axis, zeros included, rad.
   [[nodiscard]] std::array<double, 2> angles(const HeadState& head) const;
@@ -60,12 +72,12 @@ class Camera {
 
   /// X_WC: the entrance pupil's position, and the camera's axes. std::out_of_range: a zoom outside the lens's
   /// table (these and the following).
-  [[nodiscard]] Pose pose(const StageState& stage, const HeadState& head) const;
+  [[nodiscard]] Pose pose(const CameraStance& stance) const;
   /// What it sees.
-  [[nodiscard]] View view(const StageState& stage, const HeadState& head) const;
+  [[nodiscard]] View view(const CameraStance& stance) const;
   /// The pixel of a point in W with its derivatives; none where the lens shows it nowhere.
-  [[nodiscard]] std::optional<CameraProjection> project(const Eigen::Vector3d& p_WP, const StageState& stage,
-                                                        const HeadState& head) const;
+  [[nodiscard]] std::optional<CameraProjection> project(const Eigen::Vector3d& p_WP,
+                                                        const CameraStance& stance) const;
 
  private:
   [[nodiscard]] HeadGeometry geometry(double zoom) const;

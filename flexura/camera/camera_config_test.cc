@@ -99,7 +99,7 @@ TEST(CameraConfig, CamerasHaveNamesOfTheirOwn) {
 // The image of camera 1 shows X to the right and Y up, that of camera 2 Z to the right and Y up.
 TEST(DefaultCameras, FaceThePapersPlanes) {
   const auto cameras = cameras_at({5, 4});
-  const View front = Camera(cameras[0]).view({}, {}), side = Camera(cameras[1]).view({}, {});
+  const View front = Camera(cameras[0]).view({{}, {}}), side = Camera(cameras[1]).view({{}, {}});
   const auto pixel = [](const View& view, double x, double y, double z) { return *view.project({x, y, z}); };
   const Eigen::Vector2d middle(319.5, 239.5);
   EXPECT_LE((pixel(front, 0, 0, 0) - middle).norm(), 1e-12);
@@ -118,7 +118,7 @@ TEST(DefaultCameras, HaveTheWholeReachInView) {
     const Eigen::Vector3d p_WP =
         reach * random.vector<3>(-1, 1).normalized() + Eigen::Vector3d(center[0], center[1], center[2]);
     for (const CameraConfig& camera : default_cameras(reach, center)) {
-      const auto pixel = Camera(camera).view({}, {}).project(p_WP);
+      const auto pixel = Camera(camera).view({{}, {}}).project(p_WP);
       ASSERT_TRUE(pixel);
       EXPECT_GT(pixel->x(), 10);
       EXPECT_GT(pixel->y(), 10);

@@ -64,9 +64,9 @@ TEST(Mount, PanAndTiltOnAnUprightMountMakeNoRollAndCorrectNone) {
   const Camera upright_camera(config);
   config.mount.roll = 0.1;
   const Camera rolled(config);
-  EXPECT_NEAR(*roll_of(upright_camera.pose({}, {0.4, 0.3, 1}).rotation), 0, 1e-15);
-  EXPECT_NEAR(*roll_of(rolled.pose({}, {0, 0, 1}).rotation), 0.1, 1e-15);
-  EXPECT_NEAR(*roll_of(rolled.pose({}, {0.05, 0.02, 1}).rotation), 0.1, 0.01);
+  EXPECT_NEAR(*roll_of(upright_camera.pose({{0.4, 0.3, 1}, {}}).rotation), 0, 1e-15);
+  EXPECT_NEAR(*roll_of(rolled.pose({{0, 0, 1}, {}}).rotation), 0.1, 1e-15);
+  EXPECT_NEAR(*roll_of(rolled.pose({{0.05, 0.02, 1}, {}}).rotation), 0.1, 0.01);
   EXPECT_FALSE(roll_of(tilt_rotation(90 * degree)));
 }
 
@@ -98,11 +98,11 @@ TEST(Camera, SeesAsTheChainOfItsFramesSays) {
     const Pose X_WC = config.mount.pose() * shift(stage.offset) * turn({0, -head.pan, 0}) *
                       shift(vector(config.head.tilt_axis)) * turn({head.tilt, 0, 0}) *
                       shift(vector(config.head.pupil) + Eigen::Vector3d(0, 0, forward));
-    const View view = camera.view(stage, head);
+    const View view = camera.view({head, stage});
     EXPECT_LE((view.X_WC.rotation - X_WC.rotation).norm(), 1e-14);
     EXPECT_LE((view.X_WC.position - X_WC.position).norm(), 1e-14);
     const Eigen::Vector3d p_WP = X_WC * Eigen::Vector3d(0.1, -0.2, 1.5);
-    const auto projection = camera.project(p_WP, stage, head);
+    const auto projection = camera.project(p_WP, {head, stage});
     const auto pixel = view.project(p_WP);
     ASSERT_EQ(projection.has_value(), pixel.has_value());
     if (!pixel) return;
@@ -135,7 +135,7 @@ class EveryParameter {
     config.head.pupil_shift += x[21];
     const StageState stage{stage_.offset + x.segment<3>(9)};
     const HeadState head{head_.pan + x[12], head_.tilt + x[13], head_.zoom + x[14]};
-    return *Camera(config).view(stage, head).project(p_WP_ + x.head<3>());
+    return *Camera(config).view({head, stage}).project(p_WP_ + x.head<3>());
   }
 
  private:
@@ -158,9 +158,9 @@ TEST(Camera, ItsDerivativesAreThoseOfItsPixels) {
     const StageState stage = random_stage(random, camera);
     const Eigen::Vector3d p_CP =
         random.uniform(1, 3) * Eigen::Vector3d(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1);
-    const Eigen::Vector3d p_WP = camera.pose(stage, head) * p_CP;
+    const Eigen::Vector3d p_WP = camera.pose({head, stage}) * p_CP;
     const EveryParameter parameters(config, stage, head, p_WP);
-    const auto projection = camera.project(p_WP, stage, head);
+    const auto projection = camera.project(p_WP, {head, stage});
     ASSERT_TRUE(projection);
     Eigen::Matrix<double, 2, EveryParameter::count> analytic;
     analytic << projection->by_point, projection->by_mount, projection->by_stage, projection->by_pan,
@@ -181,9 +181,9 @@ TEST(Camera, ItsDerivativeByTheLensIsThatAtThisZoom) {
     const HeadState head = random_head(random, camera);
     const StageState stage = random_stage(random, camera);
     const Eigen::Vector3d p_CP(0.2, -0.1, 1.5);
-    const auto projection = camera.project(camera.pose(stage, head) * p_CP, stage, head);
+    const auto projection = camera.project(camera.pose({head, stage}) * p_CP, {head, stage});
     ASSERT_TRUE(projection);
-    const auto expected = *camera.view(stage, head).lens.project_with_derivatives(p_CP);
+    const auto expected = *camera.view({head, stage}).lens.project_with_derivatives(p_CP);
     EXPECT_LE((projection->by_intrinsics - expected.by_intrinsics).norm(),
               1e-9 * expected.by_intrinsics.norm());
   });
@@ -196,13 +196,13 @@ TEST(Camera, ItsDerivativeByTheLensAtRatioOneIsThatOfItsPixels) {
     const Camera camera(config);
     const HeadState head = random_head(random, camera);
     const StageState stage = random_stage(random, camera);
-    const Eigen::Vector3d p_WP = camera.pose(stage, head) * Eigen::Vector3d(0.2, -0.1, 1.5);
-    const auto projection = camera.project(p_WP, stage, head);
+    const Eigen::Vector3d p_WP = camera.pose({head, stage}) * Eigen::Vector3d(0.2, -0.1, 1.5);
+    const auto projection = camera.project(p_WP, {head, stage});
     ASSERT_TRUE(projection);
     const auto pixel = [&](double fx, double k1) {
       CameraConfig changed = config;
       changed.lens.fx += fx, changed.lens.distortion[0] += k1;
-      return *Camera(changed).view(stage, head).project(p_WP);
+      return *Camera(changed).view({head, stage}).project(p_WP);
     };
     const Eigen::Vector2d by_fx = (pixel(1e-3, 0) - pixel(-1e-3, 0)) / 2e-3;
     const Eigen::Vector2d by_k1 = (pixel(0, 1e-5) - pixel(0, -1e-5)) / 2e-5;
@@ -217,8 +217,8 @@ TEST(Camera, OutsideItsZoomHasNoView) {
   const Camera camera(config);
   EXPECT_EQ(camera.head_axes()[2].limits[1], 0x4000);
   EXPECT_EQ(camera.initial_head().zoom, 0);
-  EXPECT_THROW((void)camera.view({}, {0, 0, -5}), std::out_of_range);
-  EXPECT_THROW((void)camera.project({0, 0, 0}, {}, {0, 0, 20000}), std::out_of_range);
+  EXPECT_THROW((void)camera.view({{0, 0, -5}, {}}), std::out_of_range);
+  EXPECT_THROW((void)camera.project({0, 0, 0}, {{0, 0, 20000}, {}}), std::out_of_range);
 }
 
 }  // namespace

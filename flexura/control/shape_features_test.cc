@@ -46,7 +46,7 @@ std::vector<View> random_views(TestRandom& random, const Arm& arm, const ArmStat
     HeadState head = camera.initial_head();
     head.zoom = random_head(random, camera).zoom;
     head.pan = random.uniform(-0.03, 0.03), head.tilt = random.uniform(-0.03, 0.03);
-    views.push_back(camera.view(random_stage(random, camera), head));
+    views.push_back(camera.view({head, random_stage(random, camera)}));
   }
   return views;
 }

@@ -49,12 +49,6 @@ double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance
   return s;
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value / static_cast<double>(values.size());
-  return std::sqrt(squares);
-}
-
 // Why the arm may begin or end elsewhere on the same curve; "" where two of its ends, its length and places
 // of markers tell. Else an axis that stops short draws the shape's end to its last point, and rows across
 // that are then taken for what they are not: its place along the curve, to a hundredth of a pixel.
@@ -108,6 +102,12 @@ ShapeEstimate unseen(Shape shape) {
 }
 
 }  // namespace
+
+double ShapeEstimate::rms_sigma() const {
+  double squares = 0;
+  for (const double one : sigma) squares += one * one / static_cast<double>(sigma.size());
+  return std::sqrt(squares);
+}
 
 ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
     : prior_(std::move(prior)), config_(config) {}
@@ -181,8 +181,7 @@ ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, Sh
                                          double cost, const ShapeBelief* belief) {
   const auto is_plain = [](const Sighting& seen) { return seen.bands.empty(); };
   if (!std::isfinite(cost) || first.sigma.empty() || std::ranges::all_of(sightings, is_plain)) return first;
-  const std::vector<BandLook> looks =
-      match_bands(prior_, first.shape, root_mean_square(first.sigma), sightings);
+  const std::vector<BandLook> looks = match_bands(prior_, first.shape, first.rms_sigma(), sightings);
   if (looks.empty()) return first;
   ShapeProblem problem(prior_, sightings, looks, belief);
   ShapeFit fit = descent_.descend(problem, first.shape, config_.most_iterations, StartKind::near);
@@ -208,7 +207,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     return result;
   }
   const double length = add_sigmas(problem, fit.covariance, result);
-  const double sigma = root_mean_square(result.sigma);
+  const double sigma = result.rms_sigma();
   if (!(sigma < config_.hopeless * length)) {
     result.reason = "the images do not tell the shape";
     return result;

@@ -44,6 +44,8 @@ struct ShapeEstimate {
   int iterations = 0;                 ///< Of the descent that ended in it.
   std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
 
+  /// Root mean square of `sigma` along the arm, m; 0 where there is none.
+  [[nodiscard]] double rms_sigma() const;
   /// Found, and nothing speaks against it.
   [[nodiscard]] bool is_trusted() const { return is_found && notes.empty(); }
 };
@@ -51,7 +53,9 @@ struct ShapeEstimate {
 /// Fits shapes to sightings by one or more cameras: least squares of the distances in all images at once,
 /// under the full camera model (docs/estimation.md). The same sightings give the same answer, but for
 /// `follow`, which starts from the shape that it is given. Bands count where a fit without them tells which
-/// is which (band_match.h), as long as the axes do not speak against them.
+/// is which (band_match.h), as long as the axes do not speak against them. Points of the sightings that are
+/// not finite, or whose sigma is not positive, count as not seen; what cannot be told is an estimate that is
+/// not found, with the reason. One for each thread: it keeps its storage.
 class ShapeEstimator {
  public:
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
@@ -61,7 +65,7 @@ class ShapeEstimator {
   /// order of the first one's points holds, and the second is tried both ways.
   [[nodiscard]] ShapeEstimate estimate(std::span<const Sighting> sightings);
 
-  /// From the shape a moment ago.
+  /// From the shape a moment ago: of the prior's arm, with any `views`.
   [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
 
   /// From what is known of it, which counts as much as what is seen. It knows the views' errors as well: the

@@ -8,7 +8,8 @@
 
 namespace flexura {
 
-/// Knots for a quarter turn or so a section; of many short sections two are enough.
+/// Intervals for each section of the prior's arm, so that knots follow bends of a quarter turn or so; of many
+/// short sections two are enough.
 [[nodiscard]] std::size_t intervals_a_section(const ShapePrior& prior);
 
 /// A backbone by knots, evenly along each section, with derivatives by the unknowns. Reused, it allocates no
@@ -32,11 +33,12 @@ class SpaceCurve {
   /// `intervals` of each section, and one more: the first at the base, the last at the tip.
   [[nodiscard]] const std::vector<Knot>& knots() const { return knots_; }
   [[nodiscard]] std::size_t intervals_a_section() const { return intervals_; }
-  /// Between knots i and i + 1, m.
+  /// Arc length between knots i and i + 1, m.
   [[nodiscard]] double interval(std::size_t i) const { return lengths_[i / intervals_]; }
-  /// Where a point of the unstretched arm lies, counted in knots.
+  /// Where the point `s` m along the unstretched arm lies, counted in knots: 0 at the base, the number of
+  /// intervals at the tip; before and after, those.
   [[nodiscard]] double place_of(const Arm& arm, double s) const;
-  /// The inverse: m along the unstretched arm.
+  /// The inverse, m along the unstretched arm.
   [[nodiscard]] double s_of(const Arm& arm, double place) const;
 
  private:

@@ -30,7 +30,7 @@ Overrides take_overrides(std::string_view& text) {
 void check_cameras(const std::vector<CameraConfig>& cameras) {
   for (const CameraConfig& config : cameras) {
     const Camera camera(config);
-    const Pose X_WC = camera.pose(camera.initial_stage(), camera.initial_head());
+    const Pose X_WC = camera.pose(camera.initial_stance());
     if (!config.mount.pose().rotation.allFinite() || !X_WC.position.allFinite()) std::abort();
   }
 }

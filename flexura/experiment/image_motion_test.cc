@@ -23,7 +23,7 @@ class ImageMotion : public ::testing::Test {
     sensor_.exposure = 0.1;
     shot_.sensor = &sensor_;
     shot_.start = 3;
-    shot_.view = [this](double) { return camera_.view({}, {}); };
+    shot_.view = [this](double) { return camera_.view({{}, {}}); };
     shot_.backbone = [this](double) { return Backbone(arm_, ArmState::straight(1)); };
     Screen screen;
     screen.X_WS.position = {0, 0, -1};
@@ -68,7 +68,7 @@ TEST_F(ImageMotion, SeesAMotionThereAndBack) {
 }
 
 TEST_F(ImageMotion, SeesTheStandUnderACameraThatPans) {
-  shot_.view = [this](double time) { return camera_.view({}, {.pan = 0.5 * (time - 3)}); };
+  shot_.view = [this](double time) { return camera_.view({{.pan = 0.5 * (time - 3)}, {}}); };
   shot_.backbone = [this](double) { return Backbone(arm_, ArmState::straight(1)); };
   arm_.X_WB.position = {0, 0, 5};  // behind the camera
   EXPECT_GE(fastest_image_motion(shot_, stand_), 50);

@@ -190,19 +190,18 @@ TEST(ImageStudy, SeesWithTheHeadAndStageAsTheCameraDoes) {
   const Camera camera(config);
   const StudyTarget target({});
   const auto expect_seen = [&](VaryConfig::Values VaryConfig::* parameter, double value,
-                               const StageState& stage, const HeadState& head) {
-    const auto expected = camera.project(target.point(30), stage, head);
+                               const CameraStance& stance) {
+    const auto expected = camera.project(target.point(30), stance);
     EXPECT_LE(
         (*view_with(camera, parameter, value, target).project(target.point(30)) - expected->pixel).norm(),
         1e-9);
   };
-  const HeadState head = camera.initial_head();
-  const StageState stage = camera.initial_stage();
-  expect_seen(&VaryConfig::pan, 0.2, stage, {0.2, head.tilt, head.zoom});
-  expect_seen(&VaryConfig::tilt, 0.2, stage, {head.pan, 0.2, head.zoom});
-  expect_seen(&VaryConfig::zoom, 3, stage, {head.pan, head.tilt, 3});
-  expect_seen(&VaryConfig::stage_y, 0.5, {{0.1, 0.5, 0.3}}, head);
-  expect_seen(&VaryConfig::focal_length, 1200, stage, head);
+  const auto [head, stage] = camera.initial_stance();
+  expect_seen(&VaryConfig::pan, 0.2, {{0.2, head.tilt, head.zoom}, stage});
+  expect_seen(&VaryConfig::tilt, 0.2, {{head.pan, 0.2, head.zoom}, stage});
+  expect_seen(&VaryConfig::zoom, 3, {{head.pan, head.tilt, 3}, stage});
+  expect_seen(&VaryConfig::stage_y, 0.5, {head, {{0.1, 0.5, 0.3}}});
+  expect_seen(&VaryConfig::focal_length, 1200, {head, stage});
 }
 
 TEST(ImageStudy, AnOrbitKeepsTheDistanceAndLooksAtTheCentre) {

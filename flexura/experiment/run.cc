@@ -52,7 +52,7 @@ Node camera_nodes(const std::vector<CameraConfig>& cameras,
   Node::Array list;
   for (const CameraConfig& config : cameras) {
     const Camera camera(config);
-    const auto roll = roll_of(camera.pose(camera.initial_stage(), camera.initial_head()).rotation);
+    const auto roll = roll_of(camera.pose(camera.initial_stance()).rotation);
     Node::Table entry{{"name", {}, {config.name, {}}}};
     if (roll) entry.push_back({"roll", {}, {*roll, {}}});
     const auto count = frames.find(config.name);

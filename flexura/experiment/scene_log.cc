@@ -122,8 +122,8 @@ FramesMessage frames_message(const Experiment& experiment) {
   frames.transforms.push_back(frame("base", rig.arm.arm().X_WB));
   for (const CameraConfig& config : rig.cameras) {
     const Camera camera(config);
-    frames.transforms.push_back(frame(image_topic(config.name).substr(1),
-                                      camera.pose(camera.initial_stage(), camera.initial_head())));
+    frames.transforms.push_back(
+        frame(image_topic(config.name).substr(1), camera.pose(camera.initial_stance())));
   }
   return frames;
 }

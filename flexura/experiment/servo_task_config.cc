@@ -198,7 +198,7 @@ void check_planes(const ServoTask& task, const std::vector<CameraConfig>& camera
   try {
     const auto looks_along = [](const CameraConfig& config, Eigen::Index axis) {
       const Camera camera(config);
-      return std::abs(camera.pose(camera.initial_stage(), camera.initial_head()).rotation(axis, 2)) > roughly;
+      return std::abs(camera.pose(camera.initial_stance()).rotation(axis, 2)) > roughly;
     };
     if (looks_along(cameras[front], 2) && looks_along(cameras[side], 0)) return;
   } catch (const std::exception&) {

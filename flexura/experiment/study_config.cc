@@ -183,7 +183,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   }
   const Camera camera(*config);
   check_values(varied.front(), camera, fmt::format("{}.vary.{}", path, varied.front().name), reader);
-  const Eigen::Vector3d eye = camera.pose(camera.initial_stage(), camera.initial_head()).position;
+  const Eigen::Vector3d eye = camera.pose(camera.initial_stance()).position;
   const bool needs_distance =
       varied.front().parameter == &VaryConfig::orbit || varied.front().parameter == &VaryConfig::distance;
   if (needs_distance && eye == Eigen::Vector3d(task.target.center.data())) {

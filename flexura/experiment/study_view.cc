@@ -68,15 +68,14 @@ Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
 }  // namespace
 
 View view_with(const Camera& camera, VariedList parameter, double value, const StudyTarget& target) {
-  HeadState head = camera.initial_head();
-  StageState stage = camera.initial_stage();
+  auto [head, stage] = camera.initial_stance();
   if (parameter == &V::pan) head.pan = value;
   if (parameter == &V::tilt) head.tilt = value;
   if (parameter == &V::zoom) head.zoom = value;
   const std::size_t slide = place_in(stage_parameters, parameter);
   if (slide < stage_parameters.size()) stage.offset[static_cast<Eigen::Index>(slide)] = value;
 
-  View view = Camera(with_offset(camera.config(), parameter, value)).view(stage, head);
+  View view = Camera(with_offset(camera.config(), parameter, value)).view({head, stage});
   if (const std::size_t i = place_in(mount_parameters, parameter); i < 3) {
     const auto axis = static_cast<Eigen::Index>(i);
     view.X_WC.position[axis] += value - camera.mount().position[axis];

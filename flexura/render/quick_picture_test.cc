@@ -70,10 +70,13 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
     renderer.render(scene, view, pixels, quick);
     const Difference off = compare(exact, quick);
     EXPECT_LT(off.worst, 0.015);
+    EXPECT_LT(off.count, 1e-3 * off.many);  // Many rings make many bent edges.
     count += off.count, many += off.many, bad_depths += off.bad_depths;
   });
-  // A sanitized build draws a few of the cases, one of which has more rings than most.
-  EXPECT_LT(count, (one_case_of == 1 ? 1e-4 : 2e-4) * many);
+  // Of a sanitized build's few cases the mean says nothing.
+  if (one_case_of == 1) {
+    EXPECT_LT(count, 1e-4 * many);
+  }
   std::printf("light differs by more than 0.002 in %.2g of the values\n", static_cast<double>(count) / many);
   EXPECT_EQ(bad_depths, 0);
 }

@@ -26,17 +26,8 @@ ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::a
       optics_{Camera(believed.cameras.at(cameras[0])), Camera(believed.cameras.at(cameras[1]))},
       times_(times),
       arm_(times.span, &interpolate),
-      stands_{MotionHistory<Stand, StandBlend>(times.span, &between),
-              MotionHistory<Stand, StandBlend>(times.span, &between)} {}
-
-ServoRig::Stand ServoRig::between(const Stand& a, const Stand& b, double share) {
-  const auto mixed = [share](double from, double to) { return from + share * (to - from); };
-  Stand stand;
-  stand.head = {mixed(a.head.pan, b.head.pan), mixed(a.head.tilt, b.head.tilt),
-                mixed(a.head.zoom, b.head.zoom)};
-  stand.stage.offset = a.stage.offset + share * (b.stage.offset - a.stage.offset);
-  return stand;
-}
+      stances_{MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate),
+               MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate)} {}
 
 ServoRig::Trouble ServoRig::read() {
   auto arm = read_arm(*ports_.arm, model_.arm.sections.size());
@@ -49,7 +40,7 @@ ServoRig::Trouble ServoRig::read() {
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
     const auto& stands = std::get<StanceReading>(camera);
     if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;
-    stands_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
+    stances_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
   }
   return std::nullopt;
 }
@@ -109,8 +100,8 @@ std::string ServoRig::by_name(std::string reason) const {
 }
 
 RigStance ServoRig::stance(std::size_t i, double time) const {
-  const Stand stand = *stands_[i].at(time);
-  return {.camera = cameras_[i], .head = stand.head, .stage = stand.stage};
+  const auto [head, stage] = *stances_[i].at(time);
+  return {.camera = cameras_[i], .head = head, .stage = stage};
 }
 
 View ServoRig::view(std::size_t i, double time) const { return view_of(model_, stance(i, time)); }

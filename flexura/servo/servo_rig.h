@@ -59,16 +59,11 @@ class ServoRig {
   [[nodiscard]] std::string by_name(std::string reason) const;
 
  private:
-  struct Stand {
-    HeadState head;
-    StageState stage;
-  };
   using StateBlend = ArmState (*)(const ArmState&, const ArmState&, double);
-  using StandBlend = Stand (*)(const Stand&, const Stand&, double);
+  using StanceBlend = CameraStance (*)(const CameraStance&, const CameraStance&, double);
   // Of what a device says, and of a picture after those before it; none, "": nothing.
   [[nodiscard]] Trouble odd_time(const std::string& device, double time) const;
   [[nodiscard]] std::string odd_time(const Frame& frame, const std::deque<Frame>& before) const;
-  static Stand between(const Stand& a, const Stand& b, double share);
 
   RigPorts ports_;
   const RigModel& model_;
@@ -76,7 +71,7 @@ class ServoRig {
   std::array<Camera, 2> optics_;  // As they are believed to be.
   Times times_;
   MotionHistory<ArmState, StateBlend> arm_;
-  std::array<MotionHistory<Stand, StandBlend>, 2> stands_;
+  std::array<MotionHistory<CameraStance, StanceBlend>, 2> stances_;
   std::array<std::deque<Frame>, 2> recent_;
   std::array<Frame, 2> pair_;
   std::array<double, 2> paired_at_ = {-1, -1};  // s

@@ -264,11 +264,8 @@ class Session {
   // How well the pictures' noise lets a shape be known, root mean square along the arm, share of its length.
   // What cameras that are wrong and not doubted add to it is there in every picture alike.
   [[nodiscard]] double sigma_of(const ShapeEstimate& estimate) const {
-    double squares = 0;
-    for (const double sigma : estimate.sigma) squares += sigma * sigma;
-    const auto count = static_cast<double>(std::max<std::size_t>(1, estimate.sigma.size()));
     const double common = config_.camera_doubt.is_any() ? 1 : estimate.scale;
-    return std::sqrt(squares / count) / (common * model_.arm.length());
+    return estimate.rms_sigma() / (common * model_.arm.length());
   }
 
   // What the law asks for, by the last sight.

@@ -87,7 +87,7 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
         const double steps = read[axis] / config.resolution;
         EXPECT_NEAR(steps, std::round(steps), 1e-9);
       }
-      EXPECT_NO_THROW((void)camera.view(camera.initial_stage(), reading.state));
+      EXPECT_NO_THROW((void)camera.view({reading.state, camera.initial_stage()}));
     }
   });
 }
@@ -207,7 +207,7 @@ TEST(SimulatedHead, ItsLensStaysWithinTheTable) {
     for (const double zoom : {-1e6, 1e6, -1e6}) {
       ASSERT_TRUE(head.command({0, 0, zoom}));
       clock.wait_until(clock.now() + 20);
-      EXPECT_NO_THROW((void)camera.view({}, head.truth(clock.now())));
+      EXPECT_NO_THROW((void)camera.view({head.truth(clock.now()), {}}));
     }
   });
 }

@@ -25,10 +25,9 @@ class SimulatedView {
 
   /// The camera as it truly is.
   [[nodiscard]] const Camera& description() const { return description_; }
-  /// What the camera truly sees at a time: not for algorithms.
-  [[nodiscard]] View view(double time) const {
-    return description_.view(stage_.truth(time), head_.truth(time));
-  }
+  /// How it truly stands at `time` s, and what it truly sees then: not for algorithms.
+  [[nodiscard]] CameraStance stance(double time) const { return {head_.truth(time), stage_.truth(time)}; }
+  [[nodiscard]] View view(double time) const { return description_.view(stance(time)); }
   [[nodiscard]] SimulatedHead& head() { return head_; }
   [[nodiscard]] SimulatedStage& stage() { return stage_; }
   [[nodiscard]] SimulatedCamera& camera() { return camera_; }

@@ -74,7 +74,7 @@ TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
   EXPECT_NEAR(again.head.zoom, read.head.zoom, 1e-12);
   EXPECT_NEAR((again.stage.offset - read.stage.offset).norm(), 0, 1e-12);
   EXPECT_FALSE(rig_->believed_view(1, read).X_WC.rotation.isApprox(
-      rig_->cameras[1].view(read.stage, rig_->stance(1, read).head).X_WC.rotation));
+      rig_->cameras[1].view({rig_->stance(1, read).head, read.stage}).X_WC.rotation));
   // Whoever wrote the log.
   EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);
 }
@@ -84,7 +84,7 @@ TEST(CameraSample, HasTheNumbersOfItsLensEachInItsPlace) {
   const ViewedRigPtr rig =
       viewed_rig(replaced(viewed_text, "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }",
                           "lens = { fx = 80, fy = 90, cx = 30, cy = 20 }"));
-  const CameraSample sample = camera_sample(rig->cameras[0], {}, {0.1, -0.2, 1.5});
+  const CameraSample sample = camera_sample(rig->cameras[0], {{0.1, -0.2, 1.5}, {}});
   EXPECT_NEAR(sample.fx, 120, 1e-9);
   EXPECT_NEAR(sample.fy, 135, 1e-9);
   EXPECT_EQ(sample.cx, 30);

@@ -38,9 +38,8 @@ StateMessage LiveRig::state() {
   message.arm = truth(message.time);
   message.samples = arm_samples(rig_->truth, message.arm);
   for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
-    SimulatedView& camera = simulated_->camera(i);
-    message.cameras.push_back(camera_sample(rig_->cameras[i], camera.stage().truth(message.time),
-                                            camera.head().truth(message.time)));
+    const CameraStance stance = simulated_->camera(i).stance(message.time);
+    message.cameras.push_back(camera_sample(rig_->cameras[i], stance));
   }
   if (rig_->drive) {
     const std::vector<double> positions(reading.positions.begin(), reading.positions.end());
@@ -60,7 +59,7 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
   SimulatedView& view = simulated_->camera(camera);
   std::vector<Instant> instants;
   for (const double time : times_of_instants(rig_->sensors[camera], start))
-    instants.push_back({time, truth(time), view.head().truth(time), view.stage().truth(time)});
+    instants.push_back({time, truth(time), view.stance(time)});
   return value_shot(rig_, camera, frame, start, std::move(instants));
 }
 
@@ -71,7 +70,7 @@ StateMessage still_state(const ViewedRig& rig, double time, const ArmState& stat
   message.arm = state;
   message.samples = arm_samples(rig.model, state);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-    message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i).stage, stances.at(i).head));
+    message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i)));
   if (rig.drive) message.displacements = tendon_displacements(rig.model, *rig.drive, state).pulled;
   return message;
 }

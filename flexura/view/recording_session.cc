@@ -170,8 +170,7 @@ ValueShot RecordingSession::shot(std::size_t camera, std::int64_t number) const 
   const auto place = static_cast<std::size_t>(number);
   const double time = recording_->time_of_state(place);
   const CameraStance stance = recording_->stance(camera, time);
-  return value_shot(viewed(), camera, number, time,
-                    {{time, recording_->state(place), stance.head, stance.stage}});
+  return value_shot(viewed(), camera, number, time, {{time, recording_->state(place), stance}});
 }
 
 void RecordingSession::advance(double now) {

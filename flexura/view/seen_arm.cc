@@ -148,12 +148,6 @@ ShapePrior prior_of(const ViewedRig& rig) {
   return prior;
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double square = 0;
-  for (const double value : values) square += value * value / static_cast<double>(values.size());
-  return std::sqrt(square);
-}
-
 }  // namespace
 
 std::span<const std::string_view> layer_names() { return names; }
@@ -198,7 +192,7 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
   if (estimate.is_found) {
     answer.push_back({"poses", {}, *backbone_answer(estimate.shape.arm, estimate.shape.state).find("poses")});
     answer.push_back({"bends", {}, bends_node(estimate.shape.state)});
-    answer.push_back({"sigma", {}, number_node(root_mean_square(estimate.sigma))});
+    answer.push_back({"sigma", {}, number_node(estimate.rms_sigma())});
     answer.push_back({"rms_px", {}, number_node(estimate.rms)});
   }
   return {std::move(answer), {}};

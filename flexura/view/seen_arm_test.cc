@@ -84,7 +84,7 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
     const std::string image = last_image(me, static_cast<std::uint32_t>(1 + place));
     EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(), static_cast<unsigned char>(image[4]));
     const CameraStance stance = rig_->first_stance(place);
-    const View view = rig_->cameras[place].view(stance.stage, stance.head);
+    const View view = rig_->cameras[place].view(stance);
     const Backbone backbone(rig_->truth, rig_->initial);
     std::vector<Eigen::Vector2d> truth;
     for (int i = 0; i <= 1000; ++i)
@@ -109,7 +109,7 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
   EXPECT_LE(markers.size(), 6);
   const Backbone backbone(rig_->truth, rig_->initial);
   const CameraStance stance = rig_->first_stance(0);
-  const View view = rig_->cameras[0].view(stance.stage, stance.head);
+  const View view = rig_->cameras[0].view(stance);
   const auto look = rig_->experiment.arm.look.markers(rig_->truth);
   for (const Eigen::Vector2d& seen : markers) {
     const bool is_one = std::ranges::any_of(look, [&](const Marker& marker) {
@@ -131,7 +131,7 @@ TEST_F(MeasuredArm, LiesOnTheCircleThatItsArcIs) {
   const Node* circle = layers_of(answer, "circle").at(0);
   const double radius = 0.5 / 0.8, distance = 2.2;
   const CameraStance stance = rig_->first_stance(0);
-  const View view = rig_->cameras[0].view(stance.stage, stance.head);
+  const View view = rig_->cameras[0].view(stance);
   const auto& axes = *circle->find("axes")->as<Node::Array>();
   EXPECT_NEAR(*axes[0].as<double>(), view.lens.intrinsics().fx * radius / distance, 0.5);
   EXPECT_EQ(*axes[1].as<double>(), *axes[0].as<double>());

@@ -12,12 +12,8 @@ namespace {
 
 // What lies `part` of the way from one instant to the next.
 Instant between_instants(const Instant& a, const Instant& b, double part) {
-  Instant at;
-  at.arm = interpolate(a.arm, b.arm, part);
-  const auto mix = [&](double from, double to) { return from + part * (to - from); };
-  at.head = {mix(a.head.pan, b.head.pan), mix(a.head.tilt, b.head.tilt), mix(a.head.zoom, b.head.zoom)};
-  at.stage.offset = a.stage.offset + part * (b.stage.offset - a.stage.offset);
-  return at;
+  return {a.time + part * (b.time - a.time), interpolate(a.arm, b.arm, part),
+          interpolate(a.stance, b.stance, part)};
 }
 
 // `from` and the way from one state to another.
@@ -44,8 +40,7 @@ CameraReading within_ends(const Camera& camera, CameraReading reading) {
 }
 
 bool stand_alike(const Instant& a, const Instant& b) {
-  return a.arm.bends == b.arm.bends && a.arm.stretches == b.arm.stretches && a.head == b.head &&
-         a.stage == b.stage;
+  return a.arm.bends == b.arm.bends && a.arm.stretches == b.arm.stretches && a.stance == b.stance;
 }
 
 Instant instant_at(const std::vector<Instant>& instants, double time) {
@@ -82,9 +77,7 @@ CameraReading ViewedRig::first_reading(std::size_t camera) const {
   return {believed.at(camera).initial_head(), believed.at(camera).initial_stage()};
 }
 
-CameraStance ViewedRig::first_stance(std::size_t camera) const {
-  return {cameras.at(camera).initial_head(), cameras.at(camera).initial_stage()};
-}
+CameraStance ViewedRig::first_stance(std::size_t camera) const { return cameras.at(camera).initial_stance(); }
 
 CameraStance ViewedRig::stance(std::size_t camera, const CameraReading& reading) const {
   const CameraReading read = within_ends(cameras.at(camera), reading), first = first_reading(camera);
@@ -106,13 +99,13 @@ View ViewedRig::believed_view(std::size_t camera, const CameraReading& reading) 
   const Camera& described = believed.at(camera);
   HeadState head = reading.head;
   head.zoom = on_lens(described, head.zoom);
-  return described.view(reading.stage, head);
+  return described.view({head, reading.stage});
 }
 
-CameraSample camera_sample(const Camera& camera, const StageState& stage, const HeadState& head) {
-  const View view = camera.view(stage, head);
+CameraSample camera_sample(const Camera& camera, const CameraStance& stance) {
+  const View view = camera.view(stance);
   const Intrinsics& lens = view.lens.intrinsics();
-  return {view.X_WC, head, stage.offset, lens.fx, lens.fy, lens.cx, lens.cy};
+  return {view.X_WC, stance.head, stance.stage.offset, lens.fx, lens.fy, lens.cx, lens.cy};
 }
 
 ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame, double start,
@@ -125,8 +118,7 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
   shot.start = start;
   shot.sensor = &rig->sensors.at(camera);
   shot.view = [rig, camera, shown](double time) {
-    const Instant at = instant_at(*shown, time);
-    return rig->cameras[camera].view(at.stage, at.head);
+    return rig->cameras[camera].view(instant_at(*shown, time).stance);
   };
   shot.backbone = [rig, shown](double time) { return Backbone(rig->truth, instant_at(*shown, time).arm); };
   return {std::move(shot), shown};
@@ -134,8 +126,7 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
 
 CameraStance stance_in(const ValueShot& shot) {
   const double middle = times_of_frame_at(*shot.shot.sensor, shot.shot.start).middle;
-  const Instant at = instant_at(*shot.instants, middle);
-  return {at.head, at.stage};
+  return instant_at(*shot.instants, middle).stance;
 }
 
 bool show_the_same(const ValueShot& a, const ValueShot& b) {

@@ -22,14 +22,7 @@ namespace flexura {
 struct Instant {
   double time = 0;  ///< s
   ArmState arm;
-  HeadState head;
-  StageState stage;
-};
-
-/// Where a camera's head and stage stand.
-struct CameraStance {
-  HeadState head;
-  StageState stage;
+  CameraStance stance;
 };
 
 /// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
@@ -63,8 +56,7 @@ class ViewedRig {
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
 /// How a camera of the rig stands.
-[[nodiscard]] CameraSample camera_sample(const Camera& camera, const StageState& stage,
-                                         const HeadState& head);
+[[nodiscard]] CameraSample camera_sample(const Camera& camera, const CameraStance& stance);
 
 /// A frame that can be taken without anything else that stays.
 struct ValueShot {

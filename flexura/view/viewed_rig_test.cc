@@ -16,8 +16,8 @@ namespace {
 const std::string lifted_text = viewed_text + "[truth.arm.base]\nposition = [0, 0.1, 0]\n";
 
 std::vector<Instant> swing(double start, double end) {
-  return {{start, {{{0.2, 0}, {0, 0}}, {1, 1}}, {0, 0, 1}, {}},
-          {end, {{{0.6, 0}, {0, 0.4}}, {1, 1}}, {0.2, -0.1, 1}, {}}};
+  return {{start, {{{0.2, 0}, {0, 0}}, {1, 1}}, {{0, 0, 1}, {}}},
+          {end, {{{0.6, 0}, {0, 0.4}}, {1, 1}}, {{0.2, -0.1, 1}, {}}}};
 }
 
 TEST(ViewedRig, IsShownInPicturesAsItTrulyIsAndNotAsItIsBelievedToBe) {
@@ -35,7 +35,7 @@ TEST(ViewedRig, IsShownBetweenTwoInstantsInBetween) {
   const ArmState arm = {{{0.3, 0}, {0, 0.1}}, {1, 1}};  // A quarter of the way.
   EXPECT_LT((shot.shot.backbone(3.0025).tip().position - Backbone(rig->truth, arm).tip().position).norm(),
             1e-12);
-  const View view = shot.shot.view(3.0025), there = rig->cameras[1].view({}, {0.05, -0.025, 1});
+  const View view = shot.shot.view(3.0025), there = rig->cameras[1].view({{0.05, -0.025, 1}, {}});
   EXPECT_LT((view.X_WC.rotation - there.X_WC.rotation).norm(), 1e-12);
   // Whoever asks how the camera stands is told of the exposure's middle.
   EXPECT_NEAR(stance_in(shot).head.pan, 0.1, 1e-12);

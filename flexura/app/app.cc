@@ -172,6 +172,10 @@ void add_measure(CLI::App& app, Command& chosen) {
       ->type_name("FILE");
   measure->add_option("--radius", arguments->radius, "The arm's radius, m: then depths are told too")
       ->type_name("R");
+  measure
+      ->add_option("--gamma", arguments->gamma,
+                   "Values are light to the power 1/G: of most cameras' files 2.2")
+      ->type_name("G");
   add_threshold_options(*measure, arguments->threshold);
   measure->add_option("--base", arguments->base, "A place near the arm's base, px: U,V")
       ->type_name("U,V")
@@ -289,8 +293,10 @@ int parse_and_run(int argc, const char* const* argv) {
   CLI::App app("Flexura: a simulator for hyperredundant robots under visual control", "flexura");
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("flexura: {} (see flexura --help)\n", one_line(error.what()));
+  app.failure_message([](const CLI::App* whole, const CLI::Error& error) {
+    const auto used = whole->get_subcommands();
+    const std::string command = used.empty() ? "" : used.front()->get_name() + " ";
+    return fmt::format("flexura: {} (see flexura {}--help)\n", one_line(error.what()), command);
   });
   Command chosen;
   add_run(app, chosen);

@@ -119,10 +119,11 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     }
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
-  for (const std::string& reason : result.reasons) tell(err, name_of(result.outcome), reason);
-  if (result.outcome == RunOutcome::cancelled && result.reasons.empty())
-    tell(err, name_of(result.outcome),
-         fmt::format("it was told to stop at {:.6g} s", *result.summary.find("duration")->as<double>()));
+  for (std::size_t i = 0; i < result.reasons.size(); ++i) {
+    // Behind why it was cancelled comes what is unsafe of it.
+    const bool is_second = result.outcome == RunOutcome::cancelled && i > 0;
+    tell(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
+  }
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
     tell(err, "results", folder.string());

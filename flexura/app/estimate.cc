@@ -15,17 +15,21 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/app/estimate_doubts.h"
+#include "flexura/app/picture_doubts.h"
+#include "flexura/base/bytes.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
 #include "flexura/estimate/curve_angles.h"
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/experiment/messages.h"
 #include "flexura/model/backbone.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/linear_light.h"
 #include "flexura/vision/picture_file.h"
 
 namespace flexura {
@@ -48,8 +52,6 @@ void check(const EstimateArguments& arguments) {
   if (arguments.length && !is_size(*arguments.length))
     throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
                                               *arguments.length, farthest_place));
-  if (arguments.length && !arguments.arm.empty())
-    throw input_error("--length", "--arm says how long the arm is");
   constexpr std::int64_t most = 100000;
   if (arguments.points < 2 || arguments.points > most)
     throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
@@ -92,17 +94,35 @@ std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
   return Eigen::Vector3d(arguments.base.data());
 }
 
+// Of an arm that may stretch, how long it is: its sections stretch alike.
+void hold_length(double length, ShapePrior& prior) {
+  if (prior.is_length_known) throw input_error("--length", "--arm says how long the arm is");
+  double shortest = 0, longest = 0;
+  for (const Section& section : prior.arm.sections) {
+    shortest += section.stretch_limits[0] * section.length;
+    longest += section.stretch_limits[1] * section.length;
+  }
+  constexpr double grace = 1e-9;  // Sums of the same in another order.
+  if (length < (1 - grace) * shortest || length > (1 + grace) * longest)
+    throw input_error("--length",
+                      fmt::format("{} m: expected {:.6g} to {:.6g} m, as far as the arm of --arm stretches",
+                                  length, shortest, longest));
+  const double stretch = length / prior.arm.length();
+  for (Section& section : prior.arm.sections) section.length *= stretch;
+  prior.is_length_known = true;
+}
+
 ShapePrior arm_of(const EstimateArguments& arguments) {
   const auto base = base_of(arguments);
   if (arguments.arm.empty()) return unknown_arm(base, arguments.length);
-  ShapePrior prior;
-  prior.arm = load_experiment(arguments.arm).arm.arm();
+  ShapePrior prior = described_arm(load_experiment(arguments.arm).arm.arm());
+  if (arguments.length) hold_length(*arguments.length, prior);
   if (base) prior.arm.X_WB.position = *base;
   return prior;
 }
 
 // "0.25" m or "25%" of the arm's length, as m along the unstretched arm.
-double marker_place(const std::string& word, const ShapePrior& prior) {
+double marker_place(const std::string& word, const ShapePrior& prior, bool is_described) {
   const bool is_share = word.ends_with('%');
   const std::string digits = word.substr(0, word.size() - (is_share ? 1 : 0));
   double value = 0;
@@ -110,7 +130,7 @@ double marker_place(const std::string& word, const ShapePrior& prior) {
   if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
     throw input_error("--markers",
                       fmt::format("\"{}\": expected arc lengths, m, or shares as \"25%\"", word));
-  if (!is_share && !prior.is_length_known)
+  if (!is_share && !is_described && !prior.is_length_known)
     throw input_error("--markers",
                       fmt::format("{} m of an arm of unknown length: expected --length, --arm, or "
                                   "shares as \"25%\"",
@@ -122,15 +142,17 @@ double marker_place(const std::string& word, const ShapePrior& prior) {
   return s;
 }
 
-EstimateConfig estimate_settings(const EstimateArguments& arguments) {
+EstimateConfig estimate_config(const EstimateArguments& arguments) {
   EstimateConfig config;
   config.prior = arm_of(arguments);
   auto& markers = config.prior.markers;
-  for (const std::string& word : arguments.markers) markers.push_back(marker_place(word, config.prior));
+  const bool is_described = !arguments.arm.empty();
+  for (const std::string& word : arguments.markers)
+    markers.push_back(marker_place(word, config.prior, is_described));
   std::ranges::sort(markers);
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);
-  config.has_bends = !arguments.arm.empty();
+  config.has_bends = is_described;
   return config;
 }
 
@@ -143,31 +165,23 @@ struct Look {
   bool is_of_other_size = false;  // As far as the camera's description tells.
 };
 
-ArmSighting sighted(const Photograph& photograph, ArmFinder& finder) {
-  if (!photograph.words.values().empty()) {
-    const Image<std::uint16_t> gray = gray_picture(photograph.words);
-    return finder.find(gray, photograph.white);
-  }
-  return finder.find(gray_picture(photograph.bytes));
-}
-
 Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateConfig& config) {
   Look look;
   const auto& [name, file] = picture;
   const ShapePrior& prior = config.prior;
-  const Photograph photograph =
-      decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
+  const Photograph photograph = linear_light(decode_picture(bytes_of(file), name), camera.gamma);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
   ArmFinderConfig finding;
   finding.threshold = config.threshold;
-  if (photograph.is_mask) finding.least_sigma = mask_sigma;
   if (prior.is_base_position_known) finding.base = view.project(prior.arm.X_WB.position);
   ArmFinder finder(finding);
-  const ArmSighting found = sighted(photograph, finder);
+  const ArmSighting& found = finder.find(photograph);
   look.reason = found.reason, look.notes = found.notes;
   auto doubt = doubt_of_size(view);
   look.is_of_other_size = doubt.has_value();
   if (doubt) look.notes.push_back(std::move(*doubt));
+  if (auto note = doubt_of_exposure(photograph, gray_picture(photograph.bytes)))
+    look.notes.push_back(std::move(*note));
   look.sighting = sighting_of(found, view, photograph.bytes);
   look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();
@@ -216,12 +230,9 @@ void add_angles(const std::vector<DirectionAngles>& angles, const std::string& b
 // As two image planes show them, if the cameras stand for that: one looks along Z, the other one along X.
 void add_plane_angles(std::span<const Sighting> sightings, std::size_t count, Node::Table& answer) {
   if (sightings.size() != 2) return;
-  constexpr double roughly = 0.7;
-  const auto looks_along = [](const Sighting& seen, Eigen::Index axis) {
-    return std::abs(seen.view.X_WC.rotation(axis, 2)) > roughly;
-  };
-  const bool is_front_first = looks_along(sightings[0], 2) && looks_along(sightings[1], 0);
-  if (!is_front_first && !(looks_along(sightings[1], 2) && looks_along(sightings[0], 0))) return;
+  const Pose &first = sightings[0].view.X_WC, &second = sightings[1].view.X_WC;
+  const bool is_front_first = stand_for_planes(first, second);
+  if (!is_front_first && !stand_for_planes(second, first)) return;
   const auto angles = is_front_first ? plane_angles(sightings[0], sightings[1], count)
                                      : plane_angles(sightings[1], sightings[0], count);
   if (angles.empty()) return;
@@ -263,10 +274,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, 
   answer.push_back({"rms_px", {}, number_node(found.rms)});
   add_markers(found, backbone, answer);
   if (!config.has_bends) return;
-  Node::Array bends;
-  for (const Eigen::Vector2d& bend : found.shape.state.bends)
-    bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
-  answer.push_back({"bends", {}, {std::move(bends), {}}});
+  answer.push_back({"bends", {}, bends_node(found.shape.state)});
 }
 
 }  // namespace
@@ -303,6 +311,12 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
   }
   if (found.is_found && config.has_bends)
     if (auto doubt = doubt_of_radius(sightings, found.shape)) found.notes.push_back(std::move(*doubt));
+  if (!found.is_found && config.prior.is_base_position_known)
+    if (auto doubt = doubt_of_base(sightings, config.prior.arm.X_WB.position))
+      found.notes.push_back(std::move(*doubt));
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (!found.is_found && !looks[i].is_of_other_size && !looks[i].notes.empty())
+      found.notes.push_back(fmt::format("picture {} has notes of its own", i + 1));
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (looks[i].is_of_other_size)
       found.notes.push_back(fmt::format(
@@ -326,7 +340,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
 int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   check(arguments);
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
-  const EstimateConfig config = estimate_settings(arguments);
+  const EstimateConfig config = estimate_config(arguments);
   std::vector<PictureFile> pictures;
   pictures.reserve(arguments.images.size());
   for (const std::string& name : arguments.images)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -69,21 +70,6 @@ void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape
 
 }  // namespace
 
-std::optional<std::string> doubt_of_size(const View& view) {
-  const Intrinsics lens = view.lens.intrinsics();
-  const auto is_aside = [](double at, int size) { return at < 0.3 * size || at > 0.7 * size; };
-  if (!is_aside(lens.cx, view.width) && !is_aside(lens.cy, view.height)) return std::nullopt;
-  // In whose middle the principal point would be, if that is a picture of the same shape.
-  const double width = 2 * lens.cx + 1, height = 2 * lens.cy + 1, factor = width / view.width;
-  constexpr double alike = 0.2;
-  const bool is_scaled = factor > 0 && std::abs(height / (factor * view.height) - 1) < alike;
-  return fmt::format(
-      "the principal point ({:.4g}, {:.4g}) is far from the middle of this picture of {} x {} px: is the "
-      "camera's description one for pictures of another size{}?",
-      lens.cx, lens.cy, view.width, view.height,
-      is_scaled ? fmt::format(", {:.3g} times as large", factor) : "");
-}
-
 std::optional<std::string> doubt_of_radius(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most_off = 0.15;
   constexpr std::size_t fewest = 20;
@@ -98,9 +84,32 @@ std::optional<std::string> doubt_of_radius(std::span<const Sighting> sightings, 
     return section.radius[0] == first && section.radius[1] == first;
   });
   if (is_one)
-    return fmt::format("the pictures show an arm of {:.3g} m radius, described are {:.3g} m", ratio * first,
-                       first);
+    return fmt::format(
+        "the pictures show an arm of {:.3g} m radius, its file has {:.3g} m ({:.3g} m where it says none)",
+        ratio * first, first, Section{}.radius[0]);
   return fmt::format("the pictures show an arm {:.2f} times as thick as it is described", ratio);
+}
+
+std::optional<std::string> doubt_of_base(std::span<const Sighting> sightings, const Eigen::Vector3d& p_WB) {
+  constexpr double far = 0.05;  // Of the picture's diagonal.
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const Sighting& seen = sightings[i];
+    const auto base = seen.view.project(p_WB);
+    const double width = seen.view.width, height = seen.view.height;
+    const bool is_inside =
+        base && base->x() >= 0 && base->y() >= 0 && base->x() < width && base->y() < height;
+    if (!is_inside) continue;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const CurvePoint& point : seen.points) nearest = std::min(nearest, (point.pixel - *base).norm());
+    for (const SeenBorder& point : seen.borders) nearest = std::min(nearest, (point.pixel - *base).norm());
+    if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
+      return fmt::format(
+          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is that "
+          "the "
+          "base, the picture and its camera, the right way up?",
+          base->x(), base->y(), i + 1, nearest);
+  }
+  return std::nullopt;
 }
 
 }  // namespace flexura

@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 
+#include "flexura/app/picture_doubts.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
@@ -50,7 +51,7 @@ TEST(EstimateDoubts, TellTheRadiusThatIsSeen) {
   const Shape described = shape_of(0.024);
   const std::array<Sighting, 1> other = {edges_of(described, 0.018)}, same = {edges_of(described, 0.023)};
   EXPECT_THAT(doubt_of_radius(other, described).value_or(""),
-              HasSubstr("show an arm of 0.018 m radius, described are 0.024 m"));
+              HasSubstr("show an arm of 0.018 m radius, its file has 0.024 m"));
   EXPECT_EQ(doubt_of_radius(same, described), std::nullopt);
   Shape tapered = described;
   tapered.arm.sections[1].radius = {0.024, 0.012};
@@ -61,6 +62,21 @@ TEST(EstimateDoubts, TellTheRadiusThatIsSeen) {
   std::array<Sighting, 1> none;
   none[0].view = seen_from_origin();
   EXPECT_EQ(doubt_of_radius(none, described), std::nullopt);
+}
+
+TEST(EstimateDoubts, TellWhereTheBaseWouldBe) {
+  std::array<Sighting, 2> seen;
+  for (Sighting& one : seen) one.view = seen_from_origin();
+  const Eigen::Vector3d base(-0.3, -0.3, 2);
+  const Eigen::Vector2d there = seen[0].view.project(base).value();
+  EXPECT_EQ(doubt_of_base(seen, base), std::nullopt) << "nothing is seen";
+  seen[0].points = {{there + Eigen::Vector2d(30, 0), 0.02}, {there + Eigen::Vector2d(200, 0), 0.02}};
+  seen[1].points = {{there + Eigen::Vector2d(200, 0), 0.02}};
+  EXPECT_THAT(doubt_of_base(seen, base).value_or(""), HasSubstr("of picture 2, 200 px from the arm there"));
+  seen[1].borders = {{there + Eigen::Vector2d(0, 39), 0.02}};
+  EXPECT_EQ(doubt_of_base(seen, base), std::nullopt);
+  seen[1].borders.clear();
+  EXPECT_EQ(doubt_of_base(seen, {-3, -0.3, 2}), std::nullopt) << "beside both";
 }
 
 TEST(EstimateDoubts, TellForWhichSizeOfPicturesACameraIsDescribed) {

@@ -56,7 +56,7 @@ struct Asked {
 // as thorough as the program. Of few sections the last one is bent in all ways where pictures are not
 // explained, and a thorough search goes on where nothing is to be found: both take most of the time, and are
 // left to a few cases.
-flexura::EstimateConfig settings_of(unsigned ways) {
+flexura::EstimateConfig config_of(unsigned ways) {
   flexura::EstimateConfig config;
   std::optional<Eigen::Vector3d> base;
   std::optional<double> length;
@@ -79,7 +79,7 @@ Asked asked(std::string_view input) {
   Asked result;
   result.cameras = take(input, std::string_view("\0", 1));
   const std::string_view ways = take(input, mark);
-  result.config = settings_of(ways.empty() ? 3U : static_cast<unsigned char>(ways[0]));
+  result.config = config_of(ways.empty() ? 3U : static_cast<unsigned char>(ways[0]));
   constexpr std::size_t most = 3;
   while (!input.empty() && result.pictures.size() < most)
     result.pictures.push_back({"picture", std::string(take(input, mark))});

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/table.h"
 #include "flexura/math/median.h"
 #include "flexura/math/pose.h"
 
@@ -91,8 +92,7 @@ void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector
 }  // namespace
 
 Node board_node(const BoardTarget& board) {
-  const auto& names = names_of(static_cast<const BoardPattern*>(nullptr));
-  return {Node::Table{{"pattern", {}, text_node(names[static_cast<std::size_t>(board.pattern)])},
+  return {Node::Table{{"pattern", {}, text_node(name_of(board.pattern))},
                       {"columns", {}, {std::int64_t{board.columns}, {}}},
                       {"rows", {}, {std::int64_t{board.rows}, {}}},
                       {"square", {}, number_node(board.square)}},

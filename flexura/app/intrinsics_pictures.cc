@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/bytes.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/calibrate/board_bundle.h"
@@ -149,8 +150,7 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
   pictures.names = files;
   for (const std::string& name : files) {
     const std::string file = read_text_file(name, most_picture_bytes);
-    const Photograph photograph =
-        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, name);
+    const Photograph photograph = decode_picture(bytes_of(file), name);
     const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};
     if (pictures.sightings.empty()) pictures.size = size;
     if (size != pictures.size)

@@ -17,6 +17,7 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/app/words.h"
+#include "flexura/base/bytes.h"
 #include "flexura/base/problems.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
@@ -29,7 +30,7 @@
 namespace flexura {
 namespace {
 
-MeasureConfig settings_of(const MeasureArguments& arguments) {
+MeasureConfig config_of(const MeasureArguments& arguments) {
   MeasureConfig config;
   config.what = named<MeasureTarget>("--what", arguments.what);
   config.finder.threshold = threshold_config(arguments.threshold);
@@ -44,6 +45,11 @@ MeasureConfig settings_of(const MeasureArguments& arguments) {
     throw input_error("--radius", fmt::format("{} m: expected a number from {:g} to {:g}", *arguments.radius,
                                               thinnest, thickest));
   config.radius = arguments.radius;
+  constexpr double least_gamma = 0.1, most_gamma = 10;
+  if (arguments.gamma && !(*arguments.gamma >= least_gamma && *arguments.gamma <= most_gamma))
+    throw input_error("--gamma", fmt::format("{}: expected a number from {:g} to {:g}", *arguments.gamma,
+                                             least_gamma, most_gamma));
+  config.gamma = arguments.gamma.value_or(1);
   if (config.what == MeasureTarget::circle || config.what == MeasureTarget::etalon) {
     for (const auto& [option, is_given] : {std::pair{"--base", !arguments.base.empty()},
                                            {"--camera", !arguments.camera.empty()},
@@ -55,31 +61,29 @@ MeasureConfig settings_of(const MeasureArguments& arguments) {
   return config;
 }
 
-// The lens of each picture; none without a file of cameras.
-std::vector<std::optional<Lens>> lenses_of(const MeasureArguments& arguments) {
-  std::vector<std::optional<Lens>> lenses(arguments.images.size());
+// How each picture is measured: with the camera that took it, where there is a file of cameras.
+std::vector<MeasureConfig> configs_of(const MeasureArguments& arguments) {
+  std::vector<MeasureConfig> configs(arguments.images.size(), config_of(arguments));
   if (arguments.camera.empty()) {
     if (arguments.radius) throw input_error("--radius", "needs --camera, a file of measured cameras");
-    return lenses;
+    return configs;
   }
   const Node file = read_toml_file(arguments.camera);
   const auto cameras = read_as<MeasuredCameras>(file).camera;
-  if (cameras.size() != 1 && cameras.size() != lenses.size())
+  if (cameras.size() != 1 && cameras.size() != configs.size())
     throw InputError({{file.find("camera")->where,
                        fmt::format("camera: {} for {} picture{}: expected one, or one for each picture",
-                                   cameras.size(), lenses.size(), lenses.size() == 1 ? "" : "s")}});
-  for (std::size_t i = 0; i < lenses.size(); ++i) lenses[i] = cameras[cameras.size() == 1 ? 0 : i].lens();
-  return lenses;
+                                   cameras.size(), configs.size(), configs.size() == 1 ? "" : "s")}});
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    const MeasuredCamera& camera = cameras[cameras.size() == 1 ? 0 : i];
+    configs[i].lens = camera.lens();
+    if (!arguments.gamma) configs[i].gamma = camera.gamma;
+  }
+  return configs;
 }
 
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-int measure_one(const MeasureArguments& arguments, MeasureConfig config, const std::optional<Lens>& lens,
-                std::ostream& out) {
+int measure_one(const MeasureArguments& arguments, const MeasureConfig& config, std::ostream& out) {
   const std::string& name = arguments.images.front();
-  config.lens = lens;
   const Measurement found = measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, config,
                                             !arguments.overlay.empty());
   if (!arguments.overlay.empty()) replace_file(arguments.overlay, png(found.overlay));
@@ -87,15 +91,14 @@ int measure_one(const MeasureArguments& arguments, MeasureConfig config, const s
   return found.is_found ? exit_done : exit_missed;
 }
 
-int measure_many(const MeasureArguments& arguments, MeasureConfig config,
-                 const std::vector<std::optional<Lens>>& lenses, std::ostream& out) {
+int measure_many(const MeasureArguments& arguments, std::span<const MeasureConfig> configs,
+                 std::ostream& out) {
   int status = exit_done;
   for (std::size_t i = 0; i < arguments.images.size(); ++i) {
     const std::string& name = arguments.images[i];
-    config.lens = lenses[i];
     try {
       const Measurement found =
-          measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, config);
+          measure_picture(bytes_of(read_text_file(name, most_picture_bytes)), name, configs[i]);
       out << write_json(found.answer) << '\n';
       if (!found.is_found && status == exit_done) status = exit_missed;
     } catch (const InputError& error) {
@@ -122,10 +125,9 @@ int measure_command(const MeasureArguments& arguments, std::ostream& out) {
           "--overlay",
           fmt::format("\"{}\" is the picture that is measured: expected another file", arguments.overlay));
   }
-  const MeasureConfig config = settings_of(arguments);
-  const auto lenses = lenses_of(arguments);
-  return arguments.images.size() == 1 ? measure_one(arguments, config, lenses.front(), out)
-                                      : measure_many(arguments, config, lenses, out);
+  const auto configs = configs_of(arguments);
+  return configs.size() == 1 ? measure_one(arguments, configs.front(), out)
+                             : measure_many(arguments, configs, out);
 }
 
 }  // namespace flexura

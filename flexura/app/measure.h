@@ -26,6 +26,7 @@ struct MeasureConfig {
   ArmFinderConfig finder;
   std::optional<Lens> lens;      ///< Of the camera that took it, when it is known.
   std::optional<double> radius;  ///< Of the arm, m, when it is known.
+  double gamma = 1;              ///< The picture's values are light to the power 1/gamma.
 };
 
 /// What is found in one picture.
@@ -46,6 +47,7 @@ struct MeasureArguments {
   std::string what = "arm";
   std::string camera;  ///< A file of measured cameras; "" for none.
   std::optional<double> radius;
+  std::optional<double> gamma;  ///< What the file of cameras says, or 1, where there is none.
   ThresholdArguments threshold;
   std::vector<double> base;  ///< Two numbers, or none.
   std::string overlay;       ///< A file to write; "" for none.

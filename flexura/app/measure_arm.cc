@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "flexura/app/measure_job.h"
+#include "flexura/app/picture_doubts.h"
+#include "flexura/base/table.h"
 #include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/markers.h"
@@ -21,8 +23,7 @@ using Eigen::Vector2d;
 
 Node end_node(const AxisEnd& end) {
   return TableMaker()
-      .add("kind",
-           text_node(names_of(static_cast<const AxisEndKind*>(nullptr))[static_cast<std::size_t>(end.kind)]))
+      .add("kind", text_node(name_of(end.kind)))
       .add("at", pixel_pair(end.pixel))
       .add("bulge", number_node(px(end.bulge)))
       .take();
@@ -77,26 +78,11 @@ void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSamp
   canvas.cross(arm.ends[0].pixel, 7, fit_color);
 }
 
-// A border beside what is cut off at white is drawn aside.
-std::optional<std::string> saturation(const Job& job) {
-  constexpr double most = 0.1, percent = 100;
-  const auto values = job.gray.values();
-  const double share =
-      static_cast<double>(std::ranges::count(values, 255)) / static_cast<double>(values.size());
-  if (job.photograph.is_mask || share <= most) return std::nullopt;
-  return fmt::format("{:.0f} % of the picture is saturated: borders beside that are seen aside, expose less",
-                     percent * share);
-}
-
 }  // namespace
 
 bool measure_arm(const Job& job) {
-  ArmFinderConfig finding = job.config.finder;
-  if (job.photograph.is_mask) finding.least_sigma = mask_sigma;
-  ArmFinder finder(finding);
-  const bool has_words = job.photograph.words.width() > 0;
-  const ArmSighting& arm = has_words ? finder.find(gray_picture(job.photograph.words), job.photograph.white)
-                                     : finder.find(job.gray);
+  ArmFinder finder(job.config.finder);
+  const ArmSighting& arm = finder.find(job.photograph);
   add_threshold(arm.threshold, job.answer);
   std::vector<AxisSample> axis = arm.axis;
   const bool is_backbone = job.config.lens && to_backbone_image(*job.config.lens, axis);
@@ -113,7 +99,10 @@ bool measure_arm(const Job& job) {
   if (job.config.lens && !is_backbone)
     notes.emplace_back(
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
-  if (auto note = saturation(job)) notes.push_back(std::move(*note));
+  if (auto note = doubt_of_exposure(job.photograph, job.gray)) notes.push_back(std::move(*note));
+  if (job.config.lens)
+    if (auto note = doubt_of_size({*job.config.lens, {}, job.gray.width(), job.gray.height()}))
+      notes.push_back(std::move(*note));
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   job.answer.add("notes", texts_node(notes))
       .add("base", end_node(arm.ends[0]))

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/table.h"
 
 namespace flexura {
 
@@ -51,13 +52,8 @@ Node ellipse_node(const std::optional<EllipseFit>& fit) {
 }
 
 void add_threshold(const Threshold& threshold, TableMaker& answer) {
-  answer.add("threshold", number_node(threshold.level))
-      .add("method", text_node(names_of(static_cast<const ThresholdMethod*>(
-                         nullptr))[static_cast<std::size_t>(threshold.method)]));
-  if (threshold.reason.empty())
-    answer.add(
-        "figure",
-        text_node(names_of(static_cast<const Figure*>(nullptr))[static_cast<std::size_t>(threshold.figure)]));
+  answer.add("threshold", number_node(threshold.level)).add("method", text_node(name_of(threshold.method)));
+  if (threshold.reason.empty()) answer.add("figure", text_node(name_of(threshold.figure)));
 }
 
 }  // namespace flexura

@@ -3,9 +3,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/app/measure_job.h"
+#include "flexura/base/table.h"
+#include "flexura/vision/linear_light.h"
 
 namespace flexura {
 
@@ -16,18 +19,19 @@ const std::vector<std::string>& names_of(const MeasureTarget*) {
 
 Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
                             const MeasureConfig& config, bool with_overlay) {
-  const Photograph photograph = decode_picture(file, name);
-  const Image<std::uint8_t> gray = gray_picture(photograph.bytes);
+  Photograph photograph = decode_picture(file, name);
   std::optional<Canvas> canvas;
   if (with_overlay) canvas.emplace(photograph.bytes);
+  const int bits = photograph.words.width() > 0 ? 16 : 8;
+  photograph = linear_light(std::move(photograph), config.gamma);
+  const Image<std::uint8_t> gray = gray_picture(photograph.bytes);
   TableMaker answer;
   const auto whole = [](int value) { return Node{static_cast<std::int64_t>(value), {}}; };
   answer.add("image", text_node(name))
-      .add("what", text_node(names_of(
-                       static_cast<const MeasureTarget*>(nullptr))[static_cast<std::size_t>(config.what)]))
+      .add("what", text_node(name_of(config.what)))
       .add("size", {Node::Array{whole(gray.width()), whole(gray.height())}, {}})
       .add("channels", whole(photograph.bytes.channels()))
-      .add("bits", whole(photograph.words.width() > 0 ? 16 : 8));
+      .add("bits", whole(bits));
   const Job job{photograph, gray, config, answer, canvas ? &*canvas : nullptr};
   Measurement result;
   switch (config.what) {

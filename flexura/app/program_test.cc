@@ -229,6 +229,11 @@ TEST_F(Program, TellsItsVersionAndHelp) {
     EXPECT_EQ(ended.status, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr("OPTIONS")) << command;
   }
+  // What is wrong behind a command leads to that command's help.
+  const Ended wrong = run("check --outt x " + paper_file);
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--outt"));
+  EXPECT_THAT(wrong.err, HasSubstr("(see flexura check --help)"));
 }
 
 TEST_F(Program, LeavesALogThatReadsWhenKilled) {

@@ -20,6 +20,10 @@ constexpr std::array<std::uint8_t, 256> values = [] {
 
 }  // namespace
 
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
 std::string base64(std::string_view data) {
   std::string text;
   text.reserve((data.size() + 2) / 3 * 4);

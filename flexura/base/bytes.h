@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,6 +16,9 @@ struct Bytes {
 
   bool operator==(const Bytes&) const = default;
 };
+
+/// The bytes of a file that was read as text; valid as long as the text is.
+[[nodiscard]] std::span<const std::uint8_t> bytes_of(std::string_view text);
 
 [[nodiscard]] std::string base64(std::string_view data);
 /// None when the text is not base64 as base64() writes it.

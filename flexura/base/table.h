@@ -130,6 +130,12 @@ concept HasFields = requires(const T* null) { fields_of(null); };
 template <class E>
 concept HasNames = std::is_enum_v<E> && requires(const E* null) { names_of(null); };
 
+/// Of one of its values, which it has.
+template <HasNames E>
+[[nodiscard]] const std::string& name_of(E value) {
+  return names_of(static_cast<const E*>(nullptr))[static_cast<std::size_t>(value)];
+}
+
 template <>
 struct Codec<double> {
   static Type type() { return {.kind = Type::Kind::number}; }
@@ -181,7 +187,7 @@ struct Codec<E> {
     }
     return reader.unexpected_choice(node, names()), false;
   }
-  static Node write(E value) { return {names()[static_cast<std::size_t>(value)], {}}; }
+  static Node write(E value) { return {name_of(value), {}}; }
 };
 
 /// Not written at all when left out.

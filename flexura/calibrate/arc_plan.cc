@@ -141,7 +141,7 @@ LookLoop::Trouble equalize_zooms(LookLoop& loop, const ArcPlan& plan) {
     for (int round = 0; round < rounds; ++round) {
       ZoomCorrelation seen;
       auto trouble = loop.look(i, [&](RigSight& sight) {
-        const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop.config().white[i]);
+        const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop.model(i).sensor.white());
         seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), plan.pictures[i]);
         sight.seen.reason = seen.reason;
         sight.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};

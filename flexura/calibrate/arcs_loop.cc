@@ -23,9 +23,9 @@ std::size_t fewest_markers(const LoopConfig& config) {
   return std::min<std::size_t>(5, config.picture.markers.size());
 }
 
-ArmPictureConfig picture_of(const LoopConfig& config, std::size_t i) {
-  ArmPictureConfig picture = config.picture;
-  picture.white = config.white[i];
+ArmPictureConfig picture_of(const LookLoop& loop, std::size_t i) {
+  ArmPictureConfig picture = loop.config().picture;
+  picture.white = loop.model(i).sensor.white();
   return picture;
 }
 
@@ -55,7 +55,7 @@ ArcsLoop::ArcsLoop(LookLoop& loop)
       sights_(loop.believed().arm, loop.config().picture, loop.config().cameras),
       reader_(loop.believed(), prior_, loop.config().cameras, middle_of(loop),
               fewest_markers(loop.config())) {
-  for (std::size_t i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop.config(), i));
+  for (std::size_t i = 0; i < 2; ++i) eyes_.emplace_back(picture_of(loop, i));
 }
 
 LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
@@ -76,8 +76,7 @@ LookLoop::Trouble ArcsLoop::look(std::size_t i, std::size_t arc) {
 
 // Keeps a picture among all of them, and tells which of its markers is which by these.
 void ArcsLoop::keep(std::size_t i, ArmFigure figure, RigSight& sight) {
-  const auto pose =
-      std::ranges::find_if(sights_.poses, [&](const ArmState& one) { return is_same(one, sight.pose); });
+  const auto pose = std::ranges::find(sights_.poses, sight.pose);
   const auto pose_number = static_cast<std::size_t>(pose - sights_.poses.begin());
   if (pose == sights_.poses.end()) sights_.poses.push_back(sight.pose);
   RigStance stance = sight.stance;
@@ -98,7 +97,7 @@ void ArcsLoop::keep(std::size_t i, ArmFigure figure, RigSight& sight) {
 LookLoop::Trouble ArcsLoop::into_view(std::size_t i, std::size_t arc) {
   const RigSight& sight = loop_.sight();
   const Intrinsics lens = loop_.lens(i);
-  const auto middle = dark_centroid(eight_bits(*sight.frame.picture, loop_.config().white[i]));
+  const auto middle = dark_centroid(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white()));
   if (!middle)
     return fmt::format("the arm is out of view of camera {}: {}", loop_.name(i), sight.seen.reason);
   RigStance next = loop_.stance(i);

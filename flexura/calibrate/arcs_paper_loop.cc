@@ -11,8 +11,8 @@ namespace flexura {
 
 ArcsPaperLoop::ArcsPaperLoop(LookLoop& loop) : loop_(loop) {
   ArmPictureConfig picture = loop.config().picture;
-  for (const int white : loop.config().white) {
-    picture.white = white;
+  for (std::size_t i = 0; i < 2; ++i) {
+    picture.white = loop.model(i).sensor.white();
     eyes_.emplace_back(picture);
   }
 }

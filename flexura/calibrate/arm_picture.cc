@@ -19,19 +19,16 @@ constexpr double least_marker_sigma = 0.2;
 MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& markers) {
   MarkerScene scene;
   for (const MarkerSighting& marker : markers) {
-    // A spot has no known place on the backbone, and what may be two is neither.
     auto& place = scene.markers.emplace_back();
-    if (marker.is_band && !marker.may_be_merged) place = MarkerScene::Place{marker.pixel, marker.color};
+    if (marker.tells_place()) place = MarkerScene::Place{marker.pixel, marker.color};
   }
-  constexpr double whole = 0.95;  // Of the silhouette: what explains less may end at a fold.
-  if (arm.covered < whole) return scene;
+  if (!arm.is_whole()) return scene;
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
     if (arm.ends[i].kind == AxisEndKind::free) scene.ends[i] = arm.ends[i].pixel;
   return scene;
 }
 
-std::vector<CurvePoint> independent_points(const std::vector<AxisSample>& axis,
-                                           const ArmPictureConfig& config) {
+std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis, const ArmPictureConfig& config) {
   std::vector<CurvePoint> points;
   double way = 0, next = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
@@ -75,6 +72,7 @@ ArmFigure ArmPicture::look(const Picture& picture) {
   }
   const Image<std::uint8_t> bytes = eight_bits(picture, config_.white);
   look.axis = arm.axis;
+  // Along the axis as it is seen: which lens would correct it is known only when the figure is recognised.
   look.markers = find_markers(bytes, arm).markers;
   look.scene = scene_of(arm, look.markers);
   look.size = {bytes.width(), bytes.height()};
@@ -99,7 +97,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   std::vector<AxisSample> axis = look.axis;
   to_backbone_image(lens, axis);
   if (match.is_reversed) std::ranges::reverse(axis);
-  seen.points = independent_points(axis, config);
+  seen.points = spaced_points(axis, config);
   return seen;
 }
 

@@ -47,16 +47,17 @@ bool is_noise(const Image<std::uint8_t>& gray) {
   const auto count = static_cast<double>(values.size());
   const double variance = squares / count - sum * sum / (count * count);
   const auto width = static_cast<std::size_t>(gray.width());
-  const auto share_unlike = [&](std::size_t apart) {
-    std::size_t unlike = 0;
+  const auto mean_step = [&](std::size_t apart) {
+    double steps = 0;
     for (std::size_t i = apart; i < values.size(); ++i) {
       const double step = double{1} * values[i] - values[i - apart];
-      unlike += 2 * step * step > variance ? 1 : 0;
+      steps += step * step;
     }
-    return static_cast<double>(unlike) / count;
+    return steps / count;
   };
-  constexpr double most = 0.5;  // Of noise it is some 0.6; of squares three pixels wide a third.
-  return share_unlike(1) > most && share_unlike(width) > most;
+  // In variances it is 2 of noise of any distribution, 4/3 of squares three pixels wide.
+  const double most = 1.6 * variance;
+  return mean_step(1) > most && mean_step(width) > most;
 }
 
 bool find_corners(const cv::Mat& picture, const BoardTarget& board, Corners& corners) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,16 +39,20 @@ BoardSighting look(const BoardTarget& board, const Pose& X_CB) {
 
 // OpenCV would look for squares among the grains.
 TEST(BoardFinder, DoesNotSearchNoise) {
-  Image<std::uint8_t> noise(width, height);
-  std::uint32_t state = 1;
-  for (std::uint8_t& value : noise.values()) {
-    state = 1664525U * state + 1013904223U;
-    value = static_cast<std::uint8_t>(state >> 30U);  // Of a dark picture: 0 to 3.
-  }
   BoardTarget board{.columns = 7, .rows = 4};
-  for (const BoardPattern pattern : {BoardPattern::chessboard, BoardPattern::circles}) {
-    board.pattern = pattern;
-    EXPECT_EQ(find_board(noise, board).reason, "the picture is nothing but noise");
+  // Of a covered lens, cut off at 0, and of brighter pictures.
+  for (const auto& [level, deviation] :
+       {std::array{0.0, 0.5}, {0.0, 0.7}, {0.0, 1.0}, {2.0, 0.4}, {16.0, 0.5}, {100.0, 30.0}}) {
+    TestRandom random(1);
+    Image<std::uint8_t> noise(width, height);
+    for (std::uint8_t& value : noise.values())
+      value = static_cast<std::uint8_t>(
+          std::clamp(std::round(level + deviation * normal_number(random)), 0.0, 255.0));
+    for (const BoardPattern pattern : {BoardPattern::chessboard, BoardPattern::circles}) {
+      board.pattern = pattern;
+      EXPECT_EQ(find_board(noise, board).reason, "the picture is nothing but noise")
+          << level << " " << deviation;
+    }
   }
 }
 

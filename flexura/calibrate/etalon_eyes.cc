@@ -85,7 +85,7 @@ EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const Ri
 
 bool EtalonEyes::look(std::size_t i, const Picture& picture) {
   const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
-  last_ = view_etalon(eight_bits(picture, white_of(camera.sensor.bits)),
+  last_ = view_etalon(eight_bits(picture, camera.sensor.white()),
                       Camera(camera).lens().at(Camera(camera).initial_head().zoom), config_.etalon->radius);
   return last_.reason.empty();
 }

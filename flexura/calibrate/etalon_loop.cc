@@ -114,7 +114,7 @@ Intrinsics EtalonLoop::lens(std::size_t i) const {
 
 LoopTrouble EtalonLoop::look(std::size_t i) {
   return loop_.look(i, [this, i](RigSight& sight) {
-    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]), lens(i),
+    views_[i] = view_etalon(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white()), lens(i),
                             loop_.config().etalon.radius);
     tell(views_[i], loop_, sight);
   });
@@ -311,9 +311,8 @@ LoopTrouble EtalonLoop::square() {
       return fmt::format("camera {} after its last move: {}", loop_.name(i), views_[i].reason);
   }
   // Which way around they stand: the angle between the axes is less or more.
-  const Eigen::Vector3d
-      a = loop_.camera(0).pose({loop_.stance(0).head, loop_.stance(0).stage}).rotation.col(2),
-      b = loop_.camera(1).pose({loop_.stance(1).head, loop_.stance(1).stage}).rotation.col(2);
+  const Eigen::Vector3d a = loop_.camera(0).pose(loop_.stance(0).stance()).rotation.col(2),
+                        b = loop_.camera(1).pose(loop_.stance(1).stance()).rotation.col(2);
   const double hand = a.cross(b).y() < 0 ? 1 : -1;
   loop_.result().angle = hand * (across(0) - across(1));
   loop_.result().zoom_ratio = views_[0].magnification / views_[1].magnification;

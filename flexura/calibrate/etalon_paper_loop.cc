@@ -53,7 +53,7 @@ void tell_counts(const EtalonCounts& counts, const LookLoop& loop, RigSight& sig
 
 PaperTrouble EtalonPaperLoop::look(std::size_t i) {
   auto trouble = loop_.look(i, [this, i](RigSight& sight) {
-    counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.config().white[i]));
+    counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white()));
     tell_counts(counts_[i], loop_, sight);
   });
   if (trouble) return trouble;

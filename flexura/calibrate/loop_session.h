@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/image.h"
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/rig_session.h"
@@ -32,17 +33,17 @@ struct LoopConfig {
   std::size_t images = 60;                      ///< Pictures a camera, at most.
   double accepted = 0.05;                       ///< Of every offset in the picture, px.
   double zoom_accepted = 0.001;                 ///< Share by which the two may show the target unlike.
-  double turn = 0.0035;                         ///< As printed: each turn of a head, rad,
+  double turn = 0.2 * degree;                   ///< As printed: each turn of a head, rad,
   double slide = 0.005;                         ///< and each way of a stage, m,
   double zoom_step = 0.02;                      ///< and the share by which a zoom changes.
   EtalonConfig etalon;                          ///< Where it stands, and how large it is.
-  double arc = 2.0943951023931953;              ///< By which the arm is bent into an arc, rad: 120 degrees.
-  ArmPictureConfig picture;                     ///< With the arm's markers.
+  /// By which the arm is bent into an arc, rad. Beyond a quarter of a circle an arm seen from within its
+  /// plane lies before itself.
+  double arc = 90 * degree;
+  ArmPictureConfig picture;       ///< With the arm's markers.
   std::optional<RigPrior> prior;  ///< How wrong the rig may be (`arcs`); none: as rough_prior() says.
   /// The simulator's picture of the arm in a state, gray: the ideal image.
   std::function<Image<std::uint8_t>(const View&, const ArmState&)> draw;
-  /// The largest value of each one's pictures.
-  std::array<int, 2> white = {255, 255};
   double move_duration = 2;  ///< Of the arm to a shape or back, s.
   RigPatience patience;
 };

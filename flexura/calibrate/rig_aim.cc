@@ -72,7 +72,7 @@ class Seeker {
  private:
   void aim(std::size_t i) { stances_[i].head = aimed(*models_[i], stances_[i], wish_.target); }
   [[nodiscard]] Eigen::Vector3d sight(std::size_t i) const {
-    return wish_.target - cameras_[i].pose({stances_[i].head, stances_[i].stage}).position;
+    return wish_.target - cameras_[i].pose(stances_[i].stance()).position;
   }
   [[nodiscard]] double depth(std::size_t i) const { return sight(i).norm(); }
 
@@ -254,7 +254,7 @@ HeadState aimed(const CameraConfig& model, const RigStance& stance, const Eigen:
 Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
                               const Eigen::Vector3d& p_WC) {
   const Camera camera(model);
-  const Eigen::Vector3d now = camera.pose({stance.head, stance.stage}).position;
+  const Eigen::Vector3d now = camera.pose(stance.stance()).position;
   return stance.stage.offset + camera.mount().rotation.transpose() * (p_WC - now);
 }
 
@@ -271,7 +271,7 @@ RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& st
   std::array<double, 2> sizes = {1, 1};
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
     const Camera camera(model.cameras.at(stances[i].camera));
-    const Pose X_WC = camera.pose({stances[i].head, stances[i].stage});
+    const Pose X_WC = camera.pose(stances[i].stance());
     const Eigen::Vector3d p_CT = X_WC.inverse() * target;
     axes[i] = X_WC.rotation.col(2);
     left.aim[i] = -p_CT.head<2>();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera.h"
+#include "flexura/port/rig_model.h"
 
 namespace flexura {
 

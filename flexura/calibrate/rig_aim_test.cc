@@ -69,9 +69,9 @@ std::vector<double> distances_by_stage(const Eigen::Vector3d& turn, const Eigen:
   const Eigen::Vector3d wanted = Camera(truth).pose({stance.head, {}}).position;
   std::vector<double> distances;
   for (int i = 0; i <= moves; ++i) {
-    const Eigen::Vector3d now = Camera(truth).pose({stance.head, stance.stage}).position;
+    const Eigen::Vector3d now = Camera(truth).pose(stance.stance()).position;
     distances.push_back((now - wanted).norm());
-    const Eigen::Vector3d off = now - Camera(believed).pose({stance.head, stance.stage}).position;
+    const Eigen::Vector3d off = now - Camera(believed).pose(stance.stance()).position;
     for (std::size_t k = 0; k < 3; ++k) believed.mount.position[k] += off[static_cast<Eigen::Index>(k)];
     stance.stage.offset = stage_towards(believed, stance, wanted);
   }

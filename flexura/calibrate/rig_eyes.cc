@@ -4,7 +4,6 @@
 
 #include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/calibrate/rig_sights.h"
-#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -19,7 +18,7 @@ class ArmEyes : public RigEyes {
         sights_(believed.arm, config.picture, config.cameras) {
     for (const std::size_t camera : config.cameras) {
       ArmPictureConfig picture = config.picture;
-      picture.white = white_of(believed.cameras.at(camera).sensor.bits);
+      picture.white = believed.cameras.at(camera).sensor.white();
       pictures_.emplace_back(std::move(picture));
     }
   }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "flexura/calibrate/rig_readings.h"
 #include "flexura/camera/sensor.h"
+#include "flexura/port/rig_readings.h"
 
 namespace flexura {
 namespace {

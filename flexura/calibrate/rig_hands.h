@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {

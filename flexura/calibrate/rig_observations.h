@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "flexura/calibrate/etalon_figure.h"
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
+#include "flexura/port/rig_model.h"
 
 namespace flexura {
 

@@ -70,7 +70,7 @@ OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x
   RigStance where = stance.observed ? variables.stance(x, *stance.observed) : stance.where;
   const CameraConfig model = variables.model(x).cameras.at(where.camera);
   const Camera camera(model);
-  const Pose X_WC = camera.pose({where.head, where.stage});
+  const Pose X_WC = camera.pose(where.stance());
   const Intrinsics lens = camera.lens().at(where.head.zoom);
   OpticalAxis axis{
       X_WC.rotation, X_WC.position, X_WC.rotation.col(2), {}, {}, std::sqrt(lens.fx * lens.fy), {}};

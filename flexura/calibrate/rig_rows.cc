@@ -46,7 +46,7 @@ RigProjector::RigProjector(const RigVariables& variables, const Eigen::VectorXd&
 
 View RigProjector::view(std::size_t stance) const {
   const RigStance& where = stances_[stance];
-  return cameras_[where.camera].view({where.head, where.stage});
+  return cameras_[where.camera].view(where.stance());
 }
 
 bool RigProjector::is_in_range(std::size_t stance) const {
@@ -59,8 +59,7 @@ std::optional<RigProjector::Shown> RigProjector::show(std::size_t pose, std::siz
                                                       const MaterialPoint& point) {
   const RigStance& where = stances_[stance];
   const BackboneJacobian& backbone = jacobians_[pose];
-  const auto projection =
-      cameras_[where.camera].project(backbone.pose(point).position, {where.head, where.stage});
+  const auto projection = cameras_[where.camera].project(backbone.pose(point).position, where.stance());
   if (!projection) return std::nullopt;
   backbone.at(point, jacobian_);
   const auto sections = static_cast<Eigen::Index>(shapes_[pose].arm.sections.size());
@@ -204,7 +203,7 @@ bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
   for (const EtalonPoint& seen : image.etalon) {
     const auto point = etalon_->nearest(seen, view);
     if (!point) return false;
-    const auto projection = cameras_[where.camera].project(*point, {where.head, where.stage});
+    const auto projection = cameras_[where.camera].project(*point, where.stance());
     if (!projection) return false;
     shown.pixel = projection->pixel;
     add_camera_slots(*projection, image.stance, shown);

@@ -95,7 +95,7 @@ class Session {
     ++result_.looks;
     const auto arm = hands_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    if (eyes_->poses().empty() || !is_same(eyes_->poses().back(), std::get<ArmState>(arm)))
+    if (eyes_->poses().empty() || eyes_->poses().back() != std::get<ArmState>(arm))
       eyes_->poses().push_back(std::get<ArmState>(arm));
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;

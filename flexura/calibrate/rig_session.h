@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/degree.h"
 #include "flexura/base/image.h"
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/rig_aim.h"
@@ -23,7 +24,7 @@ namespace flexura {
 
 /// How well a rig's numbers shall be known (or are): standard deviations.
 struct RigSigmas {
-  double angle = 0.00035;                        ///< Between the axes, rad: 0.02 degrees.
+  double angle = 0.02 * degree;                  ///< Between the axes, rad.
   std::array<double, 2> focal = {0.003, 0.003};  ///< Of each camera, shares.
   double zoom_ratio = 0.003;                     ///< Share.
 };

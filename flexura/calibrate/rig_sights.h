@@ -6,8 +6,8 @@
 
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/marker_vote.h"
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/calibrate/rig_observations.h"
+#include "flexura/port/rig_model.h"
 
 namespace flexura {
 

@@ -6,10 +6,6 @@
 
 namespace flexura {
 
-bool is_same(const ArmState& a, const ArmState& b) {
-  return a.bends == b.bends && a.stretches == b.stretches;
-}
-
 RigTrip::Trouble RigTrip::begin() {
   if (auto trouble = hands_.settle()) return trouble;
   const auto arm = hands_.arm();
@@ -25,10 +21,10 @@ RigTrip::Trouble RigTrip::begin() {
 }
 
 RigTrip::Trouble RigTrip::show(const ArmState& pose) {
-  if (is_same(pose, shown_)) return std::nullopt;
-  if (!is_same(home_, shown_))
+  if (pose == shown_) return std::nullopt;
+  if (home_ != shown_)
     if (auto trouble = bend(home_)) return trouble;
-  return is_same(home_, pose) ? std::nullopt : bend(pose);
+  return home_ == pose ? std::nullopt : bend(pose);
 }
 
 RigTrip::Trouble RigTrip::bend(const ArmState& state) {

@@ -43,7 +43,4 @@ class RigTrip {
   bool has_begun_ = false;
 };
 
-/// Whether the two are the same to the last bit.
-[[nodiscard]] bool is_same(const ArmState& a, const ArmState& b);
-
 }  // namespace flexura

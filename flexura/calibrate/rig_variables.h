@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/calibrate/rig_observations.h"
+#include "flexura/calibrate/rig_prior.h"
+#include "flexura/port/rig_model.h"
 
 namespace flexura {
 

@@ -129,4 +129,25 @@ std::vector<CameraConfig> default_cameras(double reach, const std::array<double,
   return cameras_at({distance, distance}, center);
 }
 
+LensConfig spelled_out(const CameraConfig& camera) {
+  const ZoomTable table(camera.lens, camera.sensor.width, camera.sensor.height);
+  LensConfig lens = camera.lens;
+  lens.fy = lens.fy.value_or(lens.fx);
+  lens.cx = lens.cx.value_or(0.5 * static_cast<double>(camera.sensor.width - 1));
+  lens.cy = lens.cy.value_or(0.5 * static_cast<double>(camera.sensor.height - 1));
+  for (ZoomRow& row : lens.zoom) {
+    const Intrinsics there = table.at(row.count.value_or(row.ratio));
+    row.fx = there.fx, row.fy = there.fy, row.cx = there.cx, row.cy = there.cy;
+    row.distortion = there.distortion;
+  }
+  return lens;
+}
+
+CameraConfig with_principal_point_moved(CameraConfig camera, const Eigen::Vector2d& by) {
+  camera.lens = spelled_out(camera);
+  *camera.lens.cx += by.x(), *camera.lens.cy += by.y();
+  for (ZoomRow& row : camera.lens.zoom) *row.cx += by.x(), *row.cy += by.y();
+  return camera;
+}
+
 }  // namespace flexura

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
@@ -32,6 +33,13 @@ struct CameraConfig {
 
 const Table<CameraStartConfig>& fields_of(const CameraStartConfig*);
 const Table<CameraConfig>& fields_of(const CameraConfig*);
+
+/// The camera's lens with all its numbers, also such as follow from others where the file leaves them out.
+/// std::invalid_argument: as ZoomTable says.
+[[nodiscard]] LensConfig spelled_out(const CameraConfig& camera);
+
+/// The camera with its principal point moved by so much, px, the same at all zooms.
+[[nodiscard]] CameraConfig with_principal_point_moved(CameraConfig camera, const Eigen::Vector2d& by);
 
 /// Reports to `reader` cameras of the same name among those at `path`.
 void check_cameras(const std::vector<CameraConfig>& cameras, const std::string& path, Reader& reader);

@@ -76,7 +76,8 @@ bool Codec<RotationConfig>::read(const Node& node, const Spec& spec, Reader& rea
   const auto* entries = node.as<Node::Array>();
   if (entries != nullptr && entries->size() == 4)
     return Codec<Quaternion>::read(node, spec, reader, value.value.emplace<Quaternion>());
-  if (entries != nullptr && entries->size() == 3)
+  const auto is_row = [](const Node& entry) { return entry.as<Node::Array>() != nullptr; };
+  if (entries != nullptr && entries->size() == 3 && std::ranges::any_of(*entries, is_row))
     return Codec<Rows>::read(node, spec, reader, value.value.emplace<Rows>());
   reader.unexpected(node, "three rows of three numbers, or a quaternion [w, x, y, z]");
   return false;
@@ -130,6 +131,11 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
               "rotation", &C::rotation,
               {.meaning = "Of the camera's frame (x right, y down, z forward) in the world: three rows of a "
                           "matrix, or [w, x, y, z]."})
+          .field(
+              "gamma", &C::gamma,
+              {.meaning = "Its pictures' values are light to the power 1/gamma: 1 of cameras for measuring, "
+                          "2.2 of most others'.",
+               .range = between(0.1, 10)})
           .field("doubt", &C::doubt, {.meaning = "How wrong all that may be.", .default_text = "not at all"})
           .check(check_measured_camera);
   return table;

@@ -49,6 +49,7 @@ struct MeasuredCamera {
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
   std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
+  double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
   CameraDoubtConfig doubt;
 
   /// std::invalid_argument: as Lens says.

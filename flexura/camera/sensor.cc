@@ -122,6 +122,20 @@ double last_row_delay(const SensorConfig& sensor) {
   return std::max(row_delay(sensor, last), row_delay(sensor, std::max(last - 1, 0)));
 }
 
+FrameTimes times_of_frame_at(const SensorConfig& sensor, double start) {
+  const double last_row = last_row_delay(sensor);  // after the first one
+  FrameTimes times;
+  times.start = start;
+  times.middle = start + 0.5 * (last_row + sensor.exposure);
+  times.end = start + last_row + sensor.exposure;
+  times.received = times.end + sensor.delay;
+  return times;
+}
+
+FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
+  return times_of_frame_at(sensor, static_cast<double>(frame) / sensor.frame_rate);
+}
+
 bool is_within(double time, const std::vector<std::array<double, 2>>& spans) {
   return std::ranges::any_of(spans, [&](const auto& span) { return time >= span[0] && time < span[1]; });
 }

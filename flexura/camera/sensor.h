@@ -41,6 +41,8 @@ struct SensorConfig {
 
   /// Values a pixel: 1 or 3.
   [[nodiscard]] int channels() const { return pixels == PixelKind::color ? 3 : 1; }
+  /// The largest value of a pixel: 2^bits - 1.
+  [[nodiscard]] constexpr int white() const { return (1 << bits) - 1; }
 };
 
 /// How long after the frame's own beginning row v begins to gather light, s: v row times with a rolling
@@ -48,6 +50,17 @@ struct SensorConfig {
 [[nodiscard]] double row_delay(const SensorConfig& sensor, int v);
 /// The same of the row that begins last.
 [[nodiscard]] double last_row_delay(const SensorConfig& sensor);
+
+/// When a frame of a sensor is exposed and can be had.
+struct FrameTimes {
+  double start = 0;     ///< Of the first row's exposure, s.
+  double middle = 0;    ///< Of the exposure of the middle of the image, s.
+  double end = 0;       ///< Of the last row's exposure, s.
+  double received = 0;  ///< end + delay, s.
+};
+/// Of a frame that starts at `start`, s; of frame n, which starts at n / frame_rate.
+[[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);
+[[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
 
 /// Whether a time, s, is in one of the spans [from, to).
 [[nodiscard]] bool is_within(double time, const std::vector<std::array<double, 2>>& spans);

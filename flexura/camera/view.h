@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 
 #include "flexura/camera/intrinsics.h"
@@ -20,6 +21,19 @@ struct View {
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_WP) const {
     return lens.project(X_WC.inverse() * p_WP);
   }
+  /// The way `pixels` px from one pixel to another as a parallel projection shows it: in W, at depth 1,
+  /// without the part along the view.
+  [[nodiscard]] Eigen::Vector3d parallel_way(const Eigen::Vector2d& pixels) const {
+    const Intrinsics& by = lens.intrinsics();
+    return X_WC.rotation * Eigen::Vector3d(pixels.x() / by.fx, pixels.y() / by.fy, 0);
+  }
 };
+
+/// Whether two cameras stand for the planes XOY and ZOY: `front` looks along Z and `side` along X, each
+/// within 45 degrees or so.
+[[nodiscard]] inline bool stand_for_planes(const Pose& front, const Pose& side) {
+  constexpr double roughly = 0.7;
+  return std::abs(front.rotation(2, 2)) > roughly && std::abs(side.rotation(0, 2)) > roughly;
+}
 
 }  // namespace flexura

@@ -8,8 +8,6 @@
 namespace flexura {
 namespace {
 
-constexpr Eigen::Index moments_count = 6;
-
 // Each place once, but for the polygon's corners, which stand in a row at the end.
 std::vector<double> places_of(const FeatureSet& set) {
   std::vector<double> shares;
@@ -51,8 +49,8 @@ bool FeatureImages::write_values(Eigen::Ref<Eigen::VectorXd> values) {
   } catch (const std::domain_error&) {
     return false;
   }
-  values.tail<moments_count>() = moments_.values;
-  values.tail<moments_count - 3>() /= set_.moment_weight;
+  values.tail<moment_count>() = moments_.values;
+  values.tail<moment_count - 3>() /= set_.moment_weight;
   return true;
 }
 
@@ -71,7 +69,7 @@ void FeatureImages::write_rows(const Eigen::MatrixXd& by, Rows rows) const {
     ++row;
   }
   if (!set_.has_moments) return;
-  for (Eigen::Index i = 0; i < moments_count; ++i, ++row)
+  for (Eigen::Index i = 0; i < moment_count; ++i, ++row)
     rows.row(row).noalias() = (i < 3 ? 1 : 1 / set_.moment_weight) *
                               (moments_.by_pixels.row(i) * by.bottomRows(2 * set_.moment_points));
 }

@@ -12,6 +12,7 @@
 #include "flexura/control/limiter_ways.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
+#include "flexura/kinematics/plus_way.h"
 #include "flexura/kinematics/tendons.h"
 #include "flexura/safety/motion_check.h"
 
@@ -117,7 +118,7 @@ void CommandLimiter::reset() {
 
 LimitedCommand CommandLimiter::send(Plan plan, std::string reason, bool is_untouched) {
   LimitedCommand command;
-  command.is_at_rest = plan.way.size() == 1 && are_equal(plan.way.front(), sent_);
+  command.is_at_rest = plan.way.size() == 1 && plan.way.front() == sent_;
   if (config_.drive) last_step_ = motor_step(sent_, last_step_.motors, plan.way.front());
   sent_ = plan.way.front();
   way_to_rest_.assign(plan.way.begin() + 1, plan.way.end());

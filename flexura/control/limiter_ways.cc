@@ -12,12 +12,6 @@ bool fits(const Arm& arm, const ArmState& state) {
   return state.bends.size() == arm.sections.size() && state.stretches.size() == arm.sections.size();
 }
 
-bool are_equal(const ArmState& a, const ArmState& b) {
-  return a.bends == b.bends && a.stretches == b.stretches;
-}
-
-ArmState between(const ArmState& a, const ArmState& b, double share) { return plus_way(a, a, b, share); }
-
 std::vector<ArmState> way_of(const ArmState& now, const ArmState& next, int count) {
   std::vector<ArmState> way{next};
   for (int k = 1; k < count; ++k) {

@@ -11,12 +11,6 @@ namespace flexura {
 /// Whether the state has one bend and one stretch a section of the arm.
 [[nodiscard]] bool fits(const Arm& arm, const ArmState& state);
 
-/// Bit for bit, but for the zeros' signs.
-[[nodiscard]] bool are_equal(const ArmState& a, const ArmState& b);
-
-/// a + share (b - a), section by section.
-[[nodiscard]] ArmState between(const ArmState& a, const ArmState& b, double share);
-
 /// `next`, and on from it at rates that fall evenly from (next - now) a step to rest: count >= 1 states.
 [[nodiscard]] std::vector<ArmState> way_of(const ArmState& now, const ArmState& next, int count);
 

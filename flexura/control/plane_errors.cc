@@ -3,22 +3,19 @@
 #include <cmath>
 #include <numbers>
 
+#include "flexura/math/direction.h"
+
 namespace flexura {
 namespace {
 
-// The cosine of theta below which the reading is singular: of 80 degrees.
-constexpr double least_cosine = 0.17364817766693033;
-
-double elevation_of(const PlaneView& view) {
-  return std::atan(std::tan(view.alpha_2) * std::cos(view.alpha_1));
-}
+double elevation_of(const PlaneView& view) { return elevation_of_planes(view.alpha_1, view.alpha_2); }
 
 PlaneError measured_angles(const PlaneView& measured) {
   PlaneError error;
   error.theta = measured.alpha_1;
   error.q = elevation_of(measured);
   error.gain = -std::sin(error.q) * std::cos(error.q) * std::tan(error.theta);
-  error.is_singular = std::abs(std::cos(error.theta)) < least_cosine;
+  error.is_singular = is_singular_for_planes(error.theta);
   return error;
 }
 
@@ -34,7 +31,8 @@ PlaneView plane_view(double theta, double q) {
 
 bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired) {
   const auto is_told = [](const Eigen::Vector2d& angles) {
-    return std::abs(std::cos(angles[0])) >= least_cosine && std::cos(angles[1]) >= least_cosine;
+    return !is_singular_for_planes(angles[0]) && !is_singular_for_planes(angles[1]) &&
+           std::cos(angles[1]) > 0;
   };
   return is_told(measured) && is_told(desired) && std::cos(measured[0]) * std::cos(desired[0]) > 0 &&
          std::abs(measured[0] - desired[0]) < std::numbers::pi;
@@ -54,7 +52,7 @@ PlaneError exact_plane_error(const PlaneView& measured, const PlaneView& desired
   PlaneError error = measured_angles(measured);
   error.e_theta = measured.alpha_1 - desired.alpha_1;
   error.e_q = error.q - elevation_of(desired);
-  error.is_singular = error.is_singular || std::abs(std::cos(desired.alpha_1)) < least_cosine;
+  error.is_singular = error.is_singular || is_singular_for_planes(desired.alpha_1);
   add_spatial(error);
   return error;
 }

@@ -27,7 +27,8 @@ struct PlaneError {
 
 /// Whether the planes tell the way from one direction to another, each of the angles theta and q, rad: both
 /// at least 10 degrees from a quarter turn of either angle, and no quarter turn of theta between them. Where
-/// they do not, both pictures have to be triangulated.
+/// they do not, both pictures have to be triangulated. Azimuths are continuous along their way: the same
+/// direction a whole turn on is another one.
 [[nodiscard]] bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
 /// With the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 - alpha_2d taken over to the angles by

@@ -9,11 +9,6 @@
 #include "flexura/control/interaction.h"
 
 namespace flexura {
-namespace {
-
-constexpr Eigen::Index moment_count = 6;
-
-}  // namespace
 
 FeatureSet FeatureSet::of_points(int count) {
   FeatureSet set;

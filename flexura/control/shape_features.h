@@ -11,6 +11,9 @@
 
 namespace flexura {
 
+/// How many moments a curve's image has in curve_moments().
+inline constexpr Eigen::Index moment_count = 6;
+
 /// Which features of an arm's image make up the vector that is steered, in each camera. Shares are of the
 /// unstretched arm's length, from its base.
 struct FeatureSet {
@@ -18,7 +21,7 @@ struct FeatureSet {
   std::vector<std::array<double, 2>> chords =
       {};                      ///< Pairs of shares: the angle of the image of their chord.
   double angle_weight = 100;   ///< px for a radian.
-  bool has_moments = false;    ///< The six moments of the curve's image (curve_moments).
+  bool has_moments = false;    ///< The moments of the curve's image (curve_moments).
   int moment_points = 33;      ///< Corners of the polygon that they are taken of.
   double moment_weight = 100;  ///< Second moments count as px^2 over so many px.
 

@@ -10,16 +10,11 @@
 namespace flexura {
 namespace {
 
-// The azimuth's sine and cosine above which the planes' reading is singular: 80 degrees.
-constexpr double singular_cosine = 0.17364817766693033;
-
 // The direction in which a curve's image goes on at point i, in W, as a parallel projection shows it.
 Eigen::Vector3d image_direction(const Sighting& seen, std::size_t i) {
   constexpr std::size_t reach = 3;
   const std::size_t first = i - std::min(i, reach), last = std::min(i + reach, seen.points.size() - 1);
-  const Eigen::Vector2d way = seen.points[last].pixel - seen.points[first].pixel;
-  const Intrinsics& lens = seen.view.lens.intrinsics();
-  return seen.view.X_WC.rotation * Eigen::Vector3d(way.x() / lens.fx, way.y() / lens.fy, 0);
+  return seen.view.parallel_way(seen.points[last].pixel - seen.points[first].pixel);
 }
 
 }  // namespace
@@ -35,17 +30,13 @@ std::vector<DirectionAngles> direction_angles(const Backbone& backbone, std::siz
     const Eigen::Vector2d own = angles_of_direction(e);
     angles[i].azimuth = across > 1e-12 ? nearest_turn(own[0], before) : before;
     angles[i].elevation = own[1];
-    angles[i].is_singular = std::abs(std::cos(angles[i].azimuth)) < singular_cosine;
+    angles[i].is_singular = is_singular_for_planes(angles[i].azimuth);
   }
   return angles;
 }
 
 DirectionAngles angles_of_planes(double alpha_1, double alpha_2) {
-  DirectionAngles angles;
-  angles.azimuth = alpha_1;
-  angles.elevation = std::atan(std::tan(alpha_2) * std::cos(alpha_1));
-  angles.is_singular = std::abs(std::cos(alpha_1)) < singular_cosine;
-  return angles;
+  return {alpha_1, elevation_of_planes(alpha_1, alpha_2), is_singular_for_planes(alpha_1)};
 }
 
 std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting& side, std::size_t count) {

@@ -15,8 +15,6 @@ namespace {
 
 // No axis is known better, px: lenses are not.
 constexpr double least_sigma = 0.007;
-// Of the silhouette: what explains less may end at a fold.
-constexpr double whole = 0.95;
 // Of a silhouette, px: a tube's is nearly as far from the backbone's image as its radius is large there.
 constexpr double border_sigma = 0.5;
 // Of a band's middle, px: what skin and shading do to it.
@@ -108,7 +106,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
     if (tells[i])
       seen.points.push_back(
           {axis[i].pixel, std::max(axis[i].sigma, least_sigma), offset_at(arm, i, samples)});
-  if (arm.covered < whole) return seen;
+  if (!arm.is_whole()) return seen;
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
     if (arm.ends[end].kind == AxisEndKind::free)
       seen.ends[end] = SeenEnd{arm.ends[end].pixel, arm.ends[end].sigma};
@@ -121,7 +119,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::
   to_backbone_image(view.lens, corrected.axis);
   constexpr bool with_spots = false;  // Nothing is known of the backbone there.
   for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
-    if (!marker.is_band || marker.may_be_merged) continue;
+    if (!marker.tells_place()) continue;
     seen.bands.push_back({marker.pixel, heading_at(corrected.axis, marker.pixel),
                           std::hypot(marker.sigma, band_sigma), marker.color});
   }

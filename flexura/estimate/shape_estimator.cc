@@ -268,6 +268,13 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   return result;
 }
 
+ShapePrior described_arm(const Arm& arm) {
+  ShapePrior prior;
+  prior.arm = arm;
+  prior.is_length_known = std::ranges::none_of(arm.sections, &Section::can_stretch);
+  return prior;
+}
+
 ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double> length,
                        std::size_t sections) {
   ShapePrior prior;

@@ -86,6 +86,9 @@ class ShapeEstimator {
   ShapeDescent descent_;
 };
 
+/// What is known of an arm that a file describes: all but its length, if the limits let a section stretch.
+[[nodiscard]] ShapePrior described_arm(const Arm& arm);
+
 /// What is known of an arm of which nothing is: `sections` equal, short, smooth ones.
 [[nodiscard]] ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double> length,
                                      std::size_t sections = 30);

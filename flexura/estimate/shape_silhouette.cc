@@ -78,22 +78,22 @@ double astray(const Sighting& seen, const ViewError& error, const Shape& shape) 
   return sum / static_cast<double>(places.size());
 }
 
-// The image of a tube as wide as is asked for: between two places next to each other each, and some such
-// together. All of one lies within `reach` of its middle, px.
-struct Stretch {
+// The image of a tube as wide as is asked for: links between two places next to each other, and chains of
+// some such. All of one lies within `reach` of its middle, px.
+struct Link {
   Eigen::Vector2d from = {0, 0}, way = {0, 0}, middle = {0, 0};
   double square = 0;               // Of `way`.
   double half_width = 0, end = 0;  // Half its width where it begins, and ends.
   double reach = 0;
 };
-struct Stretches {
-  std::vector<Stretch> list;
+struct Chain {
+  std::vector<Link> list;
   Eigen::Vector2d middle = {0, 0};
   double reach = 0;
 };
-std::vector<Stretches> tube_of(const std::vector<SeenPlace>& places, double wider) {
+std::vector<Chain> tube_of(const std::vector<SeenPlace>& places, double wider) {
   constexpr std::size_t together = 8;
-  std::vector<Stretches> tube;
+  std::vector<Chain> tube;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const auto &a = places[i], &b = places[i + 1];
     if (!a.pixel || !b.pixel) continue;
@@ -103,17 +103,17 @@ std::vector<Stretches> tube_of(const std::vector<SeenPlace>& places, double wide
     tube.back().list.push_back({*a.pixel, way, *a.pixel + 0.5 * way, way.squaredNorm(), a.widest, b.widest,
                                 0.5 * way.norm() + width});
   }
-  for (Stretches& some : tube) {
+  for (Chain& some : tube) {
     some.middle = some.list[some.list.size() / 2].middle;
-    for (const Stretch& one : some.list)
+    for (const Link& one : some.list)
       some.reach = std::max(some.reach, (one.middle - some.middle).norm() + one.reach);
   }
   return tube;
 }
 
-// How far a pixel is from the image of a tube, px; 0 within it. `near` is which stretches to look at first,
+// How far a pixel is from the image of a tube, px; 0 within it. `near` is which chain to look at first,
 // and becomes those where that was. Most are farther than the nearest so far, whatever of them is nearest.
-double outside(const std::vector<Stretches>& tube, const Eigen::Vector2d& pixel, double wider,
+double outside(const std::vector<Chain>& tube, const Eigen::Vector2d& pixel, double wider,
                std::size_t& near) {
   double nearest = std::numeric_limits<double>::infinity();
   const auto is_beyond = [&](const auto& part) {
@@ -125,7 +125,7 @@ double outside(const std::vector<Stretches>& tube, const Eigen::Vector2d& pixel,
   for (std::size_t k = 0; k < tube.size() && nearest > 0; ++k) {
     const std::size_t i = start + k < tube.size() ? start + k : start + k - tube.size();
     if (is_beyond(tube[i])) continue;
-    for (const Stretch& one : tube[i].list) {
+    for (const Link& one : tube[i].list) {
       if (is_beyond(one)) continue;
       const Eigen::Vector2d off = pixel - one.from;
       const double t = one.square > 0 ? std::clamp(one.way.dot(off) / one.square, 0.0, 1.0) : 0.0,
@@ -144,7 +144,7 @@ double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, 
   };
   if (seen.figure.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
   constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
-  const std::vector<Stretches> tube = tube_of(seen_places(seen, error, shape), wider);
+  const std::vector<Chain> tube = tube_of(seen_places(seen, error, shape), wider);
   double sum = 0;
   std::size_t near = 0;
   for (const Eigen::Vector2d& pixel : seen.figure)

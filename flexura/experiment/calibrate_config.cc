@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "flexura/base/degree.h"
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/camera_names.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
-#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -51,6 +51,14 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
     state.stretches[i] = std::clamp(1.0, least, longest_stretch);
   }
   return state;
+}
+
+// As the file has them, from the base on.
+std::vector<KnownMarker> known_markers(const ArmConfig& arm) {
+  std::vector<KnownMarker> markers;
+  for (const Marker& marker : arm.look.markers(arm.arm()))
+    markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  return markers;
 }
 
 }  // namespace
@@ -211,16 +219,16 @@ bool is_before_etalon(const CalibrateTask& task) {
          task.method == CalibrateMethod::bundle_etalon;
 }
 
-// Beyond a quarter of a circle an arm seen from within its plane lies before itself.
 double arc_bend(const CalibrateTask& task) {
-  constexpr double corrected = 1.57079632679489661923, printed = 2.0943951023931953;
-  return task.loop.arc.value_or(is_as_printed(task) ? printed : corrected);
+  constexpr double printed = 120 * degree;
+  return task.loop.arc.value_or(is_as_printed(task) ? printed : LoopConfig{}.arc);
 }
 
 std::size_t most_images(const CalibrateTask& task) {
-  constexpr std::int64_t of_bundle = 12, of_corrected = 60, of_printed = 400;
-  const std::int64_t of_loop = is_as_printed(task) ? of_printed : of_corrected;
-  return static_cast<std::size_t>(task.images.value_or(is_loop(task) ? of_loop : of_bundle));
+  if (task.images) return static_cast<std::size_t>(*task.images);
+  constexpr std::size_t printed = 400;
+  if (!is_loop(task)) return RigSessionConfig{}.images;
+  return is_as_printed(task) ? printed : LoopConfig{}.images;
 }
 
 std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm) {
@@ -250,8 +258,7 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   RigSessionConfig config;
   config.cameras = calibrated_cameras(task, cameras);
   config.poses = calibration_poses(task, arm.arm());
-  for (const Marker& marker : arm.look.markers(arm.arm()))
-    config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  config.picture.markers = known_markers(arm);
   config.images = most_images(task);
   config.first = std::min<std::size_t>(3, config.images - 1);
   config.fewest = std::min<std::size_t>(5, config.picture.markers.size());
@@ -280,18 +287,16 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   config.method = methods.at(static_cast<std::size_t>(task.method));
   config.cameras = calibrated_cameras(task, cameras);
   config.images = most_images(task);
-  constexpr double printed = 3, printed_zoom = 0.01, of_etalon = 0.05, of_arcs = 0.5, corrected_zoom = 0.001;
+  constexpr double printed = 3, printed_zoom = 0.01, of_arcs = 0.5;
   const bool is_printed = is_as_printed(task);
-  const double corrected = is_before_etalon(task) ? of_etalon : of_arcs;
+  const double corrected = is_before_etalon(task) ? config.accepted : of_arcs;
   config.accepted = task.loop.accepted.value_or(is_printed ? printed : corrected);
-  config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : corrected_zoom);
+  config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : config.zoom_accepted);
   config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
   config.arc = arc_bend(task);
-  for (const Marker& marker : arm.look.markers(arm.arm()))
-    config.picture.markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  config.picture.markers = known_markers(arm);
   config.prior = session_prior(task, rig_model(arm.arm(), cameras), stand);
   config.etalon = stand.etalon.value_or(EtalonConfig{});
-  for (std::size_t i = 0; i < 2; ++i) config.white[i] = white_of(cameras.at(config.cameras[i]).sensor.bits);
   config.move_duration = task.move_duration;
   config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
   return config;

@@ -9,6 +9,8 @@
 
 #include "flexura/base/table.h"
 #include "flexura/calibrate/loop_session.h"
+#include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_prior.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/model/arm_config.h"
@@ -29,31 +31,31 @@ enum class CalibrateMethod {
 
 /// How well the rig shall be known: standard deviations.
 struct CalibrateWantedConfig {
-  double angle = 0.00034906585039886592;  ///< Between the axes, rad: 0.02 degrees.
-  double focal = 0.003;                   ///< Share.
-  double zoom_ratio = 0.003;              ///< Share.
+  double angle = RigSigmas{}.angle;            ///< Between the axes, rad.
+  double focal = RigSigmas{}.focal[0];         ///< Share.
+  double zoom_ratio = RigSigmas{}.zoom_ratio;  ///< Share.
   bool operator==(const CalibrateWantedConfig&) const = default;
 };
 
 /// How wrong the file's description of the cameras may be: standard deviations.
 struct CalibrateGuessConfig {
-  double rotation = 0.17453292519943295;  ///< Of a mount, rad: 10 degrees.
-  double distance = 0.2;                  ///< Of a mount's place, in each direction, of its distance.
-  double focal = 0.1;                     ///< Share.
-  double principal_point = 10;            ///< px
-  double zero = 0.035;                    ///< Of a head's axes, rad: 2 degrees.
-  bool exact_heads = false;               ///< Heads stand where they count, not within half a step of it.
+  double rotation = CameraPrior{}.rotation;  ///< Of a mount, rad.
+  double distance = 0.2;                     ///< Of a mount's place, in each direction, of its distance.
+  double focal = CameraPrior{}.focal;        ///< Share.
+  double principal_point = CameraPrior{}.principal_point;  ///< px
+  double zero = CameraPrior{}.tilt_zero;                   ///< Of a head's axes, rad.
+  bool exact_heads = false;  ///< Heads stand where they count, not within half a step of it.
   bool operator==(const CalibrateGuessConfig&) const = default;
 };
 
 /// How the paper's methods go about it (calibrate/loop_session.h).
 struct CalibrateLoopConfig {
-  std::optional<double> accepted;       ///< Of every offset in a picture, px.
-  std::optional<double> zoom_accepted;  ///< Of the zoom ratio, a share.
-  double turn = 0.0034906585039886592;  ///< As printed: every turn of a head, rad: 0.2 degrees,
-  double slide = 0.005;                 ///< every way of a stage, m,
-  double zoom_step = 0.02;              ///< and every change of a zoom, a share.
-  std::optional<double> arc;            ///< By which the arm is bent into an arc, rad.
+  std::optional<double> accepted;             ///< Of every offset in a picture, px.
+  std::optional<double> zoom_accepted;        ///< Of the zoom ratio, a share.
+  double turn = LoopConfig{}.turn;            ///< As printed: every turn of a head, rad,
+  double slide = LoopConfig{}.slide;          ///< every way of a stage, m,
+  double zoom_step = LoopConfig{}.zoom_step;  ///< and every change of a zoom, a share.
+  std::optional<double> arc;                  ///< By which the arm is bent into an arc, rad.
   bool operator==(const CalibrateLoopConfig&) const = default;
 };
 
@@ -67,13 +69,14 @@ struct CalibrateTask {
   CalibrateWantedConfig wanted;
   CalibrateGuessConfig guess;
   CalibrateLoopConfig loop;
-  std::optional<std::array<double, 3>> target;  ///< What the cameras shall look at, m.
-  bool stages = true;                           ///< They may be moved, as far as they travel.
-  std::vector<double> zooms = {1, 2.5};  ///< Focal lengths to look with, as factors on that at the start.
-  double move_duration = 2;              ///< s
-  double settle_timeout = 20;            ///< s
-  double frame_timeout = 3;              ///< s
-  std::string save;                      ///< A file beside the experiment for the rig as found; "": none.
+  std::optional<std::array<double, 3>> target;      ///< What the cameras shall look at, m.
+  bool stages = RigSessionConfig{}.may_use_stages;  ///< They may be moved, as far as they travel.
+  /// Focal lengths to look with, as factors on that at the start.
+  std::vector<double> zooms = RigSessionConfig{}.zooms;
+  double move_duration = RigSessionConfig{}.move_duration;  ///< s
+  double settle_timeout = RigPatience{}.settle;             ///< s
+  double frame_timeout = RigPatience{}.frame;               ///< s
+  std::string save;  ///< A file beside the experiment for the rig as found; "": none.
 };
 
 const std::vector<std::string>& names_of(const CalibrateMethod*);

@@ -87,13 +87,11 @@ Node decision_nodes(const LoopResult& result, const CalibrationRun& run) {
 Node arc_nodes(const CalibrationRun& run) {
   Node::Array list;
   for (const CommandedArc& arc : run.arcs) {
-    Node::Array bends, rotations, positions;
-    for (const Eigen::Vector2d& bend : arc.ideal.state.bends)
-      bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
+    Node::Array rotations, positions;
     for (const double rotation : arc.rotations) rotations.push_back(number_node(rotation));
     Node::Table entry{{"camera", {}, {run.believed.cameras[arc.ideal.camera].name, {}}},
                       {"plane", {}, {arc.ideal.plane, {}}},
-                      {"bends", {}, {std::move(bends), {}}},
+                      {"bends", {}, bends_node(arc.ideal.state)},
                       {"rotations", {}, {std::move(rotations), {}}}};
     if (arc.positions) {
       for (const std::int64_t position : *arc.positions) positions.push_back({position, {}});

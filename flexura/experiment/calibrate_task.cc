@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/commanded_motion.h"
 #include "flexura/experiment/ideal_picture.h"
-#include "flexura/experiment/servo_run.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {
@@ -183,23 +183,18 @@ CalibrationRun run_calibration(const Experiment& experiment, std::size_t task, c
   run.is_before_etalon = is_before_etalon(config);
   run.believed = rig_model(experiment.arm.arm(), cameras);
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
-  RigPorts ports = filming.ports();
-  CommandedMotion motion(ports.clock->now(), from);
-  RecordedClock clock(*ports.clock, record_steps, motion);
-  ports.clock = &clock;
-  LoggedSession log(run, session.images, witness, progress, motion);
+  RecordedPorts recorded(filming.ports(), from, record_steps);
+  LoggedSession log(run, session.images, witness, progress, recorded.motion());
   if (is_loop(config)) {
     LoopConfig loop = loop_config(config, experiment.arm, cameras, experiment.stand);
     loop.draw = ideal_pictures(experiment);
-    run.loop = calibrate_by_loop(ports, run.believed, loop, log);
+    run.loop = calibrate_by_loop(recorded.ports(), run.believed, loop, log);
   } else {
     const RigPrior prior = session_prior(config, run.believed, experiment.stand);
-    run.result = calibrate_rig_in_session(ports, run.believed, prior, session, log);
+    run.result = calibrate_rig_in_session(recorded.ports(), run.believed, prior, session, log);
   }
-  // Time passes in a camera that is waited for as well, unseen by the clock.
-  const double end = clock.now();
-  record_steps(end, [&motion](double at) { return motion.at(at); });
-  run.motion = motion.motion(end);
+  const double end = recorded.finish();
+  run.motion = recorded.motion().motion(end);
   log.ended(end);
   if (!run.is_done()) return run;
   const RigConfig truth = experiment.true_rig();

@@ -26,7 +26,7 @@ ArmState CommandedMotion::at(double time) const {
   if (after == times_.begin()) return states_.front();
   const auto i = static_cast<std::size_t>(after - times_.begin());
   const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
-  return plus_way(states_[i - 1], states_[i - 1], states_[i], share);
+  return between(states_[i - 1], states_[i], share);
 }
 
 MotionPtr CommandedMotion::motion(double time) const {
@@ -36,6 +36,27 @@ MotionPtr CommandedMotion::motion(double time) const {
   if (!(time > start_)) return hold_motion(states.back(), 0);
   times.push_back(time - start_), states.push_back(at(time));
   return keyframe_motion(std::move(times), states, Interpolation::linear);
+}
+
+RecordedPorts::RecordedPorts(const RigPorts& ports, ArmState from, const RecordSteps& record)
+    : clock_(*ports.clock), ports_(ports), motion_(clock_.now(), std::move(from)), record_(record) {
+  ports_.clock = this;
+}
+
+// Time passes in a camera that is waited for as well, unseen by the clock.
+double RecordedPorts::finish() {
+  const double end = now();
+  record_up_to(end);
+  return end;
+}
+
+void RecordedPorts::wait_until(double time) {
+  clock_.wait_until(time);
+  record_up_to(now());
+}
+
+void RecordedPorts::record_up_to(double time) {
+  record_(time, [this](double at) { return motion_.at(at); });
 }
 
 }  // namespace flexura

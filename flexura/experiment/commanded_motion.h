@@ -6,6 +6,7 @@
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
 #include "flexura/port/clock_port.h"
+#include "flexura/port/rig_ports.h"
 
 namespace flexura {
 
@@ -26,22 +27,26 @@ class CommandedMotion {
   std::vector<ArmState> states_;
 };
 
-/// The rig's clock; the run's steps are recorded as its time passes.
-class RecordedClock : public ClockPort {
+/// A rig's ports for a task that commands the arm: the run's steps are recorded as the clock's time passes.
+class RecordedPorts : private ClockPort {
  public:
-  /// All outlive it.
-  RecordedClock(ClockPort& clock, const RecordSteps& record, const CommandedMotion& motion)
-      : clock_(clock), record_(record), motion_(motion) {}
-  [[nodiscard]] double now() const override { return clock_.now(); }
-  void wait_until(double time) override {
-    clock_.wait_until(time);
-    record_(now(), [this](double at) { return motion_.at(at); });
-  }
+  /// `from`: where the arm was sent last. The devices and `record` outlive it.
+  RecordedPorts(const RigPorts& ports, ArmState from, const RecordSteps& record);
+
+  [[nodiscard]] const RigPorts& ports() const { return ports_; }
+  [[nodiscard]] CommandedMotion& motion() { return motion_; }
+  /// Records what is left up to now, the task's end, and returns when that is, s.
+  [[nodiscard]] double finish();
 
  private:
+  [[nodiscard]] double now() const override { return clock_.now(); }
+  void wait_until(double time) override;
+  void record_up_to(double time);
+
   ClockPort& clock_;
+  RigPorts ports_;
+  CommandedMotion motion_;
   const RecordSteps& record_;
-  const CommandedMotion& motion_;
 };
 
 }  // namespace flexura

@@ -35,21 +35,23 @@ Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
 }
 
 // No more samples than a picture shows, with the first and the last one.
-std::vector<const DynamicsSample*> shown_samples(const DynamicsRun& run) {
+std::vector<DynamicsSampleMessage> shown_samples(const DynamicsRun& run) {
   constexpr std::size_t most = 2000;
   const std::size_t every = run.samples.size() / most + 1;
-  std::vector<const DynamicsSample*> shown;
-  for (std::size_t i = 0; i + 1 < run.samples.size(); i += every) shown.push_back(&run.samples[i]);
-  shown.push_back(&run.samples.back());
+  std::vector<DynamicsSampleMessage> shown;
+  for (std::size_t i = 0; i + 1 < run.samples.size(); i += every)
+    shown.push_back(run.message(run.samples[i]));
+  shown.push_back(run.message(run.samples.back()));
   return shown;
 }
 
-using Value = std::function<double(const DynamicsSample&)>;
+using Shown = DynamicsSampleMessage;
+using Value = std::function<double(const Shown&)>;
 
 class SampleCharts {
  public:
   SampleCharts(const DynamicsRun& run, std::size_t number) : samples_(shown_samples(run)), number_(number) {
-    for (const DynamicsSample* sample : samples_) times_.push_back(sample->energies.time);
+    for (const Shown& sample : samples_) times_.push_back(sample.time - run.start);
   }
 
   [[nodiscard]] NamedDrawing draw(const std::string& name, const std::string& heading,
@@ -65,13 +67,13 @@ class SampleCharts {
     for (const auto& [line, value] : lines) {
       ChartSeries& series =
           chart.series.emplace_back(ChartSeries{line, fmt::format("s{}", chart.series.size()), {}});
-      for (const DynamicsSample* sample : samples_) series.values.push_back(value(*sample));
+      for (const Shown& sample : samples_) series.values.push_back(value(sample));
     }
     return {fmt::format("dynamics-{}-{}", number_ + 1, name), chart_picture(chart, times_, {})};
   }
 
  private:
-  std::vector<const DynamicsSample*> samples_;
+  std::vector<Shown> samples_;
   std::size_t number_;
   std::vector<double> times_;
 };
@@ -80,23 +82,24 @@ std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number
   const SampleCharts charts(run, number);
   constexpr double least_joule = 1e-9;
   const auto power = [=](double value) { return std::log10(std::max(value, least_joule)); };
-  const Value W = lyapunov_value, T = [](const DynamicsSample& at) { return at.energies.kinetic; },
-              pi = [](const DynamicsSample& at) { return at.energies.potential; };
+  const Value W = [](const Shown& at) { return at.lyapunov; };
+  const Value T = [](const Shown& at) { return at.kinetic_energy; };
+  const Value pi = [](const Shown& at) { return at.potential; };
   return {charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
                       {{"W", W}, {"T", T}, {"Pi", pi}}),
           charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
-                      {{"W", [=](const DynamicsSample& at) { return power(W(at)); }},
-                       {"T", [=](const DynamicsSample& at) { return power(T(at)); }},
-                       {"Pi", [=](const DynamicsSample& at) { return power(pi(at)); }}}),
+                      {{"W", [=](const Shown& at) { return power(W(at)); }},
+                       {"T", [=](const Shown& at) { return power(T(at)); }},
+                       {"Pi", [=](const Shown& at) { return power(pi(at)); }}}),
           charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
-                      {{"gravity", [](const DynamicsSample& at) { return at.energies.gravity; }},
-                       {"elastic", [&](const DynamicsSample& at) { return run.message(at).elastic_energy; }},
-                       {"law's-damping", [](const DynamicsSample& at) { return at.energies.taken; }},
-                       {"own-damping", [](const DynamicsSample& at) { return at.energies.damped; }}}),
+                      {{"gravity", [](const Shown& at) { return at.gravity_energy; }},
+                       {"elastic", [](const Shown& at) { return at.elastic_energy; }},
+                       {"law's-damping", [](const Shown& at) { return at.taken_by_law; }},
+                       {"own-damping", [](const Shown& at) { return at.taken_by_medium; }}}),
           charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
-                      {{"spatial", [&](const DynamicsSample& at) { return run.error(at).spatial / degree; }},
-                       {"theta", [&](const DynamicsSample& at) { return run.error(at).azimuth / degree; }},
-                       {"q", [&](const DynamicsSample& at) { return run.error(at).elevation / degree; }}})};
+                      {{"spatial", [](const Shown& at) { return at.spatial_error / degree; }},
+                       {"theta", [](const Shown& at) { return at.azimuth_error / degree; }},
+                       {"q", [](const Shown& at) { return at.elevation_error / degree; }}})};
 }
 
 const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }

@@ -64,12 +64,6 @@ void check_sizes(const ArmStateMessage& state, std::size_t sections, const Poses
     throw std::runtime_error(fmt::format("the log's state at {} s does not fit its arm", state.time));
 }
 
-// A level as Foxglove counts them.
-std::string_view level_name(std::int64_t level) {
-  if (level == 2) return "info";
-  return level == 3 ? "warning" : "error";
-}
-
 // The energies and errors of distributed arms; where they are along the arm is the log's to tell.
 void name_dynamics_columns(CsvText& csv) {
   for (const char* title : {"time", "kinetic_energy", "gravity_energy", "elastic_energy", "potential",

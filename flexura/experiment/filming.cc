@@ -122,6 +122,7 @@ Shot Filming::shot(std::size_t camera, double start) {
   shot.frame = std::llround(start * shot.sensor->frame_rate);
   shot.seed = seed_;
   shot.start = start;
+  shot.is_covered = is_within(times_of_frame_at(*shot.sensor, start).middle, shot.sensor->covered);
   shot.view = [&seen = rig_.camera(camera)](double time) { return seen.view(time); };
   shot.backbone = [this](double time) { return rig_.arm().backbone(time); };
   return shot;

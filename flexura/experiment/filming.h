@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/photographer.h"
-#include "flexura/experiment/run.h"
+#include "flexura/experiment/run_watcher.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/truth_files.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/sim/crew.h"
 #include "flexura/sim/simulated_rig.h"

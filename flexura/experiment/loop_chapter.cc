@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
-#include "flexura/experiment/servo_run.h"
 #include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 

@@ -126,6 +126,11 @@ const Table<ImageMessage>& fields_of(const ImageMessage*) {
   return table;
 }
 
+std::string level_name(std::int64_t level) {
+  if (level <= 2) return "info";
+  return level == 3 ? "warning" : "error";
+}
+
 std::string image_topic(std::string_view camera) { return "/camera/" + std::string(camera); }
 
 std::string ideal_image_topic(std::string_view camera) {
@@ -153,6 +158,13 @@ std::vector<std::array<double, 2>> bends_of(const ArmState& state) {
   bends.reserve(state.bends.size());
   for (const Eigen::Vector2d& bend : state.bends) bends.push_back({bend.x(), bend.y()});
   return bends;
+}
+
+Node bends_node(const ArmState& state) {
+  Node::Array bends;
+  for (const Eigen::Vector2d& bend : state.bends)
+    bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
+  return {std::move(bends), {}};
 }
 
 Node point_node(const Eigen::Vector3d& p) { return {Node::Array{{p.x(), {}}, {p.y(), {}}, {p.z(), {}}}, {}}; }

@@ -65,6 +65,10 @@ struct EventMessage {
   std::int64_t line = 0;
 };
 
+/// "info", "warning" or "error", for one of foxglove.Log's levels: other programs' debug messages count as
+/// information, their fatal ones as errors.
+[[nodiscard]] std::string level_name(std::int64_t level);
+
 /// flexura.DriveCommands, on /drive/commands: the motors' command at one step of the clock.
 struct DriveCommandsMessage {
   double time = 0;                      ///< s, by when the positions are to be reached.
@@ -313,6 +317,8 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*);
 
 /// Each section's bend, rad.
 [[nodiscard]] std::vector<std::array<double, 2>> bends_of(const ArmState& state);
+/// The same as [[bend_x, bend_y], ...].
+[[nodiscard]] Node bends_node(const ArmState& state);
 
 /// [x, y, z], m in the world.
 [[nodiscard]] Node point_node(const Eigen::Vector3d& p);

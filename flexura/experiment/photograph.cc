@@ -10,7 +10,7 @@
 namespace flexura {
 
 ImagePlot photograph(const Picture& picture, const SensorConfig& sensor, std::string heading) {
-  const Image<std::uint8_t> shown = eight_bits(picture, white_of(sensor.bits));
+  const Image<std::uint8_t> shown = eight_bits(picture, sensor.white());
   return {.heading = std::move(heading),
           .legend = "",
           .width = shown.width(),

@@ -53,7 +53,7 @@ void Photographer::gather(const Shot& shot) {
   // Nobody sees so little, and all rows and instants have one picture.
   constexpr double is_still = 1e-3;  // px
   SensorConfig sensor = *shot.sensor;
-  if (is_within(times_of_frame_at(sensor, shot.start).middle, sensor.covered)) {
+  if (shot.is_covered) {
     light_ = Image<float>(static_cast<int>(sensor.width), static_cast<int>(sensor.height), sensor.channels());
     return;
   }

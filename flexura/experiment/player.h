@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/experiment/calibrate_task.h"
 #include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/record_steps.h"
-#include "flexura/experiment/run.h"
+#include "flexura/experiment/run_watcher.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/servo_run.h"
 #include "flexura/experiment/witness.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/safety/violation.h"
 
 namespace flexura {

@@ -134,7 +134,11 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   const bool became_unsafe = is_safe && !player.safety().is_safe() && played.failure.empty();
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
   if (!played.failure.empty()) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
-  if (played.is_cancelled) result.outcome = RunOutcome::cancelled;
+  if (played.is_cancelled) {
+    result.outcome = RunOutcome::cancelled;
+    result.reasons.insert(result.reasons.begin(),
+                          fmt::format("it was told to stop at {:.6g} s", played.time));
+  }
   witness.event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
   witness.close();
   if (became_unsafe) std::filesystem::remove(folder / commands_file_name);

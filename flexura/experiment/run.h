@@ -1,18 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "flexura/base/node.h"
 #include "flexura/base/progress.h"
-#include "flexura/camera/head.h"
-#include "flexura/camera/mount.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/model/arm.h"
+#include "flexura/experiment/run_watcher.h"
 
 namespace flexura {
 
@@ -33,37 +28,6 @@ struct RunResult {
   std::vector<std::string> reasons;  ///< Why it is not done, a line each.
   std::filesystem::path folder;      ///< As it was given: all files are in it.
   Node summary;                      ///< As in summary.json.
-};
-
-/// Where a camera's head and stage say that they stand.
-struct CameraReading {
-  HeadState head;
-  StageState stage;
-};
-
-/// Sees a run as it plays, on the run's thread. What it does with that changes nothing of the run.
-class RunWatcher {
- public:
-  virtual ~RunWatcher() = default;
-  RunWatcher() = default;
-  RunWatcher(const RunWatcher&) = delete;
-  RunWatcher& operator=(const RunWatcher&) = delete;
-
-  /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
-  /// of none where the run plays no rig, whose cameras stand still.
-  virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
-  virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
-                        const std::string& /*text*/) {}
-  /// A command of a calibration, what it sees in a picture, and what it decides, as the log has them; the
-  /// last decision ends it.
-  virtual void calibration_moved(const CalibrationMoveMessage& /*move*/) {}
-  virtual void calibration_saw(const CalibrationSightingMessage& /*sighting*/) {}
-  virtual void calibration_decided(const CalibrationDecisionMessage& /*decision*/) {}
-  /// What a servo sends, and what it sees in a picture, as the log has them; and that it has ended.
-  virtual void servo_stepped(const ServoStepMessage& /*step*/) {}
-  virtual void servo_saw(const ServoSightingMessage& /*sighting*/) {}
-  virtual void servo_ended() {}
 };
 
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,

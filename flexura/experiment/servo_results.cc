@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/photograph.h"
 #include "flexura/model/backbone.h"
@@ -25,13 +26,6 @@ Node error_node(const ServoError& error) {
                       {"most", {}, number_node(error.most)},
                       {"tip", {}, number_node(error.tip)}},
           {}};
-}
-
-Node bends_node(const ArmState& state) {
-  Node::Array bends;
-  for (const Eigen::Vector2d& bend : state.bends)
-    bends.push_back({Node::Array{number_node(bend.x()), number_node(bend.y())}, {}});
-  return {std::move(bends), {}};
 }
 
 Node numbers_node(const std::vector<double>& values) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/commanded_motion.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/servo/feature_marks.h"
@@ -115,17 +116,12 @@ class LoggedServo : public ServoWatcher {
 };
 
 void add_true_remaining(ServoRun& run) {
-  const std::vector<ServoStep>& steps = run.result.steps;
-  double latest = -1;
-  for (const ServoStep& step : steps)
-    if (step.is_fresh) latest = std::max(latest, *step.seen_at);
-  ServoError sum;
-  int count = 0;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (!steps[i].is_fresh || !run.truth[i] || *steps[i].seen_at < latest - run.settle) continue;
-    sum.rms += run.truth[i]->rms, sum.most += run.truth[i]->most, sum.tip += run.truth[i]->tip, ++count;
+  LateErrors late(run.settle);
+  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
+    const ServoStep& step = run.result.steps[i];
+    if (step.is_fresh && run.truth[i]) late.add(*step.seen_at, *run.truth[i]);
   }
-  if (count > 0) run.true_remaining = ServoError{sum.rms / count, sum.most / count, sum.tip / count};
+  run.true_remaining = late.mean();
 }
 
 }  // namespace
@@ -138,17 +134,6 @@ std::vector<double> band_places(const Experiment& experiment, const Arm& believe
     places.push_back(arc_length_of(believed, straight, material_point(arm, marker.at)));
   }
   return places;
-}
-
-std::vector<Eigen::Vector2d> backbone_pixels(const Arm& arm, const ArmState& state, const View& view,
-                                             int count) {
-  const Backbone backbone(arm, state);
-  std::vector<Eigen::Vector2d> pixels;
-  for (int i = 0; i <= count; ++i) {
-    const auto pixel = view.project(backbone.pose(backbone.length() * i / count).position);
-    if (pixel) pixels.push_back(*pixel);
-  }
-  return pixels;
 }
 
 ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, const RigModel& believed,
@@ -175,14 +160,11 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   config.camera_doubt = {.turn = task.doubt.turn, .focal = task.doubt.focal};
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
   if (is_colored) config.markers = band_places(experiment, believed.arm);
-  config.step = task.step.value_or(1 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
+  config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
   if (experiment.drive) config.drive = experiment.drive->drive();
   config.list_step = experiment.clock.step;
   config.obstacles = obstacles(experiment.obstacle);
-  // Between two pictures of a slow camera nobody is blind.
-  const double blind =
-      std::max(task.blind, 1.5 / std::min(first.sensor.frame_rate, second.sensor.frame_rate));
-  config.patience = {.blind = blind, .lost = std::max(task.lost, 2 * blind), .timeout = task.timeout};
+  config.patience = servo_patience(task, cameras);
   return config;
 }
 
@@ -190,21 +172,17 @@ ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigMode
                    const ArmState& from, Filming& filming, Witness& witness, Progress& progress,
                    const RecordSteps& record_steps) {
   const auto& config = std::get<ServoTask>(experiment.task.at(task));
-  RigPorts ports = filming.ports();
+  RecordedPorts recorded(filming.ports(), from, record_steps);
   ServoConfig session = servo_config(experiment, config, believed, from);
   session.sent = from;
   ServoRun run;
   run.name = task_name(experiment.task[task]), run.task = task, run.believed = believed;
   run.settle = config.settle;
-  for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = ports.cameras[session.cameras[i]].name;
-  CommandedMotion motion(ports.clock->now(), from);
-  RecordedClock clock(*ports.clock, record_steps, motion);
-  ports.clock = &clock;
-  LoggedServo log(experiment, session, run, filming, witness, progress, motion);
-  run.result = servo_in_session(ports, run.believed, session, log);
-  const double end = clock.now();
-  record_steps(end, [&motion](double at) { return motion.at(at); });
-  run.motion = motion.motion(end);
+  for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
+  LoggedServo log(experiment, session, run, filming, witness, progress, recorded.motion());
+  run.result = servo_in_session(recorded.ports(), run.believed, session, log);
+  const double end = recorded.finish();
+  run.motion = recorded.motion().motion(end);
   add_true_remaining(run);
   witness.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
                 run.result.is_done ? "there" : run.result.reason);

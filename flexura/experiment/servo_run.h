@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -8,13 +7,12 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
-#include "flexura/calibrate/rig_model.h"
-#include "flexura/camera/view.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/filming.h"
 #include "flexura/experiment/record_steps.h"
 #include "flexura/experiment/witness.h"
 #include "flexura/kinematics/motion.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/servo/servo_session.h"
 
 namespace flexura {
@@ -41,11 +39,6 @@ struct ServoRun {
 /// What the task asks of a session, for an arm that is in the state `from`.
 [[nodiscard]] ServoConfig servo_config(const Experiment& experiment, const ServoTask& task,
                                        const RigModel& believed, const ArmState& from);
-
-/// Where a view sees an arm in this state: `count` + 1 points of equal shares of its length from base to tip,
-/// px, without those behind the camera.
-[[nodiscard]] std::vector<Eigen::Vector2d> backbone_pixels(const Arm& arm, const ArmState& state,
-                                                           const View& view, int count);
 
 /// Does task number `task`, a servo, on the rig that plays, which is believed to be `believed`; what it does
 /// and sees goes to the witness. `from`: where the arm was sent last.

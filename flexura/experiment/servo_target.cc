@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/base/bytes.h"
 #include "flexura/experiment/shape_fields.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
@@ -149,8 +150,7 @@ RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<C
   for (std::size_t i = 0; i < 2; ++i) {
     const std::filesystem::path path = file_inside(folder, target.pictures[i]);
     const std::string file = read_text_file(path, most_picture_bytes);
-    const Photograph photograph =
-        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, path.string());
+    const Photograph photograph = decode_picture(bytes_of(file), path.string());
     const SensorConfig& sensor = cameras[i].sensor;
     const Image<std::uint8_t>& bytes = photograph.bytes;
     if (bytes.width() != sensor.width || bytes.height() != sensor.height)

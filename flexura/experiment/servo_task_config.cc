@@ -186,6 +186,11 @@ std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vecto
   return two_cameras(task.cameras, cameras);
 }
 
+ServoPatience servo_patience(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
+  const double blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
+  return {.blind = blind, .lost = std::max(task.lost, 2 * blind), .timeout = task.timeout};
+}
+
 namespace {
 
 // The paper's law reads one picture as the plane XOY and the other one as ZOY.
@@ -194,13 +199,9 @@ void check_planes(const ServoTask& task, const std::vector<CameraConfig>& camera
   if (task.law != ServoLawKind::potential || cameras.size() < 2) return;
   const auto [front, side] = servo_cameras(task, cameras);
   if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
-  constexpr double roughly = 0.7;
   try {
-    const auto looks_along = [](const CameraConfig& config, Eigen::Index axis) {
-      const Camera camera(config);
-      return std::abs(camera.pose(camera.initial_stance()).rotation(axis, 2)) > roughly;
-    };
-    if (looks_along(cameras[front], 2) && looks_along(cameras[side], 0)) return;
+    const Camera one(cameras[front]), other(cameras[side]);
+    if (stand_for_planes(one.pose(one.initial_stance()), other.pose(other.initial_stance()))) return;
   } catch (const std::exception&) {
     return;  // A camera that is none is told where it stands.
   }
@@ -217,16 +218,15 @@ void check_frames(const ServoTask& task, const std::vector<CameraConfig>& camera
   if (cameras.size() < 2) return;
   const auto [front, side] = servo_cameras(task, cameras);
   if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
-  const double frame = 1 / std::min(cameras[front].sensor.frame_rate, cameras[side].sensor.frame_rate);
+  const double frame = 1 / slower_frame_rate(cameras, {front, side});
   if (!task.step && (frame < shortest_step || frame > longest_step))
     reader.problem_at(path + ".step",
                       fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
                                   "step from {} s to {} s",
                                   frame, shortest_step, longest_step));
-  const double lost = std::max({task.lost, 2 * task.blind, 3 * frame});
+  const double lost = servo_patience(task, cameras).lost;
   for (const std::size_t i : {front, side}) {
-    const SensorConfig& sensor = cameras[i].sensor;
-    const double late = last_row_delay(sensor) + sensor.exposure + sensor.delay;
+    const double late = times_of_frame_at(cameras[i].sensor, 0).received;
     const std::string when =
         fmt::format("the {:.6g} s after which a picture of camera {} comes", late, cameras[i].name);
     if (late >= lost) {

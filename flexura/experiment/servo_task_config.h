@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "flexura/base/table.h"
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/look.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/servo/servo_config.h"
 
 namespace flexura {
@@ -62,6 +62,9 @@ const Table<ServoTask>& fields_of(const ServoTask*);
 /// The two cameras of a task that was checked: places among `cameras`.
 [[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
                                                        const std::vector<CameraConfig>& cameras);
+
+/// Of a task that names two of these cameras: between two pictures of a slow one nobody is blind.
+[[nodiscard]] ServoPatience servo_patience(const ServoTask& task, const std::vector<CameraConfig>& cameras);
 
 /// Reports what keeps the servo at `path` ("task[2]") from being tried with this arm and these cameras.
 void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,

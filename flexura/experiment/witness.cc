@@ -6,7 +6,7 @@
 
 #include "flexura/experiment/report_safety.h"
 #include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
+#include "flexura/experiment/run_watcher.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
@@ -14,11 +14,6 @@ namespace {
 
 // The log has every state; the report draws no more than this, and a long run should not fill the memory.
 constexpr std::size_t max_kept_states = 10000;
-
-const char* name_of(Recorder::Level level) {
-  if (level == Recorder::Level::info) return "info";
-  return level == Recorder::Level::warning ? "warning" : "error";
-}
 
 }  // namespace
 
@@ -31,8 +26,9 @@ void Witness::expect(std::size_t last_step) {
 
 void Witness::event(double time, Recorder::Level level, const std::string& name, const std::string& text) {
   recorder_.event(time, level, name, text);
-  marks_.push_back({time, name_of(level), name + ": " + text});
-  if (watcher_ != nullptr) watcher_->happened(time, name_of(level), name, text);
+  const std::string kind = level_name(static_cast<std::int64_t>(level));
+  marks_.push_back({time, kind, name + ": " + text});
+  if (watcher_ != nullptr) watcher_->happened(time, kind, name, text);
 }
 
 void Witness::draw_scene(const Experiment& experiment) {

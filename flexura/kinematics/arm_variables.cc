@@ -10,7 +10,7 @@ ArmVariables::ArmVariables(const Arm& arm) {
   if (arm.sections.empty()) throw std::invalid_argument("an arm needs at least one section");
   for (const Section& section : arm.sections) {
     const bool is_spatial = arm.kind == ArmKind::spatial;
-    const bool is_stretchable = section.stretch_limits[0] < section.stretch_limits[1];
+    const bool is_stretchable = section.can_stretch();
     const Part& part = parts_.emplace_back(
         Part{section.length, section.max_bend, section.stretch_limits, size_, is_spatial, is_stretchable});
     size_ = part.stretch_at() + (is_stretchable ? 1 : 0);

@@ -16,4 +16,9 @@ namespace flexura {
   return state;
 }
 
+/// That share of the way from one state to another, section by section; both of one arm.
+[[nodiscard]] inline ArmState between(const ArmState& from, const ArmState& to, double share) {
+  return plus_way(from, from, to, share);
+}
+
 }  // namespace flexura

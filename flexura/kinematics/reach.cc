@@ -88,7 +88,7 @@ double hole_by_schur(const Arm& arm) {
   if (!(turn < 2 * pi)) return 0.0;
   Pose end;
   for (const Section& section : arm.sections) {
-    if (section.stretch_limits[0] < section.stretch_limits[1]) return 0.0;
+    if (section.can_stretch()) return 0.0;
     end = end * arc_pose({section.max_bend, 0.0}, longest(section));
   }
   const Eigen::Vector3d& p = end.position;

@@ -96,7 +96,7 @@ struct Unknown {
 bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
   const auto rows = static_cast<Eigen::Index>(unknown.offsets.size());
   const Eigen::Index bend_columns = unknown.kind == ArmKind::planar ? 1 : 2;
-  const bool stretching = unknown.section.stretch_limits[0] < unknown.section.stretch_limits[1];
+  const bool stretching = unknown.section.can_stretch();
   constexpr int max_steps = 100;
   for (int step = 0; step < max_steps && rows > 0; ++step) {
     Eigen::MatrixXd J(rows, bend_columns + (stretching ? 1 : 0));

@@ -14,6 +14,15 @@ Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& angles) {
           std::sin(angles[1])};
 }
 
+double elevation_of_planes(double alpha_1, double alpha_2) {
+  return std::atan(std::tan(alpha_2) * std::cos(alpha_1));
+}
+
+bool is_singular_for_planes(double azimuth) {
+  constexpr double least_cosine = 0.17364817766693033;  // Of 80 degrees.
+  return std::abs(std::cos(azimuth)) < least_cosine;
+}
+
 double nearest_turn(double angle, double other) {
   return angle + 2 * std::numbers::pi * std::round((other - angle) / (2 * std::numbers::pi));
 }

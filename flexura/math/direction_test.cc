@@ -28,6 +28,17 @@ TEST(Direction, CountsFromY) {
   EXPECT_NEAR((angles_of_direction({0, 0, 2}) - Eigen::Vector2d(0, std::numbers::pi / 2)).norm(), 0, 1e-15);
 }
 
+TEST(Direction, IsToldByItsImagesInTwoPlanes) {
+  for_random_cases(200, [](TestRandom& random) {
+    const Eigen::Vector2d angles(random.uniform(-3.1, 3.1), random.uniform(-1.5, 1.5));
+    const Eigen::Vector3d e = direction_of_angles(angles);
+    const double alpha_1 = std::atan2(e.x(), e.y()), alpha_2 = std::atan2(e.z(), e.y());
+    EXPECT_NEAR(elevation_of_planes(alpha_1, alpha_2), angles[1], 1e-9);
+    const double off = std::abs(std::abs(std::remainder(angles[0], std::numbers::pi)) - std::numbers::pi / 2);
+    EXPECT_EQ(is_singular_for_planes(angles[0]), off < std::numbers::pi / 18);
+  });
+}
+
 TEST(Direction, NearestTurnIsWithinHalfATurnAndWholeTurnsAway) {
   for_random_cases(200, [](TestRandom& random) {
     const double angle = random.uniform(-50, 50), other = random.uniform(-50, 50);

@@ -24,6 +24,9 @@ struct Section {
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
   std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
   double max_stretch_rate = std::numeric_limits<double>::infinity();  ///< Largest |d stretch/dt|, 1/s.
+
+  /// Whether its limits leave it more than one length.
+  [[nodiscard]] bool can_stretch() const { return stretch_limits[0] < stretch_limits[1]; }
 };
 
 /// What changes when the arm moves: each section's bend vector and stretch, base first.
@@ -37,6 +40,9 @@ struct ArmState {
   [[nodiscard]] static ArmState straight(std::size_t count) {
     return {std::vector<Eigen::Vector2d>(count, Eigen::Vector2d::Zero()), std::vector<double>(count, 1.0)};
   }
+
+  /// Bit for bit, but for the signs of zeros.
+  bool operator==(const ArmState&) const = default;
 };
 
 /// B standing on W's origin with the straight arm along W's +Y: B's z is W's +Y, B's x is W's +X.

@@ -65,14 +65,26 @@ bool is_gentle(const TubePiece& piece) {
   return piece.curvature * piece.widest() < 0.5 && std::abs(piece.widening) < 0.1;
 }
 
-// How near along the axis to where another piece goes on contours are left to the exact way, m, `pixel` in
-// size: where it bends or tapers otherwise their contours part there. 0 where it does neither, and at a true
-// end.
+// How near along the axis to where another arc goes on contours are left to the exact way, m, `pixel` in
+// size: where it bends or tapers otherwise their contours part there. 0 where the same arc goes on, and at a
+// true end.
 double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double pixel) {
   if (neighbour < 0) return 0;
   const TubePiece& other = stage.pieces[static_cast<std::size_t>(neighbour)];
   if (other.tube_arc == piece.tube_arc) return 0;
-  return pixel + 2 * piece.widest() * std::abs(other.widening - piece.widening);
+  // The skin's slope along the axis, and by how much it differs about the axis of an arc that bends.
+  const auto spread = [](const TubePiece& one) {
+    const double bend = one.curvature * one.widest();
+    return std::abs(one.widening) * bend / (1 - std::min(bend, 0.5));
+  };
+  const double change = std::abs(other.widening - piece.widening) + spread(piece) + spread(other);
+  // Seen at the angle a from the axis, two slopes part a contour by cot^2 a radii times their difference.
+  const bool is_at_end = neighbour == piece.after;
+  const Eigen::Vector3d p_PJ = is_at_end ? 2 * piece.bound_center : Eigen::Vector3d(0, 0, 0);
+  const Eigen::Vector3d tangent = is_at_end ? piece.end_tangent : Eigen::Vector3d(0, 0, 1);
+  const double cosine = tangent.dot((p_PJ - piece.p_PC).normalized()),
+               square = std::min(cosine * cosine, 0.96);
+  return pixel + piece.widest() * change * std::max(2.0, square / (1 - square));
 }
 
 // Whether a screen comes into a ball.

@@ -89,9 +89,12 @@ void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const Tube
   // to be looked at where its half is near: beside the contour, and everywhere if the image is flat.
   rim.facing[0] = number(circle.x.dot(circle.center)), rim.facing[1] = number(circle.y.dot(circle.center));
   // Where the tube tapers the skin's normals lean from those of the circle, along the tube.
-  const Eigen::Vector3d tangent =
-      rim.state == state_base ? Eigen::Vector3d(piece.R_CP.col(2)) : piece.R_CP * piece.end_tangent;
-  rim.skin_radius = number(circle.radius - piece.widening * tangent.dot(circle.center));
+  const Eigen::Vector3d t = rim.state == state_base ? Eigen::Vector3d(0, 0, 1) : piece.end_tangent;
+  const Eigen::Vector3d bend =
+      piece.R_CP * Eigen::Vector3d(t.z(), 0, -t.x()) * (piece.curvature * circle.radius);
+  rim.radius = number(circle.radius);
+  rim.lean = number(piece.widening * (piece.R_CP * t).dot(circle.center));
+  rim.bend[0] = number(circle.x.dot(bend)), rim.bend[1] = number(circle.y.dot(bend));
   const double distance = circle.center.norm();
   const double flat =
       circle.radius * std::abs(circle.normal.dot(circle.center)) / (distance * distance * pixel_);

@@ -37,12 +37,10 @@ SensorConfig checked(SensorConfig config) {
   return config;
 }
 
-int top_of(const SensorConfig& config) { return (1 << config.bits) - 1; }
-
 // In levels, rounding included; before a gamma table in units of full scale.
 SensorLevels levels_for(const SensorConfig& config) {
   const bool is_linear = config.gamma == 1;
-  const double unit = is_linear ? top_of(config) : 1, gain = config.gain * unit;
+  const double unit = is_linear ? config.white() : 1, gain = config.gain * unit;
   const double shot = config.full_well > 0 ? gain * gain / config.full_well : 0;
   const double read = config.read_noise / 255 * unit;
   return {static_cast<float>(gain),
@@ -88,7 +86,7 @@ Sensor::Sensor(const SensorConfig& config, SimdPath path)
   values_ = sensor_block * channels_;
   margin_ = (weights_.size() - 1 + sensor_block - 1) / sensor_block;
   blocks_ = (count_ + values_ - 1) / values_ + 2 * margin_;
-  if (config.gamma != 1) gamma_ = GammaTable(config.gamma, top_of(config));
+  if (config.gamma != 1) gamma_ = GammaTable(config.gamma, config.white());
   if (config.vignetting == 0) return;
   for (std::size_t i = 0; i < blocks_ * sensor_block; ++i) {
     const auto u = static_cast<int>(i) - static_cast<int>(margin_ * sensor_block);

@@ -89,10 +89,10 @@ struct SpanRim {
   float u0, v0;
   Linear x, y, z;
   Linear nearness;  ///< 1/depth of the plane.
-  /// The skin at the rim is seen where (x, y) . facing is below minus `skin_radius` (m) times the length of
-  /// (x, y); `margin` (m) times it makes sure. It is the tube's radius, and, where the tube tapers, by how
-  /// much its skin turns to the camera.
-  float facing[2], skin_radius, margin;
+  /// The skin at the rim is seen where (x, y) . facing is below minus the length l of (x, y) times `radius`
+  /// less `lean` l / (l - (x, y) . bend), m: the tube's radius, and by how much the skin of a tube that
+  /// tapers turns to the camera, more where it bends to that side. `margin` (m) times l makes sure.
+  float facing[2], radius, lean, bend[2], margin;
   float light[3];
   bool is_front;     ///< Seen itself.
   PixelState state;  ///< Of its rim.

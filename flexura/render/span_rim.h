@@ -59,7 +59,9 @@ struct RimLine {
 
 // Whether the skin of the tube faces the camera at the rim there: the camera is beyond the skin's plane.
 [[gnu::always_inline]] inline WideMask is_skin_seen(const SpanRim& rim, const RimPoint& at) {
-  return facing(rim, at) < -rim.skin_radius * square_root(at.x * at.x + at.y * at.y);
+  const Wide length = square_root(at.x * at.x + at.y * at.y);
+  const Wide shrunk = length - (at.x * rim.bend[0] + at.y * rim.bend[1]);
+  return facing(rim, at) < -length * (rim.radius - rim.lean * (length / shrunk));
 }
 
 // Whether the rim may run through the pixel. Of an end that is seen from behind only the half is asked for at

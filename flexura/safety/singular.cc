@@ -15,7 +15,7 @@ TipFreedom tip_freedom(const Arm& arm, const ArmState& state) {
     const auto first = static_cast<Eigen::Index>(3 * i);
     free.push_back(first);
     if (arm.kind == ArmKind::spatial) free.push_back(first + 1);
-    if (arm.sections[i].stretch_limits[0] < arm.sections[i].stretch_limits[1]) free.push_back(first + 2);
+    if (arm.sections[i].can_stretch()) free.push_back(first + 2);
   }
   const Eigen::MatrixXd velocities = whole.topRows<3>()(Eigen::all, free);
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(velocities);

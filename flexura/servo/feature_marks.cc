@@ -41,9 +41,11 @@ Eigen::Vector2d way_in_plane(const View& view, std::size_t camera, double alpha)
 }  // namespace
 
 FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, int points)
-    : law_(law), arm_(std::move(arm)), points_(points), features_(servo_features(law, arm_, points)) {
-  for (int k = 0; k <= points; ++k) corners_.push_back(static_cast<double>(k) / points);
-}
+    : law_(law),
+      arm_(std::move(arm)),
+      points_(points),
+      corners_(equal_shares(points)),
+      features_(servo_features(law, arm_, points)) {}
 
 std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoSight& sight) {
   std::array<std::vector<FeatureMark>, 2> marks;
@@ -96,10 +98,9 @@ std::vector<FeatureMark> FeatureMarker::edges_in(std::size_t camera) const {
 }
 
 std::vector<FeatureMark> FeatureMarker::moments_in(std::size_t camera) const {
-  constexpr Eigen::Index rows = 6;
-  const auto first = rows * static_cast<Eigen::Index>(camera);
+  const auto first = moment_count * static_cast<Eigen::Index>(camera);
   return {{{seen_.segment<2>(first + 1)}, {wanted_.segment<2>(first + 1)}},
-          {ellipse_of(seen_.segment<rows>(first)), ellipse_of(wanted_.segment<rows>(first))}};
+          {ellipse_of(seen_.segment<moment_count>(first)), ellipse_of(wanted_.segment<moment_count>(first))}};
 }
 
 std::vector<FeatureMark> FeatureMarker::chords_in(std::size_t camera, const ServoSight& sight) const {

@@ -64,10 +64,7 @@ class WithLengths : public ServoFeatures {
 
 std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features, const Arm& arm,
                                             double weight) {
-  const auto can_stretch = [](const Section& section) {
-    return section.stretch_limits[0] < section.stretch_limits[1];
-  };
-  if (!std::ranges::any_of(arm.sections, can_stretch)) return features;
+  if (std::ranges::none_of(arm.sections, &Section::can_stretch)) return features;
   return std::make_unique<WithLengths>(std::move(features), static_cast<Eigen::Index>(arm.sections.size()),
                                        weight);
 }

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "flexura/control/plane_errors.h"
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/math/direction.h"
 #include "flexura/model/backbone.h"
 #include "flexura/servo/measured_places.h"
 #include "flexura/servo/servo_features.h"
@@ -14,21 +14,14 @@
 namespace flexura {
 namespace {
 
-// The way between two pixels, in W's axes, as if it were seen from afar.
-Eigen::Vector3d parallel_way(const View& view, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  const Intrinsics& lens = view.lens.intrinsics();
-  const Eigen::Vector2d way = to - from;
-  return view.X_WC.rotation * Eigen::Vector3d(way.x() / lens.fx, way.y() / lens.fy, 0);
-}
-
 // alpha_1 of every chord in the front view, then alpha_2 of every one in the side view.
 Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
                                 const std::array<Eigen::Matrix2Xd, 2>& pixels) {
   const Eigen::Index chords = pixels[0].cols() - 1;
   Eigen::VectorXd angles(2 * chords);
   for (Eigen::Index k = 0; k < chords; ++k) {
-    const Eigen::Vector3d front = parallel_way(views[0], pixels[0].col(k), pixels[0].col(k + 1)),
-                          side = parallel_way(views[1], pixels[1].col(k), pixels[1].col(k + 1));
+    const Eigen::Vector3d front = views[0].parallel_way(pixels[0].col(k + 1) - pixels[0].col(k)),
+                          side = views[1].parallel_way(pixels[1].col(k + 1) - pixels[1].col(k));
     angles[k] = std::atan2(front.x(), front.y());
     angles[chords + k] = std::atan2(side.z(), side.y());
   }
@@ -38,9 +31,7 @@ Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
 // alpha_1 and alpha_2 of each chord as both planes show it, then theta and q as the shape has them.
 class PlaneFeatures : public ChordFeatures {
  public:
-  PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)) {
-    for (int k = 0; k <= points; ++k) shares_.push_back(static_cast<double>(k) / points);
-  }
+  PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)), shares_(equal_shares(points)) {}
 
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
                               Eigen::VectorXd& values) override {
@@ -79,11 +70,6 @@ class PlaneFeatures : public ChordFeatures {
   }
 
  private:
-  // The angle that differs from another one by half a turn at most.
-  static double near(double angle, double other) {
-    return other + std::remainder(angle - other, 2 * std::numbers::pi);
-  }
-
   [[nodiscard]] Eigen::VectorXd with_chords(const Eigen::VectorXd& plane, const ArmState& state) const {
     const Eigen::Index chords = plane.size() / 2;
     Eigen::VectorXd values(2 * plane.size());
@@ -110,12 +96,12 @@ class PlaneFeatures : public ChordFeatures {
     const Eigen::Index chords = seen.size() / 4;
     const double theta = seen[2 * chords + k], q = seen[3 * chords + k];
     const double theta_d = desired[2 * chords + k], q_d = desired[3 * chords + k];
-    if (planes_tell({theta, q}, {theta_d, q_d}))
-      return plane_error({seen[k], seen[chords + k]},
-                         {near(desired[k], seen[k]), near(desired[chords + k], seen[chords + k])});
+    if (planes_tell({theta, q}, {nearest_turn(theta_d, theta), q_d}))
+      return plane_error({seen[k], seen[chords + k]}, {nearest_turn(desired[k], seen[k]),
+                                                       nearest_turn(desired[chords + k], seen[chords + k])});
     PlaneError error;
     error.theta = theta, error.q = q;
-    error.e_theta = theta - near(theta_d, theta), error.e_q = q - q_d;
+    error.e_theta = theta - nearest_turn(theta_d, theta), error.e_q = q - q_d;
     return error;
   }
 

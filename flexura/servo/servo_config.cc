@@ -1,5 +1,6 @@
 #include "flexura/servo/servo_config.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace flexura {
@@ -44,6 +45,10 @@ void check_servo(const ServoConfig& config) {
           "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step are above 0");
+}
+
+double slower_frame_rate(const std::vector<CameraConfig>& cameras, const std::array<std::size_t, 2>& two) {
+  return std::min(cameras[two[0]].sensor.frame_rate, cameras[two[1]].sensor.frame_rate);
 }
 
 LimiterConfig limiter_config(const ServoConfig& config) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flexura/base/image.h"
+#include "flexura/camera/camera_config.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
@@ -101,6 +102,10 @@ const std::vector<std::string>& names_of(const ServoJacobian*);
 
 /// std::invalid_argument, with what is wrong, of a task that no servo can do whatever the rig.
 void check_servo(const ServoConfig& config);
+
+/// Of the slower one of these two cameras, Hz: within a frame of it each takes a picture.
+[[nodiscard]] double slower_frame_rate(const std::vector<CameraConfig>& cameras,
+                                       const std::array<std::size_t, 2>& two);
 
 /// Of the limiter behind its law.
 [[nodiscard]] LimiterConfig limiter_config(const ServoConfig& config);

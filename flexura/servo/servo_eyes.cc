@@ -52,7 +52,7 @@ ServoEyes::ServoEyes(const RigModel& believed, const std::array<std::size_t, 2>&
       doubt_(doubt),
       prior_(prior_of(believed.arm, std::move(markers))),
       tracker_(prior_, patient_estimator(doubt)) {
-  for (std::size_t i = 0; i < 2; ++i) whites_[i] = white_of(believed.cameras.at(cameras[i]).sensor.bits);
+  for (std::size_t i = 0; i < 2; ++i) whites_[i] = believed.cameras.at(cameras[i]).sensor.white();
 }
 
 Sighting ServoEyes::sighting(std::size_t i, const Picture& picture, const View& view, std::string& reason) {

@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/estimate/shape_tracker.h"
 #include "flexura/port/camera_port.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/servo/servo_session.h"
 #include "flexura/vision/arm_finder.h"
 

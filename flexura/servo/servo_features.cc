@@ -14,7 +14,6 @@
 #include "flexura/servo/flow_features.h"
 #include "flexura/servo/length_features.h"
 #include "flexura/servo/measured_places.h"
-#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -139,11 +138,6 @@ class ChordAngles : public ChordFeatures {
   }
 
  private:
-  static std::vector<double> equal_shares(int count) {
-    std::vector<double> shares;
-    for (int k = 0; k <= count; ++k) shares.push_back(static_cast<double>(k) / count);
-    return shares;
-  }
   [[nodiscard]] bool see(const ArmState& state, const View& view, Eigen::Matrix2Xd& pixels) {
     ends_.set(state);
     return ends_.see(view, pixels);
@@ -178,6 +172,12 @@ class ChordAngles : public ChordFeatures {
 
 }  // namespace
 
+std::vector<double> equal_shares(int count) {
+  std::vector<double> shares;
+  for (int k = 0; k <= count; ++k) shares.push_back(static_cast<double>(k) / count);
+  return shares;
+}
+
 std::unique_ptr<ChordFeatures> chord_features(const Arm& arm, int points) {
   return std::make_unique<ChordAngles>(arm, points);
 }
@@ -187,8 +187,7 @@ std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const R
   auto chords = config.law == ServoLawKind::chords ? chord_features(believed.arm, config.points)
                                                    : plane_features(believed.arm, config.points);
   std::array<int, 2> whites{};
-  for (std::size_t i = 0; i < 2; ++i)
-    whites[i] = white_of(believed.cameras.at(config.cameras[i]).sensor.bits);
+  for (std::size_t i = 0; i < 2; ++i) whites[i] = believed.cameras.at(config.cameras[i]).sensor.white();
   return with_lengths(std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites),
                       believed.arm, config.law == ServoLawKind::chords ? stretch_px : stretch_rad);
 }

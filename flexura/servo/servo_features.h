@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/view.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/servo/servo_config.h"
 
 namespace flexura {
@@ -69,6 +69,9 @@ class ChordFeatures : public ServoFeatures {
                                        const ArmState& estimate, const std::array<View, 2>& views,
                                        Eigen::VectorXd& values) = 0;
 };
+
+/// From 0 to 1: `count` + 1 of them.
+[[nodiscard]] std::vector<double> equal_shares(int count);
 
 /// What a servo looks at. `believed` may go afterwards.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config,

@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 
+#include "flexura/control/plane_errors.h"
 #include "flexura/kinematics/shape.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_views.h"
@@ -118,6 +120,26 @@ TEST(ServoFeatures, OfWaysThatHaveNoMiddleAreNumbersAllTheSame) {
     EXPECT_TRUE(error.error.allFinite());
     EXPECT_TRUE(error.by_state.allFinite());
     EXPECT_LT(error.by_state.norm(), 1e4);
+  }
+}
+
+// An azimuth of 170 degrees is 20 from one of -170: the planes tell that way as any other.
+TEST(ServoFeatures, OfPlanesTellAcrossHalfATurn) {
+  const Arm arm = servo_arm();
+  const ArmState state = ArmState::straight(arm.sections.size());
+  const auto features = plane_features(arm, 1);
+  // Of one chord: what the planes show, which is `off` beside what the shape has.
+  const auto values = [](double theta, double q, double off) {
+    const PlaneView view = plane_view(theta + off, q);
+    return Eigen::Vector4d(std::remainder(view.alpha_1, 2 * std::numbers::pi), view.alpha_2, theta, q);
+  };
+  constexpr double degree = std::numbers::pi / 180, off = 0.01;
+  for (const double side : {1.0, -1.0}) {
+    FeatureError found;
+    ASSERT_TRUE(features->error(values(side * 170 * degree, 0.3, off), values(-side * 170 * degree, 0.2, 0),
+                                state, servo_views(), found));
+    EXPECT_NEAR(found.error[0], std::cos(0.3) * (-side * 20 * degree + off), 1e-3);
+    EXPECT_NEAR(found.error[1], 0.1, 0.02);
   }
 }
 

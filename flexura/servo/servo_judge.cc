@@ -10,33 +10,6 @@
 
 namespace flexura {
 
-ServoError servo_error(const Backbone& shape, const Backbone& desired, double length) {
-  constexpr int count = 50;
-  ServoError error;
-  double squares = 0;
-  for (int i = 0; i <= count; ++i) {
-    const double share = static_cast<double>(i) / count;
-    const double off =
-        (shape.pose(share * shape.length()).position - desired.pose(share * desired.length()).position)
-            .norm();
-    squares += off * off / (count + 1);
-    error.most = std::max(error.most, off), error.tip = off;
-  }
-  return {std::sqrt(squares) / length, error.most / length, error.tip / length};
-}
-
-ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired) {
-  return servo_error(Backbone(arm, shape), Backbone(arm, desired), arm.length());
-}
-
-namespace {
-
-bool is_elsewhere(const ArmState& a, const ArmState& b) {
-  return a.bends != b.bends || a.stretches != b.stretches;
-}
-
-}  // namespace
-
 void ServoJudge::add(const ServoStep& step) {
   // How long it was held back, lately: what is let go is forgotten as fast.
   limited_for_ = std::clamp(limited_for_ + (step.limited.empty() ? -1 : 1) * config_.step, 0.0, 1.0);
@@ -64,7 +37,7 @@ void ServoJudge::add_error(const ServoStep& step) {
   }
   is_done_ = below_since_ && time - *below_since_ >= config_.settle;
   // What is wanted may go on faster than the arm may.
-  const bool is_left_behind = !step.limited.empty() && is_elsewhere(step.desired, desired_);
+  const bool is_left_behind = !step.limited.empty() && step.desired != desired_;
   desired_ = step.desired;
   if (is_left_behind) best_ = latest_, worse_since_.reset();
   best_ = std::min(best_, latest_);
@@ -112,17 +85,11 @@ void ServoTally::add(const ServoStep& step) {
     settled_.reset();
   else if (!settled_)
     settled_ = time;
-  late_.push_back({*step.seen_at, *step.error});
-  while (late_.front().time < *step.seen_at - config_.settle) late_.pop_front();
+  late_.add(*step.seen_at, *step.error);
 }
 
 void ServoTally::finish(ServoResult& result) const {
-  result.settled = settled_, result.overshoot = overshoot_;
-  if (late_.empty()) return;
-  const auto count = static_cast<double>(late_.size());
-  ServoError sum;
-  for (const auto& [time, error] : late_) sum.rms += error.rms, sum.most += error.most, sum.tip += error.tip;
-  result.remaining = ServoError{sum.rms / count, sum.most / count, sum.tip / count};
+  result.settled = settled_, result.overshoot = overshoot_, result.remaining = late_.mean();
 }
 
 }  // namespace flexura

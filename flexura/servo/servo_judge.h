@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <optional>
 #include <string>
 
 #include "flexura/model/arm.h"
 #include "flexura/servo/servo_config.h"
+#include "flexura/servo/servo_error.h"
 #include "flexura/servo/servo_session.h"
 
 namespace flexura {
@@ -49,7 +49,7 @@ class ServoTally {
   /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there. `arm` and
   /// `config` outlive it.
   ServoTally(const Arm& arm, const ServoConfig& config, double begun, double last_goal)
-      : arm_(arm), config_(config), begun_(begun), last_goal_(last_goal) {}
+      : arm_(arm), config_(config), begun_(begun), last_goal_(last_goal), late_(config.settle) {}
 
   /// A step that was made.
   void add(const ServoStep& step);
@@ -63,11 +63,7 @@ class ServoTally {
   const ServoConfig& config_;
   double begun_, last_goal_;
   std::optional<double> settled_;
-  struct Seen {
-    double time = 0;
-    ServoError error;
-  };
-  std::deque<Seen> late_;
+  LateErrors late_;
   // From where the tip started, once the last goal was wanted, and its way to there.
   std::optional<Eigen::Vector3d> tip_;
   Eigen::Vector3d way_ = Eigen::Vector3d::Zero();

@@ -22,8 +22,7 @@ void middle_of(const ArmState& from, const ArmState& to, ArmState& middle) {
 }
 
 bool is_same(const WantedShape& a, const WantedShape& b) {
-  return a.state.bends == b.state.bends && a.state.stretches == b.state.stretches &&
-         a.offset.size() == b.offset.size() && a.offset == b.offset;
+  return a.state == b.state && a.offset.size() == b.offset.size() && a.offset == b.offset;
 }
 
 }  // namespace
@@ -54,7 +53,7 @@ bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, Feature
 }
 
 void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) {
-  if (next.bends == wanted.bends && next.stretches == wanted.stretches) return;
+  if (next == wanted) return;
   if (response_.is_learned()) {
     pack(next, x_), pack(wanted, y_);
     y_ = response_.drives_for(x_ - y_);

@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/calibrate/rig_readings.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/port/rig_readings.h"
 
 namespace flexura {
 namespace {
@@ -40,7 +40,7 @@ ServoRig::Trouble ServoRig::read() {
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
     const auto& stands = std::get<StanceReading>(camera);
     if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;
-    stances_[i].add(stands.time, {stands.stance.head, stands.stance.stage});
+    stances_[i].add(stands.time, stands.stance.stance());
   }
   return std::nullopt;
 }
@@ -98,12 +98,5 @@ std::string ServoRig::by_name(std::string reason) const {
   }
   return reason;
 }
-
-RigStance ServoRig::stance(std::size_t i, double time) const {
-  const auto [head, stage] = *stances_[i].at(time);
-  return {.camera = cameras_[i], .head = head, .stage = stage};
-}
-
-View ServoRig::view(std::size_t i, double time) const { return view_of(model_, stance(i, time)); }
 
 }  // namespace flexura

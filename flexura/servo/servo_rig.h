@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/servo/motion_history.h"
 
@@ -46,9 +46,10 @@ class ServoRig {
   [[nodiscard]] ArmState said(double time) const { return *arm_.at(time); }
   [[nodiscard]] ArmState believed(double time) const { return model_.bent(said(time)); }
   /// What a camera saw at a time, as believed.
-  [[nodiscard]] View view(std::size_t i, double time) const;
+  [[nodiscard]] View view(std::size_t i, double time) const { return optics_[i].view(stance(i, time)); }
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
-  [[nodiscard]] RigStance stance(std::size_t i, double time) const;
+  /// How it stood, as its head and stage say.
+  [[nodiscard]] CameraStance stance(std::size_t i, double time) const { return *stances_[i].at(time); }
 
   [[nodiscard]] double now() const { return ports_.clock->now(); }
   [[nodiscard]] const RigPorts& ports() const { return ports_; }

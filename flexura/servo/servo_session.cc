@@ -31,14 +31,6 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
     throw std::invalid_argument("a servo needs the ports of two cameras of the model");
 }
 
-// Of the slower camera, s: within that each takes a picture.
-double frame_period(const RigModel& believed, const ServoConfig& config) {
-  double slowest = 0;
-  for (const std::size_t camera : config.cameras)
-    slowest = std::max(slowest, 1 / believed.cameras[camera].sensor.frame_rate);
-  return slowest;
-}
-
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config, ServoWatcher& watcher)
@@ -47,7 +39,7 @@ class Session {
         watcher_(watcher),
         rig_(ports, believed, config.cameras,
              {.span = longest_delay,
-              .together = 0.6 * frame_period(believed, config),
+              .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
               .silent = config.patience.blind}),
         eyes_(believed, config.cameras, config.markers, config.camera_doubt),
         features_(servo_features(config, believed)),
@@ -201,7 +193,7 @@ class Session {
       const auto& frames = rig_.frames();
       const double time = 0.5 * (frames[0].time + frames[1].time);
       const std::array<View, 2> views = {rig_.view(0, frames[0].time), rig_.view(1, frames[1].time)};
-      ServoSight sight = eyes_.look(frames, views, guess(time));
+      ServoSight sight = eyes_.look(frames, views, expected(rig_.believed(time)));
       WantedShape wanted = goals_->at(time - result_.start);
       sight.desired = std::move(wanted.state), sight.desired_offset = std::move(wanted.offset);
       watcher_.seen(sight);
@@ -216,7 +208,7 @@ class Session {
         step.is_fresh = true, seen_since_ = now;
         limiter_->observe(sight.estimate.shape.state);
         last_ = std::move(sight);
-        if (config_.follows) follow(now, step);
+        if (config_.follows) follow(step);
       } else {
         cannot_see(now, sight);
       }
@@ -250,15 +242,11 @@ class Session {
     unseen_because_ = why;
   }
 
-  // A shape that was seen when the drives stood for `then`, after they went on to `now`.
-  [[nodiscard]] static ArmState moved(const ArmState& seen, const ArmState& then, ArmState now) {
-    return plus_way(std::move(now), then, seen);
-  }
-
-  // The shape in which the arm is expected at a time: as it was seen last, moved by what the drives did.
-  [[nodiscard]] ArmState guess(double time) const {
-    const ArmState state = rig_.believed(time);
-    return last_ ? moved(last_->estimate.shape.state, rig_.believed(last_->time), state) : state;
+  // The shape in which the arm is expected when its drives stand for `state`: as it was seen last, moved by
+  // what they did since.
+  [[nodiscard]] ArmState expected(ArmState state) const {
+    return last_ ? plus_way(std::move(state), rig_.believed(last_->time), last_->estimate.shape.state)
+                 : state;
   }
 
   // How well the pictures' noise lets a shape be known, root mean square along the arm, share of its length.
@@ -271,16 +259,16 @@ class Session {
   // What the law asks for, by the last sight.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
     const ArmState& seen = last_->estimate.shape.state;
-    step.seen_at = last_->time, step.seen = seen, step.believed = rig_.said(last_->time);
+    step.seen_at = last_->time, step.seen = seen;
     step.desired = goals_->at(last_->time - result_.start).state;
     step.error = servo_error(model_.arm, seen, step.desired);
     step.sigma = sigma_of(last_->estimate);
-    step.ahead = servo_error(model_.arm, moved(seen, rig_.believed(last_->time), model_.bent(sent_)),
-                             goals_->at(now - result_.start).state);
+    step.ahead = servo_error(model_.arm, expected(model_.bent(sent_)), goals_->at(now - result_.start).state);
+    const ArmState said = rig_.said(last_->time);
     const double since = now - result_.start;
     const ServoLaw::Wish wish = law_.step({.sight = *last_,
                                            .is_fresh = step.is_fresh,
-                                           .said = step.believed,
+                                           .said = said,
                                            .sent = sent_,
                                            .then = goals_->at(last_->time - result_.start),
                                            .wanted = goals_->at(since),
@@ -303,10 +291,10 @@ class Session {
     return "";
   }
 
-  void follow(double now, ServoStep& step) {
+  void follow(ServoStep& step) {
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto head =
-          keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time), last_->seen[i].view);
+      const auto head = keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time).head,
+                                       last_->seen[i].view);
       if (!head) continue;
       const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
       if (const auto refused = taken.fault()) {
@@ -314,8 +302,6 @@ class Session {
         return;
       }
       step.heads[i] = *head;
-      watcher_.camera_sent(now,
-                           {.camera = rig_.camera(i), .head = *head, .stage = rig_.stance(i, now).stage});
     }
   }
 
@@ -336,7 +322,6 @@ class Session {
   void send(double now, ArmState state, ServoStep step) {
     if (!is_deaf_) tell_arm(now, state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
-    if (step.believed.bends.empty()) step.believed = rig_.said(now);
     step.sent = std::move(state);
     watcher_.stepped(step);
     judge_->add(step);

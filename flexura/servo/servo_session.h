@@ -7,24 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/head.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/model/backbone.h"
+#include "flexura/model/arm.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/servo/servo_config.h"
+#include "flexura/servo/servo_error.h"
 
 namespace flexura {
-
-/// How far a shape is from another one: distances between points of equal shares of their lengths, as shares
-/// of the arm's length.
-struct ServoError {
-  double rms = 0, most = 0, tip = 0;  ///< Root mean square; the largest; at the tip.
-};
-/// At 51 places along both, evenly from base to tip. `length`: the arm's, m.
-[[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
-[[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 
 /// What two pictures of one instant told.
 struct ServoSight {
@@ -49,8 +41,7 @@ struct ServoStep {
   double sigma = 0;                 ///< Of that, standard deviation along the arm, share of its length.
   /// Of the shape that is expected after all that was sent, from what is desired when it is sent.
   std::optional<ServoError> ahead;
-  ArmState believed;  ///< What the drives say.
-  ArmState sent;      ///< To the drives, by the limiter.
+  ArmState sent;  ///< To the drives, by the limiter.
   /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
   /// law's own units: rad^2 of `shape` and `potential`, px^2 otherwise (docs/servo.md).
   double potential = 0;
@@ -69,10 +60,9 @@ class ServoWatcher {
   ServoWatcher(const ServoWatcher&) = delete;
   ServoWatcher& operator=(const ServoWatcher&) = delete;
 
-  /// The arm was sent to `state`, to arrive `duration` s later; and a head to where the stance has it. At
-  /// `time`, s of the rig's clock. What was refused is not told.
+  /// The arm was sent to `state`, to arrive `duration` s later; at `time`, s of the rig's clock. What was
+  /// refused is not told.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
-  virtual void camera_sent(double /*time*/, const RigStance& /*stance*/) {}
   /// Two pictures of one instant were measured.
   virtual void seen(const ServoSight& /*sight*/) {}
   /// A step was done.

@@ -5,23 +5,18 @@
 #include <vector>
 
 #include "flexura/control/contour_images.h"
+#include "flexura/control/shape_features.h"
 #include "flexura/servo/measured_places.h"
 #include "flexura/servo/servo_features.h"
 
 namespace flexura {
 namespace {
 
-std::vector<double> equal_shares(int count) {
-  std::vector<double> shares;
-  for (int k = 1; k <= count; ++k) shares.push_back(static_cast<double>(k) / count);
-  return shares;
-}
-
 // Two numbers a pixel, right and left of each place, and then a normal, in the first camera, then in the
 // second.
 class SilhouetteFeatures : public ServoFeatures {
  public:
-  SilhouetteFeatures(const Arm& arm, int points) : contours_(arm, equal_shares(points)) {}
+  SilhouetteFeatures(const Arm& arm, int points) : contours_(arm, FeatureSet::of_points(points).points) {}
 
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
                               Eigen::VectorXd& values) override {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flexura/model/backbone.h"
+#include "flexura/estimate/backbone_pixels.h"
 
 namespace flexura {
 namespace {
@@ -17,13 +17,10 @@ double within(double value, const std::array<double, 2>& limits) {
 // What the picture shows of the arm: none where part of it is behind the camera.
 std::optional<Eigen::AlignedBox2d> seen_box(const Arm& arm, const ArmState& state, const View& view) {
   constexpr int points = 20;
-  const Backbone backbone(arm, state);
+  const std::vector<Eigen::Vector2d> pixels = backbone_pixels(arm, state, view, points);
+  if (pixels.size() <= points) return std::nullopt;
   Eigen::AlignedBox2d box;
-  for (int i = 0; i <= points; ++i) {
-    const auto pixel = view.project(backbone.pose(backbone.length() * i / points).position);
-    if (!pixel) return std::nullopt;
-    box.extend(*pixel);
-  }
+  for (const Eigen::Vector2d& pixel : pixels) box.extend(pixel);
   return box;
 }
 
@@ -34,7 +31,7 @@ ViewKeeper::ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2
   for (const std::size_t camera : cameras) cameras_.emplace_back(believed.cameras.at(camera));
 }
 
-std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const RigStance& stands,
+std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                             const View& view) const {
   // Shares of the picture: beyond the first of them the head turns, beyond the second it zooms out.
   constexpr double quiet = 0.15, full = 0.9;
@@ -45,7 +42,7 @@ std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state
   const bool is_aside = (off.cwiseAbs().array() > quiet * size.array()).any();
   const double filled = (box->sizes().array() / size.array()).maxCoeff();
   if (!is_aside && filled <= full) return std::nullopt;
-  HeadState head = stands.head;
+  HeadState head = stands;
   const auto& axes = cameras_[i].head_axes();
   const Intrinsics& lens = view.lens.intrinsics();
   if (is_aside) {
@@ -63,7 +60,7 @@ std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state
       if (miss < best) best = miss, head.zoom = zoom;
     }
   }
-  return head == stands.head ? std::nullopt : std::optional(head);
+  return head == stands ? std::nullopt : std::optional(head);
 }
 
 }  // namespace flexura

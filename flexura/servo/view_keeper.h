@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera.h"
 #include "flexura/camera/view.h"
+#include "flexura/port/rig_model.h"
 
 namespace flexura {
 
@@ -19,7 +19,7 @@ class ViewKeeper {
   /// Where to send the head of the first or second camera, which stands so and sees the arm in `state` by
   /// `view`: so that the middle of what is seen of the arm is the picture's middle, and at a zoom with which
   /// the arm fits into it. None while the arm is well inside. Within the head's limits.
-  [[nodiscard]] std::optional<HeadState> turned(std::size_t i, const ArmState& state, const RigStance& stands,
+  [[nodiscard]] std::optional<HeadState> turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                                 const View& view) const;
 
  private:

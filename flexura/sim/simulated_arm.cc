@@ -59,7 +59,7 @@ ArmState shape(const ArmSetup& setup, const std::vector<AxisMotion>& axes, const
   return fit_state(setup.arm, *setup.drive, displacements).state;
 }
 
-bool fits(const ArmState& state, const Arm& arm) {
+bool is_shape_of(const Arm& arm, const ArmState& state) {
   return state.bends.size() == arm.sections.size() && state.stretches.size() == arm.sections.size() &&
          std::ranges::all_of(state.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }) &&
          std::ranges::all_of(state.stretches, [](double stretch) { return stretch > 0 && stretch < 1e6; });
@@ -138,7 +138,7 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
 
 CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   if (auto fault = link_.fault()) return *fault;
-  if (!fits(state, arm_)) return link_.refusal("the shape is not one of this arm");
+  if (!is_shape_of(arm_, state)) return link_.refusal("the shape is not one of this arm");
   if (!std::isfinite(duration) || duration < 0)
     return link_.refusal(fmt::format("a motion cannot take {} s", duration));
   if (auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) {

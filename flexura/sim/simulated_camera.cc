@@ -10,20 +10,6 @@
 
 namespace flexura {
 
-FrameTimes times_of_frame_at(const SensorConfig& sensor, double start) {
-  const double last_row = last_row_delay(sensor);  // after the first one
-  FrameTimes times;
-  times.start = start;
-  times.middle = start + 0.5 * (last_row + sensor.exposure);
-  times.end = start + last_row + sensor.exposure;
-  times.received = times.end + sensor.delay;
-  return times;
-}
-
-FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame) {
-  return times_of_frame_at(sensor, static_cast<double>(frame) / sensor.frame_rate);
-}
-
 double frame_horizon(const SensorConfig& sensor) {
   return frame_times(sensor, 0).received + (frames_kept + 1) / sensor.frame_rate;
 }
@@ -56,6 +42,7 @@ Frame SimulatedCamera::take(std::int64_t number) {
   const FrameTimes times = frame_times(sensor_, number);
   shot_.frame = number;
   shot_.start = times.start;
+  shot_.is_covered = is_within(times.middle, sensor_.covered);
   next_ = number + 1;
   return {number, times.middle, sensor_.exposure, times.received,
           std::make_shared<const Picture>(take_picture_(shot_))};

@@ -23,21 +23,11 @@ struct Shot {
   const SensorConfig* sensor = nullptr;      ///< How long it lasts, and how the rows follow. Never null.
   std::function<View(double)> view;          ///< From start on: what the camera sees at a time,
   std::function<Backbone(double)> backbone;  ///< and where the arm is.
+  bool is_covered = false;                   ///< Something stands before the lens: there is no light.
 };
 
 /// Makes the image of a shot, of the sensor's size, channels and bits. The same image for the same shot.
 using TakePicture = std::function<Picture(const Shot&)>;
-
-/// When a frame of a sensor is exposed and can be had.
-struct FrameTimes {
-  double start = 0;     ///< Of the first row's exposure, s.
-  double middle = 0;    ///< Of the exposure of the middle of the image, s.
-  double end = 0;       ///< Of the last row's exposure, s.
-  double received = 0;  ///< end + delay, s.
-};
-/// Of a frame that starts at `start`, s; of frame n, which starts at n / frame_rate.
-[[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);
-[[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
 
 /// The newest frames that `SimulatedCamera::newest` looks at: where more than these were lost in a row, it
 /// has none.
@@ -52,7 +42,8 @@ inline constexpr int frames_kept = 16;
 /// nobody waits for the clock or commands: their takers of pictures must bear that.
 class SimulatedCamera : public CameraPort {
  public:
-  /// `shot` says what its frames show; its frame and start are filled in for each.
+  /// `shot` says what its frames show; its frame, its start and whether it is covered
+  /// are filled in for each.
   SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
 
   Outcome<std::optional<Frame>> newest() override;

@@ -18,7 +18,7 @@
 namespace flexura {
 Node nothing() { return {Node::Table{}, {}}; }
 
-Node bends_node(const ArmState& state) {
+Node bends_answer(const ArmState& state) {
   Node::Array bends;
   for (const Eigen::Vector2d& bend : state.bends)
     bends.push_back({Node::Array{{bend.x() + 0.0, {}}, {bend.y() + 0.0, {}}}, {}});
@@ -52,7 +52,7 @@ Node backbone_answer(const Arm& arm, const ArmState& state) {
 Node tip_answer(const InverseResult& found, const std::string& danger) {
   return {Node::Table{{"converged", {}, {found.converged(), {}}},
                       {"reason", {}, {std::string(name_of(found.outcome)), {}}},
-                      {"bends", {}, bends_node(found.state)},
+                      {"bends", {}, bends_answer(found.state)},
                       {"position_error", {}, {found.position_error, {}}},
                       {"moved", {}, {danger.empty(), {}}},
                       {"danger", {}, {danger, {}}}},

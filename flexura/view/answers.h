@@ -17,7 +17,7 @@ namespace flexura {
 [[nodiscard]] Node backbone_answer(const Arm& arm, const ArmState& state);
 /// The answer to `tip`: what was found, and why the arm does not go there, "" when it does.
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
-/// [[bend_x, bend_y], ...].
-[[nodiscard]] Node bends_node(const ArmState& state);
+/// [[bend_x, bend_y], ...], without negative zeros.
+[[nodiscard]] Node bends_answer(const ArmState& state);
 
 }  // namespace flexura

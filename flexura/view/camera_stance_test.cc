@@ -66,6 +66,37 @@ TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
   EXPECT_NEAR(shown.fx, 1.5 * start.cameras[1].fx, 1e-3);
 }
 
+// By the run's clock: everything stands still, and the page's own time is another.
+class CoveredCamera : public LiveSessionTest {
+ protected:
+  CoveredCamera()
+      : LiveSessionTest(
+            viewed_text +
+            "[[truth.camera]]\nname = \"side\"\nsensor.exposure = 0\nsensor.covered = [[1, 2]]\n") {}
+};
+
+TEST_F(CoveredCamera, IsDarkWhileTheRunSaysSo) {
+  auto run = std::make_shared<RunLink>();
+  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
+  watched.opened(other);
+  const auto picture = [&](double time) {
+    run->state(time, {{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}}, {});
+    watched.advance(clock_ += 0.1);
+    HttpAnswer got;
+    watched.take(ImageAsk{"side", {}}, [&](const HttpAnswer& answer) { got = answer; });
+    return got.body;
+  };
+  const std::string before = picture(0.9), within = picture(1.5), after = picture(2.1);
+  EXPECT_NE(within, before);
+  EXPECT_LT(within.size(), before.size() / 2) << "of one colour";
+  EXPECT_EQ(after, before);
+  // Nor is the rig dark that no run moves, whatever its clock says.
+  HttpAnswer still;
+  session_.advance(clock_ = 1.5);
+  session_.take(ImageAsk{"side", {}}, [&](const HttpAnswer& answer) { still = answer; });
+  EXPECT_GT(still.body.size(), before.size() / 2);
+}
+
 TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
   const CameraReading read{{0.1, 0.05, 1.2}, {{0, -0.1, 0}}};
   const CameraReading again = rig_->reading(1, rig_->stance(1, read));

@@ -344,7 +344,8 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
   // So a picture's exposure has its middle at the time of the state that it shows.
   const double start = is_watched_run() ? *news_.time - times_of_frame_at(sensor, 0).middle
                                         : frame_times(sensor, number).start;
-  return value_shot(viewed(), camera, number, start, {{start, news_.state, stance}});
+  return with_covers(value_shot(viewed(), camera, number, start, {{start, news_.state, stance}}),
+                     *news_.time);
 }
 
 void LiveSession::send_images() {

@@ -41,7 +41,7 @@ struct PictureRoom::Tools {
   static const std::string& file(Taken& taken, int quality) {
     std::string& file = taken.files[quality];
     if (file.empty())
-      file = jpeg(eight_bits(*taken.picture, white_of(taken.shot.shot.sensor->bits)), {.quality = quality});
+      file = jpeg(eight_bits(*taken.picture, taken.shot.shot.sensor->white()), {.quality = quality});
     return file;
   }
   ViewAnswer pixel(const Shown& shown, int u, int v) {

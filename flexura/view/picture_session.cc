@@ -9,7 +9,6 @@
 
 #include "flexura/port/camera_port.h"
 #include "flexura/sim/simulated_camera.h"
-#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 
@@ -44,7 +43,7 @@ PictureSession::Look PictureSession::look_at_sent(const ImageStreams::Key& key) 
                                   Node{viewed_->cameras[key.camera].config().name, {}}.brief()));
   return [sent = *sent, rig = viewed_] {
     const Shot& shot = sent.shot.shot;
-    return SeenPicture{shot.camera, shot.frame, white_of(shot.sensor->bits), sent.picture,
+    return SeenPicture{shot.camera, shot.frame, shot.sensor->white(), sent.picture,
                        rig->reading(shot.camera, stance_in(sent.shot))};
   };
 }

@@ -40,11 +40,6 @@ ViewedRigPtr rig_of(const std::filesystem::path& folder) {
   return std::make_shared<const ViewedRig>(load_experiment(file_of_results(folder, experiment_file_name)));
 }
 
-std::string level_name(std::int64_t level) {
-  if (level <= 2) return "info";
-  return level == 3 ? "warning" : "error";
-}
-
 double number_of(const Node& node, std::string_view key, double otherwise) {
   const Node* found = node.find(key);
   const double* value = found == nullptr ? nullptr : found->as<double>();

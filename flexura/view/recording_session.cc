@@ -17,7 +17,6 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/series.h"
-#include "flexura/vision/eight_bits.h"
 
 namespace flexura {
 namespace {
@@ -170,7 +169,8 @@ ValueShot RecordingSession::shot(std::size_t camera, std::int64_t number) const 
   const auto place = static_cast<std::size_t>(number);
   const double time = recording_->time_of_state(place);
   const CameraStance stance = recording_->stance(camera, time);
-  return value_shot(viewed(), camera, number, time, {{time, recording_->state(place), stance}});
+  return with_covers(value_shot(viewed(), camera, number, time, {{time, recording_->state(place), stance}}),
+                     time);
 }
 
 void RecordingSession::advance(double now) {
@@ -251,7 +251,7 @@ PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
   return [key, place, recording = recording_] {
     const Recording::LoggedImage image = recording->image(key.camera, static_cast<std::size_t>(place));
     const ViewedRig& rig = *recording->rig();
-    return SeenPicture{key.camera, place, white_of(rig.sensors[key.camera].bits),
+    return SeenPicture{key.camera, place, rig.sensors[key.camera].white(),
                        std::make_shared<const Picture>(read_png(image.png)),
                        rig.reading(key.camera, recording->stance(key.camera, image.time))};
   };

@@ -138,11 +138,7 @@ Node::Table outcome(bool is_found, const std::string& reason, const std::vector<
 
 // What the rig's file says of the arm.
 ShapePrior prior_of(const ViewedRig& rig) {
-  ShapePrior prior;
-  prior.arm = rig.model;
-  prior.is_length_known = std::ranges::none_of(rig.model.sections, [](const Section& section) {
-    return section.stretch_limits[1] > section.stretch_limits[0];
-  });
+  ShapePrior prior = described_arm(rig.model);
   for (const Marker& marker : rig.experiment.arm.look.markers(rig.model)) prior.markers.push_back(marker.at);
   std::ranges::sort(prior.markers);
   return prior;
@@ -191,7 +187,7 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
   answer.push_back({"numbers", {}, {std::move(numbers), {}}});
   if (estimate.is_found) {
     answer.push_back({"poses", {}, *backbone_answer(estimate.shape.arm, estimate.shape.state).find("poses")});
-    answer.push_back({"bends", {}, bends_node(estimate.shape.state)});
+    answer.push_back({"bends", {}, bends_answer(estimate.shape.state)});
     answer.push_back({"sigma", {}, number_node(estimate.rms_sigma())});
     answer.push_back({"rms_px", {}, number_node(estimate.rms)});
   }

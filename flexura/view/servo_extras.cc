@@ -10,6 +10,7 @@
 
 #include "flexura/base/source.h"
 #include "flexura/model/backbone.h"
+#include "flexura/servo/servo_error.h"
 
 namespace flexura {
 namespace {
@@ -70,14 +71,10 @@ GhostArm ghost_of(const Named& mark, const Shape& shape) {
 
 // Between points of equal shares of both lengths, mm.
 AlongCurve distances(const Named& mark, const Shape& shape, const Shape& desired) {
-  constexpr int count = 50;
-  const Backbone is(shape.arm, shape.state), shall(desired.arm, desired.state);
   AlongCurve curve{mark.id, mark.label, mark.color, {}};
-  for (int i = 0; i <= count; ++i) {
-    const double share = static_cast<double>(i) / count;
-    curve.values.push_back(
-        1000 * (is.pose(share * is.length()).position - shall.pose(share * shall.length()).position).norm());
-  }
+  for (const double off :
+       shape_distances(Backbone(shape.arm, shape.state), Backbone(desired.arm, desired.state)))
+    curve.values.push_back(1000 * off);
   return curve;
 }
 

@@ -39,9 +39,7 @@ CameraReading within_ends(const Camera& camera, CameraReading reading) {
   return reading;
 }
 
-bool stand_alike(const Instant& a, const Instant& b) {
-  return a.arm.bends == b.arm.bends && a.arm.stretches == b.arm.stretches && a.stance == b.stance;
-}
+bool stand_alike(const Instant& a, const Instant& b) { return a.arm == b.arm && a.stance == b.stance; }
 
 Instant instant_at(const std::vector<Instant>& instants, double time) {
   const auto after = std::ranges::upper_bound(instants, time, {}, &Instant::time);
@@ -124,6 +122,11 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
   return {std::move(shot), shown};
 }
 
+ValueShot with_covers(ValueShot shot, double time) {
+  shot.shot.is_covered = is_within(time, shot.shot.sensor->covered);
+  return shot;
+}
+
 CameraStance stance_in(const ValueShot& shot) {
   const double middle = times_of_frame_at(*shot.shot.sensor, shot.shot.start).middle;
   return instant_at(*shot.instants, middle).stance;
@@ -131,7 +134,8 @@ CameraStance stance_in(const ValueShot& shot) {
 
 bool show_the_same(const ValueShot& a, const ValueShot& b) {
   const SensorConfig& sensor = *a.shot.sensor;
-  if (a.shot.camera != b.shot.camera || sensor.full_well > 0 || sensor.read_noise > 0) return false;
+  if (a.shot.camera != b.shot.camera || a.shot.is_covered != b.shot.is_covered) return false;
+  if (sensor.full_well > 0 || sensor.read_noise > 0) return false;
   const Instant& first = a.instants->front();
   const auto is_first = [&](const Instant& instant) { return stand_alike(instant, first); };
   return std::ranges::all_of(*a.instants, is_first) && std::ranges::all_of(*b.instants, is_first);

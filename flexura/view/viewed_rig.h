@@ -9,7 +9,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/run.h"
+#include "flexura/experiment/run_watcher.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
@@ -68,6 +68,10 @@ struct ValueShot {
 /// It starts at `start` s.
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
+
+/// The same with the lens covered where the sensor is at `time`, s since a run's start. (The page's own time
+/// covers none.)
+[[nodiscard]] ValueShot with_covers(ValueShot shot, double time);
 
 /// How the camera stands in the middle of the frame's exposure.
 [[nodiscard]] CameraStance stance_in(const ValueShot& shot);

@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "flexura/base/table.h"
 #include "flexura/vision/axis_curve.h"
 #include "flexura/vision/border.h"
 #include "flexura/vision/eight_bits.h"
@@ -65,7 +66,7 @@ double merit(const ArmSighting& seen) {
 }
 
 // No other seed would show more.
-bool is_whole(const ArmSighting& seen) {
+bool shows_all(const ArmSighting& seen) {
   constexpr double whole = 0.85;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
   return seen.covered > whole && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
@@ -145,9 +146,8 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
   std::ranges::stable_sort(order, std::ranges::greater{},
                            [&](std::uint32_t i) { return components.list[i].area; });
   if (order.empty()) {
-    seen.reason = fmt::format(
-        "nothing of at least {} px is {} enough", least_area,
-        names_of(static_cast<const Figure*>(nullptr))[static_cast<std::size_t>(seen.threshold.figure)]);
+    seen.reason =
+        fmt::format("nothing of at least {} px is {} enough", least_area, name_of(seen.threshold.figure));
     return;
   }
   std::string first_reason;
@@ -220,7 +220,7 @@ void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const
   for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
     if (!follow_from(picture, scale, component, seeds[i])) continue;
     if (best.axis.empty() || merit(seen) > merit(best)) best = seen;
-    if (is_whole(seen)) break;
+    if (shows_all(seen)) break;
   }
 }
 
@@ -356,6 +356,16 @@ const ArmSighting& ArmFinder::find(const Picture& picture, int white) {
   const auto& bytes = std::get<Image<std::uint8_t>>(picture);
   if (white != 255) return find(eight_bits(picture, white), 255);
   return bytes.channels() == 1 ? find(bytes) : find(gray_picture(bytes));
+}
+
+const ArmSighting& ArmFinder::find(const Photograph& photograph) {
+  const ArmFinderConfig asked = work_->config;
+  if (photograph.is_mask) work_->config.least_sigma = std::max(asked.least_sigma, mask_sigma);
+  const bool has_words = !photograph.words.values().empty();
+  const ArmSighting& seen = has_words ? find(gray_picture(photograph.words), photograph.white)
+                                      : find(gray_picture(photograph.bytes));
+  work_->config = asked;
+  return seen;
 }
 
 }  // namespace flexura

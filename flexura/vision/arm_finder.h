@@ -15,13 +15,15 @@
 
 namespace flexura {
 
+struct Photograph;
+
 /// What is known of the picture beforehand, and how it is told what is arm.
 struct ArmFinderConfig {
   ThresholdConfig threshold;  ///< How arm and ground are told apart.
   /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
   /// lower one in the picture.
   std::optional<Eigen::Vector2d> base;
-  /// No sample's standard deviation is taken to be less, px (`mask_sigma` for a mask).
+  /// No sample's standard deviation is taken to be less, px.
   double least_sigma = 0;
 };
 
@@ -70,6 +72,8 @@ struct ArmSighting {
   std::vector<Eigen::Vector2d> places;
 
   [[nodiscard]] bool is_found() const { return !axis.empty(); }
+  /// The axis explains nearly all of the silhouette. Otherwise its ends may be a fold's, not the arm's.
+  [[nodiscard]] bool is_whole() const { return covered >= 0.95; }
 };
 
 /// Finds the arm in pictures: threshold, runs, components, then the tube's two borders, cross-section by
@@ -89,6 +93,9 @@ class ArmFinder {
   const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
   /// Of any, gray or in colour, whose largest value is `white`. std::invalid_argument: that is below 1.
   const ArmSighting& find(const Picture& picture, int white);
+  /// Of a picture from a file, with all the bits that it has; nothing in a mask is known better than
+  /// `mask_sigma`.
+  const ArmSighting& find(const Photograph& photograph);
 
  private:
   struct Work;

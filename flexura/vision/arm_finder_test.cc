@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/bytes.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/picture_file.h"
 #include "tests/support/plain_arms.h"
@@ -140,8 +141,7 @@ TEST(ArmFinder, MeasuresAMaskToAnEighthOfAPixel) {
     SeenArm seen = plain_arm(bend);
     for (std::uint8_t& value : seen.picture.values()) value = value > 120 ? 1 : 0;
     const std::string file = pgm(seen.picture);
-    const Photograph mask =
-        decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "mask.pgm");
+    const Photograph mask = decode_picture(bytes_of(file), "mask.pgm");
     EXPECT_TRUE(mask.is_mask);
     ArmFinder finder;
     const ArmSighting& found = finder.find(mask.bytes);
@@ -157,15 +157,17 @@ TEST(ArmFinder, TakesAMaskInColourForOneAndKnowsItNoBetter) {
   SeenArm seen = plain_arm(0.5);
   std::string file = "P6\n640 480\n255\n";
   for (const std::uint8_t value : seen.picture.values()) file.append(3, value > 120 ? '\xFF' : '\0');
-  const Photograph mask =
-      decode_picture({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, "mask.ppm");
+  const Photograph mask = decode_picture(bytes_of(file), "mask.ppm");
   EXPECT_TRUE(mask.is_mask);
   EXPECT_EQ(mask.bytes.channels(), 1);
-  ArmFinder finder({.threshold = {}, .base = {}, .least_sigma = mask_sigma});
-  const ArmSighting& found = finder.find(gray_picture(mask.bytes));
+  ArmFinder finder;
+  const ArmSighting& found = finder.find(mask);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT(rms_error(seen, found.axis), 0.125);
-  for (const AxisSample& sample : found.axis) EXPECT_GE(sample.sigma, mask_sigma);
+  const auto is_of_mask = [](const AxisSample& sample) { return sample.sigma >= mask_sigma; };
+  EXPECT_TRUE(std::ranges::all_of(found.axis, is_of_mask));
+  // What is seen next need not be one.
+  EXPECT_FALSE(std::ranges::all_of(finder.find(mask.bytes).axis, is_of_mask));
 }
 
 TEST(ArmFinder, KnowsHowWellItKnowsTheAxis) {

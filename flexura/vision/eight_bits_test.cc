@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/camera/sensor.h"
 #include "flexura/vision/arm_finder.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/seen_arms.h"
@@ -16,7 +17,7 @@ namespace {
 
 TEST(EightBits, AreTheNearestSharesOfWhite) {
   for (const int bits : {1, 4, 7, 8, 10, 12, 16}) {
-    const int white = white_of(bits);
+    const int white = SensorConfig{.bits = bits}.white();
     Image<std::uint16_t> words(white + 1, 1);
     for (int i = 0; i <= white; ++i) words.at(i, 0) = static_cast<std::uint16_t>(i);
     const Image<std::uint8_t> bytes = eight_bits(words, white);

@@ -28,6 +28,9 @@ struct MarkerSighting {
   bool is_band = true;  ///< Seen across the arm; otherwise a spot.
   /// Much longer than others, or of two parts: probably two in one.
   bool may_be_merged = false;
+
+  /// It tells of a place on the backbone: a spot has no known one, and what may be two is neither.
+  [[nodiscard]] bool tells_place() const { return is_band && !may_be_merged; }
 };
 
 /// All that was seen of an arm's markers.

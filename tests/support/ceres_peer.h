@@ -3,8 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/calibrate/rig_observations.h"
+#include "flexura/calibrate/rig_prior.h"
+#include "flexura/port/rig_model.h"
 
 // The bundle as Ceres finds it: residuals written anew, with Ceres' own derivatives and rotations.
 namespace flexura {

@@ -110,7 +110,7 @@ class RigTrial {
   /// What is inside the picture of the arm. Returns how many markers are.
   std::size_t add_image(std::size_t stance, std::size_t pose) {
     const RigStance& where = stances_[stance];
-    const View view = Camera(truth_.cameras[where.camera]).view({where.head, where.stage});
+    const View view = Camera(truth_.cameras[where.camera]).view(where.stance());
     const Backbone backbone(truth_.arm, this->pose(pose));
     const double sigma = std::max(config_.noise, 1e-3);
     RigImage image{.stance = stance, .pose = pose};

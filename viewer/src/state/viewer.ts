@@ -186,7 +186,11 @@ export class Viewer implements LinkListener {
   private take_progress(message: ProgressMessage): void {
     this.progress.value = message;
     if (!message.done) return;
-    const text = message.text || `The tasks ended: ${message.outcome ?? 'done'}.`;
+    const told = message.text ?? '';
+    const text =
+      message.outcome === 'cancelled' && told
+        ? `The tasks were cancelled: ${told}.`
+        : told || `The tasks ended: ${message.outcome ?? 'done'}.`;
     if (message.outcome === 'done') this.notices.info(text);
     else this.notices.error(text);
   }

@@ -1,4 +1,4 @@
-#include "flexura/calibrate/rig_readings.h"
+#include "flexura/port/rig_readings.h"
 
 #include <fmt/format.h>
 

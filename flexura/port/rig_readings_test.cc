@@ -1,4 +1,4 @@
-#include "flexura/calibrate/rig_readings.h"
+#include "flexura/port/rig_readings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -133,7 +133,7 @@ TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
     camera.head.says.state.zoom = says;
     const auto reading = std::get<StanceReading>(camera.read());
     EXPECT_EQ(reading.stance.head.zoom, is);
-    EXPECT_NO_THROW((void)Camera(camera.config).view({reading.stance.head, reading.stance.stage}));
+    EXPECT_NO_THROW((void)Camera(camera.config).view(reading.stance.stance()));
   }
   for (const double says : {0.98, 4.02, -1.0}) {
     camera.head.says.state.zoom = says;

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include "flexura/calibrate/rig_model.h"
 #include "flexura/camera/camera.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 
 namespace flexura {

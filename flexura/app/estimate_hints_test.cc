@@ -1,0 +1,107 @@
+// What `flexura estimate` makes of pictures that are not taken, or not turned, as it takes them to be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "flexura/app/commands.h"
+#include "flexura/app/measure.h"
+#include "flexura/base/node.h"
+#include "flexura/base/source.h"
+#include "flexura/picture/image_file.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/estimate_bench.h"
+#include "tests/support/experiment_files.h"
+
+namespace flexura {
+namespace {
+
+using testing::HasSubstr;
+
+class EstimateHints : public EstimateBench {
+ protected:
+  // The same pictures by cameras with a gamma.
+  void photograph_with_gamma() {
+    std::string text = photographed_arm;
+    for (std::size_t at = 0; (at = text.find("psf =", at)) != std::string::npos; at += 30)
+      text.insert(at, "gamma = 2.2, ");
+    write_new_file(folder_.path() / "gamma.toml", text);
+    arguments_.images = {photographed("gamma", "front"), photographed("gamma", "side")};
+  }
+  void say_gamma() {
+    std::string text = two_measured_cameras;
+    for (std::size_t at = 0; (at = text.find("cx =", at)) != std::string::npos; at += 30)
+      text.insert(at, "gamma = 2.2\n");
+    arguments_.cameras = (folder_.path() / "with_gamma.toml").string();
+    write_new_file(arguments_.cameras, text);
+  }
+};
+
+TEST_F(EstimateHints, UndoAGammaThatIsSaid) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  const double without = error(answer(exit_done));
+  photograph_with_gamma();
+  const double unsaid = error(answer(exit_done));
+  say_gamma();
+  const Node found = answer(exit_done);
+  EXPECT_EQ(*found.find("trusted")->as<bool>(), true);
+  EXPECT_LT(error(found), std::max(1.5 * without, 1e-4));
+  EXPECT_LT(error(found), 0.8 * unsaid);
+}
+
+TEST_F(EstimateHints, MeasureUndoesItToo) {
+  photograph_with_gamma();
+  const auto answer_of = [&](MeasureArguments arguments) {
+    std::ostringstream out;
+    arguments.images = {arguments_.images.front()};
+    EXPECT_EQ(measure_command(arguments, out), exit_done);
+    return out.str();
+  };
+  MeasureArguments plain, by_option, by_file, by_both;
+  by_option.gamma = by_both.gamma = 2.2;
+  say_gamma();
+  write_new_file(folder_.path() / "one.toml",
+                 read_text_file(arguments_.cameras, 1 << 16)
+                     .substr(0, read_text_file(arguments_.cameras, 1 << 16).rfind("[[camera]]")));
+  by_file.camera = by_both.camera = (folder_.path() / "one.toml").string();
+  EXPECT_NE(answer_of(plain), answer_of(by_option));
+  EXPECT_EQ(answer_of(by_file), answer_of(by_both));
+  EXPECT_EQ(*parse_json(answer_of(by_option), "x").find("bits")->as<std::int64_t>(), 8);
+  by_option.gamma = 0;
+  std::ostringstream out;
+  by_option.images = {arguments_.images.front()};
+  EXPECT_THROW(measure_command(by_option, out), InputError);
+}
+
+// Upside down the base is where nothing is, and the answer says so.
+TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  for (const std::string& name : arguments_.images) {
+    Image<std::uint8_t> picture = picture_of(name);
+    for (int v = 0; v < picture.height() / 2; ++v)
+      std::ranges::swap_ranges(picture.row(v), picture.row(picture.height() - 1 - v));
+    replace_file(name, png(picture));
+  }
+  const Node turned = answer(exit_missed);
+  const auto& notes = *turned.find("notes")->as<Node::Array>();
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const Node& note) {
+    return note.as<std::string>()->starts_with("the base would be seen at (");
+  }));
+}
+
+TEST_F(EstimateHints, TellOfSaturation) {
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  Image<std::uint8_t> picture = picture_of(arguments_.images.front());
+  for (std::uint8_t& value : picture.values()) value = static_cast<std::uint8_t>(std::min(255, 3 * value));
+  replace_file(arguments_.images.front(), png(picture));
+  std::ostringstream out;
+  (void)estimate_command(arguments_, out);
+  EXPECT_THAT(out.str(), HasSubstr("% of the picture is saturated"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/backbone_image.h"
+#include "flexura/vision/linear_light.h"
 #include "flexura/vision/markers.h"
 #include "flexura/vision/picture_file.h"
 #include "tests/support/seen_arms.h"
@@ -56,10 +58,12 @@ bool crosses_itself(const std::vector<AxisPoint>& curve) {
   return false;
 }
 
-void measure(const SeenArm& seen, ArmFinder& finder, Tally& tally) {
+void measure(const SeenArm& seen, double undone, ArmFinder& finder, Tally& tally) {
   const bool crosses = crosses_itself(seen.truth);
   ++tally.pictures, tally.crossing += crosses ? 1 : 0;
-  const ArmSighting& found = finder.find(gray_picture(seen.picture));
+  Photograph photograph;
+  photograph.bytes = gray_picture(seen.picture);
+  const ArmSighting& found = finder.find(linear_light(std::move(photograph), undone));
   if (!found.is_found()) return;
   ++tally.found, tally.crossing_found += crosses ? 1 : 0;
   ArmSighting arm = found;
@@ -117,8 +121,20 @@ void print_row(const std::string& name, const Tally& tally, bool has_aim) {
   std::fflush(stdout);
 }
 
-int study(int cases, std::uint64_t seed) {
+// The row of so many random arms; with a gamma, once it is undone as `undone` says.
+Tally study_row(const std::string& name, const SeenArmOptions& options, double undone, bool has_aim,
+                int cases, std::uint64_t seed) {
   ArmFinder finder;
+  Tally tally;
+  for (int i = 0; i < cases; ++i) {
+    TestRandom random(seed + static_cast<std::uint64_t>(i));
+    measure(random_seen_arm(random, options), undone, finder, tally);
+  }
+  print_row(name, tally, has_aim);
+  return tally;
+}
+
+int study(int cases, std::uint64_t seed) {
   std::printf(
       "| | found | of those that cross themselves | median | 90 %% | rms, px | 99 %% | rms, bridged ones too "
       "| rms of the middle | not seen, %% | ends, px | 68 %% "
@@ -132,18 +148,16 @@ int study(int cases, std::uint64_t seed) {
         if ((psf != 0.7 || bands) && noise != 2) continue;
         SeenArmOptions options;
         options.noise = noise, options.psf = psf, options.bands = bands, options.color = bands;
-        Tally tally;
-        for (int i = 0; i < cases; ++i) {
-          TestRandom random(seed + static_cast<std::uint64_t>(i));
-          measure(random_seen_arm(random, options), finder, tally);
-        }
         char name[64];
         std::snprintf(name, sizeof name, "noise %.0f, PSF %.1f%s", noise, psf, bands ? ", bands" : "");
-        print_row(name, tally, noise == 2 && psf == 0.7);
+        const Tally tally = study_row(name, options, 1, noise == 2 && psf == 0.7, cases, seed);
         if (bands && psf == 0.7) banded = tally;
       }
     }
   }
+  const SeenArmOptions gamma{.gamma = 2.2};
+  study_row("noise 2, PSF 0.7, a gamma of 2.2 undone", gamma, 2.2, false, cases, seed);
+  study_row("the same as it is", gamma, 1, false, cases, seed);
   std::printf(
       "\nBands, noise 2, PSF 0.7: %zu in view, %zu found, %zu of these where none is; median %.3f px from "
       "where the\n"

@@ -206,7 +206,7 @@ TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   ServoNotes notes;
   const ServoResult refused = servo_in_session(bench.ports(), model, config, notes);
   EXPECT_FALSE(refused.is_done);
-  EXPECT_NE(refused.reason.find("the pictures of goal 1 are in the wrong order"), std::string::npos)
+  EXPECT_NE(refused.reason.find("the pictures of target 1 are in the wrong order"), std::string::npos)
       << refused.reason;
   EXPECT_TRUE(notes.sent.empty());
   config.goals = {{0, views}};
@@ -230,7 +230,7 @@ TEST(ServoFaults, PicturesOfTwoShapesAreRefusedWithAReason) {
   ServoNotes notes;
   const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
   EXPECT_FALSE(result.is_done);
-  const std::string begins = "the pictures of goal 1 show no shape: ";
+  const std::string begins = "the pictures of target 1 show no shape: ";
   EXPECT_TRUE(result.reason.starts_with(begins)) << result.reason;
   EXPECT_GT(result.reason.size(), begins.size());
   EXPECT_TRUE(notes.sent.empty());

@@ -34,10 +34,10 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
   for (std::size_t i = 0; i < 2; ++i)
     if (problem_.empty() && !sight.estimate.is_found && !sight.reasons[i].empty())
       problem_ =
-          fmt::format("picture {} of goal {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
+          fmt::format("picture {} of target {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
   if (!problem_.empty()) return;
   if (!sight.estimate.is_found) {
-    problem_ = fmt::format("the pictures of goal {} show no shape: {}", times_.size(), sight.estimate.reason);
+    problem_ = fmt::format("the pictures of target {} show no shape: {}", times_.size(), sight.estimate.reason);
     return;
   }
   wanted.state = sight.estimate.shape.state;
@@ -67,7 +67,7 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   if (!other.is_found || other.scale > noise || !is_worse) return "";
   const std::string than = given.is_found ? fmt::format(", not {:.2g} px", given.rms) : "";
   return fmt::format(
-      "the pictures of goal {} are in the wrong order: the other way round they fit the cameras to {:.2g} "
+      "the pictures of target {} are in the wrong order: the other way round they fit the cameras to {:.2g} "
       "px{}",
       times_.size(), other.rms, than);
 }

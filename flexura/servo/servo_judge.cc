@@ -55,7 +55,7 @@ void ServoJudge::add_error(const ServoStep& step) {
 }
 
 std::string ServoJudge::why_not() const {
-  const std::string off = fmt::format("still {:.3g} % of the length off {:.4g} s after the goal's time",
+  const std::string off = fmt::format("still {:.3g} % of the length off {:.4g} s after the target's time",
                                       100 * latest_, config_.patience.timeout);
   constexpr double long_enough = 0.5;  // s
   if (limited_for_ > long_enough) return fmt::format("saturated: {}; {}", limited_by_, off);

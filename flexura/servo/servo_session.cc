@@ -100,7 +100,7 @@ class Session {
     }
     if (result_.missed > config_.tolerance)
       return fmt::format(
-          "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from goal {}",
+          "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from target {}",
           100 * result_.missed, farthest + 1);
     goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();

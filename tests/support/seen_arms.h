@@ -19,6 +19,7 @@ namespace flexura {
 struct SeenArmOptions {
   double noise = 2;  ///< Standard deviation in values of an 8-bit image.
   double psf = 0.7;  ///< px
+  double gamma = 1;  ///< Values are light to the power 1/gamma.
   int width = 640, height = 480;
   bool color = false;
   bool bands = false;
@@ -44,7 +45,7 @@ inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, cons
   SensorConfig config;
   config.width = view.width, config.height = view.height;
   config.pixels = pixels;
-  config.psf = options.psf, config.read_noise = options.noise;
+  config.psf = options.psf, config.read_noise = options.noise, config.gamma = options.gamma;
   SensorRows rows;
   Image<std::uint8_t> picture(view.width, view.height, config.channels());
   Sensor(config).read(light.light, {seed, 0, 0}, rows, picture);

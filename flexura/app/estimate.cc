@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <ostream>
 #include <span>
 #include <string_view>
@@ -94,19 +95,20 @@ std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
   return Eigen::Vector3d(arguments.base.data());
 }
 
-// Of an arm that may stretch, how long it is: its sections stretch alike.
+// Of an arm that may stretch, how long it is: its sections stretch alike, as far as all of them do.
 void hold_length(double length, ShapePrior& prior) {
   if (prior.is_length_known) throw input_error("--length", "--arm says how long the arm is");
-  double shortest = 0, longest = 0;
+  double shortest = 0, longest = std::numeric_limits<double>::infinity();
   for (const Section& section : prior.arm.sections) {
-    shortest += section.stretch_limits[0] * section.length;
-    longest += section.stretch_limits[1] * section.length;
+    shortest = std::max(shortest, section.stretch_limits[0] * prior.arm.length());
+    longest = std::min(longest, section.stretch_limits[1] * prior.arm.length());
   }
   constexpr double grace = 1e-9;  // Sums of the same in another order.
   if (length < (1 - grace) * shortest || length > (1 + grace) * longest)
-    throw input_error("--length",
-                      fmt::format("{} m: expected {:.6g} to {:.6g} m, as far as the arm of --arm stretches",
-                                  length, shortest, longest));
+    throw input_error(
+        "--length",
+        fmt::format("{} m: expected {:.6g} to {:.6g} m, as far as all sections of --arm stretch alike",
+                    length, shortest, longest));
   const double stretch = length / prior.arm.length();
   for (Section& section : prior.arm.sections) section.length *= stretch;
   prior.is_length_known = true;
@@ -314,6 +316,10 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
   if (!found.is_found && config.prior.is_base_position_known)
     if (auto doubt = doubt_of_base(sightings, config.prior.arm.X_WB.position))
       found.notes.push_back(std::move(*doubt));
+  const auto& sections = config.prior.arm.sections;
+  if (config.has_bends && !found.is_trusted() && sections.size() > 1 &&
+      std::ranges::any_of(sections, &Section::can_stretch))
+    found.notes.emplace_back("its sections are taken to stretch alike");
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (!found.is_found && !looks[i].is_of_other_size && !looks[i].notes.empty())
       found.notes.push_back(fmt::format("picture {} has notes of its own", i + 1));

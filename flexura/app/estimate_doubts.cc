@@ -104,9 +104,8 @@ std::optional<std::string> doubt_of_base(std::span<const Sighting> sightings, co
     for (const SeenBorder& point : seen.borders) nearest = std::min(nearest, (point.pixel - *base).norm());
     if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
       return fmt::format(
-          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is that "
-          "the "
-          "base, the picture and its camera, the right way up?",
+          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is it the "
+          "base, the camera's picture, the right way up?",
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;

@@ -21,6 +21,7 @@ namespace flexura {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class EstimateHints : public EstimateBench {
  protected:
@@ -71,6 +72,12 @@ TEST_F(EstimateHints, MeasureUndoesItToo) {
   EXPECT_NE(answer_of(plain), answer_of(by_option));
   EXPECT_EQ(answer_of(by_file), answer_of(by_both));
   EXPECT_EQ(*parse_json(answer_of(by_option), "x").find("bits")->as<std::int64_t>(), 8);
+  MeasureArguments by_other;
+  by_other.camera = (folder_.path() / "other.toml").string();
+  write_new_file(by_other.camera,
+                 replaced(read_text_file(by_file.camera, 1 << 16), "cx = 319.5", "cx = 639.5"));
+  EXPECT_THAT(answer_of(by_other), HasSubstr("of another size"));
+  EXPECT_THAT(answer_of(by_file), Not(HasSubstr("of another size")));
   by_option.gamma = 0;
   std::ostringstream out;
   by_option.images = {arguments_.images.front()};

@@ -72,7 +72,9 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
   const pid_t child = running("[record]\nreport = false\n" + servo_file(task), 100'000);
   kill(child, SIGINT);
   EXPECT_EQ(wait(child).status, 128 + SIGINT);
-  EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
+  const Node told = parse_json(summary(), "summary");
+  EXPECT_EQ(*told.find("outcome")->as<std::string>(), "cancelled");
+  EXPECT_EQ(told.find("reasons")->as<Node::Array>()->size(), 1U) << "that it was told to stop";
   EXPECT_THAT(summary(), HasSubstr("\"reason\": \"cancelled\""));
   const McapReader log(path("long/log.mcap"));
   EXPECT_FALSE(log.truncated());

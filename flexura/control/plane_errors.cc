@@ -38,6 +38,8 @@ bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired
          std::abs(measured[0] - desired[0]) < std::numbers::pi;
 }
 
+bool planes_agree(const PlaneView& seen) { return std::cos(seen.alpha_1) * std::cos(seen.alpha_2) > 0; }
+
 PlaneError plane_error(const PlaneView& measured, const PlaneView& desired) {
   PlaneError error = measured_angles(measured);
   const double e_1 = measured.alpha_1 - desired.alpha_1, e_2 = measured.alpha_2 - desired.alpha_2;

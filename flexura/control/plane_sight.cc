@@ -33,10 +33,7 @@ void PlaneSight::look(const DistributedArm& arm, const Eigen::VectorXd& x,
     // Azimuths go on beyond half a turn; the other plane's angles do not.
     desired.alpha_2 = seen.alpha_2 - std::remainder(seen.alpha_2 - desired.alpha_2, 2 * std::numbers::pi);
     const PlaneError error = plane_error(seen, desired);
-    // By noise the planes may contradict each other: what the one sees of the part along Y is before the
-    // other's back.
-    const bool agree = std::cos(seen.alpha_1) * std::cos(seen.alpha_2) > 0;
-    if (agree && planes_tell({error.theta, error.q}, {theta_d_[j], q_d_[j]})) {
+    if (planes_agree(seen) && planes_tell({error.theta, error.q}, {theta_d_[j], q_d_[j]})) {
       theta_[j] = error.theta, q_[j] = error.q;
       e_theta_[j] = error.e_theta, e_q_[j] = error.e_q;
       ++told_;

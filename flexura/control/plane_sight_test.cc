@@ -107,6 +107,27 @@ TEST(PlaneSight, TriangulatesWhereThePlanesDoNotTell) {
   }
 }
 
+// Noise that takes alpha_2 across a quarter turn would turn q about.
+TEST(PlaneSight, TriangulatesWhereThePlanesContradictEachOther) {
+  const DistributedArm arm({.lengths = {1}, .nodes = 4, .points = 20});
+  const Eigen::VectorXd x =
+      arm.coordinates([](double s) { return Eigen::Vector2d(74.5 * degree * s, 57.3 * degree * s); });
+  PlaneSight sight(arm, x, {0, 1});
+  const DistributedArm here = set_to(arm, x);
+  const Eigen::Index points = here.q().size();
+  constexpr double off = 14 * degree;
+  sight.look(here, x, [&](std::uint64_t i) { return i < static_cast<std::uint64_t>(points) ? 0 : off; });
+  int across = 0;
+  for (Eigen::Index j = 0; j < points; ++j) {
+    const PlaneView view = plane_view(here.theta()[j], here.q()[j]);
+    if (std::cos(view.alpha_2 + off) > 0) continue;
+    EXPECT_NEAR(sight.e_q()[j], off, 1e-9);
+    ++across;
+  }
+  EXPECT_GT(across, 0);
+  EXPECT_EQ(sight.triangulated(), across / static_cast<double>(points));
+}
+
 TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
   for_random_cases(3, [](TestRandom& random) {
     DistributedArmModel model = random_distributed_arm(random);

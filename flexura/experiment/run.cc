@@ -131,9 +131,10 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
   const Played played = player.play();
   // What came of a task that decides on the way may lead elsewhere than what was looked at first.
-  const bool became_unsafe = is_safe && !player.safety().is_safe() && played.failure.empty();
+  const bool has_failed = !played.failure.empty() && !played.is_cancelled;
+  const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed;
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
-  if (!played.failure.empty()) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
+  if (has_failed) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
   if (played.is_cancelled) {
     result.outcome = RunOutcome::cancelled;
     result.reasons.insert(result.reasons.begin(),

@@ -17,8 +17,6 @@ constexpr double max_position = 9007199254740992.0;
 // What files may ask of a section: the ranges of ShapeConfig.
 constexpr double max_stretch = 100.0;
 
-bool stretches(const Section& section) { return section.stretch_limits[0] < section.stretch_limits[1]; }
-
 const char* tendons_needed(bool planar, bool stretching) {
   if (planar && stretching) return "at least 2 on different sides of the arm";
   if (planar) return "at least 1 that is not at 90 or 270 deg";
@@ -31,7 +29,7 @@ const char* tendons_needed(bool planar, bool stretching) {
 void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
                    Reader& reader) {
   const bool planar = arm.kind == ArmKind::planar;
-  const bool stretching = stretches(arm.section[index]);
+  const bool stretching = arm.section[index].can_stretch();
   std::vector<Eigen::Vector2d> offsets;
   double largest = 0;
   for (const Tendon& tendon : drive.tendons) {

@@ -42,8 +42,7 @@ inline constexpr int frames_kept = 16;
 /// nobody waits for the clock or commands: their takers of pictures must bear that.
 class SimulatedCamera : public CameraPort {
  public:
-  /// `shot` says what its frames show; its frame, its start and whether it is covered
-  /// are filled in for each.
+  /// `shot` says what its frames show; its frame, its start and whether it is covered are filled in for each.
   SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
 
   Outcome<std::optional<Frame>> newest() override;

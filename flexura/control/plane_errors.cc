@@ -38,7 +38,7 @@ bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired
          std::abs(measured[0] - desired[0]) < std::numbers::pi;
 }
 
-bool planes_agree(const PlaneView& seen) { return std::cos(seen.alpha_1) * std::cos(seen.alpha_2) > 0; }
+bool planes_contradict(const PlaneView& seen) { return std::cos(seen.alpha_1) * std::cos(seen.alpha_2) < 0; }
 
 PlaneError plane_error(const PlaneView& measured, const PlaneView& desired) {
   PlaneError error = measured_angles(measured);

@@ -31,8 +31,9 @@ struct PlaneError {
 /// direction a whole turn on is another one.
 [[nodiscard]] bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
-/// Whether two views may be of one direction: both see it go the same way along Y. By noise they may not.
-[[nodiscard]] bool planes_agree(const PlaneView& seen);
+/// Whether the one view sees go on along Y what the other one sees come back, as of one direction by noise
+/// alone.
+[[nodiscard]] bool planes_contradict(const PlaneView& seen);
 
 /// With the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 - alpha_2d taken over to the angles by
 /// the derivative at the measured ones, as the paper's section 2 has it:

@@ -33,7 +33,7 @@ void PlaneSight::look(const DistributedArm& arm, const Eigen::VectorXd& x,
     // Azimuths go on beyond half a turn; the other plane's angles do not.
     desired.alpha_2 = seen.alpha_2 - std::remainder(seen.alpha_2 - desired.alpha_2, 2 * std::numbers::pi);
     const PlaneError error = plane_error(seen, desired);
-    if (planes_agree(seen) && planes_tell({error.theta, error.q}, {theta_d_[j], q_d_[j]})) {
+    if (!planes_contradict(seen) && planes_tell({error.theta, error.q}, {theta_d_[j], q_d_[j]})) {
       theta_[j] = error.theta, q_[j] = error.q;
       e_theta_[j] = error.e_theta, e_q_[j] = error.e_q;
       ++told_;

@@ -10,8 +10,8 @@
 namespace flexura {
 
 /// A distributed arm before two parallel views, and how far it is from a target by what they show
-/// (docs/control.md, eq. 14 and 15). Where the planes do not tell or agree (planes_tell, planes_agree) both
-/// pictures are triangulated: theta and q are read themselves, with the same noise.
+/// (docs/control.md, eq. 14 and 15). Where the planes do not tell, or contradict each other (planes_tell,
+/// planes_contradict), both pictures are triangulated: theta and q are read themselves, with the same noise.
 class PlaneSight {
  public:
   /// For arms like `arm` and the coordinates `target` of one. `noise`: standard deviations of alpha_1 and

@@ -97,7 +97,7 @@ class PlaneFeatures : public ChordFeatures {
     const double theta = seen[2 * chords + k], q = seen[3 * chords + k];
     const double theta_d = desired[2 * chords + k], q_d = desired[3 * chords + k];
     const PlaneView view{seen[k], seen[chords + k]};
-    if (planes_agree(view) && planes_tell({theta, q}, {nearest_turn(theta_d, theta), q_d}))
+    if (!planes_contradict(view) && planes_tell({theta, q}, {nearest_turn(theta_d, theta), q_d}))
       return plane_error(
           view, {nearest_turn(desired[k], seen[k]), nearest_turn(desired[chords + k], seen[chords + k])});
     PlaneError error;

@@ -71,7 +71,8 @@ class Session {
     constexpr double hopeless = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
       return fmt::format(
-          "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or turns "
+          "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "
+          "turns "
           "of the heads tell more",
           sigma / degree);
     result_.is_done = true;

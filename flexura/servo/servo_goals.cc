@@ -37,7 +37,8 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
           fmt::format("picture {} of target {} shows no arm: {}", i + 1, times_.size(), sight.reasons[i]);
   if (!problem_.empty()) return;
   if (!sight.estimate.is_found) {
-    problem_ = fmt::format("the pictures of target {} show no shape: {}", times_.size(), sight.estimate.reason);
+    problem_ =
+        fmt::format("the pictures of target {} show no shape: {}", times_.size(), sight.estimate.reason);
     return;
   }
   wanted.state = sight.estimate.shape.state;

@@ -46,10 +46,10 @@ class ServoJudge {
 /// errors, however long the servo goes on.
 class ServoTally {
  public:
-  /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there. `arm` and
-  /// `config` outlive it.
+  /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there. `arm` outlives
+  /// it.
   ServoTally(const Arm& arm, const ServoConfig& config, double begun, double last_goal)
-      : arm_(arm), config_(config), begun_(begun), last_goal_(last_goal), late_(config.settle) {}
+      : arm_(arm), begun_(begun), last_goal_(last_goal), late_(config.settle) {}
 
   /// A step that was made.
   void add(const ServoStep& step);
@@ -60,7 +60,6 @@ class ServoTally {
   void add_overshoot(const ServoStep& step);
 
   const Arm& arm_;
-  const ServoConfig& config_;
   double begun_, last_goal_;
   std::optional<double> settled_;
   LateErrors late_;

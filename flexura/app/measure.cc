@@ -46,7 +46,8 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
                                               thinnest, thickest));
   config.radius = arguments.radius;
   constexpr double least_gamma = 0.1, most_gamma = 10;
-  if (arguments.gamma && !(*arguments.gamma >= least_gamma && *arguments.gamma <= most_gamma))
+  const auto is_gamma = [](double x) { return x >= least_gamma && x <= most_gamma; };
+  if (arguments.gamma && !is_gamma(*arguments.gamma))
     throw input_error("--gamma", fmt::format("{}: expected a number from {:g} to {:g}", *arguments.gamma,
                                              least_gamma, most_gamma));
   config.gamma = arguments.gamma.value_or(1);

@@ -9,24 +9,19 @@ mapfile -t all < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sor
 targets=("${@:3}")
 [ "${#targets[@]}" -gt 0 ] || targets=("${all[@]}")
 
-# Pictures take 6 ms a scene: by a build that is optimised (ASan alone). What takes long is run in ten parts, as many
-# at a time as there are cores; those that are done are not run again with the same program, so a run that was stopped
-# goes on.
-is_of_scenes() { [ "$1" = render_fuzz ]; }
-parts_of() {
-  case $1 in
-    render_fuzz | estimate_fuzz | measure_fuzz) echo 10 ;;
-    *) echo 1 ;;
-  esac
-}
-builds=()
+# What draws or reads pictures takes milliseconds a case: by a build that is optimised (ASan alone), and in ten parts,
+# as many at a time as there are cores; those that are done are not run again with the same program, so a run that was
+# stopped goes on.
+is_of_scenes() { [[ " render_fuzz estimate_fuzz measure_fuzz " == *" $1 "* ]]; }
+parts_of() { if is_of_scenes "$1"; then echo 10; else echo 1; fi; }
+scenes=() others=()
 for target in "${targets[@]}"; do
-  if is_of_scenes "$target"; then builds+=(scenes); else builds+=(asan); fi
+  if is_of_scenes "$target"; then scenes+=("$target"); else others+=("$target"); fi
 done
-if [[ " ${builds[*]} " == *" asan "* ]]; then ./dev build asan; fi
-if [[ " ${builds[*]} " == *" scenes "* ]]; then
+if [ "${#others[@]}" -gt 0 ]; then ./dev build asan; fi
+if [ "${#scenes[@]}" -gt 0 ]; then
   cmake --preset scenes
-  cmake --build build/scenes --target render_fuzz
+  cmake --build build/scenes --target "${scenes[@]}"
 fi
 export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
 
@@ -100,8 +95,8 @@ mkdir -p docs/studies build/studies
   echo "# Fuzzing"
   echo
   echo "Every reader of foreign text, pictures and protocols, fed its committed corpus (\`tests/corpus/TARGET\`), seeded"
-  echo "mutations of it and, where any bytes mean something, bytes that are random throughout, under AddressSanitizer,"
-  echo "LeakSanitizer and UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
+  echo "mutations of it and, where any bytes mean something, bytes that are random throughout, under AddressSanitizer"
+  echo "and LeakSanitizer, and but for those that draw or measure pictures under UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
   echo "A case fails when the target crashes, lets an exception out, or takes more than half a minute."
   echo
   echo '```console'

@@ -72,6 +72,9 @@ function(flexura_use_pch target name)
   endif()
   target_include_directories(${target} SYSTEM PRIVATE
     $<BUILD_INTERFACE:$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>>)
+  # Headers compiled with other definitions than their user's are refused.
+  target_compile_definitions(${target} PRIVATE
+    $<BUILD_INTERFACE:$<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>>)
   target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
 

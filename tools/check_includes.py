@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
-"""Checks that every folder of flexura/ includes and links only folders on a strictly lower floor.
+"""Checks that every folder of flexura/ includes and links only folders on a strictly lower floor, and
+links just those that it includes.
 
 usage: check_includes.py [ROOT]
 
 ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
-an include or a link that goes up or sideways or past the list, a folder that the list lacks, a
-folder of the list without its flexura_folder(NAME ...), and a type that two headers define: the
-compiler sees no two of them at once, and the linker joins what it should not. Also what is wrong in
+an include or a link that goes up or sideways or past the list, an include of a folder that is not
+linked, a link to one that nothing includes, a folder that the list lacks, a folder of the list
+without its flexura_folder(NAME ...), and a type that two headers define: the compiler sees no two of
+them at once, and the linker joins what it should not. Also what is wrong in
 ROOT/flexura/public_headers.txt, where there is one: a header that is not there or is listed twice,
-and one that includes a header which is not listed.
+one that includes a header which is not listed, and one below "# What these include" that none
+includes.
 """
 
 import re
@@ -18,6 +21,7 @@ from pathlib import Path
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
 TYPE = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?(?: :[^;\n]*)? \{", re.M)
 UNNAMED = re.compile(r"^namespace \{\n.*?^\}  // namespace\n", re.M | re.S)
+INNER = "# What these include"  # Where the interface ends in public_headers.txt.
 LINK = re.compile(r"\bflexura::(\w+)")
 
 
@@ -54,6 +58,17 @@ def check_source(root, floors, folder, source):
                    f"{parts[1]} (floor {floors[parts[1]]})")
 
 
+def included_folders(root, floors, folder):
+    """The folders that the sources of `folder` include, and those that its tests do."""
+    by_library, by_tests = set(), set()
+    for source in (root / "flexura" / folder).rglob("*"):
+        if source.suffix in (".cc", ".h"):
+            is_test = source.stem.endswith(("_test", "_fuzz"))
+            names = re.findall(r'#\s*include\s*"flexura/(\w+)/', source.read_text())
+            (by_tests if is_test else by_library).update(set(names) & set(floors) - {folder})
+    return by_library, by_tests
+
+
 def check_target(root, floors, folder):
     path = root / "flexura" / folder / "CMakeLists.txt"
     text = path.read_text() if path.exists() else ""
@@ -61,9 +76,15 @@ def check_target(root, floors, folder):
     if not call:
         yield f"{path.relative_to(root)}: flexura_folder({folder} ...) is missing"
         return
-    for other in LINK.findall(call[1]):
+    links, (by_library, by_tests) = LINK.findall(call[1]), included_folders(root, floors, folder)
+    for other in links:
         if not may_lean_on(floors, folder, other):
             yield f"{path.relative_to(root)}: {folder} may not link {other}"
+        elif other not in by_library | by_tests:
+            yield f"{path.relative_to(root)}: {folder} links {other}, of which it includes nothing"
+    for other in sorted(by_library - set(links)):
+        if may_lean_on(floors, folder, other):
+            yield f"{path.relative_to(root)}: {folder} includes {other} and does not link it"
 
 
 def check_types(root):
@@ -77,9 +98,10 @@ def check_types(root):
 
 def check_public(root):
     path = root / "flexura/public_headers.txt"
-    listed = {}
+    listed, inner, included, is_inner = {}, [], set(), False
     for number, line in enumerate(path.read_text().splitlines() if path.exists() else [], 1):
         header = line.split("#")[0].strip()
+        is_inner = is_inner or line.startswith(INNER)
         where = f"{path.relative_to(root)}:{number}"
         if not header:
             continue
@@ -89,11 +111,18 @@ def check_public(root):
             yield f"{where}: there is no {header}"
         else:
             listed[header] = where
+            inner += [header] if is_inner else []
     for header, where in listed.items():
         for line in (root / "flexura" / header).read_text().splitlines():
             match = INCLUDE.match(line)
-            if match and match[1].removeprefix("flexura/") not in listed:
+            if not match:
+                continue
+            included.add(match[1].removeprefix("flexura/"))
+            if match[1].removeprefix("flexura/") not in listed:
                 yield f"{where}: {header} includes {match[1]}, which is not listed"
+    for header in inner:
+        if header not in included:
+            yield f"{listed[header]}: no listed header includes {header}"
 
 
 def problems(root):

@@ -15,8 +15,8 @@ class CheckIncludes(unittest.TestCase):
         self.write("flexura/floors.txt", "# floor folder\n0 base\n1 left\n1 right\n2 top\n")
         self.write("flexura/base/CMakeLists.txt", "flexura_folder(base LINKS fmt::fmt)")
         self.write("flexura/left/CMakeLists.txt", "flexura_folder(left LINKS flexura::base)")
-        self.write("flexura/right/CMakeLists.txt", "flexura_folder(right LINKS flexura::base)")
-        self.write("flexura/top/CMakeLists.txt", "flexura_folder(top LINKS flexura::left\n  flexura::base)")
+        self.write("flexura/right/CMakeLists.txt", "flexura_folder(right)")
+        self.write("flexura/top/CMakeLists.txt", "flexura_folder(top LINKS flexura::left)")
         self.write("flexura/base/a.h", "#include <vector>\n")
         self.write("flexura/left/b.cc", '#include "flexura/left/b.h"\n#include "flexura/base/a.h"\n')
         self.write("flexura/top/c_test.cc", '#include "flexura/left/b.h"\n#include "tests/support/folder.h"\n')
@@ -42,7 +42,7 @@ class CheckIncludes(unittest.TestCase):
             self.problems(), ["flexura/left/deep/d.h:1: left (floor 1) may not include right (floor 1)"])
 
     def test_an_include_relative_to_the_file_is_found(self):
-        self.write("flexura/left/b.cc", '#include "../right/e.h"\n')
+        self.write("flexura/left/b.cc", '#include "../right/e.h"\n#include "flexura/base/a.h"\n')
         self.assertEqual(
             self.problems(), ['flexura/left/b.cc:1: "../right/e.h" is not written "flexura/FOLDER/FILE"'])
 
@@ -62,6 +62,7 @@ class CheckIncludes(unittest.TestCase):
             'flexura/top/c.cc:1: "tests/support/folder.h" is not written "flexura/FOLDER/FILE"'])
 
     def test_an_unlisted_folder_is_found_and_so_is_its_use(self):
+        self.write("flexura/top/c.h", '#include "flexura/left/b.h"\n')
         self.write("flexura/top/c_test.cc", '#include "flexura/cellar/x.h"\n')
         self.write("flexura/cellar/x.h", "")
         self.assertEqual(self.problems(), [
@@ -78,6 +79,14 @@ class CheckIncludes(unittest.TestCase):
         self.write("flexura/left/CMakeLists.txt", "flexura_folder(left LINKS\n flexura::base flexura::right)")
         self.assertEqual(self.problems(), ["flexura/left/CMakeLists.txt: left may not link right"])
 
+    def test_links_are_what_is_included(self):
+        self.write("flexura/right/f.h", '#include "flexura/base/a.h"\n')
+        self.write("flexura/top/CMakeLists.txt", "flexura_folder(top LINKS flexura::left flexura::base)")
+        self.assertEqual(self.problems(), [
+            "flexura/right/CMakeLists.txt: right includes base and does not link it",
+            "flexura/top/CMakeLists.txt: top links base, of which it includes nothing",
+        ])
+
     def test_public_headers_are_there_once_with_all_that_they_include(self):
         self.write("flexura/left/b.h", '#include "flexura/base/a.h"\n')
         self.write("flexura/public_headers.txt", "# these\nleft/b.h\n\nbase/a.h  # carried\n")
@@ -88,6 +97,13 @@ class CheckIncludes(unittest.TestCase):
             "flexura/public_headers.txt:3: left/b.h is listed twice",
             "flexura/public_headers.txt:1: left/b.h includes flexura/base/a.h, which is not listed",
         ])
+
+    def test_what_is_installed_for_the_compiler_alone_is_included(self):
+        self.write("flexura/base/d.h", "")
+        self.write("flexura/left/b.h", '#include "flexura/base/a.h"\n')
+        self.write("flexura/public_headers.txt", "left/b.h\n# What these include: more\nbase/a.h\nbase/d.h\n")
+        self.assertEqual(
+            self.problems(), ["flexura/public_headers.txt:4: no listed header includes base/d.h"])
 
 
 if __name__ == "__main__":

@@ -5,13 +5,16 @@ usage: make_reference.py OUT
 
 What is documented are the headers of flexura/public_headers.txt up to its second comment, with
 docs/library.md in front. Anything that Doxygen finds wrong in a comment is printed, a line each, and
-so is a class without one; then the exit status is 1. Single members need no comment where their
-name says all.
+so are a class without one and a function without one; then the exit status is 1. Of overloads one
+comment does. None is needed by data members, by what only asks an object for something without an
+argument, by what is defaulted, overrides or is an operator, and by fields_of and names_of, which
+base/table.h tells of: there the name says all.
 """
 
 import re
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -24,12 +27,18 @@ SETTINGS = {
     "EXTRACT_ALL": "NO",
     "WARN_IF_UNDOCUMENTED": "YES",
     "GENERATE_LATEX": "NO",
+    "GENERATE_XML": "YES",
+    "XML_PROGRAMLISTING": "NO",
     "HAVE_DOT": "NO",
     "QUIET": "YES",
     "SHOW_USED_FILES": "NO",
     "EXCLUDE_SYMBOLS": "flexura::Codec",
     "TOC_INCLUDE_HEADINGS": "0",
 }
+
+
+# Of which one type after the other has one.
+KNOWN = ("fields_of", "names_of")
 
 
 def interface(root):
@@ -58,6 +67,36 @@ def complaints(told):
         yield line.replace(f"{ROOT}/", "")
 
 
+def needs_words(function):
+    """Whether a memberdef of a function is one whose name does not say all."""
+    arguments, name = function.findtext("argsstring") or "", function.findtext("name")
+    is_question = arguments.startswith("()") and (function.get("const") == "yes" or name.endswith("Config"))
+    is_given = re.search(r"= ?(default|delete)$", arguments) or "&&)" in arguments
+    is_override = function.find("reimplements") is not None
+    return not (is_question or is_given or is_override or name.startswith(("operator", "~")) or name in KNOWN)
+
+
+def silent_functions(xml):
+    """The functions without a comment in Doxygen's XML, as lines that say where."""
+    for path in sorted(xml.glob("*.xml")):
+        for compound in ElementTree.parse(path).getroot().iter("compounddef"):
+            is_inner = compound.findtext("compoundname").endswith("_detail")
+            is_ours = compound.get("prot", "public") == "public" and not is_inner
+            if compound.get("kind") not in ("class", "struct", "namespace") or not is_ours:
+                continue
+            functions = [m for m in compound.iter("memberdef") if m.get("kind") == "function"]
+            described = {
+                m.findtext("name")
+                for m in functions
+                if any("".join(m.find(part).itertext()).strip() for part in ("briefdescription", "detaileddescription"))
+            }
+            for function in functions:
+                name, at = function.findtext("name"), function.find("location")
+                if function.get("prot") == "public" and name not in described and needs_words(function):
+                    where = f"{at.get('file').removeprefix(f'{ROOT}/')}:{at.get('line')}"
+                    yield f"{where}: {compound.findtext('compoundname')}::{name} has no comment"
+
+
 def main():
     out = Path(sys.argv[1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -70,7 +109,7 @@ def main():
     }
     text = "".join(f"{key} = {value}\n" for key, value in settings.items())
     done = subprocess.run(["doxygen", "-"], input=text, text=True, cwd=ROOT, capture_output=True, check=False)
-    found = list(complaints(done.stderr))
+    found = [*complaints(done.stderr), *sorted(set(silent_functions(out / "xml")))]
     print(*found, sep="\n", end="\n" if found else "")
     return 1 if found or done.returncode else 0
 

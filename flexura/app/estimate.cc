@@ -15,14 +15,13 @@
 #include <utility>
 
 #include "flexura/app/commands.h"
-#include "flexura/app/estimate_doubts.h"
-#include "flexura/app/picture_doubts.h"
 #include "flexura/base/bytes.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
 #include "flexura/estimate/curve_angles.h"
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_hint.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/model/backbone.h"
@@ -32,6 +31,7 @@
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/linear_light.h"
 #include "flexura/vision/picture_file.h"
+#include "flexura/vision/picture_hints.h"
 
 namespace flexura {
 namespace {
@@ -179,11 +179,11 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   ArmFinder finder(finding);
   const ArmSighting& found = finder.find(photograph);
   look.reason = found.reason, look.notes = found.notes;
-  auto doubt = doubt_of_size(view);
-  look.is_of_other_size = doubt.has_value();
-  if (doubt) look.notes.push_back(std::move(*doubt));
-  if (auto note = doubt_of_exposure(photograph, gray_picture(photograph.bytes)))
-    look.notes.push_back(std::move(*note));
+  auto hint = hint_of_size(view.lens, view.width, view.height);
+  look.is_of_other_size = hint.has_value();
+  if (hint) look.notes.push_back(std::move(*hint));
+  if (!photograph.is_mask)
+    if (auto note = hint_of_exposure(gray_picture(photograph.bytes))) look.notes.push_back(std::move(*note));
   look.sighting = sighting_of(found, view, photograph.bytes);
   look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();
@@ -311,11 +311,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
       found.notes.push_back(
           fmt::format("pictures {} and {} are the same", same - pictures.begin() + 1, i + 1));
   }
-  if (found.is_found && config.has_bends)
-    if (auto doubt = doubt_of_radius(sightings, found.shape)) found.notes.push_back(std::move(*doubt));
-  if (!found.is_found && config.prior.is_base_position_known)
-    if (auto doubt = doubt_of_base(sightings, config.prior.arm.X_WB.position))
-      found.notes.push_back(std::move(*doubt));
+  if (auto hint = hint_of(config.prior, sightings, found)) found.notes.push_back(std::move(*hint));
   const auto& sections = config.prior.arm.sections;
   if (config.has_bends && !found.is_trusted() && sections.size() > 1 &&
       std::ranges::any_of(sections, &Section::can_stretch))

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "flexura/app/measure_job.h"
-#include "flexura/app/picture_doubts.h"
 #include "flexura/base/table.h"
 #include "flexura/vision/axis_points.h"
 #include "flexura/vision/backbone_image.h"
 #include "flexura/vision/markers.h"
+#include "flexura/vision/picture_hints.h"
 
 namespace flexura {
 namespace {
@@ -99,9 +99,10 @@ bool measure_arm(const Job& job) {
   if (job.config.lens && !is_backbone)
     notes.emplace_back(
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
-  if (auto note = doubt_of_exposure(job.photograph, job.gray)) notes.push_back(std::move(*note));
+  if (!job.photograph.is_mask)
+    if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
   if (job.config.lens)
-    if (auto note = doubt_of_size({*job.config.lens, {}, job.gray.width(), job.gray.height()}))
+    if (auto note = hint_of_size(*job.config.lens, job.gray.width(), job.gray.height()))
       notes.push_back(std::move(*note));
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   job.answer.add("notes", texts_node(notes))

@@ -26,10 +26,13 @@ struct NumberRange {
   [[nodiscard]] std::string text(const UnitSpelling& spelling) const;
 };
 
-/// Ranges by their bounds, in base units: open where "above" says so, closed otherwise.
+/// A range by its bounds, in base units, as those that follow: open where "above" says so, closed otherwise.
 [[nodiscard]] inline NumberRange above(double min) { return {.min = min, .open_min = true}; }
+/// From `min` on.
 [[nodiscard]] inline NumberRange at_least(double min) { return {.min = min}; }
+/// From `min` to `max`, both within.
 [[nodiscard]] inline NumberRange between(double min, double max) { return {.min = min, .max = max}; }
+/// Above `min`, up to `max`.
 [[nodiscard]] inline NumberRange above_up_to(double min, double max) {
   return {.min = min, .max = max, .open_min = true};
 }

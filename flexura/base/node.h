@@ -56,9 +56,11 @@ struct Node::Member {
   Node node;
 };
 
-/// Values a program writes. A number that is not finite is written as nothing: JSON has no word for it.
+/// A number that a program writes. One that is not finite is written as nothing: JSON has no word for it.
 [[nodiscard]] Node number_node(double value);
+/// A text that a program writes.
 [[nodiscard]] Node text_node(std::string value);
+/// An array of texts.
 [[nodiscard]] Node texts_node(const std::vector<std::string>& values);
 
 /// Lays `over` upon `under`: tables are merged key by key, anything else is replaced.

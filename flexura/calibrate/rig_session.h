@@ -117,16 +117,17 @@ class RigSessionWatcher {
   RigSessionWatcher(const RigSessionWatcher&) = delete;
   RigSessionWatcher& operator=(const RigSessionWatcher&) = delete;
 
-  /// The arm is sent to `state`, to arrive `duration` s later; and a head and a stage to where the stance has
-  /// them. At `time`, s of the rig's clock.
+  /// The arm is sent to `state`, to arrive `duration` s later; at `time`, s of the rig's clock.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
+  /// A head and a stage are sent to where the stance has them; at `time`, s of the rig's clock.
   virtual void camera_sent(double time, const RigStance& stance) = 0;
   /// A picture was taken and measured.
   virtual void seen(const RigSight& sight) = 0;
   /// What the least squares know after a look (calibrate_rig_in_session).
   virtual void known(const RigStep& step) = 0;
-  /// What a loop of the paper's has the simulator work out beforehand, and decides (calibrate_by_loop).
+  /// What a loop of the paper's has the simulator work out beforehand (calibrate_by_loop).
   virtual void planned(const IdealArc& /*arc*/) {}
+  /// What such a loop decides.
   virtual void decided(const LoopDecision& /*decision*/) {}
   /// Whether the session shall end early.
   virtual bool is_cancelled() { return false; }

@@ -61,19 +61,23 @@ class RigVariables {
   /// The rig at x = 0.
   [[nodiscard]] const RigModel& guess() const { return guess_; }
 
-  /// Where the slots of each begin, to be looked up in `column` and `value`.
+  /// Where a camera's slots begin, to be looked up in `column` and `value`.
   [[nodiscard]] std::size_t camera_slots(std::size_t camera) const { return cameras_.at(camera); }
+  /// The same of the arm.
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
+  /// Of a pose of the arm.
   [[nodiscard]] std::size_t pose_slots(std::size_t pose) const { return poses_.at(pose); }
+  /// Of a stance of a camera.
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
   /// How many slots a camera has.
   [[nodiscard]] Eigen::Index slots_a_camera(std::size_t camera) const;
   /// Where a slot's number stands in x; -1: held.
   [[nodiscard]] Eigen::Index column(std::size_t slot) const { return slots_[slot].column; }
-  /// A slot's number in x; 0 where it is held. `value3`: of three slots that follow each other.
+  /// A slot's number in x; 0 where it is held.
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
+  /// Those of three slots that follow each other.
   [[nodiscard]] Eigen::Vector3d value3(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }
@@ -86,8 +90,9 @@ class RigVariables {
   /// The observations' poses, as commanded, and stances, as read.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
-  /// How the arm stood in a pose, and a camera in a stance.
+  /// How the arm stood in a pose.
   [[nodiscard]] ArmState pose(const Eigen::VectorXd& x, std::size_t pose) const;
+  /// How a camera stood in a stance.
   [[nodiscard]] RigStance stance(const Eigen::VectorXd& x, std::size_t stance) const;
 
  private:

@@ -58,8 +58,9 @@ struct FrameTimes {
   double end = 0;       ///< Of the last row's exposure, s.
   double received = 0;  ///< end + delay, s.
 };
-/// Of a frame that starts at `start`, s; of frame n, which starts at n / frame_rate.
+/// Of a frame that starts at `start`, s.
 [[nodiscard]] FrameTimes times_of_frame_at(const SensorConfig& sensor, double start);
+/// Of frame number `frame`, which starts at frame / frame_rate.
 [[nodiscard]] FrameTimes frame_times(const SensorConfig& sensor, std::int64_t frame);
 
 /// Whether a time, s, is in one of the spans [from, to).

@@ -73,8 +73,9 @@ class ZoomTable {
   /// And with the same number of the lens at ratio 1, directly or through rows that leave it out.
   /// The same errors.
   [[nodiscard]] Eigen::Vector<double, intrinsics_count> by_lens(double zoom) const;
-  /// The ratio at `zoom`, interpolated as the focal lengths are, and its derivative. The same errors.
+  /// The ratio at `zoom`, interpolated as the focal lengths are. The same errors.
   [[nodiscard]] double ratio(double zoom) const;
+  /// Its derivative by one position of the zoom. The same errors.
   [[nodiscard]] double ratio_slope(double zoom) const;
 
  private:

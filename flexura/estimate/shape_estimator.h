@@ -58,6 +58,7 @@ struct ShapeEstimate {
 /// not found, with the reason. One for each thread: it keeps its storage.
 class ShapeEstimator {
  public:
+  /// Of the arm that `prior` describes, as far as it does.
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
 
   /// From nothing: of two sightings points are paired by epipolar geometry and their order, and triangulated.

@@ -87,8 +87,9 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// Whether a task's method is one of the paper's loops.
 [[nodiscard]] bool is_loop(const CalibrateTask& task);
-/// Whether its method is one of those as printed, or one that looks at the calibration cylinder.
+/// Whether its method is one of those as printed.
 [[nodiscard]] bool is_as_printed(const CalibrateTask& task);
+/// Whether its method is one that looks at the calibration cylinder.
 [[nodiscard]] bool is_before_etalon(const CalibrateTask& task);
 /// By how much the arm is bent into an arc, rad.
 [[nodiscard]] double arc_bend(const CalibrateTask& task);
@@ -102,10 +103,11 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 [[nodiscard]] std::array<std::size_t, 2> calibrated_cameras(const CalibrateTask& task,
                                                             const std::vector<CameraConfig>& cameras);
 
-/// What the task asks of a session, and how wrong the rig may be.
+/// What the task asks of a session.
 [[nodiscard]] RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
                                               const std::vector<CameraConfig>& cameras,
                                               const StandConfig& stand);
+/// How wrong the task takes the rig to be, at most.
 [[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed,
                                      const StandConfig& stand);
 

@@ -301,11 +301,13 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*);
 const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
 const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*);
 
-/// The topics of a camera's images, of what the simulator has instead, and of its head's and its stage's
-/// readings.
+/// The topic of a camera's images.
 [[nodiscard]] std::string image_topic(std::string_view camera);
+/// Of the images that the simulator has in their place.
 [[nodiscard]] std::string ideal_image_topic(std::string_view camera);
+/// Of the readings of its head.
 [[nodiscard]] std::string head_topic(std::string_view camera);
+/// Of the readings of its stage.
 [[nodiscard]] std::string stage_topic(std::string_view camera);
 
 /// Nanoseconds of `time` s >= 0, rounded to the nearest.

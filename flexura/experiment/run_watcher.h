@@ -30,14 +30,17 @@ class RunWatcher {
   /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}
-  /// A command of a calibration, what it sees in a picture, and what it decides, as the log has them; the
-  /// last decision ends it.
+  /// A command of a calibration, as the log has it.
   virtual void calibration_moved(const CalibrationMoveMessage& /*move*/) {}
+  /// What a calibration sees in a picture, likewise.
   virtual void calibration_saw(const CalibrationSightingMessage& /*sighting*/) {}
+  /// What a calibration decides, likewise; the last decision ends it.
   virtual void calibration_decided(const CalibrationDecisionMessage& /*decision*/) {}
-  /// What a servo sends, and what it sees in a picture, as the log has them; and that it has ended.
+  /// What a servo sends, as the log has it.
   virtual void servo_stepped(const ServoStepMessage& /*step*/) {}
+  /// What a servo sees in a picture, likewise.
   virtual void servo_saw(const ServoSightingMessage& /*sighting*/) {}
+  /// A servo has ended.
   virtual void servo_ended() {}
 };
 

@@ -9,14 +9,14 @@
 
 namespace flexura {
 
-/// The shape that a target without pictures means for `arm`, and how far it stays from what was said, a share
-/// of the arm's length. The search for it begins at `from`.
+/// A shape that a target means for an arm, and how far it stays from what was said.
 struct ServoTargetShape {
   ArmState state;
   /// Share of the arm's length: of a place that of the tip, of a curve and of angles root mean square along
   /// the arm; 0 when the shape is what was asked for.
   double missed = 0;
 };
+/// That of a target without pictures, for `arm`. The search for it begins at `from`.
 [[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm,
                                                   const ArmState& from);
 

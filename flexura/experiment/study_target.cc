@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "flexura/camera/mount.h"
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/ray_field.h"
 #include "flexura/render/scene.h"
 #include "flexura/render/tracer.h"
@@ -40,7 +41,8 @@ Scene scene_of(const Pose& X_WF, double radius, const Eigen::Vector3d& eye) {
 class RayMeeting {
  public:
   explicit RayMeeting(const Renderer& renderer)
-      : view_(renderer.view()), tracer_(renderer.stage(), renderer.tiles().all_parts()) {}
+      : view_(renderer.prepared().view),
+        tracer_(renderer.prepared().stage, renderer.prepared().tiles.all_parts()) {}
 
   // In W; none where the pixel has no ray, or its ray meets nothing.
   [[nodiscard]] std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& pixel) const {

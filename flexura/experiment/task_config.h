@@ -89,8 +89,8 @@ const Table<SineTask>& fields_of(const SineTask*);
 const Table<KeyframesTask>& fields_of(const KeyframesTask*);
 const Table<ExpressionTask>& fields_of(const ExpressionTask*);
 
-[[nodiscard]] std::string task_name(const TaskConfig& task);  ///< Its name, else its kind.
-[[nodiscard]] std::string_view task_kind(const TaskConfig& task);
+[[nodiscard]] std::string task_name(const TaskConfig& task);       ///< Its name, else its kind.
+[[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< "move", "servo", ...
 /// Whether it is done by the rig, so that only then is known where the arm comes to.
 [[nodiscard]] bool is_for_rig(const TaskConfig& task);
 

@@ -24,10 +24,11 @@ class ArmVariables {
     bool is_stretchable;  ///< The stretch varies.
     /// Where the stretch stands in x.
     [[nodiscard]] Eigen::Index stretch_at() const { return at + (is_spatial ? 2 : 1); }
-    /// The part's own numbers out of x, rad and factor; what does not vary has its one value.
+    /// The part's bends out of x, rad; one that does not vary is 0.
     [[nodiscard]] Eigen::Vector2d bend(const Eigen::VectorXd& x) const {
       return {x[at], is_spatial ? x[at + 1] : 0.0};
     }
+    /// Its stretch out of x, a factor; where that does not vary its one value.
     [[nodiscard]] double stretch(const Eigen::VectorXd& x) const {
       return is_stretchable ? x[stretch_at()] : stretch_limits[0];
     }

@@ -79,6 +79,7 @@ struct MotorPeaks {
 /// of these to the next the mean acceleration.
 class MotorWatch {
  public:
+  /// For the drive's motors, in the order of its axes.
   explicit MotorWatch(const Drive& drive);
   /// The positions, microsteps, at `time`, s. std::invalid_argument: not one position an axis, or a time not
   /// after the last one.

@@ -27,6 +27,7 @@ struct PortFault {
 template <class T>
 class [[nodiscard]] Outcome {
  public:
+  /// A value, or a fault, where an outcome is asked for.
   Outcome(T value) : held_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
   Outcome(PortFault fault) : held_(std::move(fault)) {}  // NOLINT(google-explicit-constructor)
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/ray_field.h"
 #include "flexura/render/renderer.h"
 #include "tests/support/coverage_errors.h"
@@ -72,10 +73,10 @@ void compare_known(const KnownScene& known, const View& view, BothCoverageErrors
   renderer.render(known.scene, view, PixelKind::gray, quick);
   for (int v = 0; v < view.height; ++v) {
     for (int u = 0; u < view.width; ++u) {
-      const auto ray = renderer.rays().ray(u, v);
+      const auto ray = renderer.prepared().rays.ray(u, v);
       if (!ray) continue;
       const auto near = known.arm ? known.arm->near(view.X_WC.position, view.X_WC.rotation * ray->direction,
-                                                    renderer.rays().largest_step())
+                                                    renderer.prepared().rays.largest_step())
                                   : std::vector<FrustumTube::Frustum>();
       const double in_exact = exact.light.at(u, v), in_quick = quick.light.at(u, v);
       const double rough = mean_gray(known, near, view, u, v, 4);

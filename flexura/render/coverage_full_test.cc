@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "flexura/render/cell.h"
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/ray_field.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/tracer.h"
@@ -43,10 +44,10 @@ void compare(const Scene& scene, const FrustumTube& tube, const View& view, IsCo
   renderer.render(scene, view, PixelKind::gray, quick);
   for (int v = 0; v < view.height; ++v) {
     for (int u = 0; u < view.width; ++u) {
-      const auto ray = renderer.rays().ray(u, v);
+      const auto ray = renderer.prepared().rays.ray(u, v);
       if (!ray) continue;
-      const auto near =
-          tube.near(view.X_WC.position, view.X_WC.rotation * ray->direction, renderer.rays().largest_step());
+      const auto near = tube.near(view.X_WC.position, view.X_WC.rotation * ray->direction,
+                                  renderer.prepared().rays.largest_step());
       const double in_exact = exact.light.at(u, v), in_quick = quick.light.at(u, v);
       const double rough = sampled(near, view, u, v, 5, is_counted);
       const bool is_inner = (rough == 0 || rough == 1) && std::abs(in_exact - rough) < 1e-6 &&
@@ -198,9 +199,10 @@ void compare_with_rays(const Scene& scene, const View& view, CoverageErrors& err
   renderer.render(scene, view, PixelKind::gray, picture, true);
   for (int v = 0; v < view.height; ++v) {
     for (int u = 0; u < view.width; ++u) {
-      const auto ray = renderer.rays().ray(u, v);
+      const auto ray = renderer.prepared().rays.ray(u, v);
       if (!ray) continue;
-      const Tracer tracer(renderer.stage(), renderer.tiles().parts(u / Tiles::size, v / Tiles::size));
+      const Tracer tracer(renderer.prepared().stage,
+                          renderer.prepared().tiles.parts(u / Tiles::size, v / Tiles::size));
       const double found = picture.light.at(u, v), rough = mean_of_rays(tracer, *ray, 4);
       if (std::abs(found - rough) > 1e-4) errors.add(found - mean_of_rays(tracer, *ray, 32));
     }

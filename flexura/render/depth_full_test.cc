@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/tracer.h"
 #include "tests/support/random_cases.h"
@@ -96,7 +97,7 @@ TEST(Depth, IsEmbreesWhereRaysDoNotGraze) {
     Renderer renderer;
     renderer.prepare(scene, view);
     const TriangleTube triangles(scene.arm.tube, view.X_WC.inverse(), 600, 720);
-    const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+    const Tracer tracer(renderer.prepared().stage, renderer.prepared().tiles.all_parts());
     for (int v = 0; v < view.height; ++v) {
       for (int u = 0; u < view.width; ++u) {
         const Ray ray = *ray_at(view.lens, {u, v});
@@ -131,10 +132,10 @@ TEST(Depth, HasNoSeamWhereSectionsMeet) {
     renderer.prepare(
         scene,
         pinhole_view(look_at(X_WS.position + 0.5 * out, X_WS.position, X_WS.rotation.col(2)), 101, 101, 400));
-    const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+    const Tracer tracer(renderer.prepared().stage, renderer.prepared().tiles.all_parts());
     Hit before;
     for (int i = -400; i <= 400; ++i) {
-      const Hit hit = tracer.hit(*ray_at(renderer.view().lens, {50.2, 50 + 1e-3 * i}));
+      const Hit hit = tracer.hit(*ray_at(renderer.prepared().view.lens, {50.2, 50 + 1e-3 * i}));
       if (i > -400 && std::abs(hit.s - 0.33) < 2e-4) {
         EXPECT_NEAR(hit.depth, before.depth, 2e-6);
         EXPECT_LT((hit.normal - before.normal).norm(), 1e-4);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/tracer.h"
 #include "flexura/render/truth.h"
 
@@ -70,18 +71,19 @@ class Carrier {
 Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view) {
   check(scene);
   check_camera(view.X_WC);
-  const Stage& stage = renderer.stage();
+  const Stage& stage = renderer.prepared().stage;
   const Carrier carrier(*stage.scene, scene);
-  const RayField& rays = renderer.rays();
+  const RayField& rays = renderer.prepared().rays;
   Image<float> flow(rays.width(), rays.height(), 2, std::numeric_limits<float>::quiet_NaN());
   for (int v = 0; v < rays.height(); ++v) {
     for (int u = 0; u < rays.width(); ++u) {
       const auto ray = rays.ray(u, v);
-      const auto parts = renderer.tiles().parts(u / Tiles::size, v / Tiles::size);
+      const auto parts = renderer.prepared().tiles.parts(u / Tiles::size, v / Tiles::size);
       if (!ray || parts.empty()) continue;
       const Hit hit = Tracer(stage, parts).hit(*ray);
       if (hit.is_none()) continue;
-      const Eigen::Vector3d p_WP = renderer.view().X_WC * Eigen::Vector3d(hit.depth * ray->direction);
+      const Eigen::Vector3d p_WP =
+          renderer.prepared().view.X_WC * Eigen::Vector3d(hit.depth * ray->direction);
       const auto pixel = view.project(carrier.carry(stage, hit, p_WP));
       if (!pixel) continue;
       flow.at(u, v, 0) = static_cast<float>(pixel->x() - u);

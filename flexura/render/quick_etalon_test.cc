@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "flexura/math/so3.h"
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/quick_picture.h"
 #include "flexura/render/renderer.h"
 #include "tests/support/render_scenes.h"
@@ -69,7 +70,9 @@ TEST(QuickEtalon, AgreesWithTheExactWay) {
     }
     QuickPicture picture;
     renderer.prepare(scene, view);
-    if (!picture.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), kind, quick)) return;
+    if (!picture.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(), kind,
+                      quick))
+      return;
     ++drawn, pixels += 64 * 48, left += static_cast<int>(picture.left_out().size());
   });
   std::printf("etalon: light differs by %.5f at worst, %.1f %% of %d pictures left out\n", worst,
@@ -242,8 +245,8 @@ TEST(QuickEtalon, LeavesHardlyAnythingToTheExactWay) {
     renderer.prepare(scene, view);
     LightImage picture{Image<float>(640, 480), Image<float>(640, 480)};
     QuickPicture quick;
-    EXPECT_TRUE(
-        quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    EXPECT_TRUE(quick.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(),
+                           PixelKind::gray, picture));
     return quick.left_out().size();
   };
   const double area = 2 * f * scene.etalon->radius / far * f * scene.etalon->height / far;  // px

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "flexura/math/so3.h"
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/renderer.h"
 #include "tests/support/picture_difference.h"
 #include "tests/support/render_scenes.h"
@@ -131,8 +132,8 @@ std::size_t left_out_of(const Scene& scene, const View& view) {
   renderer.prepare(scene, view);
   LightImage picture{Image<float>(view.width, view.height), Image<float>(view.width, view.height)};
   QuickPicture quick;
-  EXPECT_TRUE(
-      quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+  EXPECT_TRUE(quick.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(),
+                         PixelKind::gray, picture));
   return quick.left_out().size();
 }
 
@@ -200,8 +201,8 @@ TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
     Renderer renderer;
     renderer.prepare(one, seen);
     LightImage picture{Image<float>(seen.width, seen.height), Image<float>(seen.width, seen.height)};
-    return QuickPicture().draw(renderer.stage(), renderer.rays(), seen.lens.intrinsics(), PixelKind::gray,
-                               picture);
+    return QuickPicture().draw(renderer.prepared().stage, renderer.prepared().rays, seen.lens.intrinsics(),
+                               PixelKind::gray, picture);
   };
   EXPECT_TRUE(is_drawn(scene, view));
   View near = view;
@@ -229,8 +230,8 @@ TEST(QuickPicture, LeavesOutWhatLiesBelowAFloorsHorizon) {
     renderer.prepare(scene, view);
     LightImage picture{Image<float>(64, 49, 1), Image<float>(64, 49, 1)};
     QuickPicture quick;
-    ASSERT_TRUE(
-        quick.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    ASSERT_TRUE(quick.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(),
+                           PixelKind::gray, picture));
     const auto& left = quick.left_out();
     if (height < 0) {
       EXPECT_TRUE(left.empty()) << "from below it is not seen";

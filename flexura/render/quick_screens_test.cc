@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "flexura/math/so3.h"
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/quick_picture.h"
 #include "flexura/render/renderer.h"
 #include "tests/support/picture_difference.h"
@@ -74,8 +75,8 @@ TEST(QuickScreens, DrawsScreensThatOverlap) {
     EXPECT_EQ(compare(exact, quick).bad_depths, 0);
     QuickPicture way;
     LightImage picture{Image<float>(160, 120), Image<float>(160, 120)};
-    ASSERT_TRUE(
-        way.draw(renderer.stage(), renderer.rays(), view.lens.intrinsics(), PixelKind::gray, picture));
+    ASSERT_TRUE(way.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(),
+                         PixelKind::gray, picture));
     EXPECT_LT(way.left_out().size(), 150U);  // Corners, and where edges cross.
   });
 }

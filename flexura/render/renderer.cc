@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "flexura/render/cell.h"
+#include "flexura/render/prepared_scene.h"
+#include "flexura/render/quick_picture.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
@@ -21,32 +23,49 @@ void fit(int width, int height, int channels, Image<float>& image) {
   image = Image<float>(width, height, channels);
 }
 
-}  // namespace
-
-void Renderer::prepare(const Scene& scene, const View& view) {
-  check(scene);
-  check_camera(view.X_WC);
-  view_ = view;
-  rays_.set(view.lens, view.width, view.height);
-  build_stage(scene, view.X_WC, rays_.largest_step(), stage_);
-  tiles_.build(stage_, rays_);
-}
-
-void Renderer::render_pixel(int u, int v, PixelKind pixels, LightImage& picture) const {
-  const auto parts = tiles_.parts(u / Tiles::size, v / Tiles::size);
-  const Tracer tracer(stage_, parts);
-  const auto ray = rays_.ray(u, v);
+// The exact way.
+void render_pixel(const PreparedScene& prepared, int u, int v, PixelKind pixels, LightImage& picture) {
+  const Stage& stage = prepared.stage;
+  const auto parts = prepared.tiles.parts(u / Tiles::size, v / Tiles::size);
+  const Tracer tracer(stage, parts);
+  const auto ray = prepared.rays.ray(u, v);
   if (parts.empty() || !ray) {
-    store(stage_.scene->background, u, v, pixels, picture.light);
+    store(stage.scene->background, u, v, pixels, picture.light);
     picture.depth.at(u, v) = std::numeric_limits<float>::infinity();
     return;
   }
   const Trace here = tracer.trace(*ray);
   Color sum = Color::Zero();
   cover(tracer, *ray, {0, 0}, 0.5, 0, here,
-        [&](const Hit& hit, const Ray& at, double area) { sum += area * light_of(stage_, hit, at); });
+        [&](const Hit& hit, const Ray& at, double area) { sum += area * light_of(stage, hit, at); });
   store(sum, u, v, pixels, picture.light);
   picture.depth.at(u, v) = static_cast<float>(here.hit.depth);
+}
+
+}  // namespace
+
+struct Renderer::Work {
+  explicit Work(SimdPath path) : quick(path) {}
+
+  PreparedScene prepared;
+  QuickPicture quick;
+};
+
+Renderer::Renderer(SimdPath path) : work_(std::make_unique<Work>(path)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const PreparedScene& Renderer::prepared() const { return work_->prepared; }
+
+void Renderer::prepare(const Scene& scene, const View& view) {
+  check(scene);
+  check_camera(view.X_WC);
+  PreparedScene& to = work_->prepared;
+  to.view = view;
+  to.rays.set(view.lens, view.width, view.height);
+  build_stage(scene, view.X_WC, to.rays.largest_step(), to.stage);
+  to.tiles.build(to.stage, to.rays);
 }
 
 void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture,
@@ -54,13 +73,15 @@ void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, Li
   prepare(scene, view);
   fit(view.width, view.height, pixels == PixelKind::gray ? 1 : 3, picture.light);
   fit(view.width, view.height, 1, picture.depth);
-  if (!is_exact && quick_.draw(stage_, rays_, view.lens.intrinsics(), pixels, picture)) {
-    for (const QuickPicture::Pixel& pixel : quick_.left_out())
-      render_pixel(pixel.u, pixel.v, pixels, picture);
+  const PreparedScene& prepared = work_->prepared;
+  QuickPicture& quick = work_->quick;
+  if (!is_exact && quick.draw(prepared.stage, prepared.rays, view.lens.intrinsics(), pixels, picture)) {
+    for (const QuickPicture::Pixel& pixel : quick.left_out())
+      render_pixel(prepared, pixel.u, pixel.v, pixels, picture);
     return;
   }
   for (int v = 0; v < view.height; ++v)
-    for (int u = 0; u < view.width; ++u) render_pixel(u, v, pixels, picture);
+    for (int u = 0; u < view.width; ++u) render_pixel(prepared, u, v, pixels, picture);
 }
 
 }  // namespace flexura

@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/tracer.h"
 #include "tests/support/frustums.h"
@@ -169,7 +170,7 @@ TEST(Shadow, OfTheArmFallsOnItself) {
   const View view = pinhole_view(look_at({1, 1.1, 1}, {0.15, 0.25, 0}), 120, 120, 260);
   Renderer renderer;
   renderer.prepare(scene, view);
-  const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+  const Tracer tracer(renderer.prepared().stage, renderer.prepared().tiles.all_parts());
   double squares = 0;
   int count = 0, shaded = 0, lit = 0;
   for (int v = 0; v < view.height; ++v) {
@@ -177,8 +178,8 @@ TEST(Shadow, OfTheArmFallsOnItself) {
       const Ray ray = *ray_at(view.lens, {u, v});
       const Hit hit = tracer.hit(ray);
       if (hit.is_none()) continue;
-      const double cosine = hit.normal.dot(renderer.stage().light);
-      const double share = gray_of(light_of(renderer.stage(), hit, ray)) / std::max(cosine, 1e-9);
+      const double cosine = hit.normal.dot(renderer.prepared().stage.light);
+      const double share = gray_of(light_of(renderer.prepared().stage, hit, ray)) / std::max(cosine, 1e-9);
       if (cosine < 0.15) continue;
       const Eigen::Vector3d p_WQ = view.X_WC * Eigen::Vector3d(hit.depth * ray.direction + 1e-4 * hit.normal);
       const double expected = sampled_share(

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
@@ -70,11 +71,11 @@ class OutlineMaker {
   OutlineMaker(const Renderer& renderer, double step)
       : renderer_(renderer),
         step_(step),
-        X_CW_(renderer.view().X_WC.inverse()),
-        tracer_(renderer.stage(), renderer.tiles().all_parts()) {}
+        X_CW_(renderer.prepared().view.X_WC.inverse()),
+        tracer_(renderer.prepared().stage, renderer.prepared().tiles.all_parts()) {}
 
   std::vector<Outline> make() {
-    const ArmLook& arm = renderer_.stage().scene->arm;
+    const ArmLook& arm = renderer_.prepared().stage.scene->arm;
     for (std::size_t i = 0; i < arm.tube.size(); ++i) {
       // A step of the radius parts the contour.
       if (i > 0 && std::abs(arm.tube[i].radius[0] - arm.tube[i - 1].radius[1]) > 1e-12) close();
@@ -99,7 +100,7 @@ class OutlineMaker {
     constexpr int parts = 8;
     for (int i = 0; i <= parts; ++i) {
       const Pose X_WS = tube.arc.pose(tube.arc.length * i / parts);
-      const auto pixel = renderer_.view().project(X_WS.position);
+      const auto pixel = renderer_.prepared().view.project(X_WS.position);
       if (before && pixel) pixels += (*pixel - *before).norm();
       before = pixel;
     }
@@ -147,8 +148,9 @@ class OutlineMaker {
   void add_rim(const Section2d& section) {
     Outline rim;
     rim.kind = OutlineKind::rim;
-    const double pixels = 2 * std::numbers::pi * section.radius /
-                          (std::max(section.X_CS.position.z(), 1e-9) * renderer_.rays().largest_step());
+    const double pixels =
+        2 * std::numbers::pi * section.radius /
+        (std::max(section.X_CS.position.z(), 1e-9) * renderer_.prepared().rays.largest_step());
     const int count = static_cast<int>(std::clamp(std::ceil(pixels / step_), 16.0, 2000.0));
     for (int i = 0; i <= count; ++i)
       rim.points.push_back(point_at(section, 2 * std::numbers::pi * i / count));
@@ -185,11 +187,11 @@ class OutlineMaker {
 
   // With its pixel, and whether it is seen.
   OutlinePoint judged(OutlinePoint point, double radius) const {
-    point.pixel = renderer_.view().lens.project(point.p_CP);
+    point.pixel = renderer_.prepared().view.lens.project(point.p_CP);
     if (!point.pixel) return point;
     Ray ray;
     ray.direction = point.p_CP / point.p_CP.z();
-    ray.by_pixel = Eigen::Matrix2d::Identity() * renderer_.rays().largest_step();
+    ray.by_pixel = Eigen::Matrix2d::Identity() * renderer_.prepared().rays.largest_step();
     // A ray that touches may by rounding enter a little before.
     const double tolerance = 1e-3 * radius + 1e-6 * point.p_CP.z();
     point.is_visible = tracer_.hit(ray).depth > point.p_CP.z() - tolerance;
@@ -209,7 +211,7 @@ class OutlineMaker {
 
 std::vector<Outline> outlines(const Renderer& renderer, double step) {
   if (!(step > 0)) throw std::invalid_argument("the points of an outline need a positive distance");
-  if (renderer.stage().scene->arm.tube.empty()) return {};
+  if (renderer.prepared().stage.scene->arm.tube.empty()) return {};
   return OutlineMaker(renderer, step).make();
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "flexura/render/prepared_scene.h"
 #include "flexura/render/tracer.h"
 #include "tests/support/arms.h"
 #include "tests/support/random_cases.h"
@@ -69,7 +70,7 @@ TEST(Outlines, ThatAreSeenPartTheArmFromTheBackground) {
     const View view = random_view_of(random, backbone);
     Renderer renderer;
     renderer.prepare(scene, view);
-    const Tracer tracer(renderer.stage(), renderer.tiles().all_parts());
+    const Tracer tracer(renderer.prepared().stage, renderer.prepared().tiles.all_parts());
     const auto depth_at = [&](const Eigen::Vector2d& pixel) {
       return tracer.hit(*ray_at(view.lens, pixel)).depth;
     };

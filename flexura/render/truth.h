@@ -10,6 +10,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/render/renderer.h"
+#include "flexura/render/surface_label.h"
 
 namespace flexura {
 

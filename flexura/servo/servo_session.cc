@@ -11,14 +11,13 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
-#include "flexura/kinematics/plus_way.h"
 #include "flexura/kinematics/shape.h"
-#include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
 #include "flexura/servo/servo_judge.h"
 #include "flexura/servo/servo_law.h"
 #include "flexura/servo/servo_rig.h"
+#include "flexura/servo/servo_sights.h"
 #include "flexura/servo/view_keeper.h"
 
 namespace flexura {
@@ -41,7 +40,7 @@ class Session {
              {.span = longest_delay,
               .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
               .silent = config.patience.blind}),
-        eyes_(believed, config.cameras, config.markers, config.camera_doubt),
+        sights_(rig_, believed, config, watcher),
         features_(servo_features(config, believed)),
         law_(believed.arm, config, *features_),
         keeper_(believed, config.cameras) {}
@@ -72,7 +71,7 @@ class Session {
     if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
     result_.fault = kept_;
-    result_.last = last_;
+    result_.first = sights_.first(), result_.last = sights_.last();
     if (result_.missed_steps > 0)
       watcher_.told(rig_.now(),
                     fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
@@ -102,7 +101,7 @@ class Session {
       return fmt::format(
           "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from target {}",
           100 * result_.missed, farthest + 1);
-    goals_.emplace(config_.goals, model_.arm, eyes_, *features_, rig_.views(result_.start));
+    goals_.emplace(config_.goals, model_.arm, sights_.eyes(), *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
     // Pictures as goals take a while to be measured, which is not the loop's.
     if (rig_.now() > result_.start) {
@@ -118,7 +117,7 @@ class Session {
     }
     judge_.emplace(config_, result_.start, goals_->last());
     tally_.emplace(model_.arm, config_, result_.start, goals_->last());
-    seen_since_ = result_.start;
+    sights_.begin(result_.start);
     return std::nullopt;
   }
 
@@ -169,10 +168,14 @@ class Session {
     const double now = rig_.now();
     ServoStep step;
     step.time = now;
-    if (!limiter_->fault()) look(now, step);
+    if (!limiter_->fault() && sights_.look(now, *goals_)) {
+      step.is_fresh = true;
+      limiter_->observe(sights_.last()->estimate.shape.state);
+      if (config_.follows) follow(step);
+    }
     LimitedCommand command;
-    const bool is_blind = now - seen_since_ > config_.patience.blind;
-    if (!last_ || is_blind || limiter_->fault()) {
+    const bool is_blind = sights_.blind_for(now) > config_.patience.blind;
+    if (!sights_.last() || is_blind || limiter_->fault()) {
       command = limiter_->brake();
     } else {
       const ArmState wish = asked(now, step), slow = limiter_->within_braking(wish, config_.rate);
@@ -180,97 +183,28 @@ class Session {
       if (command.reason.empty()) command.reason = at_its_limit(wish);
       if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
     }
-    if (now - seen_since_ > config_.patience.lost) {
-      result_.reason = "out of view: " + (unseen_because_.empty() ? no_pictures() : unseen_because_);
-    }
+    if (sights_.blind_for(now) > config_.patience.lost)
+      result_.reason = "out of view: " + sights_.unseen_because();
     step.limited = command.reason;
     send(now, std::move(command.state), std::move(step));
   }
 
-  // The newest pair of pictures, if there is one.
-  void look(double now, ServoStep& step) {
-    if (rig_.look()) {
-      const auto& frames = rig_.frames();
-      const double time = 0.5 * (frames[0].time + frames[1].time);
-      const std::array<View, 2> views = {rig_.view(0, frames[0].time), rig_.view(1, frames[1].time)};
-      ServoSight sight = eyes_.look(frames, views, expected(rig_.believed(time)));
-      WantedShape wanted = goals_->at(time - result_.start);
-      sight.desired = std::move(wanted.state), sight.desired_offset = std::move(wanted.offset);
-      watcher_.seen(sight);
-      if (!result_.first) result_.first = sight;
-      constexpr double unknown = 0.05;  // Of the length: such a shape is nothing to go by.
-      if (sight.estimate.is_found && sigma_of(sight.estimate) > unknown) {
-        sight.estimate.is_found = false, sight.estimate.reason = "the pictures hardly tell the shape";
-      }
-      if (sight.estimate.is_found) {
-        if (!unseen_because_.empty() && last_) watcher_.told(now, "the arm is seen again");
-        unseen_because_.clear();
-        step.is_fresh = true, seen_since_ = now;
-        limiter_->observe(sight.estimate.shape.state);
-        last_ = std::move(sight);
-        if (config_.follows) follow(step);
-      } else {
-        cannot_see(now, sight);
-      }
-      return;
-    }
-    std::string why;
-    for (std::size_t i = 0; i < 2 && why.empty(); ++i)
-      if (!rig_.silence()[i].empty()) why = fmt::format("camera {}: {}", rig_.name(i), rig_.silence()[i]);
-    if (why.empty() && now - seen_since_ > config_.patience.blind) why = no_pictures();
-    if (!why.empty()) tell_unseen(now, why);
-  }
-
-  // Whose pictures do not come.
-  [[nodiscard]] std::string no_pictures() const {
-    std::string whose;
-    for (std::size_t i = 0; i < 2; ++i)
-      if (!(rig_.newest(i) > seen_since_)) whose += (whose.empty() ? "camera " : " and ") + rig_.name(i);
-    return whose.empty() ? "no pictures come that belong together" : "no pictures come of " + whose;
-  }
-
-  void cannot_see(double now, const ServoSight& sight) {
-    std::string why = rig_.by_name(sight.estimate.reason);
-    for (std::size_t i = 2; i-- > 0;)
-      if (!sight.reasons[i].empty())
-        why = fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);
-    tell_unseen(now, why);
-  }
-
-  void tell_unseen(double now, const std::string& why) {
-    if (unseen_because_.empty()) watcher_.told(now, why);
-    unseen_because_ = why;
-  }
-
-  // The shape in which the arm is expected when its drives stand for `state`: as it was seen last, moved by
-  // what they did since.
-  [[nodiscard]] ArmState expected(ArmState state) const {
-    return last_ ? plus_way(std::move(state), rig_.believed(last_->time), last_->estimate.shape.state)
-                 : state;
-  }
-
-  // How well the pictures' noise lets a shape be known, root mean square along the arm, share of its length.
-  // What cameras that are wrong and not doubted add to it is there in every picture alike.
-  [[nodiscard]] double sigma_of(const ShapeEstimate& estimate) const {
-    const double common = config_.camera_doubt.is_any() ? 1 : estimate.scale;
-    return estimate.rms_sigma() / (common * model_.arm.length());
-  }
-
   // What the law asks for, by the last sight.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
-    const ArmState& seen = last_->estimate.shape.state;
-    step.seen_at = last_->time, step.seen = seen;
-    step.desired = goals_->at(last_->time - result_.start).state;
+    const ServoSight& sight = *sights_.last();
+    const ArmState& seen = sight.estimate.shape.state;
+    step.seen_at = sight.time, step.seen = seen;
+    step.desired = goals_->at(sight.time - result_.start).state;
     step.error = servo_error(model_.arm, seen, step.desired);
-    step.sigma = sigma_of(last_->estimate);
-    step.ahead = servo_error(model_.arm, expected(model_.bent(sent_)), goals_->at(now - result_.start).state);
-    const ArmState said = rig_.said(last_->time);
+    step.sigma = sights_.sigma_of(sight.estimate);
     const double since = now - result_.start;
-    const ServoLaw::Wish wish = law_.step({.sight = *last_,
+    step.ahead = servo_error(model_.arm, sights_.expected(model_.bent(sent_)), goals_->at(since).state);
+    const ArmState said = rig_.said(sight.time);
+    const ServoLaw::Wish wish = law_.step({.sight = sight,
                                            .is_fresh = step.is_fresh,
                                            .said = said,
                                            .sent = sent_,
-                                           .then = goals_->at(last_->time - result_.start),
+                                           .then = goals_->at(sight.time - result_.start),
                                            .wanted = goals_->at(since),
                                            .next = goals_->at(since + config_.step).state});
     step.is_singular = wish.is_singular, step.potential = wish.potential;
@@ -292,9 +226,10 @@ class Session {
   }
 
   void follow(ServoStep& step) {
+    const ServoSight& sight = *sights_.last();
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto head = keeper_.turned(i, last_->estimate.shape.state, rig_.stance(i, last_->time).head,
-                                       last_->seen[i].view);
+      const auto head =
+          keeper_.turned(i, sight.estimate.shape.state, rig_.stance(i, sight.time).head, sight.seen[i].view);
       if (!head) continue;
       const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
       if (const auto refused = taken.fault()) {
@@ -350,7 +285,7 @@ class Session {
   const ServoConfig& config_;
   ServoWatcher& watcher_;
   ServoRig rig_;
-  ServoEyes eyes_;
+  ServoSights sights_;
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
   ViewKeeper keeper_;
@@ -358,9 +293,6 @@ class Session {
   std::optional<CommandLimiter> limiter_;
   std::optional<ServoJudge> judge_;
   std::optional<ServoTally> tally_;
-  std::optional<ServoSight> last_;  // In which the arm was seen.
-  std::string unseen_because_;
-  double seen_since_ = 0;
   long ticks_ = 0;
   bool is_deaf_ = false;  // The arm has refused a command.
   std::optional<LimiterFault> kept_;

@@ -31,10 +31,12 @@ class ThreeAxes {
 
   /// Sends all three. Refused: what is not finite. Positions are drawn to what can be commanded.
   CommandOutcome command(const Eigen::Vector3d& target);
+  /// All three brake as fast as they can.
   CommandOutcome halt();
   [[nodiscard]] Outcome<Reading> read() const;
   /// Where what they carry is at `time` s, back to the horizon.
   [[nodiscard]] Eigen::Vector3d positions(double time) const;
+  /// What connects them, which can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
@@ -68,6 +70,7 @@ class SimulatedHead : public HeadPort {
 /// The same of a stage, whose axes are the mount's (right, down, forward), m.
 class SimulatedStage : public StagePort {
  public:
+  /// The stage of `camera`, likewise (SimulatedHead).
   SimulatedStage(const Camera& camera, const StageState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const StageState& state) override { return axes_.command(state.offset); }
@@ -76,6 +79,7 @@ class SimulatedStage : public StagePort {
 
   /// The mount's true offset; not for algorithms.
   [[nodiscard]] StageState truth(double time) const { return {axes_.positions(time)}; }
+  /// What connects it, which can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return axes_.link(); }
 
  private:

@@ -25,12 +25,13 @@ class SimulatedView {
 
   /// The camera as it truly is.
   [[nodiscard]] const Camera& description() const { return description_; }
-  /// How it truly stands at `time` s, and what it truly sees then: not for algorithms.
+  /// How it truly stands at `time` s: not for algorithms.
   [[nodiscard]] CameraStance stance(double time) const { return {head_.truth(time), stage_.truth(time)}; }
+  /// What it truly sees then: not for algorithms.
   [[nodiscard]] View view(double time) const { return description_.view(stance(time)); }
-  [[nodiscard]] SimulatedHead& head() { return head_; }
-  [[nodiscard]] SimulatedStage& stage() { return stage_; }
-  [[nodiscard]] SimulatedCamera& camera() { return camera_; }
+  [[nodiscard]] SimulatedHead& head() { return head_; }        ///< Behind ports(), with its truth.
+  [[nodiscard]] SimulatedStage& stage() { return stage_; }     ///< Likewise.
+  [[nodiscard]] SimulatedCamera& camera() { return camera_; }  ///< Likewise.
   /// They stay its own: valid as long as this.
   [[nodiscard]] CameraPorts ports() { return {description_.config().name, &camera_, &head_, &stage_}; }
 
@@ -57,7 +58,7 @@ class SimulatedRig {
 
   /// What stands behind ports(), with its truth: for who plays the rig, not for algorithms.
   [[nodiscard]] SimulatedClock& clock() { return clock_; }
-  [[nodiscard]] SimulatedArm& arm() { return arm_; }
+  [[nodiscard]] SimulatedArm& arm() { return arm_; }  ///< Likewise.
   /// In the order of the truth's cameras.
   [[nodiscard]] SimulatedView& camera(std::size_t index) { return *cameras_.at(index); }
   [[nodiscard]] std::size_t camera_count() const { return cameras_.size(); }

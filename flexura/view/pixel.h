@@ -8,6 +8,7 @@
 #include "flexura/port/camera_port.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/scene_maker.h"
+#include "flexura/render/surface_label.h"
 #include "flexura/sim/simulated_camera.h"
 #include "flexura/view/viewed_rig.h"
 

@@ -10,6 +10,7 @@
 #include "flexura/base/image.h"
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_hint.h"
 #include "flexura/view/answers.h"
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/axis_points.h"
@@ -18,6 +19,7 @@
 #include "flexura/vision/eight_bits.h"
 #include "flexura/vision/markers.h"
 #include "flexura/vision/picture_file.h"
+#include "flexura/vision/picture_hints.h"
 #include "flexura/vision/runs.h"
 #include "flexura/vision/threshold.h"
 
@@ -42,6 +44,7 @@ FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
   config.base = found.view.project(rig.model.X_WB.position);
   ArmFinder finder(config);
   found.arm = finder.find(*seen.picture, seen.white);
+  if (auto note = hint_of_exposure(gray_picture(found.bytes))) found.arm.notes.push_back(std::move(*note));
   return found;
 }
 
@@ -181,8 +184,10 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
     sightings.push_back(sighting_of(found.arm, found.view, found.bytes));
     numbers.push_back({picture.number, {}});
   }
-  const ShapeEstimate estimate = ShapeEstimator(prior_of(rig)).estimate(sightings);
+  const ShapePrior prior = prior_of(rig);
+  const ShapeEstimate estimate = ShapeEstimator(prior).estimate(sightings);
   notes.insert(notes.end(), estimate.notes.begin(), estimate.notes.end());
+  if (auto hint = hint_of(prior, sightings, estimate)) notes.push_back(std::move(*hint));
   Node::Table answer = outcome(estimate.is_found, estimate.reason, notes);
   answer.push_back({"numbers", {}, {std::move(numbers), {}}});
   if (estimate.is_found) {

@@ -11,6 +11,7 @@
 
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"
+#include "flexura/store/json.h"
 #include "flexura/view/live_session.h"
 #include "tests/support/live_sessions.h"
 #include "tests/support/view_fakes.h"
@@ -54,7 +55,7 @@ initial.pan_deg = 0
 
 class MeasuredArm : public LiveSessionTest {
  protected:
-  MeasuredArm() : LiveSessionTest(measured_text) {
+  explicit MeasuredArm(const std::string& text = measured_text) : LiveSessionTest(text) {
     for (const char* camera : {"front", "side"}) ask(ImagesRequest{camera, 30, 80});
     pass(0.2);
   }
@@ -158,6 +159,7 @@ TEST_F(MeasuredArm, IsFoundInTwoPicturesAsItStands) {
   for (Eigen::Index i = 0; i < 3; ++i)
     EXPECT_NEAR(*tip[static_cast<std::size_t>(i)].as<double>(), truth[i], 2e-3);
   EXPECT_LT(*answer.result.find("rms_px")->as<double>(), 0.5);
+  EXPECT_EQ(write_json(*answer.result.find("notes")), "[]");
 }
 
 TEST_F(MeasuredArm, IsMeasuredInTheNewestOfManyPictures) {
@@ -184,6 +186,19 @@ TEST_F(MeasuredArm, IsNotThereWhereTheCameraLooksAway) {
   EXPECT_FALSE(*answer.result.find("found")->as<bool>());
   EXPECT_NE(*answer.result.find("reason")->as<std::string>(), "");
   EXPECT_TRUE(answer.result.find("layers")->as<Node::Array>()->empty());
+}
+
+class ThickerArm : public MeasuredArm {
+ protected:
+  ThickerArm()
+      : MeasuredArm(measured_text +
+                    "[[truth.arm.section]]\nradius = 0.026\n[[truth.arm.section]]\nradius = 0.026\n") {}
+};
+
+TEST_F(ThickerArm, IsFoundWithAWordOnItsRadius) {
+  const ViewAnswer answer = ask(ShapeRequest{});
+  ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
+  EXPECT_THAT(write_json(*answer.result.find("notes")), HasSubstr("show an arm of 0.026 m radius"));
 }
 
 }  // namespace

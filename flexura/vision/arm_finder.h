@@ -81,6 +81,7 @@ struct ArmSighting {
 /// picture gives the same answer, whatever was seen before.
 class ArmFinder {
  public:
+  /// `config` holds for every picture.
   explicit ArmFinder(ArmFinderConfig config = {});
   ~ArmFinder();
   /// One that was moved from can be assigned to and destroyed, and nothing else.

@@ -1,13 +1,14 @@
-#include "flexura/app/estimate_doubts.h"
+#include "flexura/estimate/shape_hint.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
+#include <span>
 #include <string>
 
-#include "flexura/app/picture_doubts.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
@@ -47,46 +48,46 @@ Sighting edges_of(const Shape& shape, double radius) {
   return seen;
 }
 
-TEST(EstimateDoubts, TellTheRadiusThatIsSeen) {
+// What is said where the arm of this shape is found.
+std::string found_hint(std::span<const Sighting> sightings, const Shape& shape) {
+  ShapeEstimate estimate;
+  estimate.is_found = true, estimate.shape = shape;
+  return hint_of({.arm = shape.arm}, sightings, estimate).value_or("none");
+}
+
+TEST(ShapeHint, TellsTheRadiusThatIsSeen) {
   const Shape described = shape_of(0.024);
   const std::array<Sighting, 1> other = {edges_of(described, 0.018)}, same = {edges_of(described, 0.023)};
-  EXPECT_THAT(doubt_of_radius(other, described).value_or(""),
-              HasSubstr("show an arm of 0.018 m radius, its file has 0.024 m"));
-  EXPECT_EQ(doubt_of_radius(same, described), std::nullopt);
+  EXPECT_THAT(found_hint(other, described), HasSubstr("show an arm of 0.018 m radius, its file has 0.024 m"));
+  EXPECT_EQ(found_hint(same, described), "none");
   Shape tapered = described;
   tapered.arm.sections[1].radius = {0.024, 0.012};
   const std::array<Sighting, 1> twice = {edges_of(described, 0.048)};
-  EXPECT_THAT(doubt_of_radius(twice, tapered).value_or(""), HasSubstr("times as thick as it is described"));
+  EXPECT_THAT(found_hint(twice, tapered), HasSubstr("times as thick as it is described"));
   // An arm without a radius, or of which no edge is seen, says nothing.
-  EXPECT_EQ(doubt_of_radius(other, shape_of(0)), std::nullopt);
+  EXPECT_EQ(found_hint(other, shape_of(0)), "none");
   std::array<Sighting, 1> none;
   none[0].view = seen_from_origin();
-  EXPECT_EQ(doubt_of_radius(none, described), std::nullopt);
+  EXPECT_EQ(found_hint(none, described), "none");
 }
 
-TEST(EstimateDoubts, TellWhereTheBaseWouldBe) {
+TEST(ShapeHint, TellsWhereTheBaseWouldBe) {
   std::array<Sighting, 2> seen;
   for (Sighting& one : seen) one.view = seen_from_origin();
-  const Eigen::Vector3d base(-0.3, -0.3, 2);
-  const Eigen::Vector2d there = seen[0].view.project(base).value();
-  EXPECT_EQ(doubt_of_base(seen, base), std::nullopt) << "nothing is seen";
+  ShapePrior prior{.arm = shape_of(0.024).arm};
+  const auto hint = [&] { return hint_of(prior, seen, ShapeEstimate{}).value_or("none"); };
+  const Eigen::Vector2d there = seen[0].view.project(prior.arm.X_WB.position).value();
+  EXPECT_EQ(hint(), "none") << "nothing is seen";
   seen[0].points = {{there + Eigen::Vector2d(30, 0), 0.02}, {there + Eigen::Vector2d(200, 0), 0.02}};
   seen[1].points = {{there + Eigen::Vector2d(200, 0), 0.02}};
-  EXPECT_THAT(doubt_of_base(seen, base).value_or(""), HasSubstr("of picture 2, 200 px from the arm there"));
+  EXPECT_THAT(hint(), HasSubstr("of picture 2, 200 px from the arm there"));
   seen[1].borders = {{there + Eigen::Vector2d(0, 39), 0.02}};
-  EXPECT_EQ(doubt_of_base(seen, base), std::nullopt);
+  EXPECT_EQ(hint(), "none");
   seen[1].borders.clear();
-  EXPECT_EQ(doubt_of_base(seen, {-3, -0.3, 2}), std::nullopt) << "beside both";
-}
-
-TEST(EstimateDoubts, TellForWhichSizeOfPicturesACameraIsDescribed) {
-  View view = seen_from_origin();
-  EXPECT_EQ(doubt_of_size(view), std::nullopt);
-  view.width = 320, view.height = 240;
-  EXPECT_THAT(doubt_of_size(view).value_or(""), HasSubstr("of another size, 2 times as large?"));
-  // A part of a picture is no picture of another size.
-  view.width = 400, view.height = 480;
-  EXPECT_THAT(doubt_of_size(view).value_or(""), HasSubstr("of another size?"));
+  prior.is_base_position_known = false;
+  EXPECT_EQ(hint(), "none");
+  prior.is_base_position_known = true, prior.arm.X_WB.position = {-3, -0.3, 2};
+  EXPECT_EQ(hint(), "none") << "beside both";
 }
 
 }  // namespace

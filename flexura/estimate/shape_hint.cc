@@ -1,4 +1,4 @@
-#include "flexura/app/estimate_doubts.h"
+#include "flexura/estimate/shape_hint.h"
 
 #include <fmt/format.h>
 
@@ -68,9 +68,8 @@ void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape
   }
 }
 
-}  // namespace
-
-std::optional<std::string> doubt_of_radius(std::span<const Sighting> sightings, const Shape& shape) {
+// Whether it is the one described.
+std::optional<std::string> hint_of_radius(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most_off = 0.15;
   constexpr std::size_t fewest = 20;
   std::vector<double> ratios;
@@ -90,7 +89,8 @@ std::optional<std::string> doubt_of_radius(std::span<const Sighting> sightings, 
   return fmt::format("the pictures show an arm {:.2f} times as thick as it is described", ratio);
 }
 
-std::optional<std::string> doubt_of_base(std::span<const Sighting> sightings, const Eigen::Vector3d& p_WB) {
+// Whether the base, p_WB, would be near what is seen.
+std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, const Vector3d& p_WB) {
   constexpr double far = 0.05;  // Of the picture's diagonal.
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& seen = sightings[i];
@@ -109,6 +109,14 @@ std::optional<std::string> doubt_of_base(std::span<const Sighting> sightings, co
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Sighting> sightings,
+                                   const ShapeEstimate& estimate) {
+  if (estimate.is_found) return hint_of_radius(sightings, estimate.shape);
+  return prior.is_base_position_known ? hint_of_base(sightings, prior.arm.X_WB.position) : std::nullopt;
 }
 
 }  // namespace flexura

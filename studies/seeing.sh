@@ -34,6 +34,8 @@ wait $!
   echo "\$ ./dev study seeing $cases $seed"
   echo '```'
   echo
+  echo "Of commit $(git rev-parse --short HEAD)."
+  echo
   cat "$parts/axes"
   echo
   echo "## Two views to a shape"

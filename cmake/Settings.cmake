@@ -30,6 +30,8 @@ target_compile_options(flexura_settings INTERFACE
   "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
   # The stable_sort of libstdc++ 12 uses what it calls deprecated itself.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>
+  # Tests name their files by the path within the project, wherever it lies: ccache knows them again.
+  -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=
   $<$<BOOL:${CCACHE}>:$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>>)
 if(FLEXURA_SANITIZE)
   target_compile_options(flexura_settings INTERFACE

@@ -1,7 +1,7 @@
 # One source of a folder's kernels, compiled once for each instruction set; math/simd_path.h chooses when the program
-# runs. Where the compiler does not know a set, its source is empty. (The tsan preset leaves the wide sets out, the
-# asan preset the widest: they take minutes to compile with a sanitizer, threads do not differ by them, and one source
-# is what all are made of.)
+# runs. Where the compiler does not know a set, its source is empty. (The asan and tsan presets leave the
+# wide sets out: they take minutes to compile with a sanitizer, one source is what all are made of, and the scenes preset,
+# which fuzzes what draws and reads pictures, has them with AddressSanitizer.)
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag("-mavx2" FLEXURA_HAS_AVX2)
 set(FLEXURA_AVX512_OPTIONS -mavx512f -mavx512bw -mprefer-vector-width=512)

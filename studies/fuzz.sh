@@ -74,7 +74,8 @@ row_of() {
   fi
 }
 
-# What a target says of its cases itself.
+# What a target says of its cases itself; of those that did not run, what the page says, with what was written to it by
+# hand: a paragraph for each.
 words_of() {
   if [[ " ${targets[*]} " == *" $1 "* ]]; then
     awk -v target="$1" '
@@ -86,7 +87,11 @@ words_of() {
       }
     ' "build/studies/fuzz/$1"/*/log
   else
-    grep "^\`$1\`: " "$page" 2>/dev/null || true
+    awk -v begin="\`$1\`: " '
+      index($0, begin) == 1 { is_its = 1 }
+      /^$/ { is_its = 0 }
+      is_its
+    ' "$page"
   fi
 }
 
@@ -107,8 +112,10 @@ mkdir -p docs/studies build/studies
   echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
   for target in "${all[@]}"; do row_of "$target"; done
   echo
-  for target in "${all[@]}"; do words_of "$target"; done
-  echo
+  for target in "${all[@]}"; do
+    words=$(words_of "$target")
+    [ -z "$words" ] || printf '%s\n\n' "$words"
+  done
   echo "The speed is of the sanitized build, with other work on the machine."
   echo "The command runs all targets; with their names behind it only those, and the other rows stay."
 } >build/studies/fuzz.md

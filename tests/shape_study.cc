@@ -157,7 +157,8 @@ int study(int cases, std::uint64_t seed) {
                      found.is_found ? "found" : "lost",
                      found.is_found ? 100 * relative_shape_error(found.shape, truth) : 0.0, found.rms,
                      found.doubted, found.notes.size(),
-                     found.notes.empty() ? found.reason.c_str() : found.notes.front().c_str());
+                     found.notes.empty() ? found.reason.c_str()
+                                         : fmt::format("{}", fmt::join(found.notes, "; ")).c_str());
     }
   }
   fmt::print(

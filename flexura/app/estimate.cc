@@ -29,6 +29,7 @@
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/backbone_image.h"
 #include "flexura/vision/linear_light.h"
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/picture_hints.h"
@@ -152,6 +153,9 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   for (const std::string& word : arguments.markers)
     markers.push_back(marker_place(word, config.prior, is_described));
   std::ranges::sort(markers);
+  if (const auto twice = std::ranges::adjacent_find(markers); twice != markers.end())
+    throw input_error("--markers",
+                      fmt::format("{} m is there twice: expected each marker's place once", *twice));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);
   config.has_bends = is_described;
@@ -173,6 +177,7 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   const ShapePrior& prior = config.prior;
   const Photograph photograph = linear_light(decode_picture(bytes_of(file), name), camera.gamma);
   const View view{camera.lens(), camera.pose(), photograph.bytes.width(), photograph.bytes.height()};
+  if (const auto other = camera.other_size(view.width, view.height)) throw input_error(name, *other);
   ArmFinderConfig finding;
   finding.threshold = config.threshold;
   if (prior.is_base_position_known) finding.base = view.project(prior.arm.X_WB.position);
@@ -182,6 +187,9 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   auto hint = hint_of_size(view.lens, view.width, view.height);
   look.is_of_other_size = hint.has_value();
   if (hint) look.notes.push_back(std::move(*hint));
+  if (auto axis = found.axis; !to_backbone_image(view.lens, axis))
+    look.notes.emplace_back(
+        "the camera's distortion has no ray for some pixels of the arm: they count for nothing");
   if (!photograph.is_mask)
     if (auto note = hint_of_exposure(gray_picture(photograph.bytes))) look.notes.push_back(std::move(*note));
   look.sighting = sighting_of(found, view, photograph.bytes);

@@ -84,6 +84,29 @@ TEST_F(EstimateHints, MeasureUndoesItToo) {
   EXPECT_THROW(measure_command(by_option, out), InputError);
 }
 
+TEST_F(EstimateHints, RefusesPicturesOfAnotherSizeThanTheCamerasAreSaidToBeOf) {
+  std::ostringstream out;
+  const auto with_size = [&](const char* size) {
+    write_new_file(
+        folder_.path() / (std::string(size) + ".toml"),
+        replaced(two_measured_cameras, "fx = 800.0\ncx", std::string("size = ") + size + "\nfx = 800.0\ncx"));
+    EstimateArguments arguments = arguments_;
+    arguments.cameras = (folder_.path() / (std::string(size) + ".toml")).string();
+    return arguments;
+  };
+  EXPECT_EQ(estimate_command(with_size("[640, 480]"), out), exit_done);
+  try {
+    (void)estimate_command(with_size("[1280, 960]"), out);
+    ADD_FAILURE() << "estimated";
+  } catch (const InputError& error) {
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr("640 x 480 px: expected 1280 x 960, for which camera \"front\" is described (size)"));
+  }
+  EXPECT_THROW(estimate_command(with_size("[0, 480]"), out), InputError);
+  EXPECT_THROW(estimate_command(with_size("[640]"), out), InputError);
+}
+
 // Upside down the base is where nothing is, and the answer says so.
 TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
   arguments_.arm = (folder_.path() / "arm.toml").string();

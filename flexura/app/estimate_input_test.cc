@@ -88,6 +88,9 @@ TEST_F(EstimateInput, RefusesWhatItCannotUse) {
     EXPECT_THROW(estimate_command(bad, out), InputError) << marker;
   }
   bad = arguments_;
+  bad.length = 1, bad.markers = {"0.25", "25%"};
+  EXPECT_THROW(estimate_command(bad, out), InputError);
+  bad = arguments_;
   bad.images[0] = (folder_.path() / "cameras.toml").string();
   EXPECT_THROW(estimate_command(bad, out), InputError);
   EXPECT_EQ(out.str(), "");

@@ -63,6 +63,7 @@ std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, 
     written.fx = camera.lens.fx, written.fy = camera.lens.fy;
     written.cx = *camera.lens.cx, written.cy = *camera.lens.cy;
     written.distortion = camera.lens.distortion;
+    written.size = {camera.size[0], camera.size[1]};
     written.position = array_of(camera.pose.position);
     written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));
     written.doubt = camera.doubt;

@@ -113,6 +113,7 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   ASSERT_EQ(written.size(), 1U);
   EXPECT_EQ(written[0].fx, number(camera, "fx"));
   EXPECT_EQ(written[0].pose().position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(written[0].size, (std::array<std::int64_t, 2>{width, height}));
   const auto three_sigmas = [&](const char* key) {
     return 3 * number(*camera.find("sigma"), key) / written[0].fx;
   };

@@ -35,8 +35,10 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
   config.what = named<MeasureTarget>("--what", arguments.what);
   config.finder.threshold = threshold_config(arguments.threshold);
   if (arguments.base.size() == 2) {
-    if (!std::isfinite(arguments.base[0]) || !std::isfinite(arguments.base[1]))
-      throw input_error("--base", "expected two finite numbers u,v");
+    constexpr double most = 1e5;  // px; beyond every picture.
+    const auto is_place = [](double x) { return std::abs(x) <= most; };
+    if (!is_place(arguments.base[0]) || !is_place(arguments.base[1]))
+      throw input_error("--base", fmt::format("expected two numbers u,v within {:g} px", most));
     config.finder.base = Eigen::Vector2d(arguments.base[0], arguments.base[1]);
   }
   constexpr double thinnest = 1e-6, thickest = 1e3;
@@ -77,7 +79,7 @@ std::vector<MeasureConfig> configs_of(const MeasureArguments& arguments) {
                                    cameras.size(), configs.size(), configs.size() == 1 ? "" : "s")}});
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const MeasuredCamera& camera = cameras[cameras.size() == 1 ? 0 : i];
-    configs[i].lens = camera.lens();
+    configs[i].camera = camera;
     if (!arguments.gamma) configs[i].gamma = camera.gamma;
   }
   return configs;

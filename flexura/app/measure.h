@@ -11,7 +11,7 @@
 #include "flexura/app/threshold_arguments.h"
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
-#include "flexura/camera/intrinsics.h"
+#include "flexura/camera/measured_camera.h"
 #include "flexura/vision/arm_finder.h"
 
 namespace flexura {
@@ -24,9 +24,10 @@ const std::vector<std::string>& names_of(const MeasureTarget*);
 struct MeasureConfig {
   MeasureTarget what = MeasureTarget::arm;
   ArmFinderConfig finder;
-  std::optional<Lens> lens;      ///< Of the camera that took it, when it is known.
+  /// That took it, when it is known; where it stands counts for nothing.
+  std::optional<MeasuredCamera> camera;
   std::optional<double> radius;  ///< Of the arm, m, when it is known.
-  double gamma = 1;              ///< The picture's values are light to the power 1/gamma.
+  double gamma = 1;              ///< The picture's values are light to the power 1/gamma; not the camera's.
 };
 
 /// What is found in one picture.
@@ -37,7 +38,8 @@ struct Measurement {
   Image<std::uint8_t> overlay;
 };
 
-/// Measures a picture file's bytes. InputError: not a picture that can be read.
+/// Measures a picture file's bytes. InputError: not a picture that can be read, or
+/// one of another size than its camera is described for.
 [[nodiscard]] Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
                                           const MeasureConfig& config, bool with_overlay = false);
 

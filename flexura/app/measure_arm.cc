@@ -44,7 +44,8 @@ Node marker_node(const MarkerSighting& marker) {
       .take();
 }
 
-void add_axis(const Job& job, const std::vector<AxisSample>& axis, bool is_backbone) {
+// Of the backbone, as `lens` sees it; of the tube's middle where there is none.
+void add_axis(const Job& job, const std::vector<AxisSample>& axis, const Lens* lens) {
   Node::Array points, widths, sigmas, seen;
   for (const AxisSample& sample : axis) {
     points.push_back(pixel_pair(sample.pixel));
@@ -53,14 +54,14 @@ void add_axis(const Job& job, const std::vector<AxisSample>& axis, bool is_backb
     sigmas.push_back(sample.is_seen ? number_node(rounded(sample.sigma, 1e4)) : Node{});
     seen.push_back({sample.is_seen, {}});
   }
-  job.answer.add("axis_kind", text_node(is_backbone ? "backbone" : "middle"))
+  job.answer.add("axis_kind", text_node(lens != nullptr ? "backbone" : "middle"))
       .add("axis", {std::move(points), {}})
       .add("width", {std::move(widths), {}})
       .add("sigma", {std::move(sigmas), {}})
       .add("seen", {std::move(seen), {}});
-  if (!is_backbone || !job.config.radius) return;
+  if (lens == nullptr || !job.config.radius) return;
   Node::Array depths;
-  for (const double depth : backbone_depths(*job.config.lens, axis, *job.config.radius))
+  for (const double depth : backbone_depths(*lens, axis, *job.config.radius))
     depths.push_back(std::isfinite(depth) ? number_node(rounded(depth, 1e6)) : Node{});
   job.answer.add("depth", {std::move(depths), {}});
 }
@@ -85,7 +86,9 @@ bool measure_arm(const Job& job) {
   const ArmSighting& arm = finder.find(job.photograph);
   add_threshold(arm.threshold, job.answer);
   std::vector<AxisSample> axis = arm.axis;
-  const bool is_backbone = job.config.lens && to_backbone_image(*job.config.lens, axis);
+  std::optional<Lens> lens;
+  if (job.config.camera) lens = job.config.camera->lens();
+  const bool is_backbone = lens && to_backbone_image(*lens, axis);
   if (!is_backbone) axis = arm.axis;
   ArmSighting corrected = arm;
   corrected.axis = axis;
@@ -94,27 +97,26 @@ bool measure_arm(const Job& job) {
   const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
-  if (!arm.is_found()) return false;
   std::vector<std::string> notes = arm.notes;
-  if (job.config.lens && !is_backbone)
+  if (lens && !is_backbone)
     notes.emplace_back(
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
-  if (job.config.lens)
-    if (auto note = hint_of_size(*job.config.lens, job.gray.width(), job.gray.height()))
+  if (lens)
+    if (auto note = hint_of_size(*lens, job.gray.width(), job.gray.height()))
       notes.push_back(std::move(*note));
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
-  job.answer.add("notes", texts_node(notes))
-      .add("base", end_node(arm.ends[0]))
-      .add("tip", end_node(arm.ends[1]));
+  job.answer.add("notes", texts_node(notes));
+  if (!arm.is_found()) return false;
+  job.answer.add("base", end_node(arm.ends[0])).add("tip", end_node(arm.ends[1]));
   job.answer.add("blur", number_node(arm.blur))
       .add("noise", number_node(arm.noise))
       .add("contrast", number_node(arm.contrast));
   Node::Array marker_nodes;
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.config.what == MeasureTarget::arm) {
-    add_axis(job, axis, is_backbone);
+    add_axis(job, axis, is_backbone ? &*lens : nullptr);
     const AxisPoints points = independent_points(axis);
     job.answer.add("markers", {std::move(marker_nodes), {}})
         .add("circle", circle_node(fit_circle(points.pixels, points.sigma)))

@@ -33,7 +33,7 @@ std::string answer(const std::string& file, flexura::MeasureTarget what, bool by
   flexura::MeasureConfig config;
   config.what = what;
   if (by_block) config.finder.threshold.method = flexura::ThresholdMethod::by_block;
-  config.lens = flexura::Lens(flexura::Intrinsics{});
+  config.camera = flexura::MeasuredCamera{};
   config.radius = 0.02;
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
   try {

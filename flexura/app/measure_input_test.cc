@@ -43,7 +43,12 @@ TEST(Measure, RefusesWhatCountsForNothing) {
     EXPECT_THAT(refusal(), HasSubstr("--camera: counts for nothing"));
     arguments.camera.clear();
   }
-  arguments.what = "arm", arguments.camera = "x.toml";
+  arguments.what = "arm";
+  for (const double aside : {1e6, -1e300, std::nan("")}) {
+    arguments.base = {100, aside};
+    EXPECT_THAT(refusal(), HasSubstr("--base: expected two numbers u,v within 100000 px"));
+  }
+  arguments.base.clear(), arguments.camera = "x.toml";
   for (const double radius : {0.0, -1.0, 1e-300, 1e300, std::nan("")}) {
     arguments.radius = radius;
     EXPECT_THAT(refusal(), HasSubstr("expected a number from 1e-06 to 1000")) << radius;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/app/measure_job.h"
+#include "flexura/base/source.h"
 #include "flexura/base/table.h"
 #include "flexura/vision/linear_light.h"
 
@@ -20,6 +21,9 @@ const std::vector<std::string>& names_of(const MeasureTarget*) {
 Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
                             const MeasureConfig& config, bool with_overlay) {
   Photograph photograph = decode_picture(file, name);
+  if (config.camera)
+    if (const auto other = config.camera->other_size(photograph.bytes.width(), photograph.bytes.height()))
+      throw input_error(name, *other);
   std::optional<Canvas> canvas;
   if (with_overlay) canvas.emplace(photograph.bytes);
   const int bits = photograph.words.width() > 0 ? 16 : 8;

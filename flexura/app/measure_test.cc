@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,8 @@
 #include <utility>
 
 #include "flexura/app/commands.h"
+#include "flexura/base/bytes.h"
+#include "flexura/base/source.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
@@ -176,6 +179,38 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   EXPECT_EQ(write_json(*odd.find("axis")), write_json(*middle.find("axis")));
   EXPECT_EQ(odd.find("depth"), nullptr);
   EXPECT_THAT(write_json(*odd.find("notes")), HasSubstr("the axis is its middle"));
+}
+
+TEST(Measure, RefusesAPictureOfAnotherSizeThanItsCameraIsSaidToBeOf) {
+  MeasureConfig config;
+  config.camera = MeasuredCamera{};
+  const std::string file = png(tube());
+  const std::array<std::int64_t, 2> size = {tube().width(), tube().height()};
+  config.camera->size = size;
+  EXPECT_TRUE(measure_picture(bytes_of(file), "tube.png", config).is_found);
+  config.camera->size = {2 * size[0], 2 * size[1]};
+  EXPECT_THROW((void)measure_picture(bytes_of(file), "tube.png", config), InputError);
+}
+
+// What may be wrong is told where nothing is found above all.
+TEST(Measure, HasNotesWhereNothingIsFound) {
+  MeasureConfig config;
+  config.camera = MeasuredCamera{};
+  config.camera->cx = 2000;
+  const Measurement none =
+      measure_picture(bytes_of(png(Image<std::uint8_t>(60, 40, 1, 255))), "x.png", config);
+  EXPECT_FALSE(none.is_found);
+  EXPECT_THAT(write_json(*none.answer.find("notes")), HasSubstr("of another size"));
+}
+
+// 16 bits that become two values in 8 are no mask.
+TEST(Measure, TakesAFaintPictureOf16BitsForWhatItIs) {
+  Image<std::uint16_t> faint(160, 120, 1, 65000);
+  for (int v = 40; v < 80; ++v)
+    for (int u = 30; u < 130; ++u) faint.at(u, v) = static_cast<std::uint16_t>(64600 + (v - 40));
+  EXPECT_FALSE(decode_picture(bytes_of(png(faint)), "faint.png").is_mask);
+  for (std::uint16_t& value : faint.values()) value = value == 65000 ? 65000 : 64600;
+  EXPECT_TRUE(decode_picture(bytes_of(png(faint)), "mask.png").is_mask);
 }
 
 TEST(Measure, SeesAnArmInAFrameAndSaysWhereThePictureIsSaturated) {

@@ -95,6 +95,12 @@ Lens MeasuredCamera::lens() const {
 
 Pose MeasuredCamera::pose() const { return {rotation.matrix(), {position[0], position[1], position[2]}}; }
 
+std::optional<std::string> MeasuredCamera::other_size(int width, int height) const {
+  if (!size || *size == std::array<std::int64_t, 2>{width, height}) return std::nullopt;
+  return fmt::format("{} x {} px: expected {} x {}, for which camera {} is described (size)", width, height,
+                     (*size)[0], (*size)[1], Node{name, {}}.brief());
+}
+
 const Table<CameraDoubtConfig>& fields_of(const CameraDoubtConfig*) {
   using C = CameraDoubtConfig;
   static const Table<C> table =
@@ -136,6 +142,10 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
               {.meaning = "Its pictures' values are light to the power 1/gamma: 1 of cameras for measuring, "
                           "2.2 of most others'.",
                .range = between(0.1, 10)})
+          .field("size", &C::size,
+                 {.meaning = "Width and height of the pictures that this is about, px: others are refused.",
+                  .range = between(1, 65535),
+                  .default_text = "any"})
           .field("doubt", &C::doubt, {.meaning = "How wrong all that may be.", .default_text = "not at all"})
           .check(check_measured_camera);
   return table;

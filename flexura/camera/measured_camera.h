@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -50,12 +51,15 @@ struct MeasuredCamera {
   std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
   double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
+  std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
   CameraDoubtConfig doubt;
 
   /// std::invalid_argument: as Lens says.
   [[nodiscard]] Lens lens() const;
   /// X_WC.
   [[nodiscard]] Pose pose() const;
+  /// Why a picture of this size, px, is none of those that are described; none where no size is said.
+  [[nodiscard]] std::optional<std::string> other_size(int width, int height) const;
 };
 
 /// Such a file.

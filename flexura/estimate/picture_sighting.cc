@@ -89,7 +89,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   seen.figure = arm.places;
   std::vector<AxisSample> axis = arm.axis;
-  const std::vector<bool> tells = telling(axis);
+  std::vector<bool> tells = telling(axis);
   // The axis lies half-way between the borders: each is known by the root of two worse.
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (!tells[i]) continue;
@@ -99,7 +99,14 @@ Sighting sighting_of(const ArmSighting& arm, const View& view) {
     seen.edges[0].push_back({sample.pixel + half, sigma});
     seen.edges[1].push_back({sample.pixel - half, sigma});
   }
-  to_backbone_image(view.lens, axis);
+  if (!to_backbone_image(view.lens, axis)) {
+    // Where the lens has no ray nothing was moved: that is no place of the backbone.
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const AxisSample& sample = arm.axis[i];
+      for (const double side : {0.5, -0.5})
+        if (!view.lens.unproject(sample.pixel + side * sample.width * sample.normal)) tells[i] = false;
+    }
+  }
   const auto samples = static_cast<std::size_t>(
       axis.size() < 2 ? 0.0 : stretch / std::max((axis[1].pixel - axis[0].pixel).norm(), 0.5));
   for (std::size_t i = 0; i < axis.size(); ++i)

@@ -41,5 +41,17 @@ TEST(PictureSighting, KeepsWhatIsSeenBetweenShortBridges) {
   EXPECT_EQ(sighting_of(arm, View{}).points.size(), 53U);
 }
 
+// Where distortion folds the picture back no ray comes from: that is no place of the backbone.
+TEST(PictureSighting, LeavesOutWhatTheLensHasNoRayFor) {
+  const ArmSighting arm = bridged_axis(40);
+  View view;
+  view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
+  const Sighting seen = sighting_of(arm, view);
+  EXPECT_GT(seen.points.size(), 20U);
+  EXPECT_LT(seen.points.size(), 80U);
+  EXPECT_EQ(sighting_of(arm, View{}).points.size(), 100U);
+  for (const CurvePoint& point : seen.points) EXPECT_TRUE(view.lens.unproject(point.pixel).has_value());
+}
+
 }  // namespace
 }  // namespace flexura

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "flexura/base/degree.h"
+#include "flexura/estimate/axis_beginning.h"
 #include "flexura/estimate/band_match.h"
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
@@ -81,6 +82,25 @@ void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
     if (square > little + result.rms * result.rms)
       result.notes.push_back(fmt::format(
           "picture {} is not all as this shape would be seen: of something else, or another shape", i + 1));
+  }
+}
+
+// Pictures in which an arm of unknown make begins aside of its base: what was said of that, or of the camera,
+// is wrong. Such an arm bends to whatever base it is given, and nothing else tells.
+void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings, ShapeEstimate& result) {
+  constexpr double most = 0.5, sigmas = 5;  // px, beside so many standard deviations
+  if (!prior.is_base_position_known || prior.is_base_direction_known) return;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const auto base =
+        corrected(sightings[i].view, error_of(result.shape, i)).project(prior.arm.X_WB.position);
+    if (!base || !sightings[i].ends[0]) continue;
+    const auto aside = aside_of_beginning(sightings[i], *base);
+    if (aside && aside->distance > most + sigmas * aside->sigma)
+      result.notes.push_back(
+          fmt::format("picture {} shows the arm begin {:.2g} px aside of where its base would be: is that "
+                      "the base, and the "
+                      "camera as it is described?",
+                      i + 1, aside->distance));
   }
 }
 
@@ -203,7 +223,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   result.rms = fit.rms, result.doubted = fit.doubted, result.scale = fit.scale;
   result.surprise = fit.surprise;
   if (!std::isfinite(fit.cost)) {
-    result.reason = "no shape of the arm is seen by these cameras";
+    result.reason =
+        "no shape of the arm is seen by these cameras: what they see meets nowhere before all of them";
     return result;
   }
   const double length = add_sigmas(problem, fit.covariance, result);
@@ -258,6 +279,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   if (fit.contradicted > 0)
     result.notes.push_back(fmt::format(
         "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
+  add_base_aside(prior_, problem.sightings(), result);
   if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
     result.notes.push_back(std::move(doubt));
   if (sigma > config_.uncertain * length)

@@ -95,6 +95,12 @@ std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, con
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& seen = sightings[i];
     const auto base = seen.view.project(p_WB);
+    if (!((seen.view.X_WC.inverse() * p_WB).z() > 0))
+      return fmt::format(
+          "the base is behind the camera of picture {}: expected where it stands in the world, and how its "
+          "frame "
+          "(x right, y down, z forward) is turned there",
+          i + 1);
     const double width = seen.view.width, height = seen.view.height;
     const bool is_inside =
         base && base->x() >= 0 && base->y() >= 0 && base->x() < width && base->y() < height;
@@ -104,8 +110,9 @@ std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, con
     for (const SeenBorder& point : seen.borders) nearest = std::min(nearest, (point.pixel - *base).norm());
     if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
       return fmt::format(
-          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is it the "
-          "base, the camera's picture, the right way up?",
+          "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is that "
+          "the "
+          "base, is it this camera's picture, and is it the right way up?",
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;

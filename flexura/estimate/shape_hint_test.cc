@@ -88,6 +88,8 @@ TEST(ShapeHint, TellsWhereTheBaseWouldBe) {
   EXPECT_EQ(hint(), "none");
   prior.is_base_position_known = true, prior.arm.X_WB.position = {-3, -0.3, 2};
   EXPECT_EQ(hint(), "none") << "beside both";
+  prior.arm.X_WB.position = {0, 0, -1};
+  EXPECT_THAT(hint(), HasSubstr("the base is behind the camera of picture 1"));
 }
 
 }  // namespace

@@ -32,6 +32,47 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   return error;
 }
 
+// The direction in which a view has the middle of what it sees, unit; none where the lens has no ray there.
+std::optional<Eigen::Vector3d> towards_middle(const Sighting& seen) {
+  if (seen.points.empty()) return std::nullopt;
+  const auto ray = seen.view.lens.unproject(seen.points[seen.points.size() / 2].pixel);
+  if (!ray) return std::nullopt;
+  return seen.view.X_WC.rotation * ray->homogeneous().normalized();
+}
+
+// Whose lines of sight cross those of the first one most squarely: together they tell places best.
+std::size_t partner_of_first(std::span<const Sighting> sightings) {
+  std::size_t partner = 1;
+  const auto first = towards_middle(sightings[0]);
+  double most = 0;
+  for (std::size_t i = 1; first && i < sightings.size(); ++i)
+    if (const auto other = towards_middle(sightings[i]))
+      if (const double sine = first->cross(*other).norm(); sine > most) most = sine, partner = i;
+  return partner;
+}
+
+// Where the first one and its partner see the arm, from the base on, m; the base's place first, if it is
+// known.
+std::vector<Eigen::Vector3d> places_seen(const ShapePrior& prior, const Sighting& first,
+                                         const Sighting& partner) {
+  std::vector<Eigen::Vector3d> places;
+  for (const SpacePoint& point : correspondence(first, partner).points) places.push_back(point.position);
+  if (prior.is_base_position_known && !places.empty()) places.front() = prior.arm.X_WB.position;
+  return places;
+}
+
+// Turned to run the way of these places, as far as the picture tells.
+Sighting run_alike(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
+  if (places.empty() || seen.points.empty()) return seen;
+  const auto begin = seen.view.project(places.front()), end = seen.view.project(places.back());
+  if (!begin || !end) return seen;
+  const auto off = [&](const CurvePoint& front, const CurvePoint& back) {
+    return (front.pixel - *begin).norm() + (back.pixel - *end).norm();
+  };
+  const CurvePoint &front = seen.points.front(), &back = seen.points.back();
+  return off(back, front) < off(front, back) ? reversed(seen) : seen;
+}
+
 // How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it
 // may lie anywhere, px^2.
 double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
@@ -200,11 +241,19 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
   const auto is_end = [&] { return best->is_as_doubted && is_explained(*best); };
-  const std::size_t ways = prior_.is_base_position_known || seen.size() < 2 ? 1 : 2;
-  for (std::size_t way = 0; way < ways; ++way) {
-    if (way == 1) seen[1] = reversed(seen[1]);
+  // Which end of the others' axes is the first one's first is not known without a base: of its partner both
+  // are tried, and the others follow the places that the two tell.
+  const bool is_either_way = !prior_.is_base_position_known && seen.size() >= 2;
+  const std::size_t partner = seen.size() >= 2 ? partner_of_first(seen) : 0;
+  for (int way = 0; way < (is_either_way ? 2 : 1); ++way) {
+    if (way == 1) seen[partner] = reversed(seen[partner]);
+    if (is_either_way && seen.size() > 2) {
+      const auto places = places_seen(prior_, seen[0], seen[partner]);
+      for (std::size_t i = 1; i < seen.size(); ++i)
+        if (i != partner) seen[i] = run_alike(seen[i], places);
+    }
     ShapeProblem problem(prior_, seen);
-    for (const Shape& start : starts(seen)) {
+    for (const Shape& start : starts(seen, partner)) {
       Try one = tried(problem, {start}, most());
       note(one, seen);
       const bool is_last = one.fit.is_good(most_rms_) && one.is_as_doubted;
@@ -255,20 +304,17 @@ double ShapeSearch::apart(const Result& found) {
   return largest;
 }
 
-std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings) const {
+std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, std::size_t partner) const {
   std::vector<Shape> shapes;
   std::vector<ViewError> views;
   for (const Sighting& seen : sightings)
     views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
                                                   : ViewError{});
   if (sightings.size() >= 2) {
-    std::array<Sighting, 2> aimed = {sightings[0], sightings[1]};
-    for (std::size_t i = 0; i < 2; ++i) aimed[i].view = corrected(aimed[i].view, views[i]);
-    const Correspondence pairs = correspondence(aimed[0], aimed[1]);
-    std::vector<Eigen::Vector3d> points;
-    points.reserve(pairs.points.size());
-    for (const SpacePoint& point : pairs.points) points.push_back(point.position);
-    if (prior_.is_base_position_known && !points.empty()) points.front() = prior_.arm.X_WB.position;
+    std::array<Sighting, 2> aimed = {sightings[0], sightings[partner]};
+    aimed[0].view = corrected(aimed[0].view, views[0]);
+    aimed[1].view = corrected(aimed[1].view, views[partner]);
+    const std::vector<Eigen::Vector3d> points = places_seen(prior_, aimed[0], aimed[1]);
     const auto is_other = [&](const Eigen::Vector3d& p) { return p != points.front(); };
     if (std::ranges::any_of(points, is_other)) {
       shapes.push_back(shape_along(prior_, points));

@@ -32,7 +32,8 @@ class ShapeSearch {
     /// explains all as well is from it, m; 0: there is none.
     double apart = 0;
   };
-  /// At least one sighting. Where the base is unknown the second is followed both ways.
+  /// At least one sighting. Where the base is unknown one of the others is followed both ways, the
+  /// rest as it is.
   [[nodiscard]] Result best(std::vector<Sighting> seen);
 
  private:
@@ -54,7 +55,8 @@ class ShapeSearch {
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
-  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings) const;
+  // From what the first sighting and its partner tell.
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings, std::size_t partner) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.
   [[nodiscard]] std::vector<Start> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
 

@@ -158,7 +158,9 @@ Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::ve
   std::vector<std::string> notes = found.arm.notes;
   if (found.arm.is_found()) {
     std::vector<AxisSample> axis = found.arm.axis;
-    to_backbone_image(found.view.lens, axis);
+    if (!to_backbone_image(found.view.lens, axis))
+      notes.emplace_back(
+          "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle");
     Points points;
     for (const AxisSample& sample : axis) points.push_back(sample.pixel);
     if (is_wanted("mask")) add_mask(found, drawn);
@@ -181,6 +183,8 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
     const FoundArm found = find_arm(rig, picture);
     if (!found.arm.is_found())
       notes.push_back("camera " + rig.cameras[picture.camera].config().name + ": " + found.arm.reason);
+    for (const std::string& note : found.arm.notes)
+      notes.push_back("camera " + rig.cameras[picture.camera].config().name + ": " + note);
     sightings.push_back(sighting_of(found.arm, found.view, found.bytes));
     numbers.push_back({picture.number, {}});
   }

@@ -43,12 +43,10 @@ Image<std::uint8_t> without_colors(Image<std::uint8_t> picture) {
   return gray;
 }
 
-bool has_two_values(const Image<std::uint8_t>& picture) {
-  if (picture.channels() != 1) return false;
+template <typename Value>
+bool has_two_values(const Image<Value>& picture) {
   const auto [least, most] = std::ranges::minmax(picture.values());
-  const auto is_either = [low = least, high = most](std::uint8_t value) {
-    return value == low || value == high;
-  };
+  const auto is_either = [low = least, high = most](Value value) { return value == low || value == high; };
   return least < most && std::ranges::all_of(picture.values(), is_either);
 }
 
@@ -101,7 +99,9 @@ Photograph decode_picture(std::span<const std::uint8_t> file, const std::string&
     photograph.bytes = eight_bits(photograph.words, photograph.white);
   }
   const Image<std::uint8_t> gray = without_colors(photograph.bytes);
-  photograph.is_mask = has_two_values(gray);
+  // Little contrast in 16 bits may leave two values of 8.
+  photograph.is_mask = gray.channels() == 1 && has_two_values(gray) &&
+                       (photograph.words.values().empty() || has_two_values(photograph.words));
   if (photograph.is_mask) photograph.bytes = softened_mask(gray), photograph.words = {};
   return photograph;
 }

@@ -1,0 +1,93 @@
+// Arms of unknown make: a base or a camera that is not as it was said; more than two pictures.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/base/degree.h"
+#include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/sighting.h"
+#include "flexura/math/so3.h"
+#include "flexura/model/backbone.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/sightings.h"
+
+namespace flexura {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+// An arm of unknown make bends to whatever base it is given: what it is seen to begin at has to tell.
+TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
+  for_random_cases(30, [](TestRandom& random) {
+    const Arm arm = three_section_arm();
+    const Backbone truth(arm, random_bends(random, arm, 1.2));
+    const std::vector<Sighting> seen = sightings_of(truth, random, 0.02);
+    const auto estimate = [&](const Eigen::Vector3d& base, const std::vector<Sighting>& sightings) {
+      return ShapeEstimator(unknown_arm(base, truth.length())).estimate(sightings);
+    };
+    const auto speaks_of_base = Contains(HasSubstr("aside of where its base would be"));
+    const ShapeEstimate right = estimate({0, 0, 0}, seen);
+    EXPECT_TRUE(right.is_trusted()) << testing::PrintToString(right.notes);
+    // Across its direction, 3 mm: a pixel.
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const ShapeEstimate beside = estimate({0.003 * std::cos(angle), 0, 0.003 * std::sin(angle)}, seen);
+    EXPECT_FALSE(beside.is_trusted());
+    EXPECT_THAT(beside.notes, speaks_of_base);
+    // A camera that is turned by a tenth of a degree: 1.4 px.
+    std::vector<Sighting> turned = seen;
+    const int one = random.integer(0, 1);
+    View& view = turned[static_cast<std::size_t>(one)].view;
+    view.X_WC.rotation = view.X_WC.rotation * so3_exp({0, 0.1 * degree, 0});
+    const ShapeEstimate aside = estimate({0, 0, 0}, turned);
+    EXPECT_FALSE(aside.is_trusted());
+    EXPECT_THAT(aside.notes, speaks_of_base);
+    // Unless that much of it was doubted: then it is found.
+    for (Sighting& doubtful : turned) doubtful.doubt = {0.2 * degree, 0.001};
+    EXPECT_THAT(estimate({0, 0, 0}, turned).notes, Not(speaks_of_base));
+  });
+}
+
+// Where an arm's beginning is not seen, nothing is said of it.
+TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
+  TestRandom random(1);
+  const Arm arm = three_section_arm();
+  const Backbone truth(arm, random_bends(random, arm, 1.0));
+  std::vector<Sighting> seen;
+  for (const View& view : two_views()) seen.push_back(sighting_of(truth, view, random, 0.02, {0.05, 1}));
+  const ShapeEstimate found =
+      ShapeEstimator(unknown_arm(Eigen::Vector3d(0.003, 0, 0), truth.length())).estimate(seen);
+  EXPECT_THAT(found.notes, Not(Contains(HasSubstr("aside of where its base would be"))));
+}
+
+// The first two cameras stand beside each other and tell no depth; the others' axes run either way.
+TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Arm arm = three_section_arm();
+    const Backbone truth(arm, random_bends(random, arm, 1.2));
+    const Eigen::Vector3d middle(0, 0.4, 0);
+    const std::array<Eigen::Vector3d, 4> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(0.02, 0, 2.5),
+                                                 Eigen::Vector3d(-2.5, 0, 0), Eigen::Vector3d(1.8, 0, 1.8)};
+    std::vector<Sighting> seen;
+    for (const Eigen::Vector3d& eye : eyes) {
+      Sighting one = sighting_of(truth, view_from(middle + eye, middle, 800), random, 0.02);
+      const bool is_reversed = !seen.empty() && random.uniform(0, 1) < 0.5;
+      seen.push_back(is_reversed ? reversed(one) : one);
+    }
+    const ShapeEstimate found = ShapeEstimator(unknown_arm(std::nullopt, std::nullopt)).estimate(seen);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 2e-3);
+  });
+}
+
+}  // namespace
+}  // namespace flexura

@@ -66,11 +66,11 @@ Sighting run_alike(const Sighting& seen, std::span<const Eigen::Vector3d> places
   if (places.empty() || seen.points.empty()) return seen;
   const auto begin = seen.view.project(places.front()), end = seen.view.project(places.back());
   if (!begin || !end) return seen;
-  const auto off = [&](const CurvePoint& front, const CurvePoint& back) {
-    return (front.pixel - *begin).norm() + (back.pixel - *end).norm();
+  const auto off = [&](const Eigen::Vector2d& near_base, const Eigen::Vector2d& near_tip) {
+    return (near_base - *begin).norm() + (near_tip - *end).norm();
   };
-  const CurvePoint &front = seen.points.front(), &back = seen.points.back();
-  return off(back, front) < off(front, back) ? reversed(seen) : seen;
+  const Eigen::Vector2d first = seen.points.front().pixel, last = seen.points.back().pixel;
+  return off(last, first) < off(first, last) ? reversed(seen) : seen;
 }
 
 // How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it

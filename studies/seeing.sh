@@ -9,6 +9,9 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target seeing_study shape_study
+# Whose programs these are, and whether they are as committed.
+sources=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt")
+commit=$(git -C "$sources" describe --always --exclude '*' --abbrev=7 --dirty=', changed')
 mkdir -p docs/studies build/studies
 parts=$(mktemp -d)
 trap 'rm -r "$parts"' EXIT
@@ -34,7 +37,7 @@ wait $!
   echo "\$ ./dev study seeing $cases $seed"
   echo '```'
   echo
-  echo "Of commit $(git rev-parse --short HEAD)."
+  echo "Of commit $commit."
   echo
   cat "$parts/axes"
   echo

@@ -104,14 +104,55 @@ void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings
   }
 }
 
-// A whole turn: from there on a section meets itself.
-constexpr double most_bend = 2 * std::numbers::pi;
-
-std::size_t most_bent(const Shape& shape) {
+// Why no arm has the shape: a section that is bent by more than a whole turn meets itself. "" where none is.
+std::string bent_beyond_arms(const Shape& shape) {
+  constexpr double most_bend = 2 * std::numbers::pi;
   const auto& bends = shape.state.bends;
   const auto most =
       std::ranges::max_element(bends, {}, [](const Eigen::Vector2d& bend) { return bend.norm(); });
-  return static_cast<std::size_t>(most - bends.begin());
+  if (most->norm() <= most_bend) return "";
+  return fmt::format("the shape that fits best bends section {} by {:.0f} degrees: no arm does",
+                     most - bends.begin() + 1, most->norm() / degree);
+}
+
+// What explains little tells nothing of cameras.
+bool tells_of_cameras(const ShapeFit& fit) {
+  constexpr double most_doubted = 0.1;
+  return fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
+}
+
+std::string elsewhere(std::size_t picture, const ViewError& error) {
+  return fmt::format(
+      "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, "
+      "far more than is doubted",
+      picture + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
+      error.focal < 0 ? "shorter" : "longer");
+}
+
+// The first picture most of which is somewhere else than the shape; of a few points that says little.
+std::optional<std::size_t> picture_of_another(std::span<const Sighting> sightings, const ShapeFit& fit) {
+  constexpr double most_doubted = 0.6;
+  constexpr std::size_t few = 8;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const Sighting& seen = sightings[i];
+    const bool is_other = fit.doubted_in[i] > most_doubted && seen.points.size() + seen.borders.size() >= few;
+    const bool tells = are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape);
+    if (is_other || !tells) return i;
+  }
+  return std::nullopt;
+}
+
+void add_doubts_of_fit(const ShapeFit& fit, ShapeEstimate& result) {
+  constexpr double poor = 3, most_doubted = 0.1;
+  if (fit.scale > poor)
+    result.notes.push_back(
+        fmt::format("the images are {:.0f} times farther off than their noise explains", fit.scale));
+  if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
+  if (fit.doubted > most_doubted)
+    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.doubted));
+  if (fit.contradicted > 0)
+    result.notes.push_back(fmt::format(
+        "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
 }
 
 ShapeEstimate unseen(Shape shape) {
@@ -233,34 +274,19 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.reason = "the images do not tell the shape";
     return result;
   }
-  if (const std::size_t section = most_bent(fit.shape); fit.shape.state.bends[section].norm() > most_bend) {
-    result.reason = fmt::format("the shape that fits best bends section {} by {:.0f} degrees: no arm does",
-                                section + 1, fit.shape.state.bends[section].norm() / degree);
+  if (std::string reason = bent_beyond_arms(fit.shape); !reason.empty()) {
+    result.reason = std::move(reason);
     return result;
   }
   if (const auto view = view_elsewhere(problem.sightings(), fit.shape)) {
-    const ViewError& error = fit.shape.views[*view];
-    result.reason = "the cameras would have to stand otherwise by far more than is doubted";
-    // What explains little tells nothing of cameras.
-    constexpr double most_doubted = 0.1;
-    result.is_elsewhere = fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
-    if (result.is_elsewhere)
-      result.reason = fmt::format(
-          "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, "
-          "far more than is doubted",
-          *view + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
-          error.focal < 0 ? "shorter" : "longer");
+    result.is_elsewhere = tells_of_cameras(fit);
+    result.reason = result.is_elsewhere
+                        ? elsewhere(*view, fit.shape.views[*view])
+                        : "the cameras would have to stand otherwise by far more than is doubted";
     return result;
   }
-  for (std::size_t i = 0; i < problem.sightings().size(); ++i) {
-    const Sighting& seen = problem.sightings()[i];
-    // Most of what one picture shows is somewhere else; of a few points that says little.
-    constexpr double most_doubted = 0.6;
-    constexpr std::size_t few = 8;
-    const bool is_other = fit.doubted_in[i] > most_doubted && seen.points.size() + seen.borders.size() >= few;
-    if (!is_other && (are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape)))
-      continue;
-    result.reason = fmt::format("picture {} shows something else than the arm", i + 1);
+  if (const auto picture = picture_of_another(problem.sightings(), fit)) {
+    result.reason = fmt::format("picture {} shows something else than the arm", *picture + 1);
     return result;
   }
   result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
@@ -269,16 +295,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
         "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {:.2f} px off",
         100 * fit.doubted, fit.rms);
   }
-  constexpr double poor = 3;
-  if (fit.scale > poor)
-    result.notes.push_back(
-        fmt::format("the images are {:.0f} times farther off than their noise explains", fit.scale));
-  if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
-  if (fit.doubted > 0.1)
-    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.doubted));
-  if (fit.contradicted > 0)
-    result.notes.push_back(fmt::format(
-        "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
+  add_doubts_of_fit(fit, result);
   add_base_aside(prior_, problem.sightings(), result);
   if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
     result.notes.push_back(std::move(doubt));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "flexura/estimate/picture_sighting.h"
@@ -120,10 +121,9 @@ TEST(HardShapes, APlaneSeenEdgeOnByOneCamera) {
     const Comparison views(bent, {view_from_side(bent, quarter), view_from_side(bent, 0.75 * quarter)},
                            {view_from_side(bent, -0.125 * quarter), view_from_side(bent, 0.125 * quarter)},
                            seed);
-    for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_TRUE(views.hard[i].is_covered());
-      EXPECT_GT(views.hard[i].sigma, 1.01 * views.plain[i].sigma);
-    }
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(views.hard[i].is_covered());
+    EXPECT_GT(views.hard[0].sigma, 1.5 * views.plain[0].sigma);
+    EXPECT_GT(views.hard[1].sigma, 1.1 * views.plain[1].sigma);
   }
 }
 
@@ -178,9 +178,22 @@ int crossings(const BentArm& bent, const View& view) {
   return crossed;
 }
 
+// The least sigma from the view at `azimuth` and another one, in neither of which the arm crosses itself.
+std::optional<double> plain_sigma(const BentArm& bent, const ShapePrior& prior, double azimuth) {
+  std::optional<double> least;
+  const View first = view_from_side(bent, azimuth);
+  for (double turn = 0.5; turn < 2.7; turn += 0.4) {
+    const View view = view_from_side(bent, azimuth - turn);
+    if (crossings(bent, view) != 0) continue;
+    const Outcome one = outcome(bent, prior, photographed(bent, {view, first}, 1));
+    if (one.found.is_found) least = std::min(one.sigma, least.value_or(one.sigma));
+  }
+  return least;
+}
+
 TEST(HardShapes, TheArmAcrossItselfInOnePicture) {
-  int count = 0, found = 0, tries = 0;
-  for (TestRandom random(1); count < 6 && tries < 400; ++tries) {
+  int count = 0, found = 0, compared = 0, tries = 0;
+  for (TestRandom random(1); count < 12 && tries < 800; ++tries) {
     std::vector<Eigen::Vector2d> bends(4);
     for (Eigen::Vector2d& bend : bends) bend = random.vector<2>(-2, 2);
     const BentArm bent = arm_of(bends);
@@ -191,11 +204,19 @@ TEST(HardShapes, TheArmAcrossItselfInOnePicture) {
       const Outcome one = outcome(bent, prior, seen);
       expect_honest(one);
       ++count, found += one.found.is_found ? 1 : 0;
+      // A known arm's sections tell what lies under the crossing; an unknown one's shape is not known there.
+      if (prior.is_base_direction_known || !one.found.is_found) continue;
+      const auto plain = plain_sigma(bent, prior, quarter);
+      constexpr double tells = 2e-3;  // m
+      if (!plain || *plain > tells) continue;
+      ++compared;
+      EXPECT_GT(one.sigma, 2 * *plain);
     }
   }
-  EXPECT_GE(count, 6);
+  EXPECT_GE(count, 12);
   // Most of them cross themselves so near an end, or so flatly, that the rest of the axis is not found.
-  EXPECT_GE(found, 2);
+  EXPECT_GE(found, 4);
+  EXPECT_GE(compared, 2);
 }
 
 TEST(HardShapes, PartOfTheArmOutsideOnePicture) {

@@ -85,6 +85,37 @@ Node summary_of(const Experiment& experiment, const Arm& arm, const Player& play
   return {std::move(summary), {}};
 }
 
+bool has_failed(const Played& played) { return !played.failure.empty() && !played.is_cancelled; }
+
+// The outcome of a run that did not come to its end, and the reason.
+void conclude(const Played& played, RunResult& result) {
+  if (has_failed(played)) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
+  if (!played.is_cancelled) return;
+  result.outcome = RunOutcome::cancelled;
+  result.reasons.insert(result.reasons.begin(), fmt::format("it was told to stop at {:.6g} s", played.time));
+}
+
+// Of each kind of task what its runs found, in the order of the summary.
+void add_results(const Player& player, const std::vector<ImageStudy>& studies, Node::Table& summary) {
+  if (!studies.empty()) summary.push_back({"studies", {}, study_nodes(studies)});
+  if (const auto& runs = player.calibrations(); !runs.empty())
+    summary.push_back({"calibrations", {}, calibration_nodes(runs)});
+  if (const auto& runs = player.servos(); !runs.empty()) summary.push_back({"servos", {}, servo_nodes(runs)});
+  if (const auto& runs = player.dynamics(); !runs.empty())
+    summary.push_back({"dynamics", {}, dynamics_nodes(runs)});
+}
+
+void add_chapters(const Player& player, const std::vector<ImageStudy>& studies,
+                  std::vector<Chapter>& chapters) {
+  const auto add = [&](const auto& runs, auto&& chapter) {
+    for (std::size_t i = 0; i < runs.size(); ++i) chapters.push_back(chapter(runs[i], i));
+  };
+  add(player.calibrations(), calibration_chapter);
+  add(player.servos(), servo_chapter);
+  add(player.dynamics(), dynamics_chapter);
+  for (const ImageStudy& study : studies) chapters.push_back(study_chapter(study));
+}
+
 void write_report(const std::filesystem::path& folder, const ReportData& data) {
   write_new_file(folder / report_file_name, report_html(data));
   std::filesystem::create_directory(folder / figures_folder_name);
@@ -131,44 +162,25 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
   const Played played = player.play();
   // What came of a task that decides on the way may lead elsewhere than what was looked at first.
-  const bool has_failed = !played.failure.empty() && !played.is_cancelled;
-  const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed;
+  const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed(played);
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
-  if (has_failed) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
-  if (played.is_cancelled) {
-    result.outcome = RunOutcome::cancelled;
-    result.reasons.insert(result.reasons.begin(),
-                          fmt::format("it was told to stop at {:.6g} s", played.time));
-  }
+  conclude(played, result);
   witness.event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
   witness.close();
   if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
-  result.summary = summary_of(experiment, arm, player, played, result);
-  if (experiment.record.cameras || !experiment.camera.empty()) {
-    result.summary.as<Node::Table>()->push_back(
-        {"cameras", {}, camera_nodes(experiment.cameras(), witness.frames())});
-  }
+
   const auto studies = played.is_cancelled ? std::vector<ImageStudy>{} : studies_of(experiment);
   write_study_tables(studies, folder);
-  if (!studies.empty()) result.summary.as<Node::Table>()->push_back({"studies", {}, study_nodes(studies)});
-  const std::vector<CalibrationRun>& calibrations = player.calibrations();
-  write_rig_files(experiment, calibrations, folder);
-  if (!calibrations.empty())
-    result.summary.as<Node::Table>()->push_back({"calibrations", {}, calibration_nodes(calibrations)});
-  const std::vector<ServoRun>& servos = player.servos();
-  if (!servos.empty()) result.summary.as<Node::Table>()->push_back({"servos", {}, servo_nodes(servos)});
-  const std::vector<DynamicsRun>& dynamics = player.dynamics();
-  if (!dynamics.empty())
-    result.summary.as<Node::Table>()->push_back({"dynamics", {}, dynamics_nodes(dynamics)});
+  write_rig_files(experiment, player.calibrations(), folder);
+  result.summary = summary_of(experiment, arm, player, played, result);
+  auto& summary = *result.summary.as<Node::Table>();
+  if (experiment.record.cameras || !experiment.camera.empty())
+    summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), witness.frames())});
+  add_results(player, studies, summary);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
-    for (std::size_t i = 0; i < calibrations.size(); ++i)
-      data.chapters.push_back(calibration_chapter(calibrations[i], i));
-    for (std::size_t i = 0; i < servos.size(); ++i) data.chapters.push_back(servo_chapter(servos[i], i));
-    for (std::size_t i = 0; i < dynamics.size(); ++i)
-      data.chapters.push_back(dynamics_chapter(dynamics[i], i));
-    for (const ImageStudy& study : studies) data.chapters.push_back(study_chapter(study));
+    add_chapters(player, studies, data.chapters);
     write_report(folder, data);
   }
   return result;

@@ -45,6 +45,14 @@ bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points,
          least_distance(arm, points.back()) > tolerance + rounding;
 }
 
+// Whether limits are what keeps a descent that has ended at `x` from going on.
+bool is_held_by_limits(CurveProblem& problem, const ArmVariables& variables, const Eigen::VectorXd& x,
+                       DescentMemory<CurveProblem>& memory) {
+  problem.linearise(x, memory.r, memory.J);
+  const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
+  return pressure(variables.bounds(), x, gradient) > least_pressure * memory.r.norm();
+}
+
 }  // namespace
 
 // What a polyline turns by at a point, the curve that it stands for turns by from the middle of one piece to
@@ -108,8 +116,6 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     settle(problem, variables, settling, found, memory);
     error = problem.largest_distance(found.x);
   }
-  problem.linearise(found.x, memory.r, memory.J);
-
   InverseResult result;
   result.state = variables.state(found.x);
   result.tip = tip_pose(arm, result.state).position;
@@ -123,9 +129,8 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     result.outcome = InverseOutcome::not_reachable;
     result.is_proven = true;
   } else if (found.ended != Descent::exhausted) {
-    const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
-    const bool is_held = pressure(variables.bounds(), found.x, gradient) > least_pressure * memory.r.norm();
-    result.outcome = is_held ? InverseOutcome::at_limit : InverseOutcome::not_reachable;
+    result.outcome = is_held_by_limits(problem, variables, found.x, memory) ? InverseOutcome::at_limit
+                                                                            : InverseOutcome::not_reachable;
   }
   return result;
 }

@@ -254,6 +254,23 @@ void look_for_gaps(MarkerSightings& found) {
   }
 }
 
+// Stretches of another colour that are neither bands nor among the spots.
+void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerSighting>& spots,
+                   std::vector<std::string>& notes) {
+  const auto is_spot = [&](const Stretch& stretch) {
+    return std::ranges::any_of(spots, [&](const MarkerSighting& spot) {
+      return spot.along + spot.length > static_cast<double>(stretch.first) &&
+             spot.along - spot.length < static_cast<double>(stretch.last);
+    });
+  };
+  const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
+  if (dropped > 0)
+    notes.push_back(fmt::format(
+        "{} spot{} of another colour left out: at an end of the arm, half hidden, touching another, or "
+        "too small to be a marker",
+        dropped, dropped > 1 ? "s" : ""));
+}
+
 }  // namespace
 
 MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm, bool with_spots) {
@@ -293,18 +310,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   std::vector<MarkerSighting> spots;
   if (with_spots) spots = find_spots(picture, arm, skin, bands, bound);
   found.markers.insert(found.markers.end(), spots.begin(), spots.end());
-  const auto is_spot = [&](const Stretch& stretch) {
-    return std::ranges::any_of(spots, [&](const MarkerSighting& spot) {
-      return spot.along + spot.length > static_cast<double>(stretch.first) &&
-             spot.along - spot.length < static_cast<double>(stretch.last);
-    });
-  };
-  const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
-  if (with_spots && dropped > 0)
-    found.notes.push_back(fmt::format(
-        "{} spot{} of another colour left out: at an end of the arm, half hidden, touching another, or "
-        "too small to be a marker",
-        dropped, dropped > 1 ? "s" : ""));
+  if (with_spots) note_left_out(others, spots, found.notes);
   std::ranges::stable_sort(found.markers, {}, &MarkerSighting::along);
   look_for_merged(found.markers);
   look_for_gaps(found);

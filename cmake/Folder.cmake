@@ -69,6 +69,10 @@ function(flexura_use_pch target name)
     target_link_libraries(${name} PRIVATE flexura_settings Eigen3::Eigen fmt::fmt ${arg_LINKS})
     target_compile_options(${name} PRIVATE ${arg_OPTIONS})
     target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+    if(CCACHE)
+      set_target_properties(${name} PROPERTIES
+        CXX_COMPILER_LAUNCHER "${PROJECT_SOURCE_DIR}/cmake/compile_pch.sh;${CMAKE_CXX_COMPILER_LAUNCHER}")
+    endif()
   endif()
   target_include_directories(${target} SYSTEM PRIVATE
     $<BUILD_INTERFACE:$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>>)

@@ -180,6 +180,7 @@ void add_measure(CLI::App& app, Command& chosen) {
   measure->add_option("--base", arguments->base, "A place near the arm's base, px: U,V")
       ->type_name("U,V")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->expected(2);
   measure->add_option("--overlay", arguments->overlay, "Draw what is found over the picture (.png)")
       ->type_name("FILE");
@@ -198,6 +199,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
   estimate->add_option("--base", arguments->base, "Where the arm begins, m: X,Y,Z")
       ->type_name("X,Y,Z")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->expected(3);
   estimate->add_option("--length", arguments->length, "The arm's length, m")->type_name("L");
   estimate->add_option("--arm", arguments->arm, "The arm's sections, when they are known (TOML)")
@@ -206,6 +208,7 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->add_option("--markers", arguments->markers,
                    "Where the arm's bands are: m, or shares of its length, 25%")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("S,...");
   add_threshold_options(*estimate, arguments->threshold);
   estimate->add_option("--points", arguments->points, "Of the backbone that is printed")
@@ -247,10 +250,12 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
   intrinsics->add_option("--position", arguments->position, "Of the first camera in the world, m: X,Y,Z")
       ->type_name("X,Y,Z")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->expected(3);
   intrinsics->add_option("--rotation", arguments->rotation, "Of the first camera in the world: W,X,Y,Z")
       ->type_name("W,X,Y,Z")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->expected(4);
   intrinsics->add_option("--out", arguments->out, "Write a file of measured cameras (.toml)")
       ->type_name("FILE");

@@ -152,6 +152,9 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
   EXPECT_THAT(run("measure x.png --level ''").err, HasSubstr("--level: expected no empty text"));
   EXPECT_THAT(run("measure x.png --threshold otsu --level 100").err,
               HasSubstr("goes with --threshold fixed: \"otsu\" finds its own level"));
+  // What stands behind an option's numbers is none of them.
+  for (const char* before : {"estimate --base 0,0,0", "estimate --markers 0.2,0.4 --length 1"})
+    EXPECT_THAT(run(std::string(before) + " a.png b.png --cameras c.toml").err, StartsWith("c.toml: "));
   EXPECT_EQ(run("run " + paper_file + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
 }

@@ -19,9 +19,10 @@ using Quaternion = std::array<double, 4>;
 // A rotation written with four digits is still one.
 constexpr double largest_error = 2e-3;
 
-// As of the cameras of experiments, px.
+// As of the cameras of experiments; the first two in px.
 constexpr NumberRange focal_lengths = {.min = 1e-3, .max = 1e7};
 constexpr NumberRange principal_points = {.min = -1e7, .max = 1e7};
+constexpr NumberRange distortions = {.min = -1e3, .max = 1e3};
 
 Eigen::Matrix3d matrix_of(const Rows& rows) {
   Eigen::Matrix3d matrix;
@@ -130,7 +131,8 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
                   .required = true})
           .field("cy", &C::cy,
                  {.meaning = "The same along v, px.", .range = principal_points, .required = true})
-          .field("distortion", &C::distortion, {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order."})
+          .field("distortion", &C::distortion,
+                 {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order.", .range = distortions})
           .field("position", &C::position,
                  {.meaning = "Of the entrance pupil in the world.", .unit = Unit::metre})
           .field(

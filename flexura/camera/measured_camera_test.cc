@@ -48,5 +48,16 @@ TEST(MeasuredCamera, RefusesWhatIsNoRotation) {
   EXPECT_THAT(what(numbers({0, 1, 0})), testing::HasSubstr("or a quaternion"));
 }
 
+TEST(MeasuredCamera, RefusesDistortionsOfNoLens) {
+  Node camera = camera_with(numbers({1, 0, 0, 0}));
+  camera.as<Node::Table>()->push_back({"distortion", {}, numbers({-0.1, 0.02, 0.001, -1e308, 0})});
+  try {
+    (void)read_as<MeasuredCamera>(camera);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("expected a number from -1000 to 1000"));
+  }
+}
+
 }  // namespace
 }  // namespace flexura

@@ -98,8 +98,7 @@ void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings
     if (aside && aside->distance > most + sigmas * aside->sigma)
       result.notes.push_back(
           fmt::format("picture {} shows the arm begin {:.2g} px aside of where its base would be: is that "
-                      "the base, and the "
-                      "camera as it is described?",
+                      "the base, and the camera as it is described?",
                       i + 1, aside->distance));
   }
 }

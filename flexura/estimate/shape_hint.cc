@@ -98,8 +98,7 @@ std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, con
     if (!((seen.view.X_WC.inverse() * p_WB).z() > 0))
       return fmt::format(
           "the base is behind the camera of picture {}: expected where it stands in the world, and how its "
-          "frame "
-          "(x right, y down, z forward) is turned there",
+          "frame (x right, y down, z forward) is turned there",
           i + 1);
     const double width = seen.view.width, height = seen.view.height;
     const bool is_inside =
@@ -111,8 +110,7 @@ std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, con
     if (std::isfinite(nearest) && nearest > far * std::hypot(width, height))
       return fmt::format(
           "the base would be seen at ({:.0f}, {:.0f}) of picture {}, {:.0f} px from the arm there: is that "
-          "the "
-          "base, is it this camera's picture, and is it the right way up?",
+          "the base, is it this camera's picture, and is it the right way up?",
           base->x(), base->y(), i + 1, nearest);
   }
   return std::nullopt;

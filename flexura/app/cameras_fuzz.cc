@@ -1,5 +1,6 @@
-// Any text as a file of measured cameras: refused in words at a place in the file, or cameras whose frames are
-// frames, that see what lies before them where it comes from, and that say the same when they are written again.
+// Any text as a file of measured cameras: refused in words at a place in the file, or cameras whose frames
+// are frames, that see what lies before them where it comes from, and that say the same when they are written
+// again.
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
@@ -49,7 +50,8 @@ void check_view(const MeasuredCamera& camera) {
     const auto ray = view.lens.unproject(pixel);
     if (!ray) continue;
     const auto back = view.lens.project(ray->homogeneous());
-    require(back && (*back - pixel).norm() < 1e-6 * (1 + pixel.norm() + std::abs(camera.cx) + std::abs(camera.cy)));
+    require(back &&
+            (*back - pixel).norm() < 1e-6 * (1 + pixel.norm() + std::abs(camera.cx) + std::abs(camera.cy)));
   }
 }
 

@@ -19,10 +19,11 @@ using Quaternion = std::array<double, 4>;
 // A rotation written with four digits is still one.
 constexpr double largest_error = 2e-3;
 
-// As of the cameras of experiments; the first two in px.
+// The first two as of the cameras of experiments, px. Long lenses measured by boards have coefficients of
+// thousands.
 constexpr NumberRange focal_lengths = {.min = 1e-3, .max = 1e7};
 constexpr NumberRange principal_points = {.min = -1e7, .max = 1e7};
-constexpr NumberRange distortions = {.min = -1e3, .max = 1e3};
+constexpr NumberRange distortions = {.min = -1e9, .max = 1e9};
 
 Eigen::Matrix3d matrix_of(const Rows& rows) {
   Eigen::Matrix3d matrix;

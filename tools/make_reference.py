@@ -12,6 +12,7 @@ base/table.h tells of: there the name says all.
 """
 
 import re
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -100,6 +101,7 @@ def silent_functions(xml):
 def main():
     out = Path(sys.argv[1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(out / "xml", ignore_errors=True)  # Doxygen leaves what is no more.
     page = front_page(ROOT, out)
     settings = SETTINGS | {
         "USE_MDFILE_AS_MAINPAGE": page,

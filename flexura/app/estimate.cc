@@ -153,9 +153,13 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   for (const std::string& word : arguments.markers)
     markers.push_back(marker_place(word, config.prior, is_described));
   std::ranges::sort(markers);
-  if (const auto twice = std::ranges::adjacent_find(markers); twice != markers.end())
+  // Of one place in metres and in percent: but for rounding.
+  const double alike = 1e-9 * config.prior.arm.length();
+  const auto is_alike = [&](double one, double next) { return next - one <= alike; };
+  if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
     throw input_error("--markers",
-                      fmt::format("{} m is there twice: expected each marker's place once", *twice));
+                      fmt::format("a place is there twice, {:.9g} of the arm's length: expected each once",
+                                  *twice / config.prior.arm.length()));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);
   config.has_bends = is_described;
@@ -184,7 +188,8 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   ArmFinder finder(finding);
   const ArmSighting& found = finder.find(photograph);
   look.reason = found.reason, look.notes = found.notes;
-  auto hint = hint_of_size(view.lens, view.width, view.height);
+  // A camera that says for which size it is described has been held to it.
+  auto hint = camera.size ? std::nullopt : hint_of_size(view.lens, view.width, view.height);
   look.is_of_other_size = hint.has_value();
   if (hint) look.notes.push_back(std::move(*hint));
   if (auto axis = found.axis; !to_backbone_image(view.lens, axis))

@@ -107,6 +107,22 @@ TEST_F(EstimateHints, RefusesPicturesOfAnotherSizeThanTheCamerasAreSaidToBeOf) {
   EXPECT_THROW(estimate_command(with_size("[640]"), out), InputError);
 }
 
+// A principal point far from the middle is no sign of another size where the file says the size.
+TEST_F(EstimateHints, DoNotGuessASizeThatIsSaid) {
+  const std::string aside = replaced(two_measured_cameras, "cx = 319.5", "cx = 180");
+  const auto answer_by = [&](const char* name, const std::string& cameras) {
+    EstimateArguments arguments = arguments_;
+    arguments.cameras = (folder_.path() / name).string();
+    write_new_file(arguments.cameras, cameras);
+    std::ostringstream out;
+    (void)estimate_command(arguments, out);
+    return out.str();
+  };
+  EXPECT_THAT(answer_by("aside.toml", aside), HasSubstr("of another size"));
+  EXPECT_THAT(answer_by("said.toml", replaced(aside, "cx = 180", "size = [640, 480]\ncx = 180")),
+              Not(HasSubstr("of another size")));
+}
+
 // Upside down the base is where nothing is, and the answer says so.
 TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
   arguments_.arm = (folder_.path() / "arm.toml").string();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/app/estimate.h"
@@ -88,8 +89,11 @@ TEST_F(EstimateInput, RefusesWhatItCannotUse) {
     EXPECT_THROW(estimate_command(bad, out), InputError) << marker;
   }
   bad = arguments_;
-  bad.length = 1, bad.markers = {"0.25", "25%"};
-  EXPECT_THROW(estimate_command(bad, out), InputError);
+  bad.length = 1;
+  for (const auto& [place, share] : {std::pair("0.25", "25%"), {"0.33", "33%"}, {"0.29", "29%"}}) {
+    bad.markers = {place, share};
+    EXPECT_THROW(estimate_command(bad, out), InputError) << place;
+  }
   bad = arguments_;
   bad.images[0] = (folder_.path() / "cameras.toml").string();
   EXPECT_THROW(estimate_command(bad, out), InputError);

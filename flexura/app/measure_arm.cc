@@ -103,7 +103,8 @@ bool measure_arm(const Job& job) {
         "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
-  if (lens)
+  // A camera that says for which size it is described has been held to it.
+  if (lens && !job.config.camera->size)
     if (auto note = hint_of_size(*lens, job.gray.width(), job.gray.height()))
       notes.push_back(std::move(*note));
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());

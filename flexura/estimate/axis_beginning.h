@@ -14,8 +14,9 @@ struct Aside {
 };
 
 /// How far a pixel is aside of what `seen` shows of the backbone where that begins, gone on beyond its first
-/// point as it bends in its first 40 px (a parabola). None where the curve is not seen so far, or the pixel
-/// is not nearly where it begins: from 15 px before it to 5 px behind.
+/// point as it bends in its first 40 px, or eight points (a parabola). None where the curve is not seen so
+/// far or turns by more than half a radian there, or the pixel is not nearly where it begins: from 15 px
+/// before it to 5 px behind.
 [[nodiscard]] std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vector2d& pixel);
 
 }  // namespace flexura

@@ -29,7 +29,6 @@
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 #include "flexura/vision/arm_finder.h"
-#include "flexura/vision/backbone_image.h"
 #include "flexura/vision/linear_light.h"
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/picture_hints.h"
@@ -134,10 +133,10 @@ double marker_place(const std::string& word, const ShapePrior& prior, bool is_de
     throw input_error("--markers",
                       fmt::format("\"{}\": expected arc lengths, m, or shares as \"25%\"", word));
   if (!is_share && !is_described && !prior.is_length_known)
-    throw input_error("--markers",
-                      fmt::format("{} m of an arm of unknown length: expected --length, --arm, or "
-                                  "shares as \"25%\"",
-                                  word));
+    throw input_error(
+        "--markers",
+        fmt::format("{} m of an arm of unknown length: expected --length, --arm, or shares as \"25%\"",
+                    word));
   constexpr double percent = 0.01;
   const double s = is_share ? percent * value * prior.arm.length() : value;
   const bool is_on_arm = s >= 0 && s <= prior.arm.length();
@@ -192,12 +191,10 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   auto hint = camera.size ? std::nullopt : hint_of_size(view.lens, view.width, view.height);
   look.is_of_other_size = hint.has_value();
   if (hint) look.notes.push_back(std::move(*hint));
-  if (auto axis = found.axis; !to_backbone_image(view.lens, axis))
-    look.notes.emplace_back(
-        "the camera's distortion has no ray for some pixels of the arm: they count for nothing");
   if (!photograph.is_mask)
     if (auto note = hint_of_exposure(gray_picture(photograph.bytes))) look.notes.push_back(std::move(*note));
   look.sighting = sighting_of(found, view, photograph.bytes);
+  if (look.sighting.leaves_out) look.notes.emplace_back(rays_lacking);
   look.sighting.doubt = {camera.doubt.turn, camera.doubt.focal};
   look.samples = look.sighting.points.size();
   return look;

@@ -80,53 +80,87 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
   return {nearest->normal.y(), -nearest->normal.x()};
 }
 
-}  // namespace
+// Whether the lens has a ray for every pixel: what it shows is round, so the corners tell.
+bool shows_all(const View& view) {
+  const double right = view.width - 1, low = view.height - 1;
+  const std::array<Eigen::Vector2d, 4> corners = {{{0, 0}, {right, 0}, {0, low}, {right, low}}};
+  return std::ranges::all_of(
+      corners, [&](const Eigen::Vector2d& corner) { return view.lens.unproject(corner).has_value(); });
+}
 
-Sighting sighting_of(const ArmSighting& arm, const View& view) {
+// Leaves out what a lens has no ray for: that is no place of the arm.
+class RayCheck {
+ public:
+  RayCheck(const Lens& lens, Sighting& seen) : lens_(lens), seen_(seen) {}
+
+  [[nodiscard]] bool has_ray(const Eigen::Vector2d& pixel) {
+    const bool has = lens_.unproject(pixel).has_value();
+    seen_.leaves_out = seen_.leaves_out || !has;
+    return has;
+  }
+  void check_all() {
+    const auto is_out = [this](const auto& point) { return !has_ray(point.pixel); };
+    std::erase_if(seen_.points, is_out), std::erase_if(seen_.borders, is_out);
+    std::erase_if(seen_.figure, [this](const Eigen::Vector2d& pixel) { return !has_ray(pixel); });
+    for (auto& end : seen_.ends)
+      if (end && is_out(*end)) end.reset();
+  }
+
+ private:
+  const Lens& lens_;
+  Sighting& seen_;
+};
+
+// `axis`: that of `arm`, where the backbone is seen; as it was measured where the lens has no rays.
+Sighting sighting_along(const ArmSighting& arm, const std::vector<AxisSample>& axis, const View& view) {
   Sighting seen;
   seen.view = view;
   seen.reach.sigma = smoothed;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   seen.figure = arm.places;
-  std::vector<AxisSample> axis = arm.axis;
-  std::vector<bool> tells = telling(axis);
-  // The axis lies half-way between the borders: each is known by the root of two worse.
-  for (std::size_t i = 0; i < axis.size(); ++i) {
-    if (!tells[i]) continue;
-    const AxisSample& sample = axis[i];
-    const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
-    const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
-    seen.edges[0].push_back({sample.pixel + half, sigma});
-    seen.edges[1].push_back({sample.pixel - half, sigma});
-  }
-  if (!to_backbone_image(view.lens, axis)) {
-    // Where the lens has no ray nothing was moved: that is no place of the backbone.
-    for (std::size_t i = 0; i < axis.size(); ++i) {
-      const AxisSample& sample = arm.axis[i];
-      for (const double side : {0.5, -0.5})
-        if (!view.lens.unproject(sample.pixel + side * sample.width * sample.normal)) tells[i] = false;
-    }
-  }
+  const bool lacks_rays = !shows_all(view);
+  RayCheck rays(view.lens, seen);
+  const std::vector<bool> tells = telling(arm.axis);
   const auto samples = static_cast<std::size_t>(
       axis.size() < 2 ? 0.0 : stretch / std::max((axis[1].pixel - axis[0].pixel).norm(), 0.5));
-  for (std::size_t i = 0; i < axis.size(); ++i)
-    if (tells[i])
-      seen.points.push_back(
-          {axis[i].pixel, std::max(axis[i].sigma, least_sigma), offset_at(arm, i, samples)});
-  if (!arm.is_whole()) return seen;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    if (!tells[i]) continue;
+    const AxisSample& sample = arm.axis[i];
+    const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
+    const std::array<Eigen::Vector2d, 2> borders = {sample.pixel + half, sample.pixel - half};
+    if (lacks_rays && !(rays.has_ray(borders[0]) && rays.has_ray(borders[1]))) continue;
+    // The axis lies half-way between the borders: each is known by the root of two worse.
+    const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
+    for (std::size_t side = 0; side < 2; ++side) seen.edges[side].push_back({borders[side], sigma});
+    seen.points.push_back({axis[i].pixel, std::max(sample.sigma, least_sigma), offset_at(arm, i, samples)});
+  }
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
-    if (arm.ends[end].kind == AxisEndKind::free)
+    if (arm.is_whole() && arm.ends[end].kind == AxisEndKind::free)
       seen.ends[end] = SeenEnd{arm.ends[end].pixel, arm.ends[end].sigma};
+  if (lacks_rays) rays.check_all();
   return seen;
 }
 
+// Where the backbone is seen.
+std::vector<AxisSample> backbone_axis(const ArmSighting& arm, const View& view) {
+  std::vector<AxisSample> axis = arm.axis;
+  to_backbone_image(view.lens, axis);
+  return axis;
+}
+
+}  // namespace
+
+Sighting sighting_of(const ArmSighting& arm, const View& view) {
+  return sighting_along(arm, backbone_axis(arm, view), view);
+}
+
 Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::uint8_t>& picture) {
-  Sighting seen = sighting_of(arm, view);
   ArmSighting corrected = arm;
-  to_backbone_image(view.lens, corrected.axis);
+  corrected.axis = backbone_axis(arm, view);
+  Sighting seen = sighting_along(arm, corrected.axis, view);
   constexpr bool with_spots = false;  // Nothing is known of the backbone there.
   for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
-    if (!marker.tells_place()) continue;
+    if (!marker.tells_place() || !view.lens.unproject(marker.pixel)) continue;
     seen.bands.push_back({marker.pixel, heading_at(corrected.axis, marker.pixel),
                           std::hypot(marker.sigma, band_sigma), marker.color});
   }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "flexura/camera/view.h"
 #include "flexura/vision/arm_finder.h"
@@ -46,11 +48,51 @@ TEST(PictureSighting, LeavesOutWhatTheLensHasNoRayFor) {
   const ArmSighting arm = bridged_axis(40);
   View view;
   view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
-  const Sighting seen = sighting_of(arm, view);
+  const auto has_ray = [&](const Eigen::Vector2d& pixel) { return view.lens.unproject(pixel).has_value(); };
+  const Sighting seen = sighting_of(arm, view), whole = sighting_of(arm, View{});
   EXPECT_GT(seen.points.size(), 20U);
   EXPECT_LT(seen.points.size(), 80U);
-  EXPECT_EQ(sighting_of(arm, View{}).points.size(), 80U);
-  for (const CurvePoint& point : seen.points) EXPECT_TRUE(view.lens.unproject(point.pixel).has_value());
+  EXPECT_EQ(seen.edges[0].size(), seen.points.size());
+  EXPECT_EQ(seen.edges[1].size(), seen.points.size());
+  EXPECT_TRUE(seen.leaves_out);
+  EXPECT_EQ(whole.points.size(), 80U);
+  EXPECT_FALSE(whole.leaves_out);
+  for (const CurvePoint& point : seen.points) EXPECT_TRUE(has_ray(point.pixel));
+  for (const auto& edge : seen.edges)
+    for (const CurvePoint& point : edge) EXPECT_TRUE(has_ray(point.pixel));
+}
+
+// Neither the arm's ends, nor its border, nor its figure count there.
+TEST(PictureSighting, LeavesOutEndsAndBordersWithoutARay) {
+  ArmSighting arm = bridged_axis(40);
+  arm.ends[0] = {AxisEndKind::free, {100, 200}, 0, 0.2},
+  arm.ends[1] = {AxisEndKind::free, {199, 200}, 0, 0.2};
+  arm.unexplained = {{.pixel = {100, 195}}, {.pixel = {198, 195}}};
+  arm.places = {{101, 200}, {197, 200}};
+  View view;
+  view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
+  const Sighting seen = sighting_of(arm, view), whole = sighting_of(arm, View{});
+  EXPECT_TRUE(whole.ends[0] && whole.ends[1]);
+  EXPECT_FALSE(seen.ends[0]);
+  EXPECT_TRUE(seen.ends[1]);
+  EXPECT_EQ(whole.borders.size(), 2U);
+  ASSERT_EQ(seen.borders.size(), 1U);
+  EXPECT_EQ(seen.borders[0].pixel.x(), 198);
+  EXPECT_EQ(whole.figure.size(), 2U);
+  ASSERT_EQ(seen.figure.size(), 1U);
+  EXPECT_EQ(seen.figure[0].x(), 197);
+}
+
+// A sample beside one without a ray is half-way between its own borders' directions.
+TEST(PictureSighting, CorrectsTheAxisUpToWhereTheRaysEnd) {
+  View view;
+  view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
+  ArmSighting arm = bridged_axis(40);
+  // Not through the middle, where nothing moves.
+  for (AxisSample& sample : arm.axis) sample.pixel.y() += 8, sample.is_seen = true;
+  const Sighting seen = sighting_of(arm, view);
+  ASSERT_FALSE(seen.points.empty());
+  EXPECT_GT(std::abs(seen.points.front().pixel.y() - 208), 0.01);
 }
 
 }  // namespace

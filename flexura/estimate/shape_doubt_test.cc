@@ -7,9 +7,11 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/estimate/shape_fit.h"
 #include "flexura/estimate/shape_tracker.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/sightings.h"
@@ -50,6 +52,26 @@ TEST(ShapeWithDoubtfulViews, IsWrongWhereTheyAreBelieved) {
   });
   std::ranges::sort(off);
   EXPECT_GT(off[off.size() / 2], 5e-3);
+}
+
+// Pictures of two shapes: what explains little of them tells nothing of where cameras stand.
+TEST(ShapeWithDoubtfulViews, SaysHowACameraStandsOnlyWhereThatExplainsThePictures) {
+  int unsaid = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const auto look = [&] {
+      return wrong_cameras(Backbone(prior.arm, random_bends(random, prior.arm, 1.8)), random, 0.02).seen;
+    };
+    std::vector<Sighting> seen = look();
+    seen[1] = look()[1];
+    const ShapeEstimate none = ShapeEstimator(prior).estimate(seen);
+    const bool explains_little = none.doubted >= 0.1 || none.scale >= ShapeFit::most_scale;
+    const bool is_said = none.reason.find("would need its camera turned") != std::string::npos;
+    EXPECT_EQ(none.is_elsewhere, is_said);
+    EXPECT_FALSE(is_said && explains_little) << none.reason;
+    if (none.reason.starts_with("the cameras would have to stand otherwise")) ++unsaid;
+  });
+  EXPECT_GT(unsaid, 3);
 }
 
 // Errors of bends and views together, in units of what the covariance expects.

@@ -122,8 +122,8 @@ bool tells_of_cameras(const ShapeFit& fit) {
 
 std::string elsewhere(std::size_t picture, const ViewError& error) {
   return fmt::format(
-      "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, "
-      "far more than is doubted",
+      "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, far more "
+      "than is doubted",
       picture + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
       error.focal < 0 ? "shorter" : "longer");
 }
@@ -200,7 +200,7 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   std::vector<Sighting> prepared_ones = prepared(sightings);
   if (prepared_ones.empty() || !have_axes(prepared_ones)) return unseen(straight_shape(prior_));
   ShapeSearch search(prior_, config_.most_iterations, config_.most_rms, descent_);
-  auto [fit, seen, apart] = search.best(std::move(prepared_ones));
+  auto [fit, seen, apart] = search.best(prepared_ones);
   ShapeProblem problem(prior_, seen);
   if (!problem.linearise(fit.shape)) fit.cost = std::numeric_limits<double>::infinity();
   const double cost = fit.cost;

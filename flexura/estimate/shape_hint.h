@@ -5,7 +5,6 @@
 #include <string>
 
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/estimate/shape_variables.h"
 #include "flexura/estimate/sighting.h"
 
 namespace flexura {

@@ -17,6 +17,8 @@
 namespace flexura {
 namespace {
 
+using Pair = ShapeSearch::Pair;
+
 // The turn of a view that is in doubt after which the base is seen where the arm begins.
 ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   ViewError error;
@@ -32,45 +34,78 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   return error;
 }
 
-// The direction in which a view has the middle of what it sees, unit; none where the lens has no ray there.
-std::optional<Eigen::Vector3d> towards_middle(const Sighting& seen) {
-  if (seen.points.empty()) return std::nullopt;
-  const auto ray = seen.view.lens.unproject(seen.points[seen.points.size() / 2].pixel);
-  if (!ray) return std::nullopt;
-  return seen.view.X_WC.rotation * ray->homogeneous().normalized();
+// What a picture tells of the arm's place by itself.
+struct Outlook {
+  Eigen::Vector3d direction = {0, 0, 0};  // Towards the middle of what is seen, unit; 0: none.
+  double share = 0;                       // How much of the arm it shows, beside other pictures.
+};
+Outlook outlook(const Sighting& seen) {
+  Outlook result;
+  std::vector<Eigen::Vector3d> rays;
+  for (const CurvePoint& point : seen.points)
+    if (const auto ray = seen.view.lens.unproject(point.pixel))
+      rays.push_back(ray->homogeneous().normalized());
+  if (rays.empty()) return result;
+  result.direction = seen.view.X_WC.rotation * rays[rays.size() / 2];
+  // By the angle under which the axis is seen; what is cut off has any length.
+  for (std::size_t i = 1; i < rays.size(); ++i) result.share += (rays[i] - rays[i - 1]).norm();
+  constexpr double cut = 0.5;
+  for (const auto& end : seen.ends) result.share *= end ? 1 : cut;
+  return result;
 }
 
-// Whose lines of sight cross those of the first one most squarely: together they tell places best.
-std::size_t partner_of_first(std::span<const Sighting> sightings) {
-  std::size_t partner = 1;
-  const auto first = towards_middle(sightings[0]);
+// The two whose lines of sight cross most squarely and that show the most of the arm: together they tell
+// places best.
+Pair best_pair(std::span<const Sighting> sightings) {
+  Pair best = {0, sightings.size() >= 2 ? 1U : 0U};
+  if (sightings.size() <= 2) return best;
+  std::vector<Outlook> outlooks;
+  for (const Sighting& seen : sightings) outlooks.push_back(outlook(seen));
   double most = 0;
-  for (std::size_t i = 1; first && i < sightings.size(); ++i)
-    if (const auto other = towards_middle(sightings[i]))
-      if (const double sine = first->cross(*other).norm(); sine > most) most = sine, partner = i;
-  return partner;
+  for (std::size_t i = 0; i < outlooks.size(); ++i) {
+    for (std::size_t j = i + 1; j < outlooks.size(); ++j) {
+      const double sine = outlooks[i].direction.cross(outlooks[j].direction).norm(),
+                   score = sine * std::min(outlooks[i].share, outlooks[j].share);
+      if (score > most) most = score, best = {i, j};
+    }
+  }
+  return best;
 }
 
-// Where the first one and its partner see the arm, from the base on, m; the base's place first, if it is
-// known.
-std::vector<Eigen::Vector3d> places_seen(const ShapePrior& prior, const Sighting& first,
-                                         const Sighting& partner) {
+// Where two see the arm, from the base on, m; the base's place first, if it is known.
+std::vector<Eigen::Vector3d> places_seen(const ShapePrior& prior, const Sighting& one,
+                                         const Sighting& other) {
   std::vector<Eigen::Vector3d> places;
-  for (const SpacePoint& point : correspondence(first, partner).points) places.push_back(point.position);
+  for (const SpacePoint& point : correspondence(one, other).points) places.push_back(point.position);
   if (prior.is_base_position_known && !places.empty()) places.front() = prior.arm.X_WB.position;
   return places;
 }
 
-// Turned to run the way of these places, as far as the picture tells.
-Sighting run_alike(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
-  if (places.empty() || seen.points.empty()) return seen;
+// Whether it is followed the other way than these places, as far as the picture tells.
+bool runs_against(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
+  if (places.empty() || seen.points.empty()) return false;
   const auto begin = seen.view.project(places.front()), end = seen.view.project(places.back());
-  if (!begin || !end) return seen;
+  if (!begin || !end) return false;
   const auto off = [&](const Eigen::Vector2d& near_base, const Eigen::Vector2d& near_tip) {
     return (near_base - *begin).norm() + (near_tip - *end).norm();
   };
   const Eigen::Vector2d first = seen.points.front().pixel, last = seen.points.back().pixel;
-  return off(last, first) < off(first, last) ? reversed(seen) : seen;
+  return off(last, first) < off(first, last);
+}
+
+// The second of the pair followed as it is or, `against`, from its other end; the others the way of the
+// places that the pair then tells. The first of all is followed as it is: all are turned if need be.
+std::vector<Sighting> run_alike(const ShapePrior& prior, std::vector<Sighting> sightings, const Pair& pair,
+                                bool against) {
+  const auto turn = [](Sighting& seen) { seen = reversed(std::move(seen)); };
+  if (against) turn(sightings[pair[1]]);
+  if (sightings.size() == 2) return sightings;
+  const auto places = places_seen(prior, sightings[pair[0]], sightings[pair[1]]);
+  const bool is_first_against = pair[0] != 0 && runs_against(sightings[0], places);
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    if (i != pair[0] && i != pair[1] && runs_against(sightings[i], places)) turn(sightings[i]);
+  if (is_first_against) std::ranges::for_each(sightings, turn);
+  return sightings;
 }
 
 // How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it
@@ -229,7 +264,7 @@ bool ShapeSearch::leaves_much(const Try& one) const {
          one.misfit > most_misfit || one.ends > most_ends;
 }
 
-ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
+ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   // `otherwise`: one that explains all, by cameras that stand otherwise than is doubted.
   std::optional<Try> best, otherwise;
   std::vector<Sighting> best_seen, seen_otherwise;
@@ -241,19 +276,16 @@ ShapeSearch::Result ShapeSearch::best(std::vector<Sighting> seen) {
     if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
   const auto is_end = [&] { return best->is_as_doubted && is_explained(*best); };
-  // Which end of the others' axes is the first one's first is not known without a base: of its partner both
-  // are tried, and the others follow the places that the two tell.
-  const bool is_either_way = !prior_.is_base_position_known && seen.size() >= 2;
-  const std::size_t partner = seen.size() >= 2 ? partner_of_first(seen) : 0;
-  for (int way = 0; way < (is_either_way ? 2 : 1); ++way) {
-    if (way == 1) seen[partner] = reversed(seen[partner]);
-    if (is_either_way && seen.size() > 2) {
-      const auto places = places_seen(prior_, seen[0], seen[partner]);
-      for (std::size_t i = 1; i < seen.size(); ++i)
-        if (i != partner) seen[i] = run_alike(seen[i], places);
-    }
+  // Which end of the others' axes is the first one's first is not known without a base: two are tried against
+  // each other, and the others follow the places that these tell.
+  const Pair pair = best_pair(sightings);
+  const bool is_either_way = !prior_.is_base_position_known && sightings.size() >= 2;
+  for (const bool against : {false, true}) {
+    if (against && !is_either_way) break;
+    const std::vector<Sighting> seen =
+        is_either_way ? run_alike(prior_, sightings, pair, against) : sightings;
     ShapeProblem problem(prior_, seen);
-    for (const Shape& start : starts(seen, partner)) {
+    for (const Shape& start : starts(seen, pair)) {
       Try one = tried(problem, {start}, most());
       note(one, seen);
       const bool is_last = one.fit.is_good(most_rms_) && one.is_as_doubted;
@@ -304,16 +336,15 @@ double ShapeSearch::apart(const Result& found) {
   return largest;
 }
 
-std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, std::size_t partner) const {
+std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, const Pair& pair) const {
   std::vector<Shape> shapes;
   std::vector<ViewError> views;
   for (const Sighting& seen : sightings)
     views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
                                                   : ViewError{});
   if (sightings.size() >= 2) {
-    std::array<Sighting, 2> aimed = {sightings[0], sightings[partner]};
-    aimed[0].view = corrected(aimed[0].view, views[0]);
-    aimed[1].view = corrected(aimed[1].view, views[partner]);
+    std::array<Sighting, 2> aimed = {sightings[pair[0]], sightings[pair[1]]};
+    for (std::size_t k = 0; k < 2; ++k) aimed[k].view = corrected(aimed[k].view, views[pair[k]]);
     const std::vector<Eigen::Vector3d> points = places_seen(prior_, aimed[0], aimed[1]);
     const auto is_other = [&](const Eigen::Vector3d& p) { return p != points.front(); };
     if (std::ranges::any_of(points, is_other)) {

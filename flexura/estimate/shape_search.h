@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -32,9 +33,11 @@ class ShapeSearch {
     /// explains all as well is from it, m; 0: there is none.
     double apart = 0;
   };
-  /// At least one sighting. Where the base is unknown one of the others is followed both ways, the
-  /// rest as it is.
-  [[nodiscard]] Result best(std::vector<Sighting> seen);
+  /// At least one sighting. Where the base is unknown the first is followed as it is, the others either way.
+  [[nodiscard]] Result best(const std::vector<Sighting>& sightings);
+
+  /// Two sightings by their places among all, rising.
+  using Pair = std::array<std::size_t, 2>;
 
  private:
   struct Try {
@@ -55,8 +58,8 @@ class ShapeSearch {
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
-  // From what the first sighting and its partner tell.
-  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings, std::size_t partner) const;
+  // From what the pair tells.
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings, const Pair& pair) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.
   [[nodiscard]] std::vector<Start> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
 

@@ -180,6 +180,23 @@ TEST(ShapeTracker, LeavesAloneWhatIsNotDoubted) {
   });
 }
 
+// A few points of something else say little: the other picture tells the shape.
+TEST(ShapeTracker, PassesOverAFewPointsOfSomethingElse) {
+  for_random_cases(20, [](TestRandom& random) {
+    const ShapePrior prior{.arm = three_section_arm()};
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 0.8));
+    std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+    for (Sighting& one : seen) one.doubt = {};
+    ShapeTracker tracker(prior, {});
+    const ArmState expected = tracker.look(seen, 0, std::nullopt).shape.state;
+    seen[1].points.clear(), seen[1].ends = {};
+    for (int k = 0; k < 6; ++k) seen[1].points.push_back({{100.0 + k, 60}, 0.05});
+    const ShapeEstimate found = tracker.look(seen, 0.03, expected);
+    EXPECT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 0.01);
+  });
+}
+
 TEST(ShapeTracker, NeedsAnArmWhoseLengthIsKnown) {
   EXPECT_THROW(ShapeTracker({.arm = three_section_arm(), .is_length_known = false}, {}),
                std::invalid_argument);

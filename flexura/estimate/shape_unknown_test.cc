@@ -67,6 +67,7 @@ TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
   for (const View& view : two_views()) seen.push_back(sighting_of(truth, view, random, 0.02, {0.05, 1}));
   const ShapeEstimate found =
       ShapeEstimator(unknown_arm(Eigen::Vector3d(0.003, 0, 0), truth.length())).estimate(seen);
+  EXPECT_TRUE(found.is_found) << found.reason;
   EXPECT_THAT(found.notes, Not(Contains(HasSubstr("aside of where its base would be"))));
 }
 
@@ -87,6 +88,30 @@ TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
     const ShapeEstimate found = ShapeEstimator(unknown_arm(std::nullopt, std::nullopt)).estimate(seen);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 2e-3);
+  });
+}
+
+// Of three pictures one that crosses the first most squarely shows a fragment: the start is by the others.
+TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Arm arm = three_section_arm();
+    const Backbone truth(arm, random_bends(random, arm, 1.2));
+    const Eigen::Vector3d middle(0, 0.4, 0);
+    const std::array<Eigen::Vector3d, 3> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
+                                                 Eigen::Vector3d(1.8, 0, 1.8)};
+    const auto fragment = static_cast<std::size_t>(random.integer(0, 2));
+    const double from = random.uniform(0.2, 0.6);
+    std::vector<Sighting> seen;
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+      const View view = view_from(middle + eyes[i], middle, 800);
+      const std::array<double, 2> shares =
+          i == fragment ? std::array{from, from + 0.2} : std::array{0.0, 1.0};
+      const Sighting one = sighting_of(truth, view, random, 0.02, shares);
+      seen.push_back(i > 0 && random.uniform(0, 1) < 0.5 ? reversed(one) : one);
+    }
+    const ShapeEstimate found = ShapeEstimator(unknown_arm(std::nullopt, std::nullopt)).estimate(seen);
+    ASSERT_TRUE(found.is_found) << found.reason;
+    EXPECT_LT(shape_error(found.shape, truth), 2e-3) << "fragment in " << fragment;
   });
 }
 

@@ -89,6 +89,8 @@ struct Sighting {
   ErrorReach reach = {};  ///< Of the points' errors.
   /// Places strewn over the figure that the arm is, px; none where it is not known.
   std::vector<Eigen::Vector2d> figure = {};
+  /// Whether the lens has no ray for some of the arm's pixels: these are left out.
+  bool leaves_out = false;
 };
 
 /// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of

@@ -1,10 +1,13 @@
 #include "flexura/view/seen_arm.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "flexura/base/image.h"
@@ -181,11 +184,13 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
   std::vector<std::string> notes;
   for (const SeenPicture& picture : seen) {
     const FoundArm found = find_arm(rig, picture);
-    if (!found.arm.is_found())
-      notes.push_back("camera " + rig.cameras[picture.camera].config().name + ": " + found.arm.reason);
-    for (const std::string& note : found.arm.notes)
-      notes.push_back("camera " + rig.cameras[picture.camera].config().name + ": " + note);
     sightings.push_back(sighting_of(found.arm, found.view, found.bytes));
+    const auto tell = [&](std::string_view what) {
+      notes.push_back(fmt::format("camera {}: {}", rig.cameras[picture.camera].config().name, what));
+    };
+    if (!found.arm.is_found()) tell(found.arm.reason);
+    for (const std::string& note : found.arm.notes) tell(note);
+    if (sightings.back().leaves_out) tell(rays_lacking);
     numbers.push_back({picture.number, {}});
   }
   const ShapePrior prior = prior_of(rig);

@@ -51,8 +51,8 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     // Where the width is not measured, nothing can be said of it.
     const bool is_measured =
         std::isfinite(wanted) && axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
-    const double slide = is_measured ? std::clamp(wanted, -most, most) : 0;
-    const Vector3d middle = here[0] - slide * first + here[1] + slide * second;
+    Vector3d middle = here[0] + here[1];
+    if (is_measured) middle += std::clamp(wanted, -most, most) * (second - first);
     const auto pixel = middle.allFinite() ? lens.project(middle) : std::nullopt;
     if (pixel) axis[i].pixel = *pixel;
     is_whole = is_whole && pixel.has_value();

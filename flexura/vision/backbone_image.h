@@ -10,8 +10,9 @@ namespace flexura {
 /// Moves a median axis to where the backbone is seen, exactly so for a tube of constant radius: the two
 /// planes through the camera that touch the tube at arc length s lie evenly to both sides of the plane that
 /// holds the camera and the backbone's tangent at s, so the backbone's direction is half-way between those of
-/// the two borders, on the sphere around the camera and not in the picture (docs/vision.md). Samples that the
-/// lens shows nowhere stay. Fewer than 3 samples stay as they are. Whether all have a direction.
+/// the two borders, on the sphere around the camera and not in the picture (docs/vision.md). Samples with a
+/// border for whose pixel the lens has no ray stay. Fewer than 3 samples stay as they are. Whether all have
+/// rays.
 bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// The depth of the backbone at each sample of such an axis, along the optical axis, m, from the tube's width

@@ -10,6 +10,8 @@
 #include <memory>
 #include <variant>
 
+#include "flexura/camera/lens_ranges.h"
+
 namespace flexura {
 namespace {
 
@@ -18,12 +20,6 @@ using Quaternion = std::array<double, 4>;
 
 // A rotation written with four digits is still one.
 constexpr double largest_error = 2e-3;
-
-// The first two as of the cameras of experiments, px. Long lenses measured by boards have coefficients of
-// thousands.
-constexpr NumberRange focal_lengths = {.min = 1e-3, .max = 1e7};
-constexpr NumberRange principal_points = {.min = -1e7, .max = 1e7};
-constexpr NumberRange distortions = {.min = -1e9, .max = 1e9};
 
 Eigen::Matrix3d matrix_of(const Rows& rows) {
   Eigen::Matrix3d matrix;
@@ -123,17 +119,18 @@ const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
   static const Table<C> table =
       Table<C>("camera", "A camera that stands still, as it was measured.")
           .field("name", &C::name, {.meaning = "Its name, for messages."})
-          .field("fx", &C::fx, {.meaning = "Focal length, px.", .range = focal_lengths, .required = true})
+          .field("fx", &C::fx,
+                 {.meaning = "Focal length, px.", .range = focal_length_range, .required = true})
           .field("fy", &C::fy,
-                 {.meaning = "The same along v, px.", .range = focal_lengths, .default_text = "fx"})
+                 {.meaning = "The same along v, px.", .range = focal_length_range, .default_text = "fx"})
           .field("cx", &C::cx,
                  {.meaning = "Principal point, px; (0, 0) is the middle of the top left pixel.",
-                  .range = principal_points,
+                  .range = principal_point_range,
                   .required = true})
           .field("cy", &C::cy,
-                 {.meaning = "The same along v, px.", .range = principal_points, .required = true})
+                 {.meaning = "The same along v, px.", .range = principal_point_range, .required = true})
           .field("distortion", &C::distortion,
-                 {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order.", .range = distortions})
+                 {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order.", .range = distortion_range})
           .field("position", &C::position,
                  {.meaning = "Of the entrance pupil in the world.", .unit = Unit::metre})
           .field(

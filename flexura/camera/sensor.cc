@@ -28,8 +28,7 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
   const double frame = 1 / sensor.frame_rate;
   if (sensor.exposure > frame) {
     reader.problem_at("exposure",
-                      fmt::format("takes longer than a frame: expected at most {:.6g} s at {:.6g} "
-                                  "frames/s",
+                      fmt::format("takes longer than a frame: expected at most {:.6g} s at {:.6g} frames/s",
                                   frame, sensor.frame_rate));
   }
   const bool is_rolling = sensor.readout == Readout::rolling;
@@ -40,10 +39,10 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
     reader.problem_at("row_time", "is for readout = \"rolling\" alone");
   }
   if (is_rolling && sensor.row_time * height > frame) {
-    reader.problem_at("row_time",
-                      fmt::format("{} rows take longer than a frame: expected at most {:.6g} s at "
-                                  "{:.6g} frames/s",
-                                  sensor.height, frame / height, sensor.frame_rate));
+    reader.problem_at(
+        "row_time",
+        fmt::format("{} rows take longer than a frame: expected at most {:.6g} s at {:.6g} frames/s",
+                    sensor.height, frame / height, sensor.frame_rate));
   }
 }
 

@@ -8,13 +8,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "flexura/camera/lens_ranges.h"
+
 namespace flexura {
 namespace {
 
 constexpr std::size_t max_rows = 1000;
-constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};
-constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
-constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
 
 Intrinsics lens_at_one(const LensConfig& config, std::int64_t width, std::int64_t height) {
   return {config.fx, config.fy.value_or(config.fx), config.cx.value_or(0.5 * static_cast<double>(width - 1)),
@@ -66,8 +65,9 @@ const Table<ZoomRow>& fields_of(const ZoomRow*) {
           .field("fy", &ZoomRow::fy,
                  row_spec("Focal length in pixels, down.", focal_length_range, "the lens's times the ratio"))
           .field("cx", &ZoomRow::cx,
-                 row_spec("Principal point, px from the left.", pixel_range, "the lens's"))
-          .field("cy", &ZoomRow::cy, row_spec("Principal point, px from the top.", pixel_range, "the lens's"))
+                 row_spec("Principal point, px from the left.", principal_point_range, "the lens's"))
+          .field("cy", &ZoomRow::cy,
+                 row_spec("Principal point, px from the top.", principal_point_range, "the lens's"))
           .field("distortion", &ZoomRow::distortion,
                  row_spec("Distortion k1, k2, p1, p2, k3.", distortion_range, "the lens's"));
   return table;
@@ -80,10 +80,10 @@ const Table<LensConfig>& fields_of(const LensConfig*) {
                  {.meaning = "Focal length at ratio 1 in pixels, across.", .range = focal_length_range})
           .field("fy", &LensConfig::fy, row_spec("The same, down.", focal_length_range, "fx"))
           .field("cx", &LensConfig::cx,
-                 row_spec("Principal point, px from the middle of the leftmost pixel.", pixel_range,
+                 row_spec("Principal point, px from the middle of the leftmost pixel.", principal_point_range,
                           "the image's middle"))
           .field("cy", &LensConfig::cy,
-                 row_spec("Principal point, px from the middle of the topmost pixel.", pixel_range,
+                 row_spec("Principal point, px from the middle of the topmost pixel.", principal_point_range,
                           "the image's middle"))
           .field("distortion", &LensConfig::distortion,
                  {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "flexura/camera/camera.h"
+#include "flexura/camera/lens_ranges.h"
 #include "flexura/experiment/study_view.h"
 
 namespace flexura {
@@ -15,9 +16,6 @@ namespace {
 constexpr NumberRange turn_range = {.min = -10, .max = 10};
 constexpr NumberRange slide_range = {.min = -1e3, .max = 1e3};
 constexpr NumberRange place_range = {.min = -1e6, .max = 1e6};
-constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};
-constexpr NumberRange pixel_range = {.min = -1e6, .max = 1e6};
-constexpr NumberRange distortion_range = {.min = -1e3, .max = 1e3};
 
 struct Parameter {
   const char* name;
@@ -55,8 +53,8 @@ const std::vector<Parameter>& parameters() {
        "The focal length in px as the zoom stands; fy keeps its proportion to fx."},
       {"fx", &V::fx, Unit::none, focal_length_range, "The horizontal focal length alone, px."},
       {"fy", &V::fy, Unit::none, focal_length_range, "The vertical focal length alone, px."},
-      {"cx", &V::cx, Unit::none, pixel_range, "The principal point's column, px."},
-      {"cy", &V::cy, Unit::none, pixel_range, "The principal point's row, px."},
+      {"cx", &V::cx, Unit::none, principal_point_range, "The principal point's column, px."},
+      {"cy", &V::cy, Unit::none, principal_point_range, "The principal point's row, px."},
       {"k1", &V::k1, Unit::none, distortion_range, "Radial distortion, by the second power of the radius."},
       {"k2", &V::k2, Unit::none, distortion_range, "Radial distortion, by the fourth power."},
       {"p1", &V::p1, Unit::none, distortion_range, "Tangential distortion, vertical."},

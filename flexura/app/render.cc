@@ -57,7 +57,7 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   const FrameTimes next = times_of_frame_at(sensor, arguments.time + 1 / sensor.frame_rate);
 
   Filming filming(experiment);
-  const double played = filming.play_to(next.end, schedule);
+  const double played = filming.play_unfilmed(next.end, schedule);
   if (arguments.time > played) {
     throw input_error("--time", fmt::format("{} s is not in the run: at {:.6g} s it ends in a shape that no "
                                             "arm can take",

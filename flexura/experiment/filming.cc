@@ -100,7 +100,7 @@ std::vector<CameraReading> Filming::camera_readings() {
   return readings;
 }
 
-double Filming::play_to(double until, const Schedule& schedule) {
+double Filming::play_unfilmed(double until, const Schedule& schedule) {
   const RigPorts ports = rig_.ports();
   double played = 0;
   for (std::size_t step = 0; step <= schedule.steps(); ++step) {

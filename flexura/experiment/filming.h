@@ -62,7 +62,7 @@ class Filming {
 
   /// Plays `schedule` from its start to its first step at `until` s or later, to its end, or to the last step
   /// before a state that no arm can take, and renders nothing. Returns the time of that step, s.
-  [[nodiscard]] double play_to(double until, const Schedule& schedule);
+  [[nodiscard]] double play_unfilmed(double until, const Schedule& schedule);
 
   /// What the camera in this place would expose from `start` s on, up to which the motion must have been
   /// played; at the start of a frame, that frame.

@@ -28,8 +28,7 @@ class CordPointToPointMotion : public Motion {
     if (profiles_.empty() || profiles_.size() != from_.bends.size() ||
         cord_changes_.size() != from_.bends.size() || !one_duration) {
       throw std::invalid_argument(
-          "a motion of cords needs one change and one profile a section, all of one "
-          "duration");
+          "a motion of cords needs one change and one profile a section, all of one duration");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }

@@ -91,15 +91,6 @@ InverseResult describe(const Question& q, const Found& found) {
   return result;
 }
 
-// Why a settled state is no solution; memory is that of the state.
-template <class Problem>
-InverseOutcome reason(const Question& q, const Found& found, const DescentMemory<Problem>& memory) {
-  if (found.ended != Descent::stationary) return InverseOutcome::no_convergence;
-  const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
-  const double held = pressure(q.variables.bounds(), found.x, gradient);
-  return held > least_pressure * memory.r.norm() ? InverseOutcome::at_limit : InverseOutcome::not_reachable;
-}
-
 template <int Rows>
 InverseResult answer_out_of_reach(const Question& q) {
   TipProblem<Rows> problem = problem_of<Rows>(q);
@@ -131,12 +122,8 @@ InverseResult answer(const Question& q) {
     follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.options.wish), found.x, memory);
   }
   InverseResult result = describe(q, found);
-  if (found.is_met()) {
-    result.outcome = InverseOutcome::converged;
-  } else {
-    problem.linearise(found.x, memory.r, memory.J);
-    result.outcome = reason(q, found, memory);
-  }
+  result.outcome =
+      found.is_met() ? InverseOutcome::converged : outcome_of_missed(problem, q.variables, found, memory);
   result.iterations = memory.iterations;
   return result;
 }

@@ -45,14 +45,6 @@ bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points,
          least_distance(arm, points.back()) > tolerance + rounding;
 }
 
-// Whether limits are what keeps a descent that has ended at `x` from going on.
-bool is_held_by_limits(CurveProblem& problem, const ArmVariables& variables, const Eigen::VectorXd& x,
-                       DescentMemory<CurveProblem>& memory) {
-  problem.linearise(x, memory.r, memory.J);
-  const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
-  return pressure(variables.bounds(), x, gradient) > least_pressure * memory.r.norm();
-}
-
 }  // namespace
 
 // What a polyline turns by at a point, the curve that it stands for turns by from the middle of one piece to
@@ -128,9 +120,8 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   } else if (is_out_of_reach(arm, points, tolerance)) {
     result.outcome = InverseOutcome::not_reachable;
     result.is_proven = true;
-  } else if (found.ended != Descent::exhausted) {
-    result.outcome = is_held_by_limits(problem, variables, found.x, memory) ? InverseOutcome::at_limit
-                                                                            : InverseOutcome::not_reachable;
+  } else {
+    result.outcome = outcome_of_missed(problem, variables, found, memory);
   }
   return result;
 }

@@ -51,6 +51,24 @@ TEST(Inverse, APolylineIsAsFarFromItsCurveAsThisSays) {
   EXPECT_EQ(polyline_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}), 0.0) << "a corner";
 }
 
+// Its ends are in reach; between them the curve bends by more than the arm can.
+TEST(Inverse, SaysThatALimitKeepsItFromACurve) {
+  Arm able;
+  able.kind = ArmKind::spatial;
+  able.sections.resize(3, {.length = 0.3, .max_bend = 2.5});
+  const Backbone bent(able, {{{1.8, 0}, {-1.8, 0.2}, {0.9, 0}}, {1, 1, 1}});
+  CurveTarget target;
+  for (int k = 0; k <= 300; ++k) target.points.push_back(bent.pose(bent.length() * k / 300).position);
+  EXPECT_TRUE(solve_inverse(able, target, {}).converged());
+  Arm stiff = able;
+  for (Section& section : stiff.sections) section.max_bend = 1.2;
+  const InverseResult result = solve_inverse(stiff, target, {});
+  EXPECT_EQ(result.outcome, InverseOutcome::at_limit) << name_of(result.outcome);
+  EXPECT_FALSE(result.is_proven);
+  EXPECT_GT(result.position_error, result.position_tolerance);
+  EXPECT_TRUE(is_within_limits(stiff, result.state));
+}
+
 // The point of a polyline at a part of its length.
 Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double part) {
   double length = 0.0;

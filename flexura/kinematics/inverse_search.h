@@ -5,13 +5,11 @@
 #include <limits>
 
 #include "flexura/kinematics/bounded_least_squares.h"
+#include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/inverse_starts.h"
 #include "flexura/kinematics/projected_gradient.h"
 
 namespace flexura {
-
-/// A bound whose pressure is above this part of the residual's norm counts as what holds a state.
-inline constexpr double least_pressure = 1e-6;
 
 /// What a state may take to come to the bottom of its valley.
 inline constexpr int settling_iterations = 6000;
@@ -106,6 +104,20 @@ Found nearest(Problem& problem, const ArmVariables& variables, InverseStarts& st
   }
   settle(problem, variables, settling_iterations, found, memory);
   return found;
+}
+
+/// Why what was found misses its target: the descent did not come to an end, or limits keep it from going on,
+/// or nothing does and the target is out of reach.
+template <class Problem>
+InverseOutcome outcome_of_missed(Problem& problem, const ArmVariables& variables, const Found& found,
+                                 DescentMemory<Problem>& memory) {
+  if (found.ended == Descent::exhausted) return InverseOutcome::no_convergence;
+  constexpr double least_pressure = 1e-6;  // Of the residual's norm.
+  problem.linearise(found.x, memory.r, memory.J);
+  const Eigen::VectorXd gradient = memory.J.transpose() * memory.r;
+  return pressure(variables.bounds(), found.x, gradient) > least_pressure * memory.r.norm()
+             ? InverseOutcome::at_limit
+             : InverseOutcome::not_reachable;
 }
 
 }  // namespace flexura

@@ -10,7 +10,7 @@
 #include "flexura/estimate/shape_tracker.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"
-#include "flexura/servo/servo_session.h"
+#include "flexura/servo/servo_watcher.h"
 #include "flexura/vision/arm_finder.h"
 
 namespace flexura {

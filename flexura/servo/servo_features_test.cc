@@ -78,8 +78,7 @@ TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
       EXPECT_EQ(at_rest, slopes);
     });
     std::printf(
-        "law %d: half the way leaves 1/%.1f or less, the derivatives where it stands %.0f times as "
-        "much\n",
+        "law %d: half the way leaves 1/%.1f or less, the derivatives where it stands %.0f times as much\n",
         static_cast<int>(law), worst_order, tangents / rests);
     EXPECT_GT(worst_order, 6);
     EXPECT_GT(tangents, 5 * rests);

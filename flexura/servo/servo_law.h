@@ -8,7 +8,7 @@
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
-#include "flexura/servo/servo_session.h"
+#include "flexura/servo/servo_watcher.h"
 
 namespace flexura {
 

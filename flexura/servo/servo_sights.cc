@@ -37,9 +37,6 @@ bool ServoSights::look(double now, const ServoGoals& goals) {
   sight.desired = std::move(wanted.state), sight.desired_offset = std::move(wanted.offset);
   watcher_.seen(sight);
   if (!first_) first_ = sight;
-  constexpr double unknown = 0.05;  // Of the length: such a shape is nothing to go by.
-  if (sight.estimate.is_found && sigma_of(sight.estimate) > unknown)
-    sight.estimate.is_found = false, sight.estimate.reason = "the pictures hardly tell the shape";
   if (!sight.estimate.is_found) {
     tell_unseen(now, no_shape(sight));
     return false;

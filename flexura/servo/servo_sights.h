@@ -10,7 +10,7 @@
 #include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_goals.h"
 #include "flexura/servo/servo_rig.h"
-#include "flexura/servo/servo_session.h"
+#include "flexura/servo/servo_watcher.h"
 
 namespace flexura {
 

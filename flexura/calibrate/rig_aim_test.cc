@@ -1,5 +1,6 @@
 #include "flexura/calibrate/rig_aim.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "flexura/camera/camera.h"
@@ -16,6 +18,8 @@
 
 namespace flexura {
 namespace {
+
+using ::testing::Contains, ::testing::Not;
 
 constexpr double step = 0.075 * degree;
 
@@ -148,6 +152,18 @@ TEST(WantedRig, SaysWhichAxisEndsTooEarly) {
   ASSERT_FALSE(wanted.notes.empty());
   EXPECT_EQ(wanted.notes[0].substr(0, 10), "front: pan") << testing::PrintToString(wanted.notes);
   EXPECT_NEAR(wanted.stances[0].head.pan, 0.5, step);
+}
+
+TEST(WantedRig, SaysWhereNoZoomOfBothShowsTheTargetAlike) {
+  TestRandom random(1);
+  RigModel model = found_rig(random);
+  const std::string said = "no zoom that both cameras have shows the target alike";
+  EXPECT_THAT(wanted_rig(model, wish_for(random)).notes, Not(Contains(said)));
+  model.cameras[0].head.zoom.limits = {1, 1.2}, model.cameras[1].head.zoom.limits = {2, 3};
+  const WantedRig wanted = wanted_rig(model, wish_for(random));
+  EXPECT_THAT(wanted.notes, Contains(said));
+  EXPECT_EQ(wanted.stances[0].head.zoom, 1.2);
+  EXPECT_EQ(wanted.stances[1].head.zoom, 2);
 }
 
 TEST(WantedRig, ReportsTheRollThatNoHeadCorrects) {

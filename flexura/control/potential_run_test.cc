@@ -133,6 +133,16 @@ TEST(PotentialRun, EndsWhereTheAnglesDo) {
   EXPECT_EQ(run.motion().time(), ended);
 }
 
+// In its own plane it finds no end of the angles: it turns faster and faster.
+TEST(PotentialRun, EndsWhereTheArmRunsAway) {
+  const DistributedArm arm = three_section_arm();
+  const PotentialLaw wild(arm, evenly_bent(arm, 0.3, 0), {.damping = -2 * Eigen::Matrix2d::Identity()});
+  PotentialRun run(arm, wild, evenly_bent(arm, 0.6, 0));
+  (void)watched_steps(run, 60);
+  EXPECT_THAT(run.stopped(), HasSubstr("the arm runs away: it turned by 100 rad until "));
+  EXPECT_GT(run.motion().arm().theta().cwiseAbs().maxCoeff(), 99);
+}
+
 TEST(PotentialRun, EndsWithinAnAdvanceWhereItIsTold) {
   const DistributedArm arm = three_section_arm();
   const PotentialLaw law(arm, evenly_bent(arm, 1.2, -0.6), {});

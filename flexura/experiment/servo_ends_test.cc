@@ -32,6 +32,22 @@ TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
   }
 }
 
+// What cameras that are wrong are off by is there in every picture alike: sigma tells of the noise.
+TEST(ServoEnds, CamerasThatAreBelievedSayHowNoisyTheirPicturesAre) {
+  const auto sigma = [](const std::string& truth) {
+    ServoSetup rig;
+    rig.rest = truth;
+    ServoBench bench(servo_file("doubt = { turn = 0, focal = 0 }\n" + servo_target, rig));
+    const ServoResult result = bench.servo();
+    EXPECT_TRUE(result.is_done) << result.reason;
+    return result.steps.back().sigma;
+  };
+  const double right = sigma(""),
+               wrong = sigma("[[truth.camera]]\nname = \"side\"\nhead = { pan = { zero_deg = 0.5 } }\n");
+  EXPECT_GT(wrong, right / 5);
+  EXPECT_LT(wrong, 5 * right);
+}
+
 // And cameras that are right lose nothing by it.
 TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
   ServoBench bench(
@@ -54,6 +70,52 @@ TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
         << law << ": " << result.reason;
     EXPECT_NE(result.reason.find(" % shorter in focal length"), std::string::npos)
         << law << ": " << result.reason;
+  }
+}
+
+// Pictures that were taken before anything was known of the arm are of a shape that nobody can say.
+TEST(ServoEnds, PicturesFromBeforeItBeganAreNotGoneBy) {
+  ServoSetup rig;
+  rig.sensor = "read_noise = 1, delay = 0.5, exposure = 0.002";
+  ServoBench bench(servo_file("blind = 1\n" + servo_target, rig));
+  RigPorts ports = bench.ports();
+  const ArmState bent = {{{0.5, 0}, {0, 0.5}, {0, 0}}, {1, 1, 1}};
+  ASSERT_FALSE(ports.arm->command(bent, 1).fault());
+  ports.clock->wait_until(1.5);
+  const ServoResult result = bench.servo();
+  EXPECT_TRUE(result.is_done) << result.reason;
+  ASSERT_GE(result.start, 1.5);
+  for (const ServoStep& step : result.steps) EXPECT_GE(step.seen_at.value_or(result.start), result.start);
+}
+
+// A head that counts how often it was told to stop.
+class CountingHead : public HeadPort {
+ public:
+  explicit CountingHead(HeadPort& head) : head_(head) {}
+  CommandOutcome command(const HeadState& state) override { return head_.command(state); }
+  CommandOutcome halt() override { return ++halts, head_.halt(); }
+  Outcome<HeadReading> read() override { return head_.read(); }
+
+  int halts = 0;
+
+ private:
+  HeadPort& head_;
+};
+
+// However it ends; heads that nobody told to move are left alone.
+TEST(ServoEnds, HeadsThatFollowAreHalted) {
+  for (const bool follows : {true, false}) {
+    for (const bool refuses : {false, true}) {
+      ServoBench bench(servo_file((follows ? "follow = true\n" : "") + servo_target));
+      RigPorts ports = bench.ports();
+      CountingHead front(*ports.cameras[0].head), side(*ports.cameras[1].head);
+      ports.cameras[0].head = &front, ports.cameras[1].head = &side;
+      BrokenArm broken(*ports.arm, *ports.clock, BrokenArm::Kind::refuses, refuses ? 0.4 : 1e9);
+      ports.arm = &broken;
+      EXPECT_EQ(bench.servo(ports).is_done, !refuses);
+      EXPECT_EQ(front.halts > 0, follows);
+      EXPECT_EQ(side.halts > 0, follows);
+    }
   }
 }
 

@@ -54,9 +54,9 @@ std::string model_of(const Setting& setting, MujocoConfig config) {
   const Eigen::Vector3d right = view.X_WC.rotation.col(0), up = -view.X_WC.rotation.col(1);
   const double height_angle = 2 * std::atan(0.5 * view.height / view.lens.intrinsics().fy);
   std::string model = fmt::format(
-      "<mujoco><statistic extent='1'/><visual><headlight active='0'/>"
-      "<quality offsamples='{}' shadowsize='0' numslices='{}' numstacks='{}'/><map znear='{}' zfar='{}'/>"
-      "<global offwidth='{}' offheight='{}'/></visual>\n"
+      "<mujoco><statistic extent='1'/><visual><headlight active='0'/><quality offsamples='{}' shadowsize='0' "
+      "numslices='{}' numstacks='{}'/><map znear='{}' zfar='{}'/><global offwidth='{}' "
+      "offheight='{}'/></visual>\n"
       "<asset><material name='arm' specular='0'/></asset><default><geom material='arm'/></default>"
       "<worldbody><camera name='camera' pos='{}' xyaxes='{} {}' fovy='{}'/>\n",
       config.samples, config.slices, config.stacks, nearest, farthest, view.width, view.height,

@@ -233,10 +233,8 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
 void print_range(std::size_t trials, std::uint64_t seed) {
   fmt::print(
       "## How rough guesses may be\n\nA fixed plan of {} pictures a camera, aimed by the guess alone; wrong "
-      "by this "
-      "many times the rough guesses (10 deg, 20 % of the distance, 10 % of the focal length, 10 px). Wrong "
-      "answers: "
-      "found, but an angle between the axes more than five sigmas off.\n\n"
+      "by this many times the rough guesses (10 deg, 20 % of the distance, 10 % of the focal length, 10 px). "
+      "Wrong answers: found, but an angle between the axes more than five sigmas off.\n\n"
       "| times | found | from the first start | refused | wrong |\n| ---: | ---: | ---: | ---: | ---: |\n",
       pictures);
   for (const double times : {1.0, 1.5, 2.0, 3.0}) {

@@ -134,8 +134,8 @@ int main(int count, char** arguments) {
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[3]));
   constexpr double turn = 6.283185307179586;
   std::puts(
-      "| target | asked | found | rate | first start | wrong | outside limits | wrongly refused | "
-      "worst position / length | worst angle, rad | iterations |");
+      "| target | asked | found | rate | first start | wrong | outside limits | wrongly refused | worst "
+      "position / length | worst angle, rad | iterations |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   bool is_good = true;
   // Bent by more than half a turn each, three sections have many valleys, and one target in hundreds is lost.
@@ -149,8 +149,8 @@ int main(int count, char** arguments) {
   is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn, most,
                                       targets / 20, seed);
   std::puts(
-      "\n| out of reach | asked | refused with proof | as far as constructed or further | "
-      "nearest pose beaten | by at most |");
+      "\n| out of reach | asked | refused with proof | as far as constructed or further | nearest pose "
+      "beaten | by at most |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: |");
   is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);
   is_good &=

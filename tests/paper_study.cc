@@ -95,8 +95,7 @@ void print_failures(const std::string& method, const std::vector<CalibrationTria
 void print_head() {
   fmt::print(
       "| method | done | within 0.1 deg | pictures a camera, median | axes from 90 deg, median | 95 % | "
-      "largest | aim, mm, "
-      "median | 95 % | zoom ratio from 1, %, 95 % |\n"
+      "largest | aim, mm, median | 95 % | zoom ratio from 1, %, 95 % |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
 }
 

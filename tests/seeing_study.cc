@@ -137,8 +137,7 @@ Tally study_row(const std::string& name, const SeenArmOptions& options, double u
 int study(int cases, std::uint64_t seed) {
   std::printf(
       "| | found | of those that cross themselves | median | 90 %% | rms, px | 99 %% | rms, bridged ones too "
-      "| rms of the middle | not seen, %% | ends, px | 68 %% "
-      "over sigma | aim: rms at most %.2f px |\n",
+      "| rms of the middle | not seen, %% | ends, px | 68 %% over sigma | aim: rms at most %.2f px |\n",
       aimed_rms);
   std::printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   Tally banded;

@@ -302,8 +302,8 @@ void study(Cameras cameras, std::vector<Method> methods, const std::string& way,
   for (std::thread& one : pool) one.join();
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, cameras believed | "
-      "floor, cameras doubted |\n"
+      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, cameras believed | floor, "
+      "cameras doubted |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t j = 0; j < methods.size(); ++j)
     print_row(methods[j].name, arrivals[j], cameras == Cameras::wrong);

@@ -7,8 +7,9 @@ What is documented are the headers of flexura/public_headers.txt up to its secon
 docs/library.md in front. Anything that Doxygen finds wrong in a comment is printed, a line each, and
 so are a class without one and a function without one; then the exit status is 1. Of overloads one
 comment does. None is needed by data members, by what only asks an object for something without an
-argument, by what is defaulted, overrides or is an operator, and by fields_of and names_of, which
-base/table.h tells of: there the name says all.
+argument, by what is defaulted, overrides or is an operator, by constructors that move or that make a
+...Config of nothing, and by fields_of and names_of, which base/table.h tells of: there the name says
+all.
 """
 
 import re
@@ -71,8 +72,11 @@ def complaints(told):
 def needs_words(function):
     """Whether a memberdef of a function is one whose name does not say all."""
     arguments, name = function.findtext("argsstring") or "", function.findtext("name")
-    is_question = arguments.startswith("()") and (function.get("const") == "yes" or name.endswith("Config"))
-    is_given = re.search(r"= ?(default|delete)$", arguments) or "&&)" in arguments
+    has_no_argument = arguments.startswith("()")
+    is_constructor = not function.findtext("type")
+    is_question = has_no_argument and (function.get("const") == "yes" or (is_constructor and name.endswith("Config")))
+    is_move = is_constructor and re.match(rf"\({re.escape(name)} ?&&", arguments)
+    is_given = re.search(r"= ?(default|delete)$", arguments) or is_move
     is_override = function.find("reimplements") is not None
     return not (is_question or is_given or is_override or name.startswith(("operator", "~")) or name in KNOWN)
 

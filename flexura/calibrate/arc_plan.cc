@@ -94,8 +94,8 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
     distances[i] = (vector(loop.model(i).mount.position) - plan.centers[i]).dot(plan.normals[i]);
     if (distances[i] < 2 * plan.radius)
       return fmt::format(
-          "camera {} is believed to stand {:.3g} m from the plane {}: expected twice the arc's radius "
-          "at least",
+          "camera {} is believed to stand {:.3g} m from the plane {}: expected twice the arc's radius at "
+          "least",
           loop.name(i), distances[i], name_of_plane(i));
   }
   std::array<double, 2> depths{};

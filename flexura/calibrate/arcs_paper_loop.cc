@@ -57,8 +57,8 @@ LookLoop::Trouble ArcsPaperLoop::verify(std::size_t i) {
                                circle_->detectable_tilt / degree));
       loop_.result().notes.push_back(
           fmt::format("camera {}: the circle's equation is verified, which proves no more than a tilt below "
-                      "{:.2f} deg, and nothing "
-                      "of where the camera looks: the circle's centre is {:.1f} px from where it should be",
+                      "{:.2f} deg, and nothing of where the camera looks: the circle's centre is {:.1f} px "
+                      "from where it should be",
                       loop_.name(i), circle_->detectable_tilt / degree, off.norm()));
       return std::nullopt;
     }

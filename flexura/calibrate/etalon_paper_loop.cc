@@ -101,8 +101,7 @@ PaperTrouble EtalonPaperLoop::turn_away(std::size_t i, bool& is_turned) {
   if (++turned_away_[i] > most)
     return fmt::format(
         "horizontal positioning of camera {} cannot stop: each time that the outer of two red axes was "
-        "turned "
-        "out of the picture both were there again when the cylinder was back in its middle",
+        "turned out of the picture both were there again when the cylinder was back in its middle",
         loop_.name(i));
   const auto off = [&](double u) { return std::abs(u - counts_[i].middle); };
   const double outer = off(axes.front()) > off(axes.back()) ? axes.front() : axes.back();
@@ -202,8 +201,7 @@ PaperTrouble EtalonPaperLoop::run() {
   loop_.result().zoom_ratio.reset();  // White pixels are no magnification.
   loop_.result().notes.emplace_back(
       "as printed: where the cameras stand around the cylinder was not measured, for the white pixels beside "
-      "the "
-      "red axis do not depend on where the axis is");
+      "the red axis do not depend on where the axis is");
   return std::nullopt;
 }
 

@@ -72,8 +72,7 @@ class Session {
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
       return fmt::format(
           "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "
-          "turns "
-          "of the heads tell more",
+          "turns of the heads tell more",
           sigma / degree);
     result_.is_done = true;
     return std::nullopt;
@@ -289,8 +288,7 @@ class Session {
       if (!(foretelling.sigmas <= most))
         return fmt::format(
             "camera {} sees the {} {:.1f} px from where it was foretold after the move, which is {:.1f} "
-            "times "
-            "what is not known: a head with play, or one that was pushed{}",
+            "times what is not known: a head with play, or one that was pushed{}",
             name(i), what_, foretelling.px, foretelling.sigmas,
             config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }

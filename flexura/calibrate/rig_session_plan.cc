@@ -241,8 +241,7 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   if (std::min(angle, std::numbers::pi - angle) < steepest)
     return fmt::format(
         "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, and heads "
-        "alone "
-        "cannot make orthogonal axes of that",
+        "alone cannot make orthogonal axes of that",
         angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
   std::string why;
   for (const std::string& note : wanted.notes) why += "; " + note;
@@ -263,10 +262,8 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
     if (aside > most_aside * sights[i].norm())
       return fmt::format(
           "where the stages end the lines of sight are {:.1f} deg apart: of orthogonal axes that of camera "
-          "{} "
-          "would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, or let the "
-          "stages "
-          "travel farther{}",
+          "{} would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, or let the "
+          "stages travel farther{}",
           angle / degree, model.cameras[wanted.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);
   }

@@ -146,8 +146,8 @@ TEST(AgainstViSP, TheImageLawBringsAFreeCameraTheSameWay) {
   EXPECT_EQ(ours_there, count);
   EXPECT_EQ(damped_there, count);
   std::printf(
-      "of %d free cameras vpServo brought %d, ImageLaw %d, with the servo's damping %d; at most %.1e m "
-      "or rad apart\n",
+      "of %d free cameras vpServo brought %d, ImageLaw %d, with the servo's damping %d; at most %.1e m or "
+      "rad apart\n",
       count, theirs_there, ours_there, damped_there, most);
 }
 

@@ -73,8 +73,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"a stretch that two tendons do not determine",
        drive_with("length = 0.3", "length = 0.3\nstretch_limits = [0.9, 1.1]"),
        "drive.tendon: does not determine the bend and the stretch of section 1, where 2 tendons end: "
-       "expected "
-       "at least 3 that are not on one line"},
+       "expected at least 3 that are not on one line"},
       {"a planar tendon out of the plane",
        "arm.section = [{length = 1}]\ndrive.tendon = [{section = 1, angle_deg = 90}]\n",
        "does not determine the bend of section 1, where 1 tendon ends: expected at least 1 that is not at "
@@ -85,8 +84,7 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "expected at least 2 on different sides of the arm"},
       {"steps that are no multiple of the phases", drive_with("steps = 600", "steps = 200"),
        "x.toml:10:1: drive.motor.steps: 200 full steps a turn of a motor with 3 phases: expected a multiple "
-       "of "
-       "the phases"},
+       "of the phases"},
       {"one phase", drive_with("steps = 600", "phases = 1"),
        "drive.motor.phases = 1: expected a whole number from 2"},
       {"no microsteps", drive_with("steps = 600", "microsteps = 0"),

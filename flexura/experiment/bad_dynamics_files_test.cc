@@ -92,11 +92,10 @@ TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
   };
   const std::string angles = "target.azimuths_deg = [0, 0, 0, 0]\ntarget.elevations_deg = [0, 85, 85, -40]\n";
   EXPECT_EQ(error(angles, "sections", 3), "no error");
-  EXPECT_THAT(
-      error(angles, "polynomial", 4),
-      MatchesRegex("x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), "
-                   "through an elevation of [0-9.]+ deg: expected less than 90 deg, where the "
-                   "azimuth is none"));
+  EXPECT_THAT(error(angles, "polynomial", 4),
+              MatchesRegex(
+                  "x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), through "
+                  "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is none"));
   EXPECT_EQ(error(angles, "polynomial", 5), "no error");
   // Bends too.
   const std::string bends = "target.bends = [[0, -1.5], [0, 0], [0, 0]]\n";

@@ -135,8 +135,8 @@ std::vector<std::string> points_of(const CalibrationRun& run) {
   if (run.truth) points.push_back(remainder_text("After the move, in the simulated truth", *run.truth));
   const RigSigmas& sigmas = result.steps.back().sigmas;
   points.push_back(fmt::format(
-      "Known (standard deviations): the angle between the axes within {:.4f} deg, focal "
-      "lengths within {:.2f} % and {:.2f} %, zoom ratio within {:.2f} %.",
+      "Known (standard deviations): the angle between the axes within {:.4f} deg, focal lengths within "
+      "{:.2f} % and {:.2f} %, zoom ratio within {:.2f} %.",
       sigmas.angle / degree, 100 * sigmas.focal[0], 100 * sigmas.focal[1], 100 * sigmas.zoom_ratio));
   for (const std::string& note : result.wanted.notes) points.push_back(note);
   const auto& blind = result.observability.blindness;
@@ -171,8 +171,7 @@ ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::s
 std::string remainder_text(const std::string& when, const RigRemainder& left) {
   return fmt::format(
       "{}: the axes are {:.3f} deg apart, pass the target by {:.2f} mm and {:.2f} mm, zoom ratio {:.4f}; "
-      "roll about "
-      "the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
+      "roll about the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
       when, 90 + left.angle / degree, 1e3 * left.aim[0].norm(), 1e3 * left.aim[1].norm(), left.zoom_ratio,
       left.roll[0] / degree, left.roll[1] / degree);
 }

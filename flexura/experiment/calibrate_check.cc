@@ -109,10 +109,10 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
   if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
   if (!task.save.empty() && !is_plain_file(task.save))
-    reader.problem_at(path + ".save",
-                      fmt::format("{}: expected a file's name of letters, digits, -, _ and ., "
-                                  "ending in .toml",
-                                  Node{task.save, {}}.brief()));
+    reader.problem_at(
+        path + ".save",
+        fmt::format("{}: expected a file's name of letters, digits, -, _ and ., ending in .toml",
+                    Node{task.save, {}}.brief()));
 }
 
 }  // namespace flexura

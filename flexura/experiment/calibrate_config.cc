@@ -94,8 +94,7 @@ const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
                   .range = above_up_to(0, 1)})
           .field("distance", &CalibrateGuessConfig::distance,
                  {.meaning = "Of where a mount is, in each direction, as a share of its distance from the "
-                             "arm's base, or "
-                             "from the cylinder before which it is calibrated.",
+                             "arm's base, or from the cylinder before which it is calibrated.",
                   .range = above_up_to(0, 1)})
           .field("focal", &CalibrateGuessConfig::focal,
                  {.meaning = "Of the focal length, a share.", .range = between(0, 1)})
@@ -144,21 +143,18 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   static const auto table =
       Table<CalibrateTask>("calibrate",
                            "Two cameras find out how they stand, and are sent to where both look at the arm "
-                           "along orthogonal axes "
-                           "with equal zoom. The arm shows some poses, going from one to the next by way of "
-                           "the shape in which it "
-                           "is; heads, stages and zooms are moved as well. It takes as long as it takes.")
+                           "along orthogonal axes with equal zoom. The arm shows some poses, going from one "
+                           "to the next by way of the shape in which it is; heads, stages and zooms are "
+                           "moved as well. It takes as long as it takes.")
           .field("name", &CalibrateTask::name,
                  {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field(
-              "method", &CalibrateTask::method,
-              {.meaning =
-                   "How: bundle is by least squares over everything at once, from pictures of the arm, "
-                   "bundle-etalon from pictures of the calibration cylinder; "
-                   "etalon is the paper's loop before the calibration cylinder, corrected, and etalon-paper "
-                   "the same as printed; arcs is the paper's loop with arcs of the arm in two planes, "
-                   "corrected, "
-                   "and arcs-paper the same as printed."})
+          .field("method", &CalibrateTask::method,
+                 {.meaning =
+                      "How: bundle is by least squares over everything at once, from pictures of the arm, "
+                      "bundle-etalon from pictures of the calibration cylinder; etalon is the paper's loop "
+                      "before the calibration cylinder, corrected, and etalon-paper the same as printed; "
+                      "arcs is the paper's loop with arcs of the arm in two planes, corrected, and "
+                      "arcs-paper the same as printed."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field(

@@ -120,8 +120,7 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
     if (run.is_measured) {
       points.emplace_back(
           "The law had measured angles: late, noisy or held for a while. The theory's balance is that of "
-          "exact "
-          "ones, so what it finds missing here is theirs.");
+          "exact ones, so what it finds missing here is theirs.");
     } else {
       for (const std::string& reason : verdict.reasons)
         points.push_back("The energies tell: " + reason + ".");
@@ -130,8 +129,7 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   if (run.triangulated > 0)
     points.push_back(
         fmt::format("Of all points of the arm that were looked at {:.3g} % were within 10 deg of a quarter "
-                    "turn, or across "
-                    "one from where they are to be: there both pictures were triangulated.",
+                    "turn, or across one from where they are to be: there both pictures were triangulated.",
                     100 * run.triangulated));
   constexpr double little = 1e-9;
   if (run.left_over > little)

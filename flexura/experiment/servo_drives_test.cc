@@ -27,8 +27,7 @@ std::string drive_with(const std::string& motor, double backlash_deg = 0) {
       text += fmt::format("{{ section = {}, angle_deg = {} }}, ", section, 40 * (section - 1) + 120 * i);
   return text + fmt::format(
                     "]\n[drive.motor]\nphases = 3\nsteps = 600\nmicrosteps = "
-                    "10\n{}\n[drive.spool]\nradius_mm = 10\ngear "
-                    "= 10\nbacklash_deg = {}\n",
+                    "10\n{}\n[drive.spool]\nradius_mm = 10\ngear = 10\nbacklash_deg = {}\n",
                     motor, backlash_deg);
 }
 
@@ -100,8 +99,7 @@ TEST(ServoWithDrive, GoesOnFromWhereTheTaskBeforeEnded) {
   ServoSetup rig;
   rig.rest = drive_with("max_acceleration = 1000", 0.1) +
              "[[task]]\nkind = \"move\"\nduration = 3\nlaw = \"minimum_jerk\"\nto.bends = [[0.123, 0.2], "
-             "[0.1, 0.3], "
-             "[0.4, 0]]\n";
+             "[0.1, 0.3], [0.4, 0]]\n";
   expect_done(servo_file(
       servo_target + "[[task]]\nkind = \"servo\"\n[[task.target]]\nbends = [[0.2, 0], [0.3, 0.1], [0, 0.4]]\n"
                      "[[task]]\nkind = \"move\"\nduration = 3\nlaw = \"minimum_jerk\"\n"

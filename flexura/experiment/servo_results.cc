@@ -150,8 +150,8 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                   false};
   if (result.settled)
     chapter.points.push_back(
-        fmt::format("Within 2 % of its length after {:.2f} s, and from then on; the tip went "
-                    "{:.1f} % of its way too far.",
+        fmt::format("Within 2 % of its length after {:.2f} s, and from then on; the tip went {:.1f} % of its "
+                    "way too far.",
                     *result.settled, 100 * std::max(0.0, result.overshoot)));
   if (result.remaining)
     chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, as seen: {}.", run.settle,
@@ -160,10 +160,10 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
     chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, in the simulated truth: {}.",
                                          run.settle, error_text(*run.true_remaining)));
   if (result.missed > hardly)
-    chapter.points.push_back(fmt::format(
-        "The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of its "
-        "length away from what was asked for.",
-        100 * result.missed));
+    chapter.points.push_back(
+        fmt::format("The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of "
+                    "its length away from what was asked for.",
+                    100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(fmt::format(
         "{} steps were missed: what was to be done in one took longer than a step.", result.missed_steps));

@@ -61,9 +61,8 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                   .range = between(-1e6, 1e6),
                   .default_text = "not set"})
           .field("curve", &Target::curve,
-                 {.meaning =
-                      "Points of the backbone in the world, from the base on to the tip."
-                      " How far the nearest shape may be from the smooth curve through them is `tolerance`.",
+                 {.meaning = "Points of the backbone in the world, from the base on to the tip. How far the "
+                             "nearest shape may be from the smooth curve through them is `tolerance`.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .count = {2, most_points},
@@ -118,9 +117,8 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning =
                       "What drives it: shape is the shape that both images tell, less the wanted one; "
                       "points, chords and moments compare features of the images, silhouettes their edges; "
-                      "potential is the paper's "
-                      "artificial potential on the errors in two image planes (the first camera's XOY, the "
-                      "second one's ZOY)."})
+                      "potential is the paper's artificial potential on the errors in two image planes (the "
+                      "first camera's XOY, the second one's ZOY)."})
           .field("measure", &T::measure,
                  {.meaning = "Where chords and potential have their angles from: each picture by itself, or "
                              "the flow from the picture before, drawn back to each picture."})

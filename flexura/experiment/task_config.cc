@@ -114,10 +114,10 @@ const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
   static const auto table =
       Table<KeyframesTask>(
           "keyframes",
-          "The arm passes through shapes at times. The columns are `time` (s in the task, from 0) and, "
-          "for every section, one of `arching_1`, `cord_angle_1` (rad, or with `_deg`, `_pi`) or the "
-          "pair `bend_x_1`, `bend_y_1`; and `stretch_1` where sections stretch. The first row is where "
-          "the arm is.")
+          "The arm passes through shapes at times. The columns are `time` (s in the task, from 0) and, for "
+          "every section, one of `arching_1`, `cord_angle_1` (rad, or with `_deg`, `_pi`) or the pair "
+          "`bend_x_1`, `bend_y_1`; and `stretch_1` where sections stretch. The first row is where the arm "
+          "is.")
           .field("name", &KeyframesTask::name, name_spec)
           .field("file", &KeyframesTask::file,
                  {.meaning = "A CSV file in this file's folder or below, whose first line names the columns.",
@@ -141,8 +141,8 @@ const Table<ExpressionTask>& fields_of(const ExpressionTask*) {
   static const auto table =
       Table<ExpressionTask>(
           "expression",
-          "Formulas of `t` (s in the task), `T` (the task's duration) and `i` (the section's number "
-          "from 1), such as `\"0.3*sin(2*pi*t/T)\"`: one for all sections, or one each. Angles in rad.")
+          "Formulas of `t` (s in the task), `T` (the task's duration) and `i` (the section's number from 1), "
+          "such as `\"0.3*sin(2*pi*t/T)\"`: one for all sections, or one each. Angles in rad.")
           .field("name", &ExpressionTask::name, name_spec)
           .field("duration", &ExpressionTask::duration, duration_spec)
           .field("cord_angles", &ExpressionTask::cord_angles,

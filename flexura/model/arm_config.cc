@@ -81,8 +81,8 @@ const Table<Section>& fields_of(const Section*) {
 const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
   static const auto table =
       Table<ShapeConfig>("shape",
-                         "A shape of the arm: its bends in one of three ways, and its stretches. "
-                         "What is left out is straight and unstretched.")
+                         "A shape of the arm: its bends in one of three ways, and its stretches. What is "
+                         "left out is straight and unstretched.")
           .field("cord_angles", &ShapeConfig::cord_angles,
                  {.meaning = "Planar arms: the angle of each section's cord from +X, counter-clockwise.",
                   .unit = Unit::radian,

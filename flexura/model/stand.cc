@@ -61,8 +61,7 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
                   .range = coordinate_range})
           .field("rotation", &EtalonConfig::rotation,
                  {.meaning = "Quaternion (w, x, y, z) that turns its axes into the world's; it stands along "
-                             "its y, a red "
-                             "line towards its z.",
+                             "its y, a red line towards its z.",
                   .range = between(-2, 2)})
           .field("radius", &EtalonConfig::radius, length_of("Radius."))
           .field("height", &EtalonConfig::height, length_of("Height."))

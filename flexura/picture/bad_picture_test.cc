@@ -163,8 +163,7 @@ TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
             "the JPEG file has 2 values a pixel: expected gray, colours or four inks (CMYK)");
   EXPECT_EQ(complaint(tiff(Image<float>(3, 3))),
             "the TIFF file has floating point values of 32 bits: expected whole ones of 1, 2, 4, 8, 10, 12, "
-            "14 or 16 bits, "
-            "without a sign");
+            "14 or 16 bits, without a sign");
   EXPECT_EQ(
       complaint(tiff_file(Image<std::uint8_t>(3, 3, 3), {.photometric = PHOTOMETRIC_ICCLAB})),
       "the TIFF file has colours of kind 9: expected gray, RGB, a palette, or CMYK, YCbCr or CIELab of 8 "

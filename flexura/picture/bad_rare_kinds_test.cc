@@ -129,8 +129,8 @@ TEST(BadRareKinds, DamagedAreCalledSo) {
   const std::string stream = jpeg2000_file(smooth_picture(21, 13, 3), {.is_stream = true, .tile = 16});
   const std::string jpeg2000 = "the JPEG 2000" + damage;
   EXPECT_EQ(problem_of(with(stream, 2, "\xFF\x52")),
-            "not a picture that can be read: expected PNG, JPEG, JPEG "
-            "2000, TIFF, WebP, PNM, PAM, BMP or Sun raster");
+            "not a picture that can be read: expected PNG, JPEG, JPEG 2000, TIFF, WebP, PNM, PAM, BMP or Sun "
+            "raster");
   const std::size_t numbers = size_numbers(stream);
   EXPECT_EQ(problem_of(with(stream, numbers + 16, "\0\0\0\0"s)), jpeg2000 + "tiles beside the picture");
   EXPECT_EQ(problem_of(with(stream, numbers + 16, "\0\0\0\1\0\0\0\1"s)), "the JPEG 2000 file is cut short");

@@ -124,8 +124,8 @@ Jpeg2000Values values_of(const opj_image_t& image, std::size_t most_pixels) {
     constexpr OPJ_UINT32 most_bits = 16;
     if (channel.sgnd != 0 || channel.prec < 1 || channel.prec > most_bits || channel.prec != first.prec)
       throw std::runtime_error(
-          fmt::format("the JPEG 2000 file has {}values of {} bits: expected 1 to 16, as "
-                      "many in each channel, without a sign",
+          fmt::format("the JPEG 2000 file has {}values of {} bits: expected 1 to 16, as many in each "
+                      "channel, without a sign",
                       channel.sgnd != 0 ? "signed " : "", channel.prec));
     if (channel.dx != 1 || channel.dy != 1 || channel.w != first.w || channel.h != first.h)
       throw std::runtime_error(

@@ -37,10 +37,10 @@ SunHeader read_sun_header(std::span<const std::uint8_t> file, std::size_t most_p
   const bool is_plain = header.map_type == SunHeader::no_map && map_size == 0,
              is_painted = header.map_type == SunHeader::rgb_map && map_size <= most_map && map_size % 3 == 0;
   if (!is_plain && !is_painted)
-    throw std::runtime_error(fmt::format(
-        "the Sun raster file has a palette of type {} and {} bytes: expected none, or one of red, "
-        "green and blue for 1 or 8 bits a pixel",
-        header.map_type, map_size));
+    throw std::runtime_error(
+        fmt::format("the Sun raster file has a palette of type {} and {} bytes: expected none, or one of "
+                    "red, green and blue for 1 or 8 bits a pixel",
+                    header.map_type, map_size));
   header.map_size = static_cast<std::size_t>(map_size);
   header.row_size = static_cast<std::size_t>((header.width * header.bits + 15) / 16 * 2);
   return header;

@@ -189,8 +189,7 @@ std::string curve_html(const ReportMotion& motion) {
   const CurveDeviation end = deviation(drawn_curve(backbone, motion.curve, motion.tension), backbone);
   return fmt::format(
       "<p class=\"note\">The dark line is {}; at the end it is at most {:.2g} m from the arm's arcs and "
-      "{:.2g} % {} "
-      "than they.</p>\n",
+      "{:.2g} % {} than they.</p>\n",
       name, end.distance, 100 * std::abs(end.length / backbone.length() - 1),
       end.length < backbone.length() ? "shorter" : "longer");
 }

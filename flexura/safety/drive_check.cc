@@ -259,15 +259,13 @@ void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double st
   };
   say(&AxisNotes::has_single_steps,
       "motor speed and step rate of {}: one microstep in a row of {:.6g} s is beyond the limit already; "
-      "single "
-      "ones pass where the motion that they are rounded from keeps to it");
+      "single ones pass where the motion that they are rounded from keeps to it");
   say(&AxisNotes::is_rounded_over,
       "motor speed and step rate of {}: the motion keeps to the limit, rounded to microsteps it does not: up "
       "to one more in {:.6g} s");
   say(&AxisNotes::takes_up_play,
       "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
-      "the "
-      "shorter that is, the more it asks");
+      "the shorter that is, the more it asks");
   say(&AxisNotes::is_over_while_steered,
       "motors of {}: while the arm is steered speeds and accelerations count without play and rounding, as "
       "its limiter counts them; with these the list asks for more than a limit within one step of the clock, "
@@ -308,10 +306,10 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
   say_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before, step, report);
   say_notes(axes, drive, step, report);
   if (!std::ranges::any_of(report.violations, is_acceleration)) return;
-  report.caveats.push_back(fmt::format(
-      "motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that starts "
-      "or turns at once the value goes with that step",
-      step));
+  report.caveats.push_back(
+      fmt::format("motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that "
+                  "starts or turns at once the value goes with that step",
+                  step));
 }
 
 }  // namespace flexura

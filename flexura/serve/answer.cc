@@ -14,8 +14,7 @@ namespace {
 // The page loads its own parts and speaks with its own server; pictures also from what it has received.
 constexpr std::string_view page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
-    "'self'; "
-    "font-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "'self'; font-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 constexpr std::array<std::pair<int, std::string_view>, 20> phrases = {{
     {101, "Switching Protocols"},

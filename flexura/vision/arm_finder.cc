@@ -178,8 +178,8 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   if (static_cast<double>(component.area) < least_slenderness * width * width ||
       component.on_border > 6 * width + 12) {
     seen.reason = fmt::format(
-        "the largest figure is no tube: {} px large, about {:.0f} px across, {} px of it on "
-        "the picture's border",
+        "the largest figure is no tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
+        "border",
         component.area, width, component.on_border);
     return false;
   }

@@ -254,8 +254,7 @@ EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::
   seen.width_above = width_at(seen.top + inset), seen.width_below = width_at(seen.bottom - inset);
   if (std::max(left->rms, right->rms) > 0.05 * width_at(seen.middle_row)) {
     seen.reason = fmt::format(
-        "the largest figure is no upright cylinder: its sides are {:.2g} and {:.2g} px off "
-        "straight lines",
+        "the largest figure is no upright cylinder: its sides are {:.2g} and {:.2g} px off straight lines",
         left->rms, right->rms);
     return seen;
   }

@@ -265,10 +265,10 @@ void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerS
   };
   const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
   if (dropped > 0)
-    notes.push_back(fmt::format(
-        "{} spot{} of another colour left out: at an end of the arm, half hidden, touching another, or "
-        "too small to be a marker",
-        dropped, dropped > 1 ? "s" : ""));
+    notes.push_back(
+        fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, touching "
+                    "another, or too small to be a marker",
+                    dropped, dropped > 1 ? "s" : ""));
 }
 
 }  // namespace

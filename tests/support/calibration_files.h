@@ -9,17 +9,14 @@ namespace flexura {
 inline std::string small_calibration(const std::string& task, const std::string& truth,
                                      const std::string& sensor = "") {
   const std::string images =
-      "sensor = { width = 320, height = 240, pixels = \"color\", frame_rate = 10, psf = 0.7, "
-      "read_noise = 1" +
+      "sensor = { width = 320, height = 240, pixels = \"color\", frame_rate = 10, psf = 0.7, read_noise = 1" +
       sensor + " }\n";
   const std::string rest =
       "lens = { fx = 400 }\nhead = { pan = { limits_deg = [-90, 90], max_rate_deg = 60, resolution_deg = "
-      "0.075 }, "
-      "tilt = { limits_deg = [-45, 45], max_rate_deg = 60, resolution_deg = 0.075 } }\n";
+      "0.075 }, tilt = { limits_deg = [-45, 45], max_rate_deg = 60, resolution_deg = 0.075 } }\n";
   const std::string stage =
       ", stage = { x = { limits = [-0.5, 0.5], max_rate = 0.5 }, y = { limits = [-0.5, 0.5], max_rate = 0.5 "
-      "}, "
-      "z = { limits = [-0.5, 0.5], max_rate = 0.5 } } }\n";
+      "}, z = { limits = [-0.5, 0.5], max_rate = 0.5 } } }\n";
   return R"(
 [arm]
 kind = "spatial"

@@ -77,8 +77,7 @@ inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) 
   const std::string slide = fmt::format("{{ limits = [{}, {}] }}", -rig.travel, rig.travel);
   std::string text = fmt::format(
       "name = \"{}\"\nmount = {{ position = [{}, {}, {}], look_at = [{}, {}, {}], roll = {}, stage = {{ x = "
-      "{}, y = {}, "
-      "z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {}, distortion = [{}, 0, 0, 0, 0] }}\n",
+      "{}, y = {}, z = {} }} }}\nlens = {{ fx = {}, cx = {}, cy = {}, distortion = [{}, 0, 0, 0, 0] }}\n",
       is_side ? "side" : "front", at[0], at[1], at[2], look[0], look[1], look[2], wrong.roll, slide, slide,
       slide, 800 * rig.size * wrong.focal, 320 * rig.size - 0.5 + wrong.cx, 240 * rig.size - 0.5 + wrong.cy,
       wrong.k1);
@@ -88,11 +87,9 @@ inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) 
         text, wrong.pan_zero, wrong.tilt_zero, fmt::join(wrong.tilt_axis, ", "));
   text += fmt::format(
       "head = {{ pan = {{ limits_deg = [-90, 90], max_rate_deg = 200, resolution_deg = 0.075 }}, tilt = {{ "
-      "limits_deg = "
-      "[-45, 45], max_rate_deg = 200, resolution_deg = 0.075 }} }}\n"
+      "limits_deg = [-45, 45], max_rate_deg = 200, resolution_deg = 0.075 }} }}\n"
       "sensor = {{ width = {}, height = {}, pixels = \"color\", frame_rate = {}, psf = 0.7, read_noise = 2, "
-      "full_well = "
-      "20000{} }}\ninitial = {{ zoom = {} }}\n",
+      "full_well = 20000{} }}\ninitial = {{ zoom = {} }}\n",
       static_cast<int>(640 * rig.size), static_cast<int>(480 * rig.size), rig.frame_rate, rig.sensor,
       rig.wrong[i].zoom);
   return "[[camera]]\n" + text;
@@ -126,8 +123,7 @@ inline std::string arcs_rig(const std::string& task, const LoopRig& rig,
   }
   return text +
          "[arm.look]\nbands = { per_section = 4, width = 0.02, colors = [[0.85, 0.1, 0.1], [0.1, 0.6, 0.15], "
-         "[0.1, 0.2, "
-         "0.85]] }\n" +
+         "[0.1, 0.2, 0.85]] }\n" +
          truth + loop_rig(rig, task);
 }
 

@@ -21,8 +21,7 @@ inline std::string servo_file(const std::string& task, const ServoSetup& rig = {
     text += fmt::format(
         "[[camera]]\nname = \"{}\"\nmount = {{ position = [{}, 0.5, {}], look_at = [0, 0.5, 0] }}\n"
         "lens = {{ fx = 400 }}\nsensor = {{ width = 320, height = 240, frame_rate = 30, psf = 0.7, full_well "
-        "= "
-        "20000, {} }}\n",
+        "= 20000, {} }}\n",
         is_side ? "side" : "front", is_side ? -2.5 : 0, is_side ? 0 : 2.5, rig.sensor);
   return text + rig.rest + "[[task]]\nkind = \"servo\"\n" + task;
 }

@@ -16,7 +16,8 @@ order:
              a first line with "file: NAME" writes the block to NAME in the scratch folder;
              a first line with "from: PATH" says that the rest stands in PATH, word for word.
 
-The version is looked at as well: CMakeLists.txt, the newest heading of CHANGELOG.md and viewer/package.json agree.
+The version is looked at as well: CMakeLists.txt, the newest heading of CHANGELOG.md and viewer/package.json agree. And
+names in the prose, but for the changes': of `Class::member` one source has both words, of `Suite.Test` there is the test.
 """
 
 import argparse
@@ -33,6 +34,9 @@ from pathlib import Path
 FENCE = re.compile(r"^(\s*)```(\w*)\s*$")
 LINK = re.compile(r'\]\(([^)\s]+)(?:\s+"[^"]*")?\)|<img[^>]*\bsrc="([^"]+)"')
 HEADER = re.compile(r"^(?:#|//|<!--|--)\s*(file|from):\s*(\S+)")
+MEMBER = re.compile(r"`([A-Z]\w*)::(\w+)")
+TEST = re.compile(r"`\**([A-Z]\w*[a-z]\w*\.[A-Z]\w*[a-z]\w*)\**`")
+DEFINED_TEST = re.compile(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)")
 PROJECT = """cmake_minimum_required(VERSION 3.25)
 project(program LANGUAGES CXX)
 """
@@ -111,6 +115,27 @@ def broken_links(document):
                 yield number, f"the link {target} leads nowhere"
             elif fragment and path.suffix == ".md" and fragment not in anchors(path.read_text()):
                 yield number, f"the link {target} leads to no heading"
+
+
+class Sources:
+    """What names the C++ sources of a project have."""
+
+    def __init__(self, root):
+        self.words, self.tests = [], set()
+        for folder in ("flexura", "tests", "bench"):
+            for path in [*root.glob(f"{folder}/**/*.h"), *root.glob(f"{folder}/**/*.cc")]:
+                text = path.read_text()
+                self.words.append(set(re.findall(r"\w+", text)))
+                self.tests.update(f"{suite}.{test}" for suite, test in DEFINED_TEST.findall(text))
+
+    def unknown_names(self, document):
+        for number, line in enumerate(split(document.read_text())[1], 1):
+            for match in MEMBER.finditer(line):
+                if not any(match[1] in words and match[2] in words for words in self.words):
+                    yield number, f"no source has {match[1]}::{match[2]}"
+            for match in TEST.finditer(line):
+                if match[1] not in self.tests:
+                    yield number, f"there is no test {match[1]}"
 
 
 class Runner:
@@ -243,8 +268,11 @@ def documents(root):
 def problems(root, programs, prefix):
     """What is wrong in the documents at `root`, one text each."""
     yield from version_problems(root)
+    sources = Sources(root)
     for document in documents(root):
         found = list(broken_links(document))
+        if document.name != "CHANGELOG.md":
+            found.extend(sources.unknown_names(document))
         if programs:
             with tempfile.TemporaryDirectory() as scratch:
                 runner = Runner(root, Path(scratch), programs, prefix)

@@ -99,6 +99,22 @@ class CheckDocs(unittest.TestCase):
         (self.root / "viewer/package.json").write_text('{\n  "version": "1.2.2"\n}\n')
         self.assertEqual(len(self.problems(newest, "CHANGELOG.md")), 1)
 
+    def test_names_have_to_be_those_of_the_sources(self):
+        (self.root / "flexura").mkdir()
+        (self.root / "flexura/arm.h").write_text("class Arm { void bend(); };\n")
+        (self.root / "flexura/arm_test.cc").write_text("TEST_P(Arm,\n       Bends) {}\n")
+        self.assertEqual(self.problems("`Arm::bend` and `Arm::bend(2)`, **`Arm.Bends`**, `X.Y`, `a.b`\n"), [])
+        self.assertEqual(
+            self.problems("one\n\n`Arm::twist`\n`Leg::bend`, `Arm.Twists`\n"),
+            [
+                "README.md:3: no source has Arm::twist",
+                "README.md:4: no source has Leg::bend",
+                "README.md:4: there is no test Arm.Twists",
+            ],
+        )
+        (self.root / "README.md").unlink()
+        self.assertEqual(self.problems("`Arm::twist`\n", "CHANGELOG.md"), [])
+
     def test_a_link_has_to_lead_to_a_file_and_a_heading(self):
         good = "# The `arm`, moved\n[a](examples/arm.toml) [b](#the-arm-moved) [c](https://example.org/x)\n"
         self.assertEqual(self.problems(good), [])

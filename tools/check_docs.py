@@ -16,7 +16,7 @@ order:
              a first line with "file: NAME" writes the block to NAME in the scratch folder;
              a first line with "from: PATH" says that the rest stands in PATH, word for word.
 
-The version is looked at as well: CMakeLists.txt, the newest heading of CHANGELOG.md and viewer/package.json agree. And
+The version is looked at as well: where it is said, it is that of CMakeLists.txt (VERSIONS lists the places). And
 names in the prose, but for the changes': of `Class::member` one source has both words, of `Suite.Test` there is the test.
 """
 
@@ -37,6 +37,14 @@ HEADER = re.compile(r"^(?:#|//|<!--|--)\s*(file|from):\s*(\S+)")
 MEMBER = re.compile(r"`([A-Z]\w*)::(\w+)")
 TEST = re.compile(r"`\**([A-Z]\w*[a-z]\w*\.[A-Z]\w*[a-z]\w*)\**`")
 DEFINED_TEST = re.compile(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)")
+VERSIONS = {
+    "CHANGELOG.md": r"^## (\d\S*) - \d{4}-\d\d-\d\d$",
+    "viewer/package.json": r'^  "version": "([^"]+)"',
+    "viewer/package-lock.json": r'^  "version": "([^"]+)"',
+    "docs/viewer-protocol.md": r'"version":"([^"]+)"',
+    "docs/library.md": r"find_package\(flexura ([\d.]+)",
+    "tests/install/CMakeLists.txt": r"find_package\(flexura ([\d.]+)",
+}
 PROJECT = """cmake_minimum_required(VERSION 3.25)
 project(program LANGUAGES CXX)
 """
@@ -251,13 +259,11 @@ def version_problems(root):
     version = project.exists() and re.search(r"project\(\w+ VERSION (\S+)", project.read_text())
     if not version:
         return
-    said = {
-        "CHANGELOG.md": r"^## (\d\S*) - \d{4}-\d\d-\d\d$",
-        "viewer/package.json": r'^  "version": "([^"]+)"',
-    }
-    for name, pattern in said.items():
+    for name, pattern in VERSIONS.items():
+        if not (root / name).exists():
+            continue
         found = re.search(pattern, (root / name).read_text(), re.MULTILINE)
-        if not found or found[1] != version[1]:
+        if not found or version[1].split(".")[: len(found[1].split("."))] != found[1].split("."):
             yield f"{name}: the version is {found[1] if found else 'not said'}, that of CMakeLists.txt {version[1]}"
 
 

@@ -98,6 +98,10 @@ class CheckDocs(unittest.TestCase):
                          ["CHANGELOG.md: the version is 1.2.2, that of CMakeLists.txt 1.2.3"])
         (self.root / "viewer/package.json").write_text('{\n  "version": "1.2.2"\n}\n')
         self.assertEqual(len(self.problems(newest, "CHANGELOG.md")), 1)
+        for version, count in (("1.2", 1), ("1.1", 2), ("1.2.3", 1), ("1.2.30", 2)):
+            (self.root / "docs").mkdir(exist_ok=True)
+            (self.root / "docs/library.md").write_text(f"find_package(flexura {version} REQUIRED)\n")
+            self.assertEqual(len(self.problems(newest, "CHANGELOG.md")), count, version)
 
     def test_names_have_to_be_those_of_the_sources(self):
         (self.root / "flexura").mkdir()

@@ -7,7 +7,7 @@ What is documented are the headers of flexura/public_headers.txt up to its secon
 docs/library.md in front. Anything that Doxygen finds wrong in a comment is printed, a line each, and
 so are a class without one and a function without one; then the exit status is 1. Of overloads one
 comment does. None is needed by data members, by what only asks an object for something without an
-argument, by what is defaulted, overrides or is an operator, by constructors that move or that make a
+argument, by what is defaulted or deleted, overrides or is an operator, by constructors that move or that make a
 ...Config of nothing, and by fields_of and names_of, which base/table.h tells of: there the name says
 all.
 """

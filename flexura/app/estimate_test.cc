@@ -25,6 +25,8 @@
 namespace flexura {
 namespace {
 
+using ::testing::HasSubstr, ::testing::Not;
+
 class Estimate : public EstimateBench {};
 
 TEST_F(Estimate, OfAKnownArmIsRightToATenthOfAMillimetreOrTwo) {
@@ -123,6 +125,22 @@ TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
   expect_right_where_told(5e-4);
   arguments_.arm.clear(), arguments_.base = {0, 0, 0}, arguments_.length = 1;
   expect_right_where_told(4e-3);
+}
+
+// A lens whose distortion folds back within the picture shows no arm beyond: the answer says so.
+TEST_F(Estimate, SaysWhereADistortionHasNoRays) {
+  const auto notes_by = [&](const std::string& k1) {
+    arguments_.cameras = (folder_.path() / (k1 + ".toml")).string();
+    write_new_file(arguments_.cameras,
+                   replaced_everywhere(two_measured_cameras, "fx = 800.0",
+                                       "fx = 800.0\ndistortion = [" + k1 + ", 0, 0, 0, 0]"));
+    std::ostringstream out;
+    (void)estimate_command(arguments_, out);
+    return out.str();
+  };
+  const std::string said = "has no ray for some pixels of the arm: they count for nothing";
+  EXPECT_THAT(notes_by("-5"), HasSubstr(said));
+  EXPECT_THAT(notes_by("-0.1"), Not(HasSubstr(said)));
 }
 
 // What `node` holds at `key`, as finite numbers; of rows one after the other.

@@ -156,20 +156,20 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
 }
 
 Node answer(const Arm& arm, const InverseRequest& request) {
-  InverseConfig options;
-  options.wish = request.wish;
-  if (request.start) options.start = arm_state(arm, *request.start);
-  options.position_tolerance = request.tolerance;
+  InverseConfig config;
+  config.wish = request.wish;
+  if (request.start) config.start = arm_state(arm, *request.start);
+  config.position_tolerance = request.tolerance;
   if (request.curve) {
     CurveTarget target;
     for (const Triple& point : *request.curve) target.points.push_back(vector(point));
-    return answer_one(arm, request, solve_inverse(arm, target, options));
+    return answer_one(arm, request, solve_inverse(arm, target, config));
   }
   const TipTarget target = tip_target(request);
   std::vector<InverseResult> solutions;
-  if (request.all) solutions = all_inverse_solutions(arm, target, options);
+  if (request.all) solutions = all_inverse_solutions(arm, target, config);
   if (!request.all || solutions.empty()) {
-    Node node = answer_one(arm, request, solve_inverse(arm, target, options));
+    Node node = answer_one(arm, request, solve_inverse(arm, target, config));
     if (request.all) node.as<Node::Table>()->push_back({"solutions", {}, {Node::Array{}, {}}});
     return node;
   }

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// The version of the library, "0.2.0", from the CMake project.
+/// The version of the library, of the CMake project.
 [[nodiscard]] std::string_view version();
 
 }  // namespace flexura

@@ -86,6 +86,8 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   if (!look.reason.empty()) return seen;
   for (std::size_t i = 0; i < look.markers.size(); ++i) {
     const MarkerSighting& marker = look.markers[i];
+    // Where the lens has no ray there is no place of the arm, and no marker to calibrate by.
+    if (!lens.unproject(marker.pixel)) continue;
     if (match.markers[i]) {
       seen.markers.push_back(
           {marker.pixel, config.markers[*match.markers[i]].s, std::max(marker.sigma, least_marker_sigma)});
@@ -95,7 +97,12 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   }
   if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
   std::vector<AxisSample> axis = look.axis;
-  to_backbone_image(lens, axis);
+  if (!to_backbone_image(lens, axis)) {
+    std::vector<AxisSample> told;
+    for (std::size_t i = 0; i < axis.size(); ++i)
+      if (has_rays(lens, look.axis[i])) told.push_back(axis[i]);
+    axis = std::move(told);
+  }
   if (match.is_reversed) std::ranges::reverse(axis);
   seen.points = spaced_points(axis, config);
   return seen;

@@ -80,7 +80,8 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
   return {nearest->normal.y(), -nearest->normal.x()};
 }
 
-// Whether the lens has a ray for every pixel: what it shows is round, so the corners tell.
+// Whether the lens has a ray for every pixel of the picture: what it shows is round, or nearly so for all
+// that tangential distortion of real lenses does, so the corners tell.
 bool shows_all(const View& view) {
   const double right = view.width - 1, low = view.height - 1;
   const std::array<Eigen::Vector2d, 4> corners = {{{0, 0}, {right, 0}, {0, low}, {right, low}}};
@@ -160,7 +161,11 @@ Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::
   Sighting seen = sighting_along(arm, corrected.axis, view);
   constexpr bool with_spots = false;  // Nothing is known of the backbone there.
   for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
-    if (!marker.tells_place() || !view.lens.unproject(marker.pixel)) continue;
+    if (!marker.tells_place()) continue;
+    if (!view.lens.unproject(marker.pixel)) {
+      seen.leaves_out = true;
+      continue;
+    }
     seen.bands.push_back({marker.pixel, heading_at(corrected.axis, marker.pixel),
                           std::hypot(marker.sigma, band_sigma), marker.color});
   }

@@ -92,7 +92,13 @@ TEST(PictureSighting, CorrectsTheAxisUpToWhereTheRaysEnd) {
   for (AxisSample& sample : arm.axis) sample.pixel.y() += 8, sample.is_seen = true;
   const Sighting seen = sighting_of(arm, view);
   ASSERT_FALSE(seen.points.empty());
-  EXPECT_GT(std::abs(seen.points.front().pixel.y() - 208), 0.01);
+  const double u = seen.points.front().pixel.x();
+  const auto direction = [&](double v) {
+    return Eigen::Vector3d(view.lens.unproject({std::round(u), v})->homogeneous().normalized());
+  };
+  const Eigen::Vector2d expected = *view.lens.project(direction(203) + direction(213));
+  EXPECT_LT((seen.points.front().pixel - expected).norm(), 1e-6);
+  EXPECT_GT(std::abs(expected.y() - 208), 0.01);
 }
 
 }  // namespace

@@ -61,10 +61,10 @@ class ShapeEstimator {
   /// Of the arm that `prior` describes, as far as it does.
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
 
-  /// From nothing: of the first sighting and the one that crosses its lines of sight most squarely points are
-  /// paired by epipolar geometry and their order, and triangulated.
+  /// From nothing: of the two sightings whose lines of sight cross most squarely and that show the most of
+  /// the arm points are paired by epipolar geometry and their order, and triangulated.
   /// Where the base's position is known, each sighting is followed from the end nearer to it; otherwise the
-  /// order of the first one's points holds, that other one is tried both ways, and the rest follow them.
+  /// order of the first one's points holds, and the others are followed from either end.
   [[nodiscard]] ShapeEstimate estimate(std::span<const Sighting> sightings);
 
   /// From the shape a moment ago: of the prior's arm, with any `views`.

@@ -9,15 +9,13 @@
 #include <optional>
 #include <utility>
 
-#include "flexura/estimate/correspondence.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
+#include "flexura/estimate/sighting_pair.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
-
-using Pair = ShapeSearch::Pair;
 
 // The turn of a view that is in doubt after which the base is seen where the arm begins.
 ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
@@ -32,80 +30,6 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   const Eigen::Vector3d turn = looked.cross(there);
   if (turn.norm() < most * seen.doubt.turn) error.turn = turn;
   return error;
-}
-
-// What a picture tells of the arm's place by itself.
-struct Outlook {
-  Eigen::Vector3d direction = {0, 0, 0};  // Towards the middle of what is seen, unit; 0: none.
-  double share = 0;                       // How much of the arm it shows, beside other pictures.
-};
-Outlook outlook(const Sighting& seen) {
-  Outlook result;
-  std::vector<Eigen::Vector3d> rays;
-  for (const CurvePoint& point : seen.points)
-    if (const auto ray = seen.view.lens.unproject(point.pixel))
-      rays.push_back(ray->homogeneous().normalized());
-  if (rays.empty()) return result;
-  result.direction = seen.view.X_WC.rotation * rays[rays.size() / 2];
-  // By the angle under which the axis is seen; what is cut off has any length.
-  for (std::size_t i = 1; i < rays.size(); ++i) result.share += (rays[i] - rays[i - 1]).norm();
-  constexpr double cut = 0.5;
-  for (const auto& end : seen.ends) result.share *= end ? 1 : cut;
-  return result;
-}
-
-// The two whose lines of sight cross most squarely and that show the most of the arm: together they tell
-// places best.
-Pair best_pair(std::span<const Sighting> sightings) {
-  Pair best = {0, sightings.size() >= 2 ? 1U : 0U};
-  if (sightings.size() <= 2) return best;
-  std::vector<Outlook> outlooks;
-  for (const Sighting& seen : sightings) outlooks.push_back(outlook(seen));
-  double most = 0;
-  for (std::size_t i = 0; i < outlooks.size(); ++i) {
-    for (std::size_t j = i + 1; j < outlooks.size(); ++j) {
-      const double sine = outlooks[i].direction.cross(outlooks[j].direction).norm(),
-                   score = sine * std::min(outlooks[i].share, outlooks[j].share);
-      if (score > most) most = score, best = {i, j};
-    }
-  }
-  return best;
-}
-
-// Where two see the arm, from the base on, m; the base's place first, if it is known.
-std::vector<Eigen::Vector3d> places_seen(const ShapePrior& prior, const Sighting& one,
-                                         const Sighting& other) {
-  std::vector<Eigen::Vector3d> places;
-  for (const SpacePoint& point : correspondence(one, other).points) places.push_back(point.position);
-  if (prior.is_base_position_known && !places.empty()) places.front() = prior.arm.X_WB.position;
-  return places;
-}
-
-// Whether it is followed the other way than these places, as far as the picture tells.
-bool runs_against(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
-  if (places.empty() || seen.points.empty()) return false;
-  const auto begin = seen.view.project(places.front()), end = seen.view.project(places.back());
-  if (!begin || !end) return false;
-  const auto off = [&](const Eigen::Vector2d& near_base, const Eigen::Vector2d& near_tip) {
-    return (near_base - *begin).norm() + (near_tip - *end).norm();
-  };
-  const Eigen::Vector2d first = seen.points.front().pixel, last = seen.points.back().pixel;
-  return off(last, first) < off(first, last);
-}
-
-// The second of the pair followed as it is or, `against`, from its other end; the others the way of the
-// places that the pair then tells. The first of all is followed as it is: all are turned if need be.
-std::vector<Sighting> run_alike(const ShapePrior& prior, std::vector<Sighting> sightings, const Pair& pair,
-                                bool against) {
-  const auto turn = [](Sighting& seen) { seen = reversed(std::move(seen)); };
-  if (against) turn(sightings[pair[1]]);
-  if (sightings.size() == 2) return sightings;
-  const auto places = places_seen(prior, sightings[pair[0]], sightings[pair[1]]);
-  const bool is_first_against = pair[0] != 0 && runs_against(sightings[0], places);
-  for (std::size_t i = 0; i < sightings.size(); ++i)
-    if (i != pair[0] && i != pair[1] && runs_against(sightings[i], places)) turn(sightings[i]);
-  if (is_first_against) std::ranges::for_each(sightings, turn);
-  return sightings;
 }
 
 // How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it
@@ -278,12 +202,11 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   const auto is_end = [&] { return best->is_as_doubted && is_explained(*best); };
   // Which end of the others' axes is the first one's first is not known without a base: two are tried against
   // each other, and the others follow the places that these tell.
-  const Pair pair = best_pair(sightings);
+  const SightingPair pair = sightings.size() >= 2 ? best_pair(sightings) : SightingPair{0, 0};
   const bool is_either_way = !prior_.is_base_position_known && sightings.size() >= 2;
   for (const bool against : {false, true}) {
     if (against && !is_either_way) break;
-    const std::vector<Sighting> seen =
-        is_either_way ? run_alike(prior_, sightings, pair, against) : sightings;
+    const std::vector<Sighting> seen = is_either_way ? run_alike(sightings, pair, against) : sightings;
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen, pair)) {
       Try one = tried(problem, {start}, most());
@@ -336,7 +259,7 @@ double ShapeSearch::apart(const Result& found) {
   return largest;
 }
 
-std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, const Pair& pair) const {
+std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, const SightingPair& pair) const {
   std::vector<Shape> shapes;
   std::vector<ViewError> views;
   for (const Sighting& seen : sightings)
@@ -345,7 +268,8 @@ std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, cons
   if (sightings.size() >= 2) {
     std::array<Sighting, 2> aimed = {sightings[pair[0]], sightings[pair[1]]};
     for (std::size_t k = 0; k < 2; ++k) aimed[k].view = corrected(aimed[k].view, views[pair[k]]);
-    const std::vector<Eigen::Vector3d> points = places_seen(prior_, aimed[0], aimed[1]);
+    std::vector<Eigen::Vector3d> points = places_seen(aimed[0], aimed[1]);
+    if (prior_.is_base_position_known && !points.empty()) points.front() = prior_.arm.X_WB.position;
     const auto is_other = [&](const Eigen::Vector3d& p) { return p != points.front(); };
     if (std::ranges::any_of(points, is_other)) {
       shapes.push_back(shape_along(prior_, points));

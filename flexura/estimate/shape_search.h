@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 #include "flexura/estimate/shape_fit.h"
 #include "flexura/estimate/shape_variables.h"
 #include "flexura/estimate/sighting.h"
+#include "flexura/estimate/sighting_pair.h"
 
 namespace flexura {
 
@@ -36,9 +36,6 @@ class ShapeSearch {
   /// At least one sighting. Where the base is unknown the first is followed as it is, the others either way.
   [[nodiscard]] Result best(const std::vector<Sighting>& sightings);
 
-  /// Two sightings by their places among all, rising.
-  using Pair = std::array<std::size_t, 2>;
-
  private:
   struct Try {
     ShapeFit fit;
@@ -59,7 +56,8 @@ class ShapeSearch {
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
   // From what the pair tells.
-  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings, const Pair& pair) const;
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings,
+                                          const SightingPair& pair) const;
   // Shapes that one of the cameras would see alike, or whose last section is bent otherwise.
   [[nodiscard]] std::vector<Start> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
 

@@ -91,7 +91,7 @@ TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
   });
 }
 
-// Of three pictures one that crosses the first most squarely shows a fragment: the start is by the others.
+// Of three pictures one shows a fragment, in whichever direction: the start is by the others.
 TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = three_section_arm();

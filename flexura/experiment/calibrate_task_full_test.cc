@@ -105,8 +105,8 @@ TEST(CalibrateTaskFully, FindsFocalLengthsThatAreATenthOff) {
 }
 
 const std::string three_poses =
-    "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, { bends "
-    "= [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
+    "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
+    "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
 
 // Where each camera's stage was sent, m.
 class StageMoves : public NobodyWatches {
@@ -266,9 +266,10 @@ TEST(CalibrateTaskFully, TellsOfTheCylinderInSummaryAndReport) {
 
 TEST(CalibrateTaskFully, LeavesStagesAloneWhereItIsTold) {
   for (const bool may : {false, true}) {
-    CalibrationBench bench(small_calibration(fmt::format("images = 6\nstages = {}\n", may) + three_poses,
-                                             "[[truth.camera]]\nname = \"side\"\nmount = { position = [-2.5, "
-                                             "0.5, 0], look_at = [0, 0.5, 0.05] }\n"));
+    CalibrationBench bench(
+        small_calibration(fmt::format("images = 6\nstages = {}\n", may) + three_poses,
+                          "[[truth.camera]]\nname = \"side\"\nmount = { position = [-2.5, 0.5, 0], "
+                          "look_at = [0, 0.5, 0.05] }\n"));
     StageMoves moves;
     const RigSessionResult result = bench.calibrate_bundle(bench.ports(), moves);
     EXPECT_TRUE(result.is_done) << result.reason;

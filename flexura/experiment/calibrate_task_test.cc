@@ -44,8 +44,8 @@ namespace {
 using ::testing::HasSubstr;
 
 const std::string three_poses =
-    "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, { bends "
-    "= [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
+    "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
+    "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
 
 TEST(CalibrateTask, FindsARigThatIsWrongInEveryWayAndSquaresItsAxes) {
   CalibrationBench bench(small_calibration("images = 6\n" + three_poses, wrong_cameras));
@@ -124,10 +124,11 @@ class SeenLooks : public NobodyWatches {
 
 // A side camera that truly looks beside the arm, by m at its distance of 2.5 m.
 std::string looking_beside(double aside, const std::string& poses) {
-  return small_calibration("images = 6\n" + poses,
-                           fmt::format("[[truth.camera]]\nname = \"side\"\nmount = {{ position = [-2.5, 0.5, "
-                                       "0], look_at = [0, 0.5, {}] }}\n",
-                                       aside));
+  return small_calibration(
+      "images = 6\n" + poses,
+      fmt::format("[[truth.camera]]\nname = \"side\"\nmount = {{ position = [-2.5, 0.5, 0], "
+                  "look_at = [0, 0.5, {}] }}\n",
+                  aside));
 }
 
 TEST(CalibrateTask, SearchesForAnArmThatItDoesNotSeeAtFirst) {

@@ -59,8 +59,10 @@ TEST(Obstacles, BadOnesGetAClearLineWithTheirPlace) {
 TEST(Obstacles, AreKeptInTheExperimentAsRunAndNamedByTheirPlace) {
   const Experiment experiment = parse(
       "[[obstacle]]\nkind = 'plane'\nignore_base_mm = 50\n[[obstacle]]\nkind = 'capsule'\nfrom = [1, 0, "
-      "0]\nto = [1, 2, 0]\nradius_mm = 100\n[[obstacle]]\nkind = 'box'\nname = 'desk'\ncenter = [0, 3, "
-      "0]\nhalf_sizes = [0.5, 0.1, 0.5]\n");
+      "0]\nto = "
+      "[1, 2, 0]\nradius_mm = 100\n[[obstacle]]\nkind = 'box'\nname = 'desk'\ncenter = [0, 3, 0]\nhalf_sizes "
+      "= "
+      "[0.5, 0.1, 0.5]\n");
   const std::string text = experiment_toml(experiment);
   EXPECT_EQ(experiment_toml(parse_experiment(text, "as-run.toml")), text);
   const std::vector<Obstacle> around = obstacles(experiment.obstacle);
@@ -123,7 +125,8 @@ TEST(TipTargets, BesideAShapeAreRefused) {
 TEST(Report, ShowsWhatIsMissedAndTheSectionThatAMotorBends) {
   const Experiment experiment = parse(
       "[drive]\nmotor = { max_position = 100 }\ntendon = [{ section = 1, angle = 0 }, { section = 1, "
-      "angle_deg = 90 },\n{ section = 2, angle_deg = 45 }, { section = 2, angle_deg = 135 }]\n"
+      "angle_deg = 90 "
+      "},\n{ section = 2, angle_deg = 45 }, { section = 2, angle_deg = 135 }]\n"
       "[[task]]\nkind = 'move'\nto.position = [2, 0, 0]\n");
   const Schedule schedule(experiment);
   ReportData data;

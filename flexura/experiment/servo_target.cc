@@ -107,9 +107,9 @@ double distance_from(const Backbone& backbone, const std::vector<Eigen::Vector3d
 }
 
 ServoTargetShape along(const Arm& arm, const std::vector<Eigen::Vector3d>& points, const ArmState& from) {
-  InverseConfig options;
-  options.start = from;
-  const InverseResult found = solve_inverse(arm, CurveTarget{points}, options);
+  InverseConfig config;
+  config.start = from;
+  const InverseResult found = solve_inverse(arm, CurveTarget{points}, config);
   return {found.state, distance_from(Backbone(arm, found.state), points) / arm.length()};
 }
 
@@ -126,9 +126,9 @@ ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& 
   if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
   if (target.curve) return along(arm, smooth_curve(vectors(*target.curve)), from);
   if (!target.position) return {arm_state(arm, target), 0};
-  InverseConfig options;
-  options.start = from;
-  const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, options);
+  InverseConfig config;
+  config.start = from;
+  const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, config);
   return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
 }
 

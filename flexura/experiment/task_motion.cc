@@ -78,9 +78,9 @@ MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from)
 ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
   const auto tip = tip_target(task);
   if (!tip) return arm_state(arm, task.to);
-  InverseConfig options;
-  options.start = from;
-  return solve_inverse(arm, TipTarget{.position = *tip}, options).state;
+  InverseConfig config;
+  config.start = from;
+  return solve_inverse(arm, TipTarget{.position = *tip}, config).state;
 }
 
 // What is to be expected before it is simulated: the straight way to its target.

@@ -25,23 +25,23 @@ constexpr int starts_before_proof = 2;
 
 // A question in the base's frame, with all that its answer needs.
 struct Question {
-  Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_options)
+  Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_config)
       : arm(the_arm),
         target(the_target),
-        options(the_options),
+        config(the_config),
         variables(the_arm),
         length(variables.max_length()) {
-    position_tolerance = options.position_tolerance.value_or(1e-9 * length);
+    position_tolerance = config.position_tolerance.value_or(1e-9 * length);
     X_BT.position = arm.X_WB.inverse() * target.position;
     if (target.rotation) X_BT.rotation = arm.X_WB.rotation.transpose() * *target.rotation;
     if (target.direction) {
       const Eigen::Vector3d d = arm.X_WB.rotation.transpose() * target.direction->stableNormalized();
       X_BT.rotation = rotation_from_z(d);
     }
-    if (options.start) start = variables.pack(*options.start);
+    if (config.start) start = variables.pack(*config.start);
   }
 
-  [[nodiscard]] InverseStarts starts() const { return {variables, X_BT.position, start, options.seed}; }
+  [[nodiscard]] InverseStarts starts() const { return {variables, X_BT.position, start, config.seed}; }
   [[nodiscard]] bool is_position_out_of_reach() const {
     // Rounding leaves the bounds a few units in the last place of the arm's length and the target's distance.
     const double rounding = 1e-14 * (length + X_BT.position.norm());
@@ -52,15 +52,15 @@ struct Question {
     if (!target.direction && !target.rotation) return false;
     const double angle = target.rotation ? least_angle(arm, X_BT.rotation)
                                          : least_angle(arm, Eigen::Vector3d(X_BT.rotation.col(2)));
-    if (angle > options.angle_tolerance + rounding) return true;
+    if (angle > config.angle_tolerance + rounding) return true;
     // A direction that is a little off moves the far end by that much of the arm's length.
     return least_distance_along(arm, X_BT) >
-           position_tolerance + (options.angle_tolerance + rounding) * (length + X_BT.position.norm());
+           position_tolerance + (config.angle_tolerance + rounding) * (length + X_BT.position.norm());
   }
 
   const Arm& arm;
   const TipTarget& target;
-  const InverseConfig& options;
+  const InverseConfig& config;
   ArmVariables variables;
   double length;
   double position_tolerance;
@@ -70,7 +70,7 @@ struct Question {
 
 template <int Rows>
 TipProblem<Rows> problem_of(const Question& q) {
-  return {q.variables, q.X_BT, q.length, q.position_tolerance, q.options.angle_tolerance};
+  return {q.variables, q.X_BT, q.length, q.position_tolerance, q.config.angle_tolerance};
 }
 
 // What is said of a state, from the model's own forward kinematics.
@@ -97,7 +97,7 @@ InverseResult answer_out_of_reach(const Question& q) {
   DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
   InverseStarts starts = q.starts();
   const Found found =
-      nearest(problem, q.variables, starts, std::min(nearest_starts, q.options.max_starts), memory);
+      nearest(problem, q.variables, starts, std::min(nearest_starts, q.config.max_starts), memory);
   InverseResult result = describe(q, found);
   result.outcome = InverseOutcome::not_reachable;
   result.is_proven = true;
@@ -111,15 +111,15 @@ InverseResult answer(const Question& q) {
   DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
   InverseStarts starts = q.starts();
   Found found;
-  search(problem, q.variables, starts, std::min(starts_before_proof, q.options.max_starts), memory, found);
+  search(problem, q.variables, starts, std::min(starts_before_proof, q.config.max_starts), memory, found);
   if (!found.is_met()) {
     if (q.is_position_out_of_reach()) return answer_out_of_reach<3>(q);
     if (q.is_orientation_out_of_reach()) return answer_out_of_reach<Rows>(q);
-    search(problem, q.variables, starts, q.options.max_starts, memory, found);
+    search(problem, q.variables, starts, q.config.max_starts, memory, found);
   }
   if (!found.is_met()) settle(problem, q.variables, settling_iterations, found, memory);
-  if (found.is_met() && q.options.wish != InverseWish::none) {
-    follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.options.wish), found.x, memory);
+  if (found.is_met() && q.config.wish != InverseWish::none) {
+    follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.config.wish), found.x, memory);
   }
   InverseResult result = describe(q, found);
   result.outcome =
@@ -152,8 +152,7 @@ class SolutionList {
       : q_(q),
         problem_(problem),
         memory_(memory),
-        scale_(q.variables,
-               q.options.wish == InverseWish::none ? InverseWish::least_bending : q.options.wish),
+        scale_(q.variables, q.config.wish == InverseWish::none ? InverseWish::least_bending : q.config.wish),
         is_round_(is_round(q)) {}
 
   void add(Found found) {
@@ -201,7 +200,7 @@ std::vector<InverseResult> all_answers(const Question& q) {
   DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
   InverseStarts starts = q.starts();
   SolutionList<Rows> list(q, problem, memory);
-  for (int i = 0; i < q.options.max_starts; ++i) {
+  for (int i = 0; i < q.config.max_starts; ++i) {
     // As patient with the i-th start as a search for one answer is, which is then among all.
     Found found;
     found.starts = i;
@@ -218,18 +217,18 @@ std::vector<InverseResult> all_answers(const Question& q) {
 
 }  // namespace
 
-InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseConfig& options) {
-  check_question(target, options);
-  const Question question(arm, target, options);
+InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseConfig& config) {
+  check_question(target, config);
+  const Question question(arm, target, config);
   if (target.rotation) return answer<6>(question);
   if (target.direction) return answer<5>(question);
   return answer<3>(question);
 }
 
 std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                 const InverseConfig& options) {
-  check_question(target, options);
-  const Question question(arm, target, options);
+                                                 const InverseConfig& config) {
+  check_question(target, config);
+  const Question question(arm, target, config);
   if (target.rotation) return all_answers<6>(question);
   if (target.direction) return all_answers<5>(question);
   return all_answers<3>(question);

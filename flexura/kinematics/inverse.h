@@ -85,16 +85,16 @@ struct InverseResult {
 /// std::invalid_argument: a target or start that is not finite or does not fit, a direction of zero, both a
 /// direction and a rotation, a rotation that is not one, a curve without length, tolerances not positive.
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
-                                          const InverseConfig& options = {});
+                                          const InverseConfig& config = {});
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
-                                          const InverseConfig& options = {});
+                                          const InverseConfig& config = {});
 
-/// The distinct solutions that options.max_starts descents find, least bent first; empty when there is none.
+/// The distinct solutions that config.max_starts descents find, least bent first; empty when there is none.
 /// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
 /// that one is found for each valley of the wish. Two are the same when their backbones are nowhere further
 /// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
 /// stands for its turns about that: the first section that is bent bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                               const InverseConfig& options = {});
+                                                               const InverseConfig& config = {});
 
 }  // namespace flexura

@@ -10,17 +10,17 @@ void require(bool holds, const char* expected) {
   if (!holds) throw std::invalid_argument(std::string("inverse kinematics: expected ") + expected);
 }
 
-void check_options(const InverseConfig& options) {
-  require(!options.position_tolerance || *options.position_tolerance > 0.0, "a positive position tolerance");
-  require(options.angle_tolerance > 0.0, "a positive angle tolerance");
-  require(options.max_starts >= 1, "at least one start");
+void check_config(const InverseConfig& config) {
+  require(!config.position_tolerance || *config.position_tolerance > 0.0, "a positive position tolerance");
+  require(config.angle_tolerance > 0.0, "a positive angle tolerance");
+  require(config.max_starts >= 1, "at least one start");
 }
 
 }  // namespace
 
-void check_question(const TipTarget& target, const InverseConfig& options) {
+void check_question(const TipTarget& target, const InverseConfig& config) {
   constexpr double orthonormal = 1e-6;
-  check_options(options);
+  check_config(config);
   require(target.position.allFinite(), "a finite position");
   require(!(target.direction && target.rotation), "a direction or a rotation, not both");
   if (target.direction) {
@@ -33,8 +33,8 @@ void check_question(const TipTarget& target, const InverseConfig& options) {
   }
 }
 
-void check_question(const CurveTarget& target, const InverseConfig& options) {
-  check_options(options);
+void check_question(const CurveTarget& target, const InverseConfig& config) {
+  check_config(config);
   double length = 0.0;
   for (std::size_t i = 0; i < target.points.size(); ++i) {
     require(target.points[i].allFinite(), "finite points of the curve");

@@ -5,7 +5,7 @@
 namespace flexura {
 
 /// Throws std::invalid_argument for what inverse kinematics cannot be asked (inverse.h).
-void check_question(const TipTarget& target, const InverseConfig& options);
-void check_question(const CurveTarget& target, const InverseConfig& options);
+void check_question(const TipTarget& target, const InverseConfig& config);
+void check_question(const CurveTarget& target, const InverseConfig& config);
 
 }  // namespace flexura

@@ -71,25 +71,25 @@ double polyline_error(const std::vector<Eigen::Vector3d>& points) {
   return bulge + missing;
 }
 
-InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseConfig& options) {
-  check_question(target, options);
+InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseConfig& config) {
+  check_question(target, config);
   const ArmVariables variables(arm);
   const double length = variables.max_length();
   const std::vector<Eigen::Vector3d> points = in_base(arm, target.points);
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
-  const double tolerance = options.position_tolerance.value_or(allowance);
+  const double tolerance = config.position_tolerance.value_or(allowance);
   CurveProblem problem(variables, points, length);
   DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
   std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
-  if (options.start) first = variables.pack(*options.start);
-  InverseStarts starts(variables, problem.end(), first, options.seed);
+  if (config.start) first = variables.pack(*config.start);
+  InverseStarts starts(variables, problem.end(), first, config.seed);
 
   Found found;
   Eigen::VectorXd x(variables.size());
   double error = 0.0;
   const int affordable = affordable_iterations(problem, variables, most_starts * most_iterations);
-  while (found.starts < std::min(options.max_starts, most_starts) && memory.iterations < affordable) {
-    if (options.start && found.starts == 1) {
+  while (found.starts < std::min(config.max_starts, most_starts) && memory.iterations < affordable) {
+    if (config.start && found.starts == 1) {
       x = problem.start_along_tangents();
     } else {
       starts.next(x);

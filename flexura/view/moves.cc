@@ -96,14 +96,14 @@ InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipReque
   TipTarget target;
   target.position = vector(request.position);
   if (request.direction) target.direction = vector(*request.direction);
-  InverseConfig options;
-  options.start = within_limits(arm, from);
+  InverseConfig config;
+  config.start = within_limits(arm, from);
   // From where it is, for a hand that drags wants no leaps; from elsewhere only where that does not do.
-  options.max_starts = 1;
-  InverseResult near = solve_inverse(arm, target, options);
+  config.max_starts = 1;
+  InverseResult near = solve_inverse(arm, target, config);
   if (near.converged() || near.is_proven) return near;
-  options.max_starts = 40;
-  InverseResult far = solve_inverse(arm, target, options);
+  config.max_starts = 40;
+  InverseResult far = solve_inverse(arm, target, config);
   return far.converged() ? far : near;
 }
 

@@ -60,6 +60,11 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
   return is_whole;
 }
 
+bool has_rays(const Lens& lens, const AxisSample& sample) {
+  const auto [first, second] = directions(lens, sample);
+  return first.allFinite() && second.allFinite();
+}
+
 std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {
   if (!(radius > 0) || !std::isfinite(radius))
     throw std::invalid_argument(fmt::format("a radius of {} m: expected one above 0", radius));

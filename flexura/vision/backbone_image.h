@@ -15,6 +15,9 @@ namespace flexura {
 /// rays.
 bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
+/// Whether the lens has rays for both borders of a sample as it was measured.
+[[nodiscard]] bool has_rays(const Lens& lens, const AxisSample& sample);
+
 /// The depth of the backbone at each sample of such an axis, along the optical axis, m, from the tube's width
 /// and its radius, m: to first order in radius over distance squared. Not a number where the lens shows
 /// nothing. std::invalid_argument: a radius that is not positive.

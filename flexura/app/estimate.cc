@@ -66,6 +66,13 @@ const Node* written_at(const Node& camera, std::string_view key) {
   return found == members.end() ? nullptr : &found->node;
 }
 
+bool stand_at_one_place(const std::vector<MeasuredCamera>& cameras) {
+  constexpr double near = 1e-6;  // m
+  return std::ranges::all_of(cameras, [&](const MeasuredCamera& camera) {
+    return (camera.pose().position - cameras[0].pose().position).norm() < near;
+  });
+}
+
 // A lens alone is enough to measure a picture, but not for two to meet.
 void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
   std::vector<Problem> problems;
@@ -82,7 +89,7 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
     if (!(p_WC.cwiseAbs().maxCoeff() <= farthest_place))
       problems.push_back(
           {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
-    else if (i > 0 && (p_WC - cameras[0].pose().position).norm() < 1e-6)
+    else if (i + 1 == tables.size() && i > 0 && stand_at_one_place(cameras))
       problems.push_back({position->where, fmt::format("camera[{}].position: camera[0] stands there: "
                                                        "expected the position and rotation of each",
                                                        i)});

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -80,15 +81,6 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
   return {nearest->normal.y(), -nearest->normal.x()};
 }
 
-// Whether the lens has a ray for every pixel of the picture: what it shows is round, or nearly so for all
-// that tangential distortion of real lenses does, so the corners tell.
-bool shows_all(const View& view) {
-  const double right = view.width - 1, low = view.height - 1;
-  const std::array<Eigen::Vector2d, 4> corners = {{{0, 0}, {right, 0}, {0, low}, {right, low}}};
-  return std::ranges::all_of(
-      corners, [&](const Eigen::Vector2d& corner) { return view.lens.unproject(corner).has_value(); });
-}
-
 // Leaves out what a lens has no ray for: that is no place of the arm.
 class RayCheck {
  public:
@@ -150,6 +142,13 @@ std::vector<AxisSample> backbone_axis(const ArmSighting& arm, const View& view) 
 }
 
 }  // namespace
+
+bool shows_all(const View& view) {
+  const double right = view.width - 1, low = view.height - 1;
+  const std::array<Eigen::Vector2d, 4> corners = {{{0, 0}, {right, 0}, {0, low}, {right, low}}};
+  return std::ranges::all_of(
+      corners, [&](const Eigen::Vector2d& corner) { return view.lens.unproject(corner).has_value(); });
+}
 
 Sighting sighting_of(const ArmSighting& arm, const View& view) {
   return sighting_along(arm, backbone_axis(arm, view), view);

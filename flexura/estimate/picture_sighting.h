@@ -21,6 +21,10 @@ namespace flexura {
 [[nodiscard]] Sighting sighting_of(const ArmSighting& arm, const View& view,
                                    const Image<std::uint8_t>& picture);
 
+/// Whether the lens has a ray for every pixel of the picture: what it shows is round, or nearly so for all
+/// that tangential distortion of real lenses does, so the corners tell.
+[[nodiscard]] bool shows_all(const View& view);
+
 /// What to say of a picture whose sighting leaves something out for that.
 inline constexpr std::string_view rays_lacking =
     "the camera's distortion has no ray for some pixels of the arm: they count for nothing";

@@ -15,6 +15,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/estimate/axis_beginning.h"
 #include "flexura/estimate/band_match.h"
+#include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
@@ -265,6 +266,12 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   if (!std::isfinite(fit.cost)) {
     result.reason =
         "no shape of the arm is seen by these cameras: what they see meets nowhere before all of them";
+    const auto lacks_rays = [](const Sighting& seen) { return !shows_all(seen.view); };
+    const auto seen = problem.sightings();
+    if (const auto found = std::ranges::find_if(seen, lacks_rays); found != seen.end())
+      result.reason += fmt::format(
+          ", or within the part of picture {} for which its lens has rays: is its distortion as described?",
+          found - seen.begin() + 1);
     return result;
   }
   const double length = add_sigmas(problem, fit.covariance, result);
@@ -295,6 +302,10 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
         100 * fit.doubted, fit.rms);
   }
   add_doubts_of_fit(fit, result);
+  if (const auto section = bent_too_far(fit.shape))
+    result.notes.push_back(fmt::format("section {} would be bent by {:.0f} degrees: it goes to {:.0f}",
+                                       *section + 1, fit.shape.state.bends[*section].norm() / degree,
+                                       fit.shape.arm.sections[*section].max_bend / degree));
   add_base_aside(prior_, problem.sightings(), result);
   if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
     result.notes.push_back(std::move(doubt));

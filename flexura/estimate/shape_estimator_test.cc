@@ -1,5 +1,6 @@
 #include "flexura/estimate/shape_estimator.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -249,6 +250,42 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
     EXPECT_FALSE(none.is_found);
     EXPECT_EQ(none.reason, "the arm is not seen in every image");
   });
+}
+
+// Where no picture shows the tip, what is beyond may be bent one way or another: no other shape is trusted,
+// and none that the arm cannot take is preferred.
+TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
+  int found = 0;
+  for_random_cases(60, [&](TestRandom& random) {
+    ShapePrior prior{.arm = three_section_arm()};
+    for (Section& section : prior.arm.sections) section.max_bend = 2.6;
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 2.4));
+    std::vector<Sighting> seen;
+    const double until = random.uniform(0.72, 0.85);
+    for (const View& view : two_views()) seen.push_back(sighting_of(truth, view, random, 0.02, {0, until}));
+    const ShapeEstimate estimate = ShapeEstimator(prior).estimate(seen);
+    if (!estimate.is_found) return;
+    ++found;
+    const double error = shape_error(estimate.shape, truth);
+    EXPECT_LT(error, 10 * estimate.rms_sigma() + 1e-3) << estimate.rms_sigma();
+  });
+  EXPECT_GT(found, 30);
+}
+
+// An arm that is described as stiffer than it is.
+TEST(ShapeEstimator, SaysWhereASectionWouldBendFartherThanItGoes) {
+  TestRandom random(1);
+  ShapePrior prior{.arm = three_section_arm()};
+  ArmState state = ArmState::straight(3);
+  state.bends[1] = {0.9, 1.2};
+  const std::vector<Sighting> seen = sightings_of(Backbone(prior.arm, state), random, 0.02);
+  EXPECT_TRUE(ShapeEstimator(prior).estimate(seen).is_trusted());
+  for (Section& section : prior.arm.sections) section.max_bend = 1.5;
+  EXPECT_TRUE(ShapeEstimator(prior).estimate(seen).is_trusted());
+  prior.arm.sections[1].max_bend = 1.2;
+  const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
+  EXPECT_TRUE(found.is_found) << found.reason;
+  EXPECT_THAT(found.notes, testing::ElementsAre("section 2 would be bent by 86 degrees: it goes to 69"));
 }
 
 }  // namespace

@@ -126,6 +126,9 @@ bool has_lengths(const Shape& shape) {
   return true;
 }
 
+// Whether no end of the arm is seen.
+bool is_fragment(const Sighting& seen) { return !seen.ends[0] && !seen.ends[1]; }
+
 Shape scaled(Shape shape, double factor) {
   for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
   return shape;
@@ -145,6 +148,13 @@ std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, c
   return std::nullopt;
 }
 
+std::optional<std::size_t> bent_too_far(const Shape& shape) {
+  constexpr double share = 1.02, more = 0.02;  // rad; of what pictures tell of bends
+  for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
+    if (shape.state.bends[i].norm() > share * shape.arm.sections[i].max_bend + more) return i;
+  return std::nullopt;
+}
+
 ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, double most) {
   // Where points and figure tell shapes apart these decide.
   constexpr double of_ends = 0.001;
@@ -161,6 +171,7 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
   one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + astray(seen, shape);
   one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends;
   one.is_as_doubted = !view_elsewhere(seen, shape);
+  one.is_possible = !bent_too_far(shape);
   one.misfit = std::numeric_limits<double>::infinity();
   if (!(one.merit < most)) return one;
   one.misfit = misfit(seen, shape);
@@ -168,8 +179,11 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
   return one;
 }
 
-bool ShapeSearch::is_better(const Try& one, const Try& other) {
-  return one.is_as_doubted == other.is_as_doubted ? one.merit < other.merit : one.is_as_doubted;
+bool ShapeSearch::is_better(const Try& one, const Try& other) const {
+  if (one.is_as_doubted != other.is_as_doubted) return one.is_as_doubted;
+  if (one.is_possible != other.is_possible && is_explained(one) && is_explained(other))
+    return one.is_possible;
+  return one.merit < other.merit;
 }
 
 bool ShapeSearch::is_explained(const Try& one) const {
@@ -193,20 +207,27 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   std::optional<Try> best, otherwise;
   std::vector<Sighting> best_seen, seen_otherwise;
   const auto most = [&] {
-    return best && best->is_as_doubted ? best->merit : std::numeric_limits<double>::infinity();
+    return best && best->is_as_doubted && best->is_possible ? best->merit
+                                                            : std::numeric_limits<double>::infinity();
   };
   const auto is_best = [&](const Try& one) { return !best || is_better(one, *best); };
   const auto note = [&](const Try& one, const std::vector<Sighting>& as_seen) {
     if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
-  const auto is_end = [&] { return best->is_as_doubted && is_explained(*best); };
+  const auto is_end = [&] { return best->is_as_doubted && best->is_possible && is_explained(*best); };
   // Which end of the others' axes is the first one's first is not known without a base: two are tried against
-  // each other, and the others follow the places that these tell.
+  // each other, and the others follow the places that these tell. With a base only what shows no end of the
+  // arm may run either way, where it is not explained as it is.
+  const bool has_base = prior_.is_base_position_known;
   const SightingPair pair = sightings.size() >= 2 ? best_pair(sightings) : SightingPair{0, 0};
-  const bool is_either_way = !prior_.is_base_position_known && sightings.size() >= 2;
-  for (const bool against : {false, true}) {
-    if (against && !is_either_way) break;
-    const std::vector<Sighting> seen = is_either_way ? run_alike(sightings, pair, against) : sightings;
+  std::optional<std::size_t> either;
+  for (const std::size_t i : pair)
+    if (sightings.size() >= 2 && (has_base ? is_fragment(sightings[i]) : i == pair[1])) either = i;
+  for (const bool is_turned : {false, true}) {
+    if (is_turned && (!either || (has_base && is_end()))) break;
+    const auto turned = is_turned ? either : std::nullopt;
+    const std::vector<Sighting> seen =
+        sightings.size() >= 2 ? run_alike(sightings, pair, turned, has_base) : sightings;
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen, pair)) {
       Try one = tried(problem, {start}, most());
@@ -235,7 +256,10 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   }
   if (otherwise && (!best->is_as_doubted || leaves_much(*best)))
     return {std::move(otherwise->fit), std::move(seen_otherwise)};
-  const bool may_be_another = is_explained(*best) && best->ends > one_end;
+  // Nor is there anything to say so where no picture shows the tip.
+  const auto shows_tip = [](const Sighting& seen) { return seen.ends[1].has_value(); };
+  const bool may_be_another =
+      is_explained(*best) && (best->ends > one_end || std::ranges::none_of(best_seen, shows_tip));
   Result result{std::move(best->fit), std::move(best_seen)};
   if (may_be_another) result.apart = apart(result);
   return result;
@@ -254,7 +278,8 @@ double ShapeSearch::apart(const Result& found) {
   ShapeProblem problem(prior_, found.seen);
   for (const Start& start : look_alikes(found.seen, found.fit.shape)) {
     const Try one = tried(problem, start, std::numeric_limits<double>::infinity());
-    if (is_explained(one)) largest = std::max(largest, distance(found.fit.shape, one.fit.shape));
+    if (is_explained(one) && one.is_possible)
+      largest = std::max(largest, distance(found.fit.shape, one.fit.shape));
   }
   return largest;
 }

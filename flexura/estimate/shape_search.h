@@ -16,6 +16,9 @@ namespace flexura {
 [[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings,
                                                         const Shape& shape);
 
+/// The first section that is bent farther than it goes, by more than pictures may be wrong, if there is one.
+[[nodiscard]] std::optional<std::size_t> bent_too_far(const Shape& shape);
+
 /// Looks for the shape that sightings show, when nothing tells where it is: shapes are tried one after
 /// another until one explains what is seen (docs/estimation.md, The start). Where none does by cameras as
 /// they are doubted, but one by cameras that stand otherwise, it is that one.
@@ -44,6 +47,7 @@ class ShapeSearch {
     double misfit = 0;       // px^2
     double ends = 0;         // How far off ends are seen, px^2.
     bool is_as_doubted = false;
+    bool is_possible = true;  // No section is bent farther than it goes.
   };
   struct Start {
     Shape shape;
@@ -51,7 +55,7 @@ class ShapeSearch {
   };
   // Of one whose merit is no less than `most` without it the misfit is not looked at.
   [[nodiscard]] Try tried(ShapeProblem& problem, const Start& start, double most);
-  [[nodiscard]] static bool is_better(const Try& one, const Try& other);
+  [[nodiscard]] bool is_better(const Try& one, const Try& other) const;
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);

@@ -115,5 +115,38 @@ TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
   });
 }
 
+// Of an arm that turns back a fragment's far end may be the nearer one to the base.
+TEST(ShapeOfUnknownMake, TellsWhichWayAFragmentOfAHairpinRuns) {
+  for_random_cases(40, [](TestRandom& random) {
+    Arm arm = three_section_arm();
+    ArmState state = random_bends(random, arm, 0.6);
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    state.bends[1] = random.uniform(2, 2.6) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    const Backbone truth(arm, state);
+    const Eigen::Vector3d middle(0, 0.3, 0);
+    const std::array<Eigen::Vector3d, 3> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
+                                                 Eigen::Vector3d(1.8, 0, 1.8)};
+    const double from = random.uniform(0.3, 0.7);
+    std::vector<Sighting> two, three;
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+      const View view = view_from(middle + eyes[i], middle, 800);
+      const std::array<double, 2> shares = i == 2 ? std::array{from, from + 0.2} : std::array{0.0, 1.0};
+      const Sighting one = sighting_of(truth, view, random, 0.02, shares);
+      three.push_back(i == 2 && random.uniform(0, 1) < 0.5 ? reversed(one) : one);
+      if (i < 2) two.push_back(one);
+    }
+    const Eigen::Vector3d base(0, 0, 0);
+    for (const ShapePrior& prior :
+         {described_arm(arm), unknown_arm(base, truth.length()), unknown_arm(base, std::nullopt),
+          unknown_arm(std::nullopt, std::nullopt)}) {
+      const ShapeEstimate without = ShapeEstimator(prior).estimate(two),
+                          with = ShapeEstimator(prior).estimate(three);
+      if (!without.is_found || shape_error(without.shape, truth) > 2e-3) continue;
+      ASSERT_TRUE(with.is_found) << with.reason;
+      EXPECT_LT(shape_error(with.shape, truth), 4e-3);
+    }
+  });
+}
+
 }  // namespace
 }  // namespace flexura

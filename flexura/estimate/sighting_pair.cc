@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "flexura/estimate/correspondence.h"
@@ -28,16 +29,22 @@ Outlook outlook(const Sighting& seen) {
   return result;
 }
 
-// Whether it is followed the other way than these places, as far as the picture tells.
+// Whether it is followed the other way than these places, as far as the picture tells: by the order of those
+// that are nearest to its points. (Of a fragment of a bent arm the ends alone may be nearer to the other
+// ends.)
 bool runs_against(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
-  if (places.empty() || seen.points.empty()) return false;
-  const auto begin = seen.view.project(places.front()), end = seen.view.project(places.back());
-  if (!begin || !end) return false;
-  const auto off = [&](const Eigen::Vector2d& near_base, const Eigen::Vector2d& near_tip) {
-    return (near_base - *begin).norm() + (near_tip - *end).norm();
-  };
-  const Eigen::Vector2d first = seen.points.front().pixel, last = seen.points.back().pixel;
-  return off(last, first) < off(first, last);
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Eigen::Vector3d& p_WP : places)
+    if (const auto pixel = seen.view.project(p_WP)) pixels.push_back(*pixel);
+  if (pixels.empty()) return false;
+  std::ptrdiff_t ahead = 0, before = -1;
+  for (const CurvePoint& point : seen.points) {
+    const auto off = [&](const Eigen::Vector2d& pixel) { return (pixel - point.pixel).squaredNorm(); };
+    const std::ptrdiff_t here = std::ranges::min_element(pixels, {}, off) - pixels.begin();
+    if (before >= 0) ahead += (here > before ? 1 : 0) - (here < before ? 1 : 0);
+    before = here;
+  }
+  return ahead < 0;
 }
 
 }  // namespace
@@ -51,7 +58,8 @@ SightingPair best_pair(std::span<const Sighting> sightings) {
   for (std::size_t i = 0; i < outlooks.size(); ++i) {
     for (std::size_t j = i + 1; j < outlooks.size(); ++j) {
       const double sine = outlooks[i].direction.cross(outlooks[j].direction).norm(),
-                   score = sine * std::min(outlooks[i].angle, outlooks[j].angle);
+                   apart = (sightings[i].view.X_WC.position - sightings[j].view.X_WC.position).norm(),
+                   score = apart > 0 ? sine * std::min(outlooks[i].angle, outlooks[j].angle) : 0;
       if (score > most) most = score, best = {i, j};
     }
   }
@@ -64,15 +72,20 @@ std::vector<Eigen::Vector3d> places_seen(const Sighting& one, const Sighting& ot
   return places;
 }
 
-std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair, bool against) {
+std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair,
+                                std::optional<std::size_t> turned, bool from_base) {
   const auto turn = [](Sighting& seen) { seen = reversed(std::move(seen)); };
-  if (against) turn(sightings[pair[1]]);
+  if (turned) turn(sightings[*turned]);
   if (sightings.size() == 2) return sightings;
   const auto places = places_seen(sightings[pair[0]], sightings[pair[1]]);
-  const bool is_first_against = pair[0] != 0 && runs_against(sightings[0], places);
-  for (std::size_t i = 0; i < sightings.size(); ++i)
-    if (i != pair[0] && i != pair[1] && runs_against(sightings[i], places)) turn(sightings[i]);
-  if (is_first_against) std::ranges::for_each(sightings, turn);
+  bool is_first_turned = false;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const bool is_told = i == pair[0] || i == pair[1] || (from_base && sightings[i].ends[0]);
+    if (is_told || !runs_against(sightings[i], places)) continue;
+    turn(sightings[i]);
+    is_first_turned = is_first_turned || i == 0;
+  }
+  if (is_first_turned && !from_base) std::ranges::for_each(sightings, turn);
   return sightings;
 }
 

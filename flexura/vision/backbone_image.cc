@@ -34,7 +34,8 @@ std::array<Vector3d, 2> directions(const Lens& lens, const AxisSample& sample) {
 
 bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
   const std::size_t n = axis.size();
-  if (n < 3) return true;
+  if (n < 3)
+    return std::ranges::all_of(axis, [&](const AxisSample& sample) { return has_rays(lens, sample); });
   bool is_whole = true;
   std::vector<std::array<Vector3d, 2>> borders;
   borders.reserve(n);

@@ -256,13 +256,13 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
 // and none that the arm cannot take is preferred.
 TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
   int found = 0;
-  for_random_cases(60, [&](TestRandom& random) {
+  for_random_cases(200, [&](TestRandom& random) {
     ShapePrior prior{.arm = three_section_arm()};
-    for (Section& section : prior.arm.sections) section.max_bend = 2.6;
-    const Backbone truth(prior.arm, random_bends(random, prior.arm, 2.4));
+    for (Section& section : prior.arm.sections) section.max_bend = 2.97;
+    const Backbone truth(prior.arm, random_bends(random, prior.arm, 2.9));
     std::vector<Sighting> seen;
-    const double until = random.uniform(0.72, 0.85);
-    for (const View& view : two_views()) seen.push_back(sighting_of(truth, view, random, 0.02, {0, until}));
+    for (const View& view : two_views())
+      seen.push_back(sighting_of(truth, view, random, 0.02, {0, random.uniform(0.6, 0.95)}));
     const ShapeEstimate estimate = ShapeEstimator(prior).estimate(seen);
     if (!estimate.is_found) return;
     ++found;

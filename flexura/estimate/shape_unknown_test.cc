@@ -121,16 +121,17 @@ TEST(ShapeOfUnknownMake, TellsWhichWayAFragmentOfAHairpinRuns) {
     Arm arm = three_section_arm();
     ArmState state = random_bends(random, arm, 0.6);
     const double angle = random.uniform(0, 2 * std::numbers::pi);
-    state.bends[1] = random.uniform(2, 2.6) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d way(std::cos(angle), std::sin(angle));
+    state.bends[1] = random.uniform(2.2, 2.8) * way, state.bends[2] = random.uniform(0.5, 1) * way;
     const Backbone truth(arm, state);
     const Eigen::Vector3d middle(0, 0.3, 0);
     const std::array<Eigen::Vector3d, 3> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
                                                  Eigen::Vector3d(1.8, 0, 1.8)};
-    const double from = random.uniform(0.3, 0.7);
+    const double from = random.uniform(0.3, 0.65);
     std::vector<Sighting> two, three;
     for (std::size_t i = 0; i < eyes.size(); ++i) {
       const View view = view_from(middle + eyes[i], middle, 800);
-      const std::array<double, 2> shares = i == 2 ? std::array{from, from + 0.2} : std::array{0.0, 1.0};
+      const std::array<double, 2> shares = i == 2 ? std::array{from, from + 0.3} : std::array{0.0, 1.0};
       const Sighting one = sighting_of(truth, view, random, 0.02, shares);
       three.push_back(i == 2 && random.uniform(0, 1) < 0.5 ? reversed(one) : one);
       if (i < 2) two.push_back(one);

@@ -13,6 +13,7 @@
 #include "flexura/model/backbone.h"
 #include "flexura/store/json.h"
 #include "flexura/view/live_session.h"
+#include "tests/support/experiment_files.h"
 #include "tests/support/live_sessions.h"
 #include "tests/support/view_fakes.h"
 
@@ -194,6 +195,20 @@ class ThickerArm : public MeasuredArm {
       : MeasuredArm(measured_text +
                     "[[truth.arm.section]]\nradius = 0.026\n[[truth.arm.section]]\nradius = 0.026\n") {}
 };
+
+// The front camera's lens is believed to fold its picture back within it.
+class FoldedPicture : public MeasuredArm {
+ protected:
+  FoldedPicture()
+      : MeasuredArm(
+            replaced(measured_text, "sensor = {", "lens = { distortion = [-5, 0, 0, 0, 0] }\nsensor = {") +
+            "lens = { distortion = [0, 0, 0, 0, 0] }\n") {}
+};
+
+TEST_F(FoldedPicture, SaysThatPixelsHaveNoRay) {
+  EXPECT_THAT(write_json(ask(ShapeRequest{}).result),
+              HasSubstr("camera front: the camera's distortion has no ray for some pixels of the arm"));
+}
 
 TEST_F(ThickerArm, IsFoundWithAWordOnItsRadius) {
   const ViewAnswer answer = ask(ShapeRequest{});

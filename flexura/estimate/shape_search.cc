@@ -126,8 +126,8 @@ bool has_lengths(const Shape& shape) {
   return true;
 }
 
-// Whether no end of the arm is seen.
-bool is_fragment(const Sighting& seen) { return !seen.ends[0] && !seen.ends[1]; }
+// Whether no end of the arm is seen. (Where a camera is doubted too much would be explained either way.)
+bool is_fragment(const Sighting& seen) { return !seen.ends[0] && !seen.ends[1] && !seen.doubt.is_any(); }
 
 Shape scaled(Shape shape, double factor) {
   for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;

@@ -179,10 +179,12 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
   return one;
 }
 
-bool ShapeSearch::is_better(const Try& one, const Try& other) const {
+bool ShapeSearch::is_better(const Try& one, const Try& other) {
   if (one.is_as_doubted != other.is_as_doubted) return one.is_as_doubted;
-  if (one.is_possible != other.is_possible && is_explained(one) && is_explained(other))
-    return one.is_possible;
+  // One that bends no section too far may explain a little less.
+  constexpr double most = 2, little = 0.01;  // px^2
+  if (one.is_possible && !other.is_possible) return one.merit < most * other.merit + little;
+  if (other.is_possible && !one.is_possible) return !(other.merit < most * one.merit + little);
   return one.merit < other.merit;
 }
 

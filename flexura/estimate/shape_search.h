@@ -55,7 +55,7 @@ class ShapeSearch {
   };
   // Of one whose merit is no less than `most` without it the misfit is not looked at.
   [[nodiscard]] Try tried(ShapeProblem& problem, const Start& start, double most);
-  [[nodiscard]] bool is_better(const Try& one, const Try& other) const;
+  [[nodiscard]] static bool is_better(const Try& one, const Try& other);
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);

@@ -126,9 +126,6 @@ bool has_lengths(const Shape& shape) {
   return true;
 }
 
-// Whether no end of the arm is seen. (Where a camera is doubted too much would be explained either way.)
-bool is_fragment(const Sighting& seen) { return !seen.ends[0] && !seen.ends[1] && !seen.doubt.is_any(); }
-
 Shape scaled(Shape shape, double factor) {
   for (Eigen::Vector2d& bend : shape.state.bends) bend *= factor;
   return shape;
@@ -218,18 +215,12 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   };
   const auto is_end = [&] { return best->is_as_doubted && best->is_possible && is_explained(*best); };
   // Which end of the others' axes is the first one's first is not known without a base: two are tried against
-  // each other, and the others follow the places that these tell. With a base only what shows no end of the
-  // arm may run either way, where it is not explained as it is.
-  const bool has_base = prior_.is_base_position_known;
-  const SightingPair pair = sightings.size() >= 2 ? best_pair(sightings) : SightingPair{0, 0};
-  std::optional<std::size_t> either;
-  for (const std::size_t i : pair)
-    if (sightings.size() >= 2 && (has_base ? is_fragment(sightings[i]) : i == pair[1])) either = i;
-  for (const bool is_turned : {false, true}) {
-    if (is_turned && (!either || (has_base && is_end()))) break;
-    const auto turned = is_turned ? either : std::nullopt;
-    const std::vector<Sighting> seen =
-        sightings.size() >= 2 ? run_alike(sightings, pair, turned, has_base) : sightings;
+  // each other, and the others follow the places that these tell.
+  const bool has_base = prior_.is_base_position_known, has_pair = sightings.size() >= 2;
+  const SightingPair pair = has_pair ? best_pair(sightings) : SightingPair{0, 0};
+  for (const bool against : {false, true}) {
+    if (against && (has_base || !has_pair)) break;
+    const std::vector<Sighting> seen = has_pair ? run_alike(sightings, pair, against, has_base) : sightings;
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen, pair)) {
       Try one = tried(problem, {start}, most());

@@ -72,10 +72,10 @@ std::vector<Eigen::Vector3d> places_seen(const Sighting& one, const Sighting& ot
   return places;
 }
 
-std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair,
-                                std::optional<std::size_t> turned, bool from_base) {
+std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair, bool against,
+                                bool from_base) {
   const auto turn = [](Sighting& seen) { seen = reversed(std::move(seen)); };
-  if (turned) turn(sightings[*turned]);
+  if (against) turn(sightings[pair[1]]);
   if (sightings.size() == 2) return sightings;
   const auto places = places_seen(sightings[pair[0]], sightings[pair[1]]);
   bool is_first_turned = false;

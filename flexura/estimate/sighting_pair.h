@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,11 +20,11 @@ using SightingPair = std::array<std::size_t, 2>;
 /// Where two see the arm, in W, m, along it as `one` is followed.
 [[nodiscard]] std::vector<Eigen::Vector3d> places_seen(const Sighting& one, const Sighting& other);
 
-/// All followed alike: one of the pair, `turned`, from its other end, if it is to be; the others the way of
-/// the places that the pair then tells. With `from_base` each is followed from the base on as far as its
+/// All followed alike: the second of the pair as it is or, `against`, from its other end; the others the way
+/// of the places that the pair then tells. With `from_base` each is followed from the base on as far as its
 /// pixel tells, and those that show an end of the arm there stay; otherwise the first of all stays as it is,
 /// and all are turned if need be.
 [[nodiscard]] std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair,
-                                              std::optional<std::size_t> turned, bool from_base);
+                                              bool against, bool from_base);
 
 }  // namespace flexura

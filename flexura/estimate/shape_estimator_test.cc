@@ -272,6 +272,22 @@ TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
   EXPECT_GT(found, 30);
 }
 
+// A lens whose distortion is described so that it folds back within the arm's picture.
+TEST(ShapeEstimator, NamesThePictureThatItsLensShowsTheArmInNoPartOf) {
+  TestRandom random(1);
+  const ShapePrior prior{.arm = three_section_arm()};
+  std::vector<Sighting> seen =
+      sightings_of(Backbone(prior.arm, random_bends(random, prior.arm, 1)), random, 0.02);
+  Intrinsics folded = seen[1].view.lens.intrinsics();
+  folded.distortion[0] = -20;
+  seen[1].view.lens = Lens(folded);
+  const ShapeEstimate none = ShapeEstimator(prior).estimate(seen);
+  EXPECT_FALSE(none.is_found);
+  EXPECT_THAT(none.reason,
+              testing::EndsWith("within the part of picture 2 for which its lens has rays: is its "
+                                "distortion as described?"));
+}
+
 // An arm that is described as stiffer than it is.
 TEST(ShapeEstimator, SaysWhereASectionWouldBendFartherThanItGoes) {
   TestRandom random(1);

@@ -252,8 +252,8 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
   });
 }
 
-// Where no picture shows the tip, what is beyond may be bent one way or another: no other shape is trusted,
-// and none that the arm cannot take is preferred.
+// Where no picture shows the tip, what is beyond may be bent one way or another: another shape that explains
+// all as well is no answer, nor one that the arm cannot take.
 TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
   int found = 0;
   for_random_cases(60, [&](TestRandom& random) {

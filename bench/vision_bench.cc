@@ -18,7 +18,7 @@ namespace flexura {
 namespace {
 
 std::vector<SeenArm> random_arms(int columns, bool color) {
-  SeenArmOptions options;
+  SeenArmConfig options;
   options.width = columns, options.height = columns == 640 ? 480 : 1080, options.color = color;
   std::vector<SeenArm> made;
   for (std::uint64_t i = 0; i < 8; ++i) {

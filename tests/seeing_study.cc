@@ -122,8 +122,8 @@ void print_row(const std::string& name, const Tally& tally, bool has_aim) {
 }
 
 // The row of so many random arms; with a gamma, once it is undone as `undone` says.
-Tally study_row(const std::string& name, const SeenArmOptions& options, double undone, bool has_aim,
-                int cases, std::uint64_t seed) {
+Tally study_row(const std::string& name, const SeenArmConfig& options, double undone, bool has_aim, int cases,
+                std::uint64_t seed) {
   ArmFinder finder;
   Tally tally;
   for (int i = 0; i < cases; ++i) {
@@ -145,7 +145,7 @@ int study(int cases, std::uint64_t seed) {
     for (const double psf : {0.5, 0.7, 1.2}) {
       for (const bool bands : {false, true}) {
         if ((psf != 0.7 || bands) && noise != 2) continue;
-        SeenArmOptions options;
+        SeenArmConfig options;
         options.noise = noise, options.psf = psf, options.bands = bands, options.color = bands;
         char name[64];
         std::snprintf(name, sizeof name, "noise %.0f, PSF %.1f%s", noise, psf, bands ? ", bands" : "");
@@ -154,7 +154,7 @@ int study(int cases, std::uint64_t seed) {
       }
     }
   }
-  const SeenArmOptions gamma{.gamma = 2.2};
+  const SeenArmConfig gamma{.gamma = 2.2};
   study_row("noise 2, PSF 0.7, a gamma of 2.2 undone", gamma, 2.2, false, cases, seed);
   study_row("the same as it is", gamma, 1, false, cases, seed);
   std::printf(

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/camera/view.h"
 #include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
 #include "tests/support/calibration_bench.h"

@@ -1,19 +1,13 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <iosfwd>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "flexura/app/threshold_arguments.h"
+#include "flexura/app/estimate_config.h"
 #include "flexura/base/node.h"
 #include "flexura/camera/measured_camera.h"
-#include "flexura/estimate/shape_estimator.h"
-#include "flexura/estimate/shape_variables.h"
-#include "flexura/vision/threshold.h"
 
 namespace flexura {
 
@@ -23,43 +17,17 @@ struct PictureFile {
   std::string bytes;  ///< Of whatever kind (docs/vision.md, "Kinds of pictures").
 };
 
-/// How a shape is looked for.
-struct EstimateConfig {
-  ShapePrior prior;  ///< What is known of the arm.
-  ThresholdConfig threshold;
-  EstimatorConfig estimator;
-  std::size_t points = 101;  ///< Of the backbone, as it is told; at least 2.
-  bool has_bends = false;    ///< Whether the bends of the prior's sections are told: they are the arm's.
-};
-
 /// What the pictures show of the arm.
 struct ShapeAnswer {
   Node answer;  ///< docs/estimation.md, "flexura estimate".
   bool is_found = false;
 };
 
-/// The cameras of a file, checked for two to meet. InputError: no such file, a camera without a place or at
-/// the first one's, other than `count` of them.
-[[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
-
 /// The shape in as many pictures as there are cameras, in their order. InputError: not a picture that can be
 /// read.
 [[nodiscard]] ShapeAnswer estimate_shape(std::span<const PictureFile> pictures,
                                          const std::vector<MeasuredCamera>& cameras,
                                          const EstimateConfig& config);
-
-/// What `flexura estimate` is told.
-struct EstimateArguments {
-  std::vector<std::string> images;  ///< One a camera, in the cameras' order.
-  std::string cameras;              ///< A file of measured cameras.
-  std::vector<double> base;         ///< p_WB, three numbers; none: not known.
-  std::optional<double> length;     ///< m.
-  std::string arm;                  ///< A file with the arm's sections; "" for none.
-  /// Where the arm's bands are: arc lengths, m ("0.25"), or shares of its length ("25%"); empty: not known.
-  std::vector<std::string> markers;
-  ThresholdArguments threshold;
-  std::int64_t points = 101;  ///< Of the backbone, as it is printed.
-};
 
 /// Prints the shape of the arm that the pictures show, as one JSON document (docs/estimation.md). Returns
 /// exit_missed when no shape was found. InputError for bad input.

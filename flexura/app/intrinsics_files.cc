@@ -43,7 +43,7 @@ LensConfig lens_config(const Intrinsics& lens) {
       .fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .distortion = lens.distortion, .zoom = {}};
 }
 
-CameraDoubtConfig doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
+ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
   constexpr double together = 3;  // Corners of one picture err together: docs/intrinsics.md.
   constexpr double most = 0.3;    // More no file may say.
   const CameraFit& own = fit.cameras[camera];

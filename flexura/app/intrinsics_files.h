@@ -14,6 +14,7 @@
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/camera/measured_camera.h"
+#include "flexura/camera/view.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
@@ -24,7 +25,7 @@ struct CalibratedCamera {
   Pose pose;        ///< X_WC
   LensConfig lens;  ///< At ratio 1, with the zoom's rows where it was measured at several.
   std::array<int, 2> size = {640, 480};
-  CameraDoubtConfig doubt;
+  ViewDoubt doubt;
 };
 
 /// What experiments include of a rig: its cameras.
@@ -39,7 +40,7 @@ const Table<RigFile>& fields_of(const RigFile*);
 /// How wrong a camera of a fit may be: three times what the fit's covariance says, which takes each corner
 /// for an observation of its own, of its focal length, and of where it looks by its principal point and by
 /// how it is turned to the first camera.
-[[nodiscard]] CameraDoubtConfig doubt_of(const IntrinsicsFit& fit, std::size_t camera);
+[[nodiscard]] ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera);
 
 /// A file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,

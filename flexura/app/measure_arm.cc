@@ -44,24 +44,45 @@ Node marker_node(const MarkerSighting& marker) {
       .take();
 }
 
-// Of the backbone, as `lens` sees it; of the tube's middle where there is none.
-void add_axis(const Job& job, const std::vector<AxisSample>& axis, const Lens* lens) {
+// A median axis as it was measured and, with a lens, where the backbone is seen.
+struct MeasuredAxis {
+  MeasuredAxis(const std::vector<AxisSample>& found, const std::optional<Lens>& seen_by)
+      : measured(found), lens(seen_by), shown(found), fitted(found) {
+    if (!lens) return;
+    is_whole = to_backbone_image(*lens, shown);
+    fitted = backbone_samples(*lens, measured);
+  }
+
+  [[nodiscard]] bool is_backbone() const { return lens && !fitted.empty(); }
+  // What is between samples that are seen is a guess of unknown error, and so is the backbone where the lens
+  // has no rays.
+  [[nodiscard]] bool is_known(std::size_t i) const {
+    return measured[i].is_seen && (!is_backbone() || has_rays(*lens, measured[i]));
+  }
+
+  const std::vector<AxisSample>& measured;
+  const std::optional<Lens>& lens;
+  std::vector<AxisSample> shown, fitted;
+  bool is_whole = true;
+};
+
+void add_axis(const Job& job, const MeasuredAxis& axis) {
   Node::Array points, widths, sigmas, seen;
-  for (const AxisSample& sample : axis) {
+  for (std::size_t i = 0; i < axis.shown.size(); ++i) {
+    const AxisSample& sample = axis.shown[i];
     points.push_back(pixel_pair(sample.pixel));
     widths.push_back(number_node(px(sample.width)));
-    // What is between samples that are seen is a guess of unknown error.
-    sigmas.push_back(sample.is_seen ? number_node(rounded(sample.sigma, 1e4)) : Node{});
+    sigmas.push_back(axis.is_known(i) ? number_node(rounded(sample.sigma, 1e4)) : Node{});
     seen.push_back({sample.is_seen, {}});
   }
-  job.answer.add("axis_kind", text_node(lens != nullptr ? "backbone" : "middle"))
+  job.answer.add("axis_kind", text_node(axis.is_backbone() ? "backbone" : "middle"))
       .add("axis", {std::move(points), {}})
       .add("width", {std::move(widths), {}})
       .add("sigma", {std::move(sigmas), {}})
       .add("seen", {std::move(seen), {}});
-  if (lens == nullptr || !job.config.radius) return;
+  if (!axis.is_backbone() || !job.config.radius) return;
   Node::Array depths;
-  for (const double depth : backbone_depths(*lens, axis, *job.config.radius))
+  for (const double depth : backbone_depths(*axis.lens, axis.shown, *job.config.radius))
     depths.push_back(std::isfinite(depth) ? number_node(rounded(depth, 1e6)) : Node{});
   job.answer.add("depth", {std::move(depths), {}});
 }
@@ -85,22 +106,18 @@ bool measure_arm(const Job& job) {
   ArmFinder finder(job.config.finder);
   const ArmSighting& arm = finder.find(job.photograph);
   add_threshold(arm.threshold, job.answer);
-  std::vector<AxisSample> axis = arm.axis;
   std::optional<Lens> lens;
   if (job.config.camera) lens = job.config.camera->lens();
-  const bool is_backbone = lens && to_backbone_image(*lens, axis);
-  if (!is_backbone) axis = arm.axis;
+  const MeasuredAxis axis(arm.axis, lens);
   ArmSighting corrected = arm;
-  corrected.axis = axis;
+  corrected.axis = axis.shown;
   MarkerSightings markers;
   if (arm.is_found()) markers = find_markers(job.photograph.bytes, corrected);
   const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   std::vector<std::string> notes = arm.notes;
-  if (lens && !is_backbone)
-    notes.emplace_back(
-        "the camera's distortion has no ray for some pixels of the arm: the axis is its middle");
+  if (!axis.is_whole) notes.emplace_back(middle_in_places);
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
   // A camera that says for which size it is described has been held to it.
@@ -117,15 +134,15 @@ bool measure_arm(const Job& job) {
   Node::Array marker_nodes;
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.config.what == MeasureTarget::arm) {
-    add_axis(job, axis, is_backbone ? &*lens : nullptr);
-    const AxisPoints points = independent_points(axis);
+    add_axis(job, axis);
+    const AxisPoints points = independent_points(axis.fitted);
     job.answer.add("markers", {std::move(marker_nodes), {}})
         .add("circle", circle_node(fit_circle(points.pixels, points.sigma)))
         .add("ellipse", ellipse_node(fit_ellipse(points.pixels)));
   } else {
     job.answer.add("markers", {std::move(marker_nodes), {}});
   }
-  if (job.canvas != nullptr) draw_arm(*job.canvas, arm, axis, markers.markers);
+  if (job.canvas != nullptr) draw_arm(*job.canvas, arm, axis.shown, markers.markers);
   return is_found;
 }
 

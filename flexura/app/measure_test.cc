@@ -30,7 +30,7 @@
 namespace flexura {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::Not;
 
 double number_at(const Node& node, const char* table, const char* key) {
   return *node.find(table)->find(key)->as<double>();
@@ -169,16 +169,41 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   const auto& depths = *backbone.find("depth")->as<Node::Array>();
   EXPECT_NEAR(*depths[depths.size() / 2].as<double>(), 1, 0.02);
   EXPECT_EQ(depths.size(), backbone.find("axis")->as<Node::Array>()->size());
-  // Of rays that no lens has nothing can be said.
-  write_new_file(folder.path() / "odd.toml",
-                 "[[camera]]\nname = \"front\"\nfx = 400\nfy = 400\ncx = 160\n"
-                 "cy = 120\ndistortion = [-5, 0, 0, 0, 0]\n");
-  arguments.camera = (folder.path() / "odd.toml").string();
-  const Node odd = answer();
-  EXPECT_EQ(*odd.find("axis_kind")->as<std::string>(), "middle");
-  EXPECT_EQ(write_json(*odd.find("axis")), write_json(*middle.find("axis")));
-  EXPECT_EQ(odd.find("depth"), nullptr);
-  EXPECT_THAT(write_json(*odd.find("notes")), HasSubstr("the axis is its middle"));
+}
+
+// Of what a lens has no rays for nothing can be said; the rest of the axis is the backbone's all the same.
+TEST(Measure, IsTheTubesMiddleOnlyWhereTheLensHasNoRays) {
+  const auto answer_with = [](double middle, double distortion) {
+    MeasureConfig config;
+    config.camera = MeasuredCamera{};
+    config.camera->fx = 400;
+    config.camera->cx = middle, config.camera->cy = 120;
+    config.camera->distortion[0] = distortion;
+    config.radius = 0.015;
+    const std::string file = png(tube());
+    return measure_picture(bytes_of(file), "tube.png", config).answer;
+  };
+  const auto column = [](const Node& answer, const char* key) {
+    return *answer.find(key)->as<Node::Array>();
+  };
+  const auto is_null = [](const Node& node) { return write_json(node) == "null"; };
+  const Node plain = answer_with(160, 0), odd = answer_with(160, -5);
+  EXPECT_EQ(*odd.find("axis_kind")->as<std::string>(), "backbone");
+  EXPECT_THAT(write_json(*odd.find("notes")), HasSubstr("there the axis is its middle"));
+  const auto depths = column(odd, "depth"), sigmas = column(odd, "sigma"), seen = column(odd, "seen");
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (!*seen[i].as<bool>()) continue;
+    EXPECT_EQ(is_null(depths[i]), is_null(sigmas[i])) << i;
+    if (is_null(depths[i])) ++without;
+  }
+  EXPECT_GT(without, depths.size() / 10);
+  EXPECT_LT(without, depths.size() * 9 / 10);
+  EXPECT_THAT(write_json(*plain.find("notes")), Not(HasSubstr("middle")));
+  EXPECT_FALSE(std::ranges::any_of(column(plain, "depth"), is_null));
+  const Node none = answer_with(2000, -5);
+  EXPECT_EQ(*none.find("axis_kind")->as<std::string>(), "middle");
+  EXPECT_EQ(none.find("depth"), nullptr);
 }
 
 TEST(Measure, RefusesAPictureOfAnotherSizeThanItsCameraIsSaidToBeOf) {

@@ -16,7 +16,7 @@ class Progress {
   /// `fraction` in [0, 1] is done; `what` names the present part of the job.
   virtual void update(double fraction, std::string_view what) = 0;
   /// Whether the job shall end early, in good order. Asked often, from the job's thread.
-  [[nodiscard]] virtual bool cancelled() const { return false; }
+  [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 
 }  // namespace flexura

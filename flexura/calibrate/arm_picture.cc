@@ -96,13 +96,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
     }
   }
   if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
-  std::vector<AxisSample> axis = look.axis;
-  if (!to_backbone_image(lens, axis)) {
-    std::vector<AxisSample> told;
-    for (std::size_t i = 0; i < axis.size(); ++i)
-      if (has_rays(lens, look.axis[i])) told.push_back(axis[i]);
-    axis = std::move(told);
-  }
+  std::vector<AxisSample> axis = backbone_samples(lens, look.axis);
   if (match.is_reversed) std::ranges::reverse(axis);
   seen.points = spaced_points(axis, config);
   return seen;

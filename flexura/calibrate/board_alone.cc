@@ -1,7 +1,6 @@
 #include "flexura/calibrate/board_alone.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "flexura/calibrate/board_start.h"
+#include "flexura/math/dense.h"
 #include "flexura/math/median.h"
 #include "flexura/math/so3.h"
 
@@ -81,10 +81,7 @@ std::optional<Pose> start_camera(std::span<const CameraStep> steps) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (const CameraStep& step : steps) sum += step.X_1C.rotation, position += step.X_1C.position;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> nearest(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d left = nearest.matrixU();
-  if ((left * nearest.matrixV().transpose()).determinant() < 0) left.col(2) *= -1;
-  return Pose{left * nearest.matrixV().transpose(), position / static_cast<double>(steps.size())};
+  return Pose{nearest_rotation(sum), position / static_cast<double>(steps.size())};
 }
 
 StepSpread step_spread(std::span<const CameraStep> steps) {

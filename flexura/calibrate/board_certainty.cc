@@ -1,6 +1,5 @@
 #include "flexura/calibrate/board_certainty.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -8,6 +7,8 @@
 #include <limits>
 #include <optional>
 #include <span>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 
@@ -52,10 +53,10 @@ MatrixXd covariance_of(const MatrixXd& information, const VectorXd& scale) {
   // In units in which each unknown moves a corner by a pixel, so that the least eigenvalues say what is not
   // told.
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
-  const double least = 1e-12 * std::max(solver.eigenvalues().maxCoeff(), 1e-300);
-  const VectorXd inverse = solver.eigenvalues().cwiseMax(least).cwiseInverse();
-  const MatrixXd directions = scale.cwiseInverse().asDiagonal() * solver.eigenvectors();
+  const auto [values, vectors] = symmetric_eigen(scaled);
+  const double least = 1e-12 * std::max(values.maxCoeff(), 1e-300);
+  const VectorXd inverse = values.cwiseMax(least).cwiseInverse();
+  const MatrixXd directions = scale.cwiseInverse().asDiagonal() * vectors;
   return directions * inverse.asDiagonal() * directions.transpose();
 }
 

@@ -1,8 +1,6 @@
 #include "flexura/calibrate/board_start.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -72,10 +71,10 @@ std::optional<Vector2d> principal_point(std::span<const Matrix3d> homographies, 
           Eigen::Vector<double, 5>((product(G.col(0), G.col(0)) - product(G.col(1), G.col(1))) / size)})
       normal += row * row.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> solver(normal);
-  const Eigen::Vector<double, 5> conic = solver.eigenvectors().col(0);
+  const auto [values, vectors] = symmetric_eigen(normal);
+  const Eigen::Vector<double, 5> conic = vectors.col(0);
   // Two directions that are as good: the boards do not tell.
-  if (solver.eigenvalues()[1] < 1e-9 * solver.eigenvalues()[4]) return std::nullopt;
+  if (values[1] < 1e-9 * values[4]) return std::nullopt;
   if (!(conic[0] * conic[1] > 0)) return std::nullopt;
   const Vector3d normalized(-conic[2] / conic[0], -conic[3] / conic[1], 1);
   return (scale.inverse() * normalized).hnormalized();
@@ -93,9 +92,9 @@ std::optional<Matrix3d> board_homography(std::span<const Vector2d> points, std::
         Vector3d::Zero().transpose(), p.transpose(), -q.y() * p.transpose();
     normal += rows.transpose() * rows;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-  if (!(solver.eigenvalues()[1] > 1e-10 * solver.eigenvalues()[8])) return std::nullopt;
-  const Eigen::Vector<double, 9> h = solver.eigenvectors().col(0);
+  const auto [values, vectors] = symmetric_eigen(normal);
+  if (!(values[1] > 1e-10 * values[8])) return std::nullopt;
+  const Eigen::Vector<double, 9> h = vectors.col(0);
   Matrix3d normalized;
   normalized << h.head<3>().transpose(), h.segment<3>(3).transpose(), h.tail<3>().transpose();
   Matrix3d H = to.inverse() * normalized * from;
@@ -143,9 +142,8 @@ std::optional<Pose> start_pose(const Lens& lens, std::span<const Vector2d> point
   const double scale = 2 / (H->col(0).norm() + H->col(1).norm());
   Matrix3d axes;
   axes << scale * H->col(0), scale * H->col(1), (scale * H->col(0)).cross(scale * H->col(1));
-  const Eigen::JacobiSVD<Matrix3d> nearest(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix3d R_CB = nearest.matrixU() * nearest.matrixV().transpose();
-  if (!R_CB.allFinite() || R_CB.determinant() < 0) return std::nullopt;
+  const Matrix3d R_CB = nearest_rotation(axes);
+  if (!R_CB.allFinite()) return std::nullopt;
   return Pose{R_CB, scale * H->col(2)};
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "flexura/calibrate/rig_descent.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/dense.h"
 #include "flexura/math/median.h"
 #include "flexura/math/so3.h"
 
@@ -116,11 +116,10 @@ Eigen::MatrixXd covariance_of(const RigProblem& problem, double bound) {
     inverse = factors.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
   } else {
     // Directions of which nothing is known get a variance beyond all others.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-    const double least = dependent * solver.eigenvalues().maxCoeff();
+    const auto [values, vectors] = symmetric_eigen(scaled);
+    const double least = dependent * values.maxCoeff();
     const auto unknown = [&](double value) { return value > least ? 1 / value : 1 / (dependent * least); };
-    inverse = solver.eigenvectors() * solver.eigenvalues().unaryExpr(unknown).asDiagonal() *
-              solver.eigenvectors().transpose();
+    inverse = vectors * values.unaryExpr(unknown).asDiagonal() * vectors.transpose();
   }
   return scales.asDiagonal() * inverse * scales.asDiagonal();
 }

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -46,11 +48,11 @@ RigObservability observability(const RigVariables& variables, const Eigen::Matri
   }
   const Eigen::MatrixXd left = scales.cwiseInverse().asDiagonal() * covariance.topLeftCorner(count, count) *
                                scales.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left);
+  const auto [values, vectors] = symmetric_eigen(left);
   for (Eigen::Index i = count - 1; i >= 0; --i) {
-    const double share = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
+    const double share = std::sqrt(std::max(0.0, values[i]));
     if (share < told) break;
-    result.blindness.push_back({share, words_of(variables, solver.eigenvectors().col(i))});
+    result.blindness.push_back({share, words_of(variables, vectors.col(i))});
   }
   return result;
 }

@@ -99,8 +99,8 @@ std::optional<std::string> MeasuredCamera::other_size(int width, int height) con
                      (*size)[0], (*size)[1], Node{name, {}}.brief());
 }
 
-const Table<CameraDoubtConfig>& fields_of(const CameraDoubtConfig*) {
-  using C = CameraDoubtConfig;
+const Table<ViewDoubt>& fields_of(const ViewDoubt*) {
+  using C = ViewDoubt;
   static const Table<C> table =
       Table<C>(
           "doubt",

@@ -9,6 +9,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/camera/intrinsics.h"
+#include "flexura/camera/view.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
@@ -34,12 +35,6 @@ struct Codec<RotationConfig> {
   static Node write(const RotationConfig& value);
 };
 
-/// How wrong the description of a camera may be: standard deviations; of 0 it is believed.
-struct CameraDoubtConfig {
-  double turn = 0;   ///< Of its frame, about each axis, rad.
-  double focal = 0;  ///< Share of the focal lengths.
-};
-
 /// One `[[camera]]` of a file of cameras as they were measured: a lens that stands still, and where it
 /// stands.
 struct MeasuredCamera {
@@ -52,7 +47,7 @@ struct MeasuredCamera {
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
   double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
   std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
-  CameraDoubtConfig doubt;
+  ViewDoubt doubt;                                     ///< In where it stands and what its lens is.
 
   /// std::invalid_argument: as Lens says.
   [[nodiscard]] Lens lens() const;
@@ -67,7 +62,7 @@ struct MeasuredCameras {
   std::vector<MeasuredCamera> camera;
 };
 
-const Table<CameraDoubtConfig>& fields_of(const CameraDoubtConfig*);
+const Table<ViewDoubt>& fields_of(const ViewDoubt*);
 const Table<MeasuredCamera>& fields_of(const MeasuredCamera*);
 const Table<MeasuredCameras>& fields_of(const MeasuredCameras*);
 

@@ -29,6 +29,15 @@ struct View {
   }
 };
 
+/// How wrong a camera's description may be: standard deviations of its view's error; of 0 it is believed.
+struct ViewDoubt {
+  double turn = 0;   ///< Of its frame about each axis, rad.
+  double focal = 0;  ///< Share of the focal lengths.
+
+  /// Whether anything of the view is in doubt.
+  [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }
+};
+
 /// Whether two cameras stand for the planes XOY and ZOY: `front` looks along Z and `side` along X, each
 /// within 45 degrees or so.
 [[nodiscard]] inline bool stand_for_planes(const Pose& front, const Pose& side) {

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -60,7 +61,7 @@ Eigen::MatrixXd drives_of(const DistributedArm& arm, DriveKind kind) {
 ProjectedForce project_on_drives(const Eigen::MatrixXd& G, const Eigen::VectorXd& Q) {
   if (G.rows() != Q.size()) throw std::invalid_argument("drives and forces of different arms");
   ProjectedForce projected;
-  projected.drives = G.completeOrthogonalDecomposition().solve(Q);
+  projected.drives = least_norm_solution(G, Q);
   projected.force = G * projected.drives;
   const double size = Q.norm();
   projected.left_over = size > 0 ? (Q - projected.force).norm() / size : 0;
@@ -80,8 +81,7 @@ DrivenLaw::DrivenLaw(const DistributedArm& arm, Eigen::MatrixXd G, Eigen::Vector
   const ProjectedForce held = project_on_drives(G_, there.gravity_gradient() + there.elastic_gradient());
   holding_ = held.drives, not_held_ = held.left_over;
   const Eigen::MatrixXd curvature = there.stiffness() + stiffness * G_ * G_.transpose();
-  least_curvature_ =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(curvature, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  least_curvature_ = least_eigenvalue(curvature);
 }
 
 std::vector<std::string> DrivenLaw::violations() const {

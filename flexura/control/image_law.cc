@@ -1,13 +1,13 @@
 #include "flexura/control/image_law.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 
 #include "flexura/kinematics/plus_way.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -72,7 +72,7 @@ double reciprocal_condition(const Eigen::MatrixXd& J, double trace, ImageLaw::Wo
     const double bound = 1 / std::sqrt(trace * inverse_trace(work));
     if (bound >= surely) return bound;
   }
-  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+  const Eigen::VectorXd singular = singular_values(J);
   return singular.minCoeff() / singular.maxCoeff();
 }
 

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -85,7 +86,7 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
       imbalance[i] = lyapunov_value(sample) - lyapunov_value(start) + sample.taken - start.taken +
                      sample.damped - start.damped;
     }
-    const Eigen::Vector3d shares = courses.completeOrthogonalDecomposition().solve(imbalance);
+    const Eigen::Vector3d shares = least_norm_solution(courses, imbalance);
     verdict.gravity_share = shares[0], verdict.elastic_share = shares[1], verdict.potential_share = shares[2];
     constexpr double counts = 0.01;
     const auto explains = [&](Eigen::Index i) {

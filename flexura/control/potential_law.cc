@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/math/dense.h"
+
 namespace flexura {
 namespace {
-
-double least_eigenvalue(const Eigen::MatrixXd& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
-}
 
 // Whether elasticity has its least energy there, but for rounding.
 bool is_unstrained(const DistributedArm& arm) {

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -40,7 +42,7 @@ PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, c
   if (drives.size() > 0) {
     if (drives.rows() != arm.size() || !drives.allFinite())
       throw std::invalid_argument("a run's drives must fit its arm, in finite numbers");
-    given_ = drives * drives.completeOrthogonalDecomposition().pseudoInverse();
+    given_ = drives * pseudo_inverse(drives);
   }
   if (measurement) measured_.emplace(*measurement, arm.nodes());
   if (measurement && measurement->reading == AngleReading::planes)

@@ -49,7 +49,7 @@ std::vector<Sighting> photographed(const BentArm& bent, const std::vector<View>&
   std::vector<Sighting> seen;
   for (const View& view : views) {
     ArmFinder finder({.threshold = {}, .base = view.project(bent.arm.X_WB.position)});
-    const SeenArmOptions options{.noise = 1};
+    const SeenArmConfig options{.noise = 1};
     seen.push_back(sighting_of(finder.find(photograph(scene, view, options, seed++)), view));
   }
   return seen;

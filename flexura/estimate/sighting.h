@@ -63,15 +63,6 @@ struct ViewError {
 /// The view without its error.
 [[nodiscard]] View corrected(View view, const ViewError& error);
 
-/// Standard deviations of a view's error; of 0: there is none.
-struct ViewDoubt {
-  double turn = 0;   ///< About each axis, rad.
-  double focal = 0;  ///< Share of the focal lengths.
-
-  /// Whether anything of the view is in doubt.
-  [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }
-};
-
 /// What one camera sees of an arm's backbone.
 struct Sighting {
   View view;                       ///< As the camera is believed to stand.

@@ -103,7 +103,7 @@ class LoggedSession : public RigSessionWatcher {
                    fmt::format("{} of {}: {:.4g} {} off; {}", decision.step, name_of(decision.camera),
                                decision.offset, decision.unit, decision.next));
   }
-  bool is_cancelled() override { return progress_.cancelled(); }
+  bool is_cancelled() override { return progress_.is_cancelled(); }
 
   // At `time` s; the last that is told.
   void ended(double time) {

@@ -342,21 +342,13 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
 }
 
 TEST(CalibrateTask, RefusesWhatItCannotDo) {
-  const auto problem_of = [](const std::string& text) {
-    try {
-      (void)parse_experiment(text, "x.toml");
-    } catch (const InputError& error) {
-      return error.problems().front().what;
-    }
-    return std::string("none");
-  };
-  EXPECT_THAT(problem_of(small_calibration("cameras = [\"front\", \"back\"]\n", "")),
+  EXPECT_THAT(error_of_file(small_calibration("cameras = [\"front\", \"back\"]\n", "")),
               HasSubstr("there is no camera \"back\""));
-  EXPECT_THAT(problem_of(small_calibration("cameras = [\"front\", \"front\"]\n", "")),
+  EXPECT_THAT(error_of_file(small_calibration("cameras = [\"front\", \"front\"]\n", "")),
               HasSubstr("expected two"));
-  EXPECT_THAT(problem_of(small_calibration("save = \"../rig.toml\"\n", "")),
+  EXPECT_THAT(error_of_file(small_calibration("save = \"../rig.toml\"\n", "")),
               HasSubstr("expected a file's name"));
-  EXPECT_THAT(problem_of("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\n"),
+  EXPECT_THAT(error_of_file("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\n"),
               HasSubstr("needs at least 4 markers"));
 }
 

@@ -101,7 +101,7 @@ TEST_F(Dynamics, IsExportedAsATable) {
 TEST_F(Dynamics, CanBeCancelledWhileItIsSimulated) {
   class Cancelled : public Quiet {
    public:
-    [[nodiscard]] bool cancelled() const override { return true; }
+    [[nodiscard]] bool is_cancelled() const override { return true; }
   } cancelled;
   const RunResult result =
       run_experiment(parse_experiment(dynamics_arm() + dynamics_task(bent_target), "x.toml"),
@@ -115,7 +115,7 @@ TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
   class CancelledSoon : public Quiet {
    public:
     void update(double fraction, std::string_view) override { told_.push_back(fraction); }
-    [[nodiscard]] bool cancelled() const override { return told_.size() > 20; }
+    [[nodiscard]] bool is_cancelled() const override { return told_.size() > 20; }
     [[nodiscard]] const std::vector<double>& told() const { return told_; }
 
    private:

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "flexura/control/potential_run.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/dense.h"
 #include "flexura/math/hash.h"
 #include "flexura/safety/motion_check.h"
 
@@ -42,7 +43,7 @@ std::vector<std::string> violations_of(const DynamicsTask& task, const DynamicsP
   std::vector<std::string> found = law.violations();
   const Eigen::MatrixXd G = drives_of(plant.distributed(), task.law.drives);
   if (G.size() == 0) return found;
-  const Eigen::Index rank = G.colPivHouseholderQr().rank();
+  const Eigen::Index rank = rank_of(G);
   if (rank < G.rows())
     found.push_back(fmt::format(
         "{} drives move an arm of {} numbers: they cannot give all of the law's force", rank, G.rows()));
@@ -94,7 +95,7 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
   // A step of a long arm takes a while, and it may take many from one sample to the next.
   const auto go_on = [&] {
     progress.update(plant.motion().time() / times.back(), run.name);
-    return !progress.cancelled();
+    return !progress.is_cancelled();
   };
   for (const double time : times) {
     if (!run.stopped.empty()) break;
@@ -131,7 +132,7 @@ void show_as_arcs(DynamicsRun& run, const Arm& arm, const ArmState& from, Progre
   std::vector<ArmState> states;
   DistributedArm distributed = run.plant.distributed();
   for (const DynamicsSample& sample : run.samples) {
-    if (progress.cancelled()) {
+    if (progress.is_cancelled()) {
       run.stopped = "cancelled";
       break;
     }

@@ -85,7 +85,7 @@ void Filming::pass_to(double time, const ArmState& state) {
 }
 
 void Filming::skip_to_now() {
-  for (std::size_t i = 0; i < cameras_.size(); ++i) rig_.camera(i).camera().pass_over();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) rig_.camera(i).camera().skip_to_now();
 }
 
 RigStance Filming::true_stance(std::size_t camera) {

@@ -1,8 +1,10 @@
 #include "flexura/experiment/image_features.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -33,7 +35,7 @@ Spread spread_of(std::span<const Eigen::Vector2d> points) {
   for (const Eigen::Vector2d& p : points) mean += p / count;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& p : points) scatter += (p - mean) * (p - mean).transpose() / count;
-  const Eigen::Matrix2d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvectors();
+  const Eigen::Matrix2d axes = symmetric_eigen(scatter).vectors;
   Spread spread{{}, Eigen::Vector2d::Zero(), mean};
   for (const Eigen::Vector2d& p : points) {
     spread.points.emplace_back(axes.transpose() * (p - mean));
@@ -58,8 +60,7 @@ std::optional<double> axes_ratio(std::span<const Eigen::Vector2d> points) {
     const Eigen::Vector<double, 6> terms{q.x() * q.x(), q.x() * q.y(), q.y() * q.y(), q.x(), q.y(), 1};
     normal += terms * terms.transpose();
   }
-  const Eigen::Vector<double, 6> conic =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(normal).eigenvectors().col(0);
+  const Eigen::Vector<double, 6> conic = symmetric_eigen(normal).vectors.col(0);
   // The quadratic part a x^2 + b xy + c y^2, back in px.
   const double a = conic[0] / (spread.size.x() * spread.size.x());
   const double b = conic[1] / (spread.size.x() * spread.size.y());

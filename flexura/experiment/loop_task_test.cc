@@ -327,41 +327,39 @@ TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
 }
 
 TEST(EtalonLoop, RefusesWhatItCannotDo) {
-  const auto problem_of = [](const std::string& text) {
-    try {
-      (void)parse_experiment(text, "x.toml");
-    } catch (const InputError& error) {
-      return error.problems().front().what;
-    }
-    return std::string("none");
-  };
   std::string text = etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5});
-  EXPECT_THAT(problem_of(text + "[[task]]\nkind = \"calibrate\"\nmethod = \"etalons\"\n"),
+  EXPECT_THAT(error_of_file(text + "[[task]]\nkind = \"calibrate\"\nmethod = \"etalons\"\n"),
               HasSubstr("etalons"));
   std::string with_arm = text;
   with_arm.replace(with_arm.find("arm = false"), 11, "arm = true ");
-  EXPECT_THAT(problem_of(with_arm), HasSubstr("expected stand.arm = false"));
+  EXPECT_THAT(error_of_file(with_arm), HasSubstr("expected stand.arm = false"));
+  EXPECT_THAT(error_of_file(
+                  etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5}, "rotation = [0.8, 0.6, 0, 0]\n")),
+              HasSubstr("stands upright"));
   EXPECT_THAT(
-      problem_of(etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5}, "rotation = [0.8, 0.6, 0, 0]\n")),
-      HasSubstr("stands upright"));
-  EXPECT_THAT(
-      problem_of("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
+      error_of_file(
+          "[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = {.size = 0.5};
-  EXPECT_EQ(
-      problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-      "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
-  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
-            "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
-  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
-            "task[0]: has no pose and no zooms with this method: expected none of these keys");
-  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
-            "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
-            "no such key");
-  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
-                                  "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
-                                  rig)),
-            "none");
+  EXPECT_THAT(
+      error_of_file(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
+      HasSubstr(
+          "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key"));
+  EXPECT_THAT(
+      error_of_file(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
+      HasSubstr(
+          "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key"));
+  EXPECT_THAT(error_of_file(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
+              HasSubstr("task[0]: has no pose and no zooms with this method: expected none of these keys"));
+  EXPECT_THAT(
+      error_of_file(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
+      HasSubstr(
+          "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
+          "no such key"));
+  EXPECT_EQ(error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
+                                     "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
+                                     rig)),
+            "no error");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "flexura/experiment/measured_target.h"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/math/dense.h"
 #include "flexura/vision/border.h"
 
 namespace flexura {
@@ -42,10 +42,10 @@ std::optional<Vector3d> line_through(std::vector<Vector2d> points) {
     for (const Vector2d& point : points) mean += point / static_cast<double>(points.size());
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     for (const Vector2d& point : points) spread += (point - mean) * (point - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
-    const Vector2d normal = solver.eigenvectors().col(0);
+    const auto [values, vectors] = symmetric_eigen(spread);
+    const Vector2d normal = vectors.col(0);
     line << normal, -normal.dot(mean);
-    const double rms = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(points.size()));
+    const double rms = std::sqrt(std::max(0.0, values[0]) / static_cast<double>(points.size()));
     std::erase_if(
         points, [&](const Vector2d& point) { return std::abs(normal.dot(point - mean)) > 3 * rms + 1e-12; });
   }

@@ -22,7 +22,7 @@ class Aside : public Progress {
   void update(double fraction, std::string_view what) override {
     run_.update(played_, fmt::format("{} {}, {:.0f} %", verb_, what, 100 * fraction));
   }
-  [[nodiscard]] bool cancelled() const override { return run_.cancelled(); }
+  [[nodiscard]] bool is_cancelled() const override { return run_.is_cancelled(); }
 
  private:
   Progress& run_;
@@ -85,7 +85,7 @@ void Player::tell_up_to(double time) {
 
 Played Player::play() {
   while (step_ <= schedule_.steps()) {
-    played_.is_cancelled = progress_.cancelled();
+    played_.is_cancelled = progress_.is_cancelled();
     if (played_.is_cancelled) break;
     const double time = schedule_.time_of_step(step_);
     if (const auto task = rig_task_due(time)) {
@@ -157,7 +157,7 @@ bool Player::ends_with_dynamics(double time) {
 
 // The run ends here: with the state at the end, which belongs to no step.
 void Player::stop_after(const Leg& leg, const std::string& failure) {
-  played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.cancelled(), failure};
+  played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.is_cancelled(), failure};
   witness_.expect(step_);
   witness_.state(step_, leg.end(), played_.last);
   tell_dynamics(leg.end());

@@ -119,7 +119,7 @@ class CancelAfter : public Progress, public RunWatcher {
  public:
   explicit CancelAfter(std::size_t states) : most_(states) {}
   void update(double, std::string_view) override {}
-  [[nodiscard]] bool cancelled() const override { return times_.size() >= most_; }
+  [[nodiscard]] bool is_cancelled() const override { return times_.size() >= most_; }
   void state(double time, const ArmState& state, std::span<const CameraReading>) override {
     times_.push_back(time);
     last_ = state;

@@ -8,6 +8,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/so3.h"
 #include "flexura/render/scene_maker.h"
 
 namespace flexura {
@@ -25,9 +26,7 @@ VectorMessage point_message(const Eigen::Vector3d& p) {
 ColorMessage color_message(const Color& color) { return {color.x(), color.y(), color.z(), 1}; }
 
 // A pose in `p` whose z has this direction.
-Pose along(const Eigen::Vector3d& p, const Eigen::Vector3d& z) {
-  return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix(), p};
-}
+Pose along(const Eigen::Vector3d& p, const Eigen::Vector3d& z) { return {rotation_from_z(z), p}; }
 
 EntityMessage entity(const std::string& id, double time) {
   EntityMessage message;

@@ -77,7 +77,7 @@ class LoggedServo : public ServoWatcher {
   void told(double time, const std::string& what) override {
     witness_.event(time, Recorder::Level::warning, run_.name, what);
   }
-  bool is_cancelled() override { return progress_.cancelled(); }
+  bool is_cancelled() override { return progress_.is_cancelled(); }
 
  private:
   static constexpr std::size_t most_points = 60;  // Of an axis in the log.

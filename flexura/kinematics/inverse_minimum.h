@@ -1,14 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "flexura/kinematics/bounded_least_squares.h"
 #include "flexura/kinematics/inverse_wish.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 
@@ -55,10 +54,7 @@ class WishMinimum {
       normals.row(count).segment(bound.at, bound.size) = x.segment(bound.at, bound.size) / value;
       ++count;
     }
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(normals.topRows(count).transpose());
-    qr.setThreshold(1e-9);
-    const Eigen::MatrixXd q = qr.householderQ();
-    Slope result{.tangents = q.rightCols(x.size() - qr.rank()), .gradient = {}};
+    Slope result{.tangents = orthogonal_complement(normals.topRows(count).transpose(), 1e-9), .gradient = {}};
     result.gradient = result.tangents * (result.tangents.transpose() * scale_.relative(x));
     return result;
   }
@@ -94,15 +90,15 @@ class WishMinimum {
     if (here.tangents.cols() == 0) return false;
     const auto second = curvature(x, here.tangents);
     if (!second) return false;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(*second);
-    const Eigen::MatrixXd axes = here.tangents * eigen.eigenvectors();
+    const auto [values, vectors] = symmetric_eigen(*second);
+    const Eigen::MatrixXd axes = here.tangents * vectors;
     const Eigen::VectorXd slopes = axes.transpose() * here.gradient;
     Eigen::VectorXd way = Eigen::VectorXd::Zero(x.size());
     for (Eigen::Index k = 0; k < slopes.size(); ++k) {
-      way -= slopes[k] / std::max(std::abs(eigen.eigenvalues()[k]), level) * axes.col(k);
+      way -= slopes[k] / std::max(std::abs(values[k]), level) * axes.col(k);
     }
     constexpr double nudge = 0.02;
-    const bool is_ridge = eigen.eigenvalues()[0] < -level && way.norm() < nudge;
+    const bool is_ridge = values[0] < -level && way.norm() < nudge;
     if (is_ridge) way += nudge * (slopes[0] > 0.0 ? -1.0 : 1.0) * axes.col(0);
     const double length = way.norm();
     if (length < still) return false;

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "flexura/math/dense.h"
 #include "flexura/math/series.h"
 
 namespace flexura {
@@ -112,7 +113,7 @@ bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
       J.row(i).head(bend_columns) = slope.head(bend_columns);
       if (stretching) J(i, bend_columns) = slope(2);
     }
-    const Eigen::VectorXd change = J.completeOrthogonalDecomposition().solve(missing);
+    const Eigen::VectorXd change = least_norm_solution(J, missing);
     bend.head(bend_columns) += change.head(bend_columns);
     if (stretching) stretch += change(bend_columns);
     if (!bend.allFinite() || !std::isfinite(stretch)) return false;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -45,10 +47,7 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
     gram += row * row.transpose();
   }
   const double determined = std::pow(direction_tolerance * largest, 2);
-  if (!offsets.empty() &&
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(gram, Eigen::EigenvaluesOnly).eigenvalues()(0) >
-          determined)
-    return;
+  if (!offsets.empty() && least_eigenvalue(gram) > determined) return;
   reader.problem_at(path,
                     fmt::format("does not determine the {} of section {}, where {} tendon{}: expected {}",
                                 stretching ? "bend and the stretch" : "bend", index + 1, offsets.size(),

@@ -10,6 +10,7 @@
 #include "flexura/render/prepared_scene.h"
 #include "flexura/render/quick_picture.h"
 #include "flexura/render/renderer.h"
+#include "tests/support/picture_difference.h"
 #include "tests/support/render_scenes.h"
 
 namespace flexura {
@@ -125,12 +126,7 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
         so3_exp(random.uniform(0, 2 * std::numbers::pi) * axis) * axis.unitOrthogonal();
     const Eigen::Vector3d eye = end + far * (std::sqrt(1 - 4 * sine * sine) * aside + 2 * sine * axis);
     const View view = pinhole_view(look_at(eye, end + 0.05 * random.vector<3>(-1, 1)), width, height, f);
-    Renderer renderer;
-    LightImage exact, quick;
-    renderer.render(scene, view, PixelKind::gray, exact, true);
-    renderer.render(scene, view, PixelKind::gray, quick);
-    for (std::size_t i = 0; i < exact.light.values().size(); ++i)
-      worst = std::max(worst, std::abs(exact.light.values()[i] - quick.light.values()[i]) + 0.0);
+    worst = std::max(worst, compare_ways(scene, view).worst);
   });
   std::printf("ends from the edge: light differs by %.5f at worst\n", worst);
   EXPECT_LT(worst, 0.04);

@@ -65,11 +65,7 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
     const View view = some_view(random, bent.backbone());
     const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
-    Renderer renderer;
-    LightImage exact, quick;
-    renderer.render(scene, view, pixels, exact, true);
-    renderer.render(scene, view, pixels, quick);
-    const Difference off = compare(exact, quick);
+    const Difference off = compare_ways(scene, view, pixels);
     EXPECT_LT(off.worst, 0.015);
     EXPECT_LT(off.count, 1e-3 * off.many);  // Many rings make many bent edges.
     count += off.count, many += off.many, bad_depths += off.bad_depths;
@@ -113,11 +109,7 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     view.lens = Lens(intrinsics);
     Scene scene = busy_scene(random, backbone, bent.arm, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};
-    Renderer renderer;
-    LightImage exact, quick;
-    renderer.render(scene, view, PixelKind::gray, exact, true);
-    renderer.render(scene, view, PixelKind::gray, quick);
-    const Difference off = compare(exact, quick);
+    const Difference off = compare_ways(scene, view);
     // Of light that differs by 0.8 from one side of an edge to the other.
     EXPECT_LT(off.worst, 0.04);
     worst = std::max(worst, off.worst), bad_depths += off.bad_depths;

@@ -38,11 +38,7 @@ TEST(QuickScreens, AgreesWithTheExactWayWhereEdgesOfScreensAreSeen) {
       screen.X_WS.position = place + random.uniform(-0.4, 0.4) * ahead + random.vector<3>(-0.1, 0.1);
       screen.size = {random.uniform(0.1, 0.6), random.uniform(0.1, 0.6)};
     }
-    Renderer renderer;
-    LightImage exact, quick;
-    renderer.render(scene, view, PixelKind::gray, exact, true);
-    renderer.render(scene, view, PixelKind::gray, quick);
-    const Difference off = compare(exact, quick);
+    const Difference off = compare_ways(scene, view);
     EXPECT_LT(off.worst, 0.04);
     worst = std::max(worst, off.worst), bad_depths += off.bad_depths;
   });
@@ -83,12 +79,9 @@ TEST(QuickScreens, DrawsScreensThatOverlap) {
 
 // The two ways' pictures of screens, whose light may differ by `most`.
 void expect_agreement_on(const Scene& scene, const View& view, double most) {
-  Renderer renderer;
-  LightImage exact, quick;
-  renderer.render(scene, view, PixelKind::gray, exact, true);
-  renderer.render(scene, view, PixelKind::gray, quick);
-  EXPECT_LT(compare(exact, quick).worst, most);
-  EXPECT_EQ(compare(exact, quick).bad_depths, 0);
+  const Difference off = compare_ways(scene, view);
+  EXPECT_LT(off.worst, most);
+  EXPECT_EQ(off.bad_depths, 0);
 }
 
 Screen gray_screen(const Eigen::Vector3d& position, const std::array<double, 2>& size, double brightness) {
@@ -179,11 +172,7 @@ TEST(QuickScreens, AgreesWithTheExactWayOnScreensSeenAslantThroughWideLenses) {
     Intrinsics lens = view.lens.intrinsics();
     lens.distortion = {random.uniform(-0.1, 0.4), 0, 0.001, 0, 0};
     view.lens = Lens(lens);
-    Renderer renderer;
-    LightImage exact, quick;
-    renderer.render(scene, view, PixelKind::gray, exact, true);
-    renderer.render(scene, view, PixelKind::gray, quick);
-    worst = std::max(worst, compare(exact, quick).worst);
+    worst = std::max(worst, compare_ways(scene, view).worst);
   });
   std::printf("screens seen aslant: light differs by %.5f at worst\n", worst);
   EXPECT_LT(worst, 0.002);

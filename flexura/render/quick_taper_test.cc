@@ -78,7 +78,7 @@ View steep_view_of_a_joint(TestRandom& random, const BentArm& bent) {
 }
 
 // The worst difference of light that the two ways make of random arms.
-double compare_ways(TestRandom& random, const BentArm& bent, const View& view) {
+double worst_of(TestRandom& random, const BentArm& bent, const View& view) {
   Scene scene = plain_scene();
   scene.light.directional = 0.7;
   scene.background = {0.9, 0.9, 0.9};
@@ -87,11 +87,7 @@ double compare_ways(TestRandom& random, const BentArm& bent, const View& view) {
     const double s = random.uniform(-0.02, bent.backbone().length());
     scene.arm.markers.push_back({s, s + random.uniform(0.003, 0.03), {0.9, 0.9, 0.9}});
   }
-  Renderer renderer;
-  LightImage exact, quick;
-  renderer.render(scene, view, PixelKind::gray, exact, true);
-  renderer.render(scene, view, PixelKind::gray, quick);
-  const Difference off = compare(exact, quick);
+  const Difference off = compare_ways(scene, view);
   EXPECT_LT(off.worst, 0.04);
   EXPECT_LE(off.bad_depths, 4);  // Off by a little more than 2e-6 of it; a hole shows in the light.
   return off.worst;
@@ -103,7 +99,7 @@ void compare_ways_of(const char* name, int count, Draw&& draw) {
   double worst = 0;
   for_random_cases(count, [&](TestRandom& random) {
     const std::pair<BentArm, View> drawn = draw(random);
-    worst = std::max(worst, compare_ways(random, drawn.first, drawn.second));
+    worst = std::max(worst, worst_of(random, drawn.first, drawn.second));
   });
   std::printf("%s: light differs by %.5f at worst\n", name, worst);
 }

@@ -66,7 +66,7 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
       if (progress == nullptr) return true;
       progress->update((static_cast<double>(i) + done) / static_cast<double>(motions.size()),
                        "check: " + motions[i].name);
-      if (progress->cancelled()) report.is_complete = false;
+      if (progress->is_cancelled()) report.is_complete = false;
       return report.is_complete;
     };
     const CheckedMotion checked{arm, contacts, motions[i], step, report, go_on};

@@ -90,7 +90,7 @@ class Impatient : public Progress {
     last_ = fraction;
     ++told_;
   }
-  [[nodiscard]] bool cancelled() const override { return told_ >= patience_; }
+  [[nodiscard]] bool is_cancelled() const override { return told_ >= patience_; }
   [[nodiscard]] int told() const { return told_; }
 
  private:

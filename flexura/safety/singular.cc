@@ -1,10 +1,10 @@
 #include "flexura/safety/singular.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <vector>
 
 #include "flexura/kinematics/jacobian.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 
@@ -18,11 +18,11 @@ TipFreedom tip_freedom(const Arm& arm, const ArmState& state) {
     if (arm.sections[i].can_stretch()) free.push_back(first + 2);
   }
   const Eigen::MatrixXd velocities = whole.topRows<3>()(Eigen::all, free);
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(velocities);
-  svd.setThreshold(1e-9);
+  const Eigen::VectorXd speeds = singular_values(velocities);
+  const auto rank = (speeds.array() > 1e-9 * speeds.maxCoeff()).count();
   const std::size_t dimensions = arm.kind == ArmKind::planar ? 2 : 3;
   // One spatial section without stretch reaches a surface only.
-  return {static_cast<std::size_t>(svd.rank()), std::min(dimensions, free.size())};
+  return {static_cast<std::size_t>(rank), std::min(dimensions, free.size())};
 }
 
 }  // namespace flexura

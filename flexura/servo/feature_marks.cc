@@ -1,12 +1,13 @@
 #include "flexura/servo/feature_marks.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "flexura/control/shape_features.h"
+#include "flexura/math/dense.h"
 #include "flexura/servo/measured_places.h"
 
 namespace flexura {
@@ -18,13 +19,13 @@ std::vector<Eigen::Vector2d> ellipse_of(const Eigen::Ref<const Eigen::VectorXd>&
   const double weight = FeatureSet::of_moments().moment_weight;
   Eigen::Matrix2d second;
   second << moments[3], moments[4], moments[4], moments[5];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(weight * second);
-  const Eigen::Vector2d sigma = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const SymmetricEigen axes = symmetric_eigen(weight * second);
+  const Eigen::Vector2d sigma = axes.values.cwiseMax(0).cwiseSqrt();
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= corners; ++i) {
     const double t = 2 * std::numbers::pi * i / corners;
     points.emplace_back(moments.segment<2>(1) +
-                        axes.eigenvectors() * sigma.cwiseProduct(Eigen::Vector2d(std::cos(t), std::sin(t))));
+                        axes.vectors * sigma.cwiseProduct(Eigen::Vector2d(std::cos(t), std::sin(t))));
   }
   return points;
 }

@@ -11,8 +11,8 @@
 
 #include "flexura/base/image.h"
 #include "flexura/camera/camera_config.h"
+#include "flexura/camera/view.h"
 #include "flexura/control/limiter.h"
-#include "flexura/estimate/sighting.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"

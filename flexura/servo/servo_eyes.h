@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "flexura/camera/view.h"
 #include "flexura/estimate/shape_tracker.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"

@@ -54,7 +54,7 @@ class SimulatedCamera : public CameraPort {
   /// Whether there is one.
   [[nodiscard]] bool has_new() const;
   /// None of those is given any more.
-  void pass_over() { next_ = last_received(clock_->now()) + 1; }
+  void skip_to_now() { next_ = last_received(clock_->now()) + 1; }
 
   /// What connects the camera: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }

@@ -220,7 +220,7 @@ TEST_F(SimulatedCameraTest, GivesAllThatIsNewToWhoFilms) {
   EXPECT_EQ(camera().newest().value()->number, 6);
   EXPECT_FALSE(film.has_new()) << "passed over, or given";
   clock().wait_until(0.96);
-  film.pass_over();
+  film.skip_to_now();
   EXPECT_FALSE(film.has_new());
   clock().wait_until(1.06);
   EXPECT_EQ(film.all_new().at(0).number, 9);

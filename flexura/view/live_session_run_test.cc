@@ -95,7 +95,7 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   EXPECT_THROW(watched.take(other, bends({{0, 0}, {0, 0}}), [](const ViewAnswer&) {}), ViewRefusal);
   EXPECT_THROW(watched.take(other, CancelRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
   EXPECT_THROW(watched.take(other, HaltRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
-  EXPECT_FALSE(run->cancelled()) << "what is seen changes nothing of a run";
+  EXPECT_FALSE(run->is_cancelled()) << "what is seen changes nothing of a run";
   run->finish({"unsafe", "section 1: bend", folder_.path()});
   watched.advance(100.2);
   EXPECT_TRUE(watched.is_over());

@@ -51,7 +51,7 @@ class RunLink : public Progress, public RunWatcher {
   explicit RunLink(Progress* also = nullptr) : also_(also) {}
 
   void update(double fraction, std::string_view what) override;
-  [[nodiscard]] bool cancelled() const override { return cancelled_; }
+  [[nodiscard]] bool is_cancelled() const override { return cancelled_; }
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
   void happened(double time, const std::string& level, const std::string& name,

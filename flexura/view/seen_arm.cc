@@ -125,9 +125,9 @@ void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Nod
 }
 
 // The circle through the axis; one so large that the picture shows a straight line is left out.
-void add_circle(const FoundArm& found, const std::vector<AxisSample>& axis, Node::Array& layers) {
+void add_circle(const FoundArm& found, Node::Array& layers) {
   constexpr double largest = 20;  // of the picture's width
-  const AxisPoints points = independent_points(axis);
+  const AxisPoints points = independent_points(backbone_samples(found.view.lens, found.arm.axis));
   const std::optional<CircleFit> circle = fit_circle(points.pixels, points.sigma);
   if (!circle || !circle->is_curved() || circle->radius > largest * found.view.width) return;
   layers.push_back(layer("circle", "ellipse",
@@ -161,15 +161,13 @@ Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::ve
   std::vector<std::string> notes = found.arm.notes;
   if (found.arm.is_found()) {
     std::vector<AxisSample> axis = found.arm.axis;
-    if (!to_backbone_image(found.view.lens, axis))
-      notes.emplace_back(
-          "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle");
+    if (!to_backbone_image(found.view.lens, axis)) notes.emplace_back(middle_in_places);
     Points points;
     for (const AxisSample& sample : axis) points.push_back(sample.pixel);
     if (is_wanted("mask")) add_mask(found, drawn);
     if (is_wanted("silhouette")) add_silhouette(found.arm, drawn);
     if (is_wanted("axis")) drawn.push_back(line("axis", points));
-    if (is_wanted("circle")) add_circle(found, axis, drawn);
+    if (is_wanted("circle")) add_circle(found, drawn);
     if (is_wanted("markers")) add_markers(found, axis, drawn, notes);
   }
   Node::Table answer = outcome(found.arm.is_found(), found.arm.reason, notes);

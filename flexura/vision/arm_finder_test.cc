@@ -174,7 +174,7 @@ TEST(ArmFinder, KnowsHowWellItKnowsTheAxis) {
   ArmFinder finder;
   std::vector<double> misses;
   for_random_cases(12, [&](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.noise = random.uniform(1.5, 5);
     const SeenArm seen = random_seen_arm(random, options);
     auto axis = finder.find(seen.picture).axis;
@@ -194,7 +194,7 @@ TEST(ArmFinder, KnowsHowWellItKnowsTheAxis) {
 TEST(BackboneImage, DepthsAreThoseOfTheBackbone) {
   ArmFinder finder;
   for_random_cases(8, [&](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.noise = 0;
     const SeenArm seen = random_seen_arm(random, options);
     auto axis = finder.find(seen.picture).axis;

@@ -1,7 +1,7 @@
 #include "flexura/vision/axis_end.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>

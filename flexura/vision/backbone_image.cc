@@ -66,6 +66,15 @@ bool has_rays(const Lens& lens, const AxisSample& sample) {
   return first.allFinite() && second.allFinite();
 }
 
+std::vector<AxisSample> backbone_samples(const Lens& lens, const std::vector<AxisSample>& axis) {
+  std::vector<AxisSample> moved = axis;
+  if (to_backbone_image(lens, moved)) return moved;
+  std::vector<AxisSample> with_rays;
+  for (std::size_t i = 0; i < axis.size(); ++i)
+    if (has_rays(lens, axis[i])) with_rays.push_back(moved[i]);
+  return with_rays;
+}
+
 std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {
   if (!(radius > 0) || !std::isfinite(radius))
     throw std::invalid_argument(fmt::format("a radius of {} m: expected one above 0", radius));

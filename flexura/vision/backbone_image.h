@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "flexura/camera/intrinsics.h"
@@ -17,6 +18,13 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// Whether the lens has rays for both borders of a sample as it was measured.
 [[nodiscard]] bool has_rays(const Lens& lens, const AxisSample& sample);
+
+/// Of an axis as it was measured, the samples that have rays, where the backbone is seen.
+[[nodiscard]] std::vector<AxisSample> backbone_samples(const Lens& lens, const std::vector<AxisSample>& axis);
+
+/// What to say of an axis of which not all samples have rays.
+inline constexpr std::string_view middle_in_places =
+    "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle";
 
 /// The depth of the backbone at each sample of such an axis, along the optical axis, m, from the tube's width
 /// and its radius, m: to first order in radius over distance squared. Not a number where the lens shows

@@ -1,4 +1,6 @@
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/math/dense.h"
 #include "flexura/vision/conic.h"
 
 namespace flexura {
@@ -45,13 +48,13 @@ std::optional<Vector3d> pratt(std::span<const Vector2d> points, const Normalized
   Eigen::Matrix4d inverse_bound = Eigen::Matrix4d::Zero();
   inverse_bound(0, 3) = inverse_bound(3, 0) = -0.5;
   inverse_bound(1, 1) = inverse_bound(2, 2) = 1;
-  const Eigen::EigenSolver<Eigen::Matrix4d> solver(inverse_bound * moments);
+  const auto [values, vectors] = general_eigen(inverse_bound * moments);
   double least = 1e300;
   std::optional<Eigen::Vector4d> best;
   for (int i = 0; i < 4; ++i) {
-    const double value = solver.eigenvalues()[i].real();
-    if (std::abs(solver.eigenvalues()[i].imag()) > 1e-9 || value < -1e-9 || value >= least) continue;
-    least = value, best = solver.eigenvectors().col(i).real();
+    const double value = values[i].real();
+    if (std::abs(values[i].imag()) > 1e-9 || value < -1e-9 || value >= least) continue;
+    least = value, best = vectors.col(i).real();
   }
   if (!best || std::abs((*best)[0]) < 1e-9 * best->norm()) return std::nullopt;
   const Vector2d center = -best->segment<2>(1) / (2 * (*best)[0]);
@@ -102,12 +105,12 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
   const Eigen::LDLT<Matrix3d> solver(own);
   const Eigen::Matrix2d gram = harmonic - mixed.transpose() * solver.solve(mixed);
   const Vector2d gradient = left - mixed.transpose() * solver.solve(own_left);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gram);
-  const double least = std::max(0.0, eigen.eigenvalues()[0]);
+  const auto [values, vectors] = symmetric_eigen(gram);
+  const double least = std::max(0.0, values[0]);
   double statistic = 0;
   for (int i = 0; i < 2; ++i) {
-    if (eigen.eigenvalues()[i] < 1e-12 * static_cast<double>(points.size())) continue;
-    statistic += std::pow(eigen.eigenvectors().col(i).dot(gradient), 2) / eigen.eigenvalues()[i];
+    if (values[i] < 1e-12 * static_cast<double>(points.size())) continue;
+    statistic += std::pow(vectors.col(i).dot(gradient), 2) / values[i];
   }
   fit.is_verified = statistic <= chi_square_bound * sigma * sigma;
   const double amplitude = least > 0 ? sigma * std::sqrt(noncentrality / least) : fit.radius;

@@ -36,7 +36,7 @@ TEST(CurveFlow, TellsTheMotionAlongTheNormalAndTheTurn) {
 }
 
 TEST(CurveFlow, OfMarkersIsThatOfThePicture) {
-  SeenArmOptions options;
+  SeenArmConfig options;
   options.width = 320, options.height = 240;
   TestRandom random(7);
   SeenArm seen = random_seen_arm(random, options);

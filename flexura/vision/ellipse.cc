@@ -1,4 +1,7 @@
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/math/dense.h"
 #include "flexura/vision/conic.h"
 
 namespace flexura {
@@ -72,10 +76,10 @@ std::optional<Eigen::Matrix<double, 6, 1>> algebraic(std::span<const Vector2d> p
   const Matrix3d reduced = quadratic + mixed * to_first;
   Matrix3d bound_inverse;
   bound_inverse << 0, 0, 0.5, 0, -1, 0, 0.5, 0, 0;
-  const Eigen::EigenSolver<Matrix3d> solver(bound_inverse * reduced);
+  const auto [values, vectors] = general_eigen(bound_inverse * reduced);
   for (int i = 0; i < 3; ++i) {
-    const Vector3d a = solver.eigenvectors().col(i).real();
-    if (std::abs(solver.eigenvalues()[i].imag()) > 1e-12 || 4 * a[0] * a[2] - a[1] * a[1] <= 0) continue;
+    const Vector3d a = vectors.col(i).real();
+    if (std::abs(values[i].imag()) > 1e-12 || 4 * a[0] * a[2] - a[1] * a[1] <= 0) continue;
     Eigen::Matrix<double, 6, 1> result;
     result << a, to_first * a;
     return result;
@@ -89,13 +93,13 @@ std::optional<EllipseFit> from_algebraic(const Eigen::Matrix<double, 6, 1>& q, c
   form << q[0], 0.5 * q[1], 0.5 * q[1], q[2];
   const Vector2d center = -0.5 * form.inverse() * q.segment<2>(3);
   const double level = -(q[5] + 0.5 * q.segment<2>(3).dot(center));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(form);
-  const Vector2d squares = level * eigen.eigenvalues().cwiseInverse();
+  const auto [values, vectors] = symmetric_eigen(form);
+  const Vector2d squares = level * values.cwiseInverse();
   if (!(squares.minCoeff() > 0) || !center.allFinite()) return std::nullopt;
   EllipseFit fit;
   fit.center = mean + size * center;
   fit.semi_axes = size * squares.cwiseSqrt();
-  fit.angle = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
+  fit.angle = std::atan2(vectors(1, 0), vectors(0, 0));
   return fit;
 }
 

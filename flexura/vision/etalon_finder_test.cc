@@ -33,7 +33,7 @@ SeenEtalon seen_etalon(double turned, double distance, double aside, std::uint64
   etalon.X_WE.rotation = Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix();
   etalon.X_WE.position = {aside, 0, 0};
   seen.view = pinhole_view(look_at({0, 0, distance}, {0, 0, 0}), 640, 480, focal_length);
-  SeenArmOptions options;
+  SeenArmConfig options;
   options.color = true, options.noise = 1;
   seen.picture = photograph(seen.scene, seen.view, options, seed);
   return seen;

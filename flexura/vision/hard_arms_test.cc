@@ -173,7 +173,7 @@ TEST(HardArms, CallsNoEndFreeThatIsNone) {
   ArmFinder finder;
   int whole = 0, count = 0;
   for_random_cases(60, [&](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.most_bend = 1.6;
     const SeenArm seen = random_seen_arm(random, options);
     const ArmSighting& found = finder.find(seen.picture);
@@ -195,7 +195,7 @@ TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
   ArmFinder finder;
   int near = 0, far = 0, count = 0;
   for_random_cases(120, [&](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.most_bend = 1.8;
     options.psf = random.uniform(0.7, 2);
     const SeenArm seen = random_seen_arm(random, options);

@@ -64,7 +64,7 @@ class BandedPicture {
     return projected_axis(renderer, place).front().pixel.value();
   }
 
-  SeenArmOptions options;
+  SeenArmConfig options;
   Scene scene;
   View view;
   Image<std::uint8_t> picture;
@@ -226,7 +226,7 @@ TEST(Markers, TwoSpotsSideBySideAreTwo) {
 TEST(Markers, BandsAreAsFarOffAsTheirSigmaSays) {
   std::size_t count = 0, beyond = 0, far_off = 0, spots = 0;
   for_random_cases(60, [&](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.bands = options.color = true;
     const SeenArm seen = random_seen_arm(random, options);
     ArmFinder finder;

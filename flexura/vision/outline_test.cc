@@ -40,7 +40,7 @@ constexpr double stair = 1.3;
 
 TEST(Outline, IsOpenCVsContourToAPixel) {
   for_random_cases(12, [](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.noise = 1;
     const SeenArm seen = random_seen_arm(random, options);
     const FigureBorder figure = largest_figure(seen.picture);
@@ -67,7 +67,7 @@ TEST(Outline, IsOpenCVsContourToAPixel) {
 
 TEST(Outline, OfTheArmIsOpenCVsContourToAPixelWhereBothSidesAreSeen) {
   for_random_cases(12, [](TestRandom& random) {
-    SeenArmOptions options;
+    SeenArmConfig options;
     options.noise = 1, options.most_bend = 0.8;
     const SeenArm seen = random_seen_arm(random, options);
     ArmFinder finder;

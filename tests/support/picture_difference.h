@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/camera/view.h"
 #include "flexura/render/picture.h"
+#include "flexura/render/renderer.h"
+#include "flexura/render/scene.h"
 
 namespace flexura {
 
@@ -29,6 +32,15 @@ inline Difference compare(const LightImage& exact, const LightImage& quick) {
     if (a != b && !(std::abs(a - b) <= 2e-6 * a)) ++result.bad_depths;
   }
   return result;
+}
+
+/// How a scene drawn the quick way differs from the same drawn exactly.
+inline Difference compare_ways(const Scene& scene, const View& view, PixelKind pixels = PixelKind::gray) {
+  Renderer renderer;
+  LightImage exact, quick;
+  renderer.render(scene, view, pixels, exact, true);
+  renderer.render(scene, view, pixels, quick);
+  return compare(exact, quick);
 }
 
 }  // namespace flexura

@@ -10,7 +10,7 @@
 namespace flexura {
 
 /// A planar arm in view, 400 px long: everything of it is seen.
-inline SeenArm plain_arm(double bend, const SeenArmOptions& options = {}) {
+inline SeenArm plain_arm(double bend, const SeenArmConfig& options = {}) {
   SeenArm seen;
   BentArm bent;
   bent.arm.kind = ArmKind::spatial;

@@ -16,7 +16,7 @@
 namespace flexura {
 
 /// How random arms are photographed.
-struct SeenArmOptions {
+struct SeenArmConfig {
   double noise = 2;  ///< Standard deviation in values of an 8-bit image.
   double psf = 0.7;  ///< px
   double gamma = 1;  ///< Values are light to the power 1/gamma.
@@ -36,7 +36,7 @@ struct SeenArm {
 };
 
 /// A picture of a scene as a sensor delivers it.
-inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, const SeenArmOptions& options,
+inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, const SeenArmConfig& options,
                                       std::uint64_t seed) {
   Renderer renderer;
   LightImage light;
@@ -68,7 +68,7 @@ struct RandomArm {
   double radius = 0;  ///< m
   Scene scene;
 };
-inline RandomArm random_arm(TestRandom& random, const SeenArmOptions& options) {
+inline RandomArm random_arm(TestRandom& random, const SeenArmConfig& options) {
   RandomArm arm;
   BentArm& bent = arm.bent;
   bent.arm.kind = ArmKind::spatial;
@@ -93,7 +93,7 @@ inline RandomArm random_arm(TestRandom& random, const SeenArmOptions& options) {
 }
 
 /// A random arm as it is seen from 1.2 to 3 m away, from any side.
-inline SeenArm random_seen_arm(TestRandom& random, const SeenArmOptions& options) {
+inline SeenArm random_seen_arm(TestRandom& random, const SeenArmConfig& options) {
   SeenArm seen;
   RandomArm arm = random_arm(random, options);
   const Backbone backbone = arm.bent.backbone();

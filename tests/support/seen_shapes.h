@@ -23,7 +23,7 @@ struct SeenShape {
 };
 
 inline SeenShape random_seen_shape(TestRandom& random) {
-  SeenArmOptions options;
+  SeenArmConfig options;
   options.noise = random.uniform(0, 4), options.psf = random.uniform(0.5, 1.2);
   RandomArm arm = random_arm(random, options);
   SeenShape result{arm.bent, {}, {}, options.noise};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/camera/view.h"
 #include "flexura/estimate/sighting.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"

@@ -1,0 +1,166 @@
+#include "flexura/app/estimate_config.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "flexura/base/source.h"
+#include "flexura/base/table.h"
+#include "flexura/experiment/experiment.h"
+
+namespace flexura {
+namespace {
+
+// What is beyond has no picture of which anything could be told.
+constexpr double farthest_place = 1e6;  // m
+
+void check(const EstimateArguments& arguments) {
+  if (arguments.images.size() < 2)
+    throw input_error("IMAGE", "expected at least two pictures, one of each camera");
+  for (const double x : arguments.base)
+    if (!(std::abs(x) <= farthest_place))
+      throw input_error("--base", fmt::format("expected three numbers x,y,z within {:g} m", farthest_place));
+  const auto is_size = [](double x) { return x > 0 && x <= farthest_place; };
+  if (arguments.length && !is_size(*arguments.length))
+    throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
+                                              *arguments.length, farthest_place));
+  constexpr std::int64_t most = 100000;
+  if (arguments.points < 2 || arguments.points > most)
+    throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
+}
+
+// What a camera's table has at `key`, in whatever unit; null where it is left out.
+const Node* written_at(const Node& camera, std::string_view key) {
+  const auto& members = *camera.as<Node::Table>();
+  const auto found = std::ranges::find_if(
+      members, [&](const Node::Member& member) { return without_unit(member.key) == key; });
+  return found == members.end() ? nullptr : &found->node;
+}
+
+bool stand_at_one_place(const std::vector<MeasuredCamera>& cameras) {
+  constexpr double near = 1e-6;  // m
+  return std::ranges::all_of(cameras, [&](const MeasuredCamera& camera) {
+    return (camera.pose().position - cameras[0].pose().position).norm() < near;
+  });
+}
+
+// A lens alone is enough to measure a picture, but not for two to meet.
+void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
+  std::vector<Problem> problems;
+  const auto& tables = *file.find("camera")->as<Node::Array>();
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    for (const std::string_view key : {"position", "rotation"})
+      if (written_at(tables[i], key) == nullptr)
+        problems.push_back(
+            {tables[i].where,
+             fmt::format("camera[{}].{}: missing: expected where each camera stands", i, key)});
+    const Node* position = written_at(tables[i], "position");
+    if (position == nullptr) continue;
+    const Eigen::Vector3d p_WC = cameras[i].pose().position;
+    if (!(p_WC.cwiseAbs().maxCoeff() <= farthest_place))
+      problems.push_back(
+          {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
+    else if (i + 1 == tables.size() && i > 0 && stand_at_one_place(cameras))
+      problems.push_back({position->where, fmt::format("camera[{}].position: camera[0] stands there: "
+                                                       "expected the position and rotation of each",
+                                                       i)});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
+  if (arguments.base.empty()) return std::nullopt;
+  return Eigen::Vector3d(arguments.base.data());
+}
+
+// Of an arm that may stretch, how long it is: its sections stretch alike, as far as all of them do.
+void hold_length(double length, ShapePrior& prior) {
+  if (prior.is_length_known) throw input_error("--length", "--arm says how long the arm is");
+  double shortest = 0, longest = std::numeric_limits<double>::infinity();
+  for (const Section& section : prior.arm.sections) {
+    shortest = std::max(shortest, section.stretch_limits[0] * prior.arm.length());
+    longest = std::min(longest, section.stretch_limits[1] * prior.arm.length());
+  }
+  constexpr double grace = 1e-9;  // Sums of the same in another order.
+  if (length < (1 - grace) * shortest || length > (1 + grace) * longest)
+    throw input_error(
+        "--length",
+        fmt::format("{} m: expected {:.6g} to {:.6g} m, as far as all sections of --arm stretch alike",
+                    length, shortest, longest));
+  const double stretch = length / prior.arm.length();
+  for (Section& section : prior.arm.sections) section.length *= stretch;
+  prior.is_length_known = true;
+}
+
+ShapePrior arm_of(const EstimateArguments& arguments) {
+  const auto base = base_of(arguments);
+  if (arguments.arm.empty()) return unknown_arm(base, arguments.length);
+  ShapePrior prior = described_arm(load_experiment(arguments.arm).arm.arm());
+  if (arguments.length) hold_length(*arguments.length, prior);
+  if (base) prior.arm.X_WB.position = *base;
+  return prior;
+}
+
+// "0.25" m or "25%" of the arm's length, as m along the unstretched arm.
+double marker_place(const std::string& word, const ShapePrior& prior, bool is_described) {
+  const bool is_share = word.ends_with('%');
+  const std::string digits = word.substr(0, word.size() - (is_share ? 1 : 0));
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    throw input_error("--markers",
+                      fmt::format("\"{}\": expected arc lengths, m, or shares as \"25%\"", word));
+  if (!is_share && !is_described && !prior.is_length_known)
+    throw input_error(
+        "--markers",
+        fmt::format("{} m of an arm of unknown length: expected --length, --arm, or shares as \"25%\"",
+                    word));
+  constexpr double percent = 0.01;
+  const double s = is_share ? percent * value * prior.arm.length() : value;
+  const bool is_on_arm = s >= 0 && s <= prior.arm.length();
+  if (!is_on_arm) throw input_error("--markers", fmt::format("\"{}\" is not on the arm", word));
+  return s;
+}
+
+}  // namespace
+
+EstimateConfig estimate_config(const EstimateArguments& arguments) {
+  check(arguments);
+  EstimateConfig config;
+  config.prior = arm_of(arguments);
+  auto& markers = config.prior.markers;
+  const bool is_described = !arguments.arm.empty();
+  for (const std::string& word : arguments.markers)
+    markers.push_back(marker_place(word, config.prior, is_described));
+  std::ranges::sort(markers);
+  // Of one place in metres and in percent: but for rounding.
+  const double alike = 1e-9 * config.prior.arm.length();
+  const auto is_alike = [&](double one, double next) { return next - one <= alike; };
+  if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
+    throw input_error("--markers",
+                      fmt::format("a place is there twice, {:.9g} of the arm's length: expected each once",
+                                  *twice / config.prior.arm.length()));
+  config.threshold = threshold_config(arguments.threshold);
+  config.points = static_cast<std::size_t>(arguments.points);
+  config.has_bends = is_described;
+  return config;
+}
+
+std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count) {
+  auto cameras = read_as<MeasuredCameras>(file).camera;
+  check_poses(file, cameras);
+  if (cameras.size() != count)
+    throw InputError(
+        {{file.find("camera")->where,
+          fmt::format("camera: {} for {} pictures: expected one for each", cameras.size(), count)}});
+  return cameras;
+}
+
+}  // namespace flexura

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+
+// Decompositions of dense matrices of any size, compiled once: where a source names Eigen's own it takes
+// seconds longer to compile. They allocate: not for inner loops.
+namespace flexura {
+
+/// Of a symmetric n x n matrix, of which the lower triangle counts.
+struct SymmetricEigen {
+  Eigen::VectorXd values;   ///< n, ascending.
+  Eigen::MatrixXd vectors;  ///< n x n: orthonormal columns, in the values' order.
+};
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
+
+/// The least eigenvalue alone.
+[[nodiscard]] double least_eigenvalue(const Eigen::MatrixXd& symmetric);
+
+/// Of any real n x n matrix: pairs that are conjugate follow each other.
+struct GeneralEigen {
+  Eigen::VectorXcd values;   ///< n
+  Eigen::MatrixXcd vectors;  ///< n x n: columns of norm 1.
+};
+[[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& A);
+
+/// Descending; as many as the smaller of rows and columns.
+[[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
+
+/// Of the x that make |A x - b| least, the one of least norm.
+[[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// Moore and Penrose's, columns x rows.
+[[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
+
+/// By QR with column pivoting: pivots below `threshold` of the greatest count for nothing; 0: below rounding.
+[[nodiscard]] Eigen::Index rank_of(const Eigen::MatrixXd& A, double threshold = 0);
+
+/// Orthonormal columns that are square to all columns of A, and together with them span everything: rows x
+/// (rows - rank), the rank as `rank_of` tells.
+[[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& A, double threshold = 0);
+
+/// The rotation R of least |R - A|, by the singular value decomposition; some rotation where it is not
+/// unique.
+[[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& A);
+
+}  // namespace flexura

@@ -1,0 +1,78 @@
+#include "flexura/math/dense.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <complex>
+
+#include "flexura/math/so3.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+MatrixXd random_matrix(TestRandom& random, Index rows, Index columns) {
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return random.uniform(-1, 1); });
+}
+
+TEST(Dense, EigenvectorsAreOnlyStretchedByTheirValues) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Index n = random.integer(1, 9);
+    const MatrixXd any = random_matrix(random, n, n), symmetric = any + any.transpose();
+    const auto [values, vectors] = symmetric_eigen(symmetric);
+    EXPECT_LT((symmetric * vectors - vectors * values.asDiagonal()).norm(), 1e-12);
+    EXPECT_LT((vectors.transpose() * vectors - MatrixXd::Identity(n, n)).norm(), 1e-12);
+    for (Index i = 1; i < n; ++i) EXPECT_LE(values[i - 1], values[i]);
+    EXPECT_NEAR(least_eigenvalue(symmetric), values[0], 1e-12);
+    const auto [turned, ways] = general_eigen(any);
+    EXPECT_LT((any * ways - ways * turned.asDiagonal()).norm(), 1e-10);
+    EXPECT_NEAR(turned.prod().real(), any.determinant(), 1e-10);
+  });
+}
+
+// A matrix of known rank, singular values and null space.
+TEST(Dense, SolutionsOfSingularSystemsAreTheLeast) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Index rows = random.integer(1, 8), columns = random.integer(1, 8);
+    const Index rank = random.integer(0, static_cast<int>(std::min(rows, columns)));
+    const MatrixXd A = random_matrix(random, rows, rank) * random_matrix(random, rank, columns);
+    EXPECT_EQ(rank_of(A, 1e-9), rank);
+    const MatrixXd inverse = pseudo_inverse(A);
+    // The four conditions that it alone meets.
+    EXPECT_LT((A * inverse * A - A).norm(), 1e-8);
+    EXPECT_LT((inverse * A * inverse - inverse).norm(), 1e-8 * (1 + inverse.norm()));
+    EXPECT_LT((A * inverse - (A * inverse).transpose()).norm(), 1e-8);
+    EXPECT_LT((inverse * A - (inverse * A).transpose()).norm(), 1e-8);
+    const VectorXd b = random_matrix(random, rows, 1);
+    EXPECT_LT((least_norm_solution(A, b) - inverse * b).norm(), 1e-8 * (1 + inverse.norm()));
+    const MatrixXd square = orthogonal_complement(A, 1e-9);
+    EXPECT_EQ(square.cols(), rows - rank);
+    EXPECT_LT((square.transpose() * A).norm(), 1e-8);
+    EXPECT_LT((square.transpose() * square - MatrixXd::Identity(rows - rank, rows - rank)).norm(), 1e-12);
+    const VectorXd values = singular_values(A);
+    EXPECT_EQ(values.size(), std::min(rows, columns));
+    EXPECT_NEAR(values.squaredNorm(), A.squaredNorm(), 1e-10);
+    for (Index i = 1; i < values.size(); ++i) EXPECT_GE(values[i - 1], values[i]);
+  });
+}
+
+TEST(Dense, NoRotationIsNearerThanTheNearest) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Eigen::Matrix3d A = random_matrix(random, 3, 3);
+    const Eigen::Matrix3d R = nearest_rotation(A);
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(R.determinant(), 1, 1e-12);
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d turn = random.uniform(0, 3) * random.vector<3>(-1, 1);
+      EXPECT_GE((R * so3_exp(turn) - A).norm(), (R - A).norm() - 1e-12);
+    }
+    const Eigen::Matrix3d itself = so3_exp(random.vector<3>(-3, 3));
+    EXPECT_LT((nearest_rotation(2 * itself) - itself).norm(), 1e-12);
+  });
+}
+
+}  // namespace
+}  // namespace flexura

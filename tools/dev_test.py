@@ -55,6 +55,35 @@ class Dev(unittest.TestCase):
         ended = self.tip_in_plane(without)
         self.assertEqual((ended.returncode, ended.stdout), (1, ""))
 
+    def show_failures(self, output):
+        """What is told of one failed test that wrote these lines, beside one that passed."""
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "LastTest.log").write_text(
+                "1/2 Testing: good\nOutput:\nall went well\n<end of output>\n2/2 Testing: bad\nOutput:\n"
+                + "".join(f"{line}\n" for line in output)
+                + "<end of output>\nTest time = 1 sec\n"
+            )
+            Path(folder, "LastTestsFailed.log").write_text("2:bad\n")
+            functions = "\n".join(map(function_of, ["show_failures", "excerpt"]))
+            script = f"set -euo pipefail\n{functions}\nshow_failures {folder}"
+            return subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True).stdout
+
+    def test_what_a_test_found_wrong_is_told_however_much_passed_after_it(self):
+        passed = [f"[ RUN      ] A.{i}\n[       OK ] A.{i} (0 ms)\nsome words of {i}" for i in range(100)]
+        told = self.show_failures(["[ RUN      ] A.Bad", "a.cc:7: Failure", "Expected: 3", *passed, "[  FAILED  ] A.Bad"])
+        self.assertIn("a.cc:7: Failure\nExpected: 3\n", told)
+        self.assertTrue(told.endswith("[  FAILED  ] A.Bad\n\nfailed:\nbad\n"), told)
+        self.assertNotIn("all went well", told)
+        self.assertLess(len(told.splitlines()), 50)
+
+    def test_a_sanitizers_report_is_told_from_its_beginning(self):
+        told = self.show_failures(["==1==ERROR: AddressSanitizer: bad", "#0 in f", *["shadow"] * 60, "==1==ABORTING"])
+        self.assertIn("==1==ERROR: AddressSanitizer: bad\n#0 in f\n", told)
+        self.assertIn("==1==ABORTING\n", told)
+
+    def test_short_outputs_are_told_once(self):
+        self.assertEqual(self.show_failures(["one", "two"]), "\n--- bad:\n2/2 Testing: bad\nOutput:\none\ntwo\n\nfailed:\nbad\n")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -103,8 +103,9 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
 }
 
 int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
-  const EstimateConfig config = estimate_config(arguments);
+  check_arguments(arguments);
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
+  const EstimateConfig config = estimate_config(arguments);
   std::vector<PictureFile> pictures;
   pictures.reserve(arguments.images.size());
   for (const std::string& name : arguments.images)

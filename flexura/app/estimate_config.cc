@@ -21,21 +21,6 @@ namespace {
 // What is beyond has no picture of which anything could be told.
 constexpr double farthest_place = 1e6;  // m
 
-void check(const EstimateArguments& arguments) {
-  if (arguments.images.size() < 2)
-    throw input_error("IMAGE", "expected at least two pictures, one of each camera");
-  for (const double x : arguments.base)
-    if (!(std::abs(x) <= farthest_place))
-      throw input_error("--base", fmt::format("expected three numbers x,y,z within {:g} m", farthest_place));
-  const auto is_size = [](double x) { return x > 0 && x <= farthest_place; };
-  if (arguments.length && !is_size(*arguments.length))
-    throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
-                                              *arguments.length, farthest_place));
-  constexpr std::int64_t most = 100000;
-  if (arguments.points < 2 || arguments.points > most)
-    throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
-}
-
 // What a camera's table has at `key`, in whatever unit; null where it is left out.
 const Node* written_at(const Node& camera, std::string_view key) {
   const auto& members = *camera.as<Node::Table>();
@@ -131,8 +116,22 @@ double marker_place(const std::string& word, const ShapePrior& prior, bool is_de
 
 }  // namespace
 
+void check_arguments(const EstimateArguments& arguments) {
+  if (arguments.images.size() < 2)
+    throw input_error("IMAGE", "expected at least two pictures, one of each camera");
+  for (const double x : arguments.base)
+    if (!(std::abs(x) <= farthest_place))
+      throw input_error("--base", fmt::format("expected three numbers x,y,z within {:g} m", farthest_place));
+  const auto is_size = [](double x) { return x > 0 && x <= farthest_place; };
+  if (arguments.length && !is_size(*arguments.length))
+    throw input_error("--length", fmt::format("{} m: expected a number above 0, at most {:g}",
+                                              *arguments.length, farthest_place));
+  constexpr std::int64_t most = 100000;
+  if (arguments.points < 2 || arguments.points > most)
+    throw input_error("--points", fmt::format("{}: expected 2 to {}", arguments.points, most));
+}
+
 EstimateConfig estimate_config(const EstimateArguments& arguments) {
-  check(arguments);
   EstimateConfig config;
   config.prior = arm_of(arguments);
   auto& markers = config.prior.markers;

@@ -37,11 +37,14 @@ struct EstimateArguments {
   std::int64_t points = 101;  ///< Of the backbone, as it is printed.
 };
 
+/// InputError for what is wrong whatever the files say.
+void check_arguments(const EstimateArguments& arguments);
+
 /// The same, as it is looked for. InputError naming the argument that is wrong, or the place in the arm's
 /// file.
 [[nodiscard]] EstimateConfig estimate_config(const EstimateArguments& arguments);
 
-/// The cameras of a file, checked for two to meet. InputError: no such file, a camera without a place or at
+/// The cameras of a file, checked for two to meet. InputError: a camera without a place or at
 /// the first one's, other than `count` of them.
 [[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
 

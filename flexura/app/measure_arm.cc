@@ -44,29 +44,28 @@ Node marker_node(const MarkerSighting& marker) {
       .take();
 }
 
-// A median axis as it was measured and, with a lens, where the backbone is seen.
+// A median axis: where the backbone is seen, as far as there is a lens that tells; else the tube's middle.
 struct MeasuredAxis {
-  MeasuredAxis(const std::vector<AxisSample>& found, const std::optional<Lens>& seen_by)
-      : measured(found), lens(seen_by), shown(found), fitted(found) {
-    if (!lens) return;
-    is_whole = to_backbone_image(*lens, shown);
-    fitted = backbone_samples(*lens, measured);
-  }
+  std::vector<AxisSample> shown, fitted;  // Circles and ellipses go by the backbone alone where it is known.
+  std::vector<bool> is_backbone;          // Empty: nowhere.
 
-  [[nodiscard]] bool is_backbone() const { return lens && !fitted.empty(); }
-  // What is between samples that are seen is a guess of unknown error, and so is the backbone where the lens
-  // has no rays.
+  // What is between samples that are seen is a guess of unknown error, and so is the backbone without rays.
   [[nodiscard]] bool is_known(std::size_t i) const {
-    return measured[i].is_seen && (!is_backbone() || has_rays(*lens, measured[i]));
+    return shown[i].is_seen && (is_backbone.empty() || is_backbone[i]);
   }
-
-  const std::vector<AxisSample>& measured;
-  const std::optional<Lens>& lens;
-  std::vector<AxisSample> shown, fitted;
-  bool is_whole = true;
 };
 
-void add_axis(const Job& job, const MeasuredAxis& axis) {
+MeasuredAxis axis_of(const ArmSighting& arm, const std::optional<Lens>& lens,
+                     std::vector<std::string>& notes) {
+  if (!lens || !arm.is_found()) return {arm.axis, arm.axis, {}};
+  BackboneAxis axis = backbone_axis(*lens, arm.axis);
+  if (!axis.is_whole()) notes.emplace_back(middle_in_places);
+  std::vector<AxisSample> known = axis.known();
+  if (known.empty()) return {arm.axis, arm.axis, {}};
+  return {std::move(axis.samples), std::move(known), std::move(axis.is_backbone)};
+}
+
+void add_axis(const Job& job, const MeasuredAxis& axis, const std::optional<Lens>& lens) {
   Node::Array points, widths, sigmas, seen;
   for (std::size_t i = 0; i < axis.shown.size(); ++i) {
     const AxisSample& sample = axis.shown[i];
@@ -75,15 +74,16 @@ void add_axis(const Job& job, const MeasuredAxis& axis) {
     sigmas.push_back(axis.is_known(i) ? number_node(rounded(sample.sigma, 1e4)) : Node{});
     seen.push_back({sample.is_seen, {}});
   }
-  job.answer.add("axis_kind", text_node(axis.is_backbone() ? "backbone" : "middle"))
+  job.answer.add("axis_kind", text_node(axis.is_backbone.empty() ? "middle" : "backbone"))
       .add("axis", {std::move(points), {}})
       .add("width", {std::move(widths), {}})
       .add("sigma", {std::move(sigmas), {}})
       .add("seen", {std::move(seen), {}});
-  if (!axis.is_backbone() || !job.config.radius) return;
+  if (axis.is_backbone.empty() || !job.config.radius) return;
+  const std::vector<double> found = backbone_depths(*lens, axis.shown, *job.config.radius);
   Node::Array depths;
-  for (const double depth : backbone_depths(*axis.lens, axis.shown, *job.config.radius))
-    depths.push_back(std::isfinite(depth) ? number_node(rounded(depth, 1e6)) : Node{});
+  for (std::size_t i = 0; i < found.size(); ++i)
+    depths.push_back(axis.is_backbone[i] ? number_node(rounded(found[i], 1e6)) : Node{});
   job.answer.add("depth", {std::move(depths), {}});
 }
 
@@ -108,7 +108,8 @@ bool measure_arm(const Job& job) {
   add_threshold(arm.threshold, job.answer);
   std::optional<Lens> lens;
   if (job.config.camera) lens = job.config.camera->lens();
-  const MeasuredAxis axis(arm.axis, lens);
+  std::vector<std::string> notes = arm.notes;
+  const MeasuredAxis axis = axis_of(arm, lens, notes);
   ArmSighting corrected = arm;
   corrected.axis = axis.shown;
   MarkerSightings markers;
@@ -116,8 +117,6 @@ bool measure_arm(const Job& job) {
   const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
-  std::vector<std::string> notes = arm.notes;
-  if (!axis.is_whole) notes.emplace_back(middle_in_places);
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
   // A camera that says for which size it is described has been held to it.
@@ -134,7 +133,7 @@ bool measure_arm(const Job& job) {
   Node::Array marker_nodes;
   for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.config.what == MeasureTarget::arm) {
-    add_axis(job, axis);
+    add_axis(job, axis, lens);
     const AxisPoints points = independent_points(axis.fitted);
     job.answer.add("markers", {std::move(marker_nodes), {}})
         .add("circle", circle_node(fit_circle(points.pixels, points.sigma)))

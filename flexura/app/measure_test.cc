@@ -173,37 +173,50 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
 
 // Of what a lens has no rays for nothing can be said; the rest of the axis is the backbone's all the same.
 TEST(Measure, IsTheTubesMiddleOnlyWhereTheLensHasNoRays) {
-  const auto answer_with = [](double middle, double distortion) {
+  const std::string file = png(tube());
+  const auto answer_with = [&](double cx, double distortion) {
     MeasureConfig config;
     config.camera = MeasuredCamera{};
-    config.camera->fx = 400;
-    config.camera->cx = middle, config.camera->cy = 120;
+    config.camera->fx = 400, config.camera->cx = cx, config.camera->cy = 120;
     config.camera->distortion[0] = distortion;
     config.radius = 0.015;
-    const std::string file = png(tube());
     return measure_picture(bytes_of(file), "tube.png", config).answer;
   };
   const auto column = [](const Node& answer, const char* key) {
     return *answer.find(key)->as<Node::Array>();
   };
   const auto is_null = [](const Node& node) { return write_json(node) == "null"; };
-  const Node plain = answer_with(160, 0), odd = answer_with(160, -5);
+  const Node middle = measured(file).answer, plain = answer_with(160, 0), odd = answer_with(160, -3);
   EXPECT_EQ(*odd.find("axis_kind")->as<std::string>(), "backbone");
   EXPECT_THAT(write_json(*odd.find("notes")), HasSubstr("there the axis is its middle"));
-  const auto depths = column(odd, "depth"), sigmas = column(odd, "sigma"), seen = column(odd, "seen");
-  std::size_t without = 0;
-  for (std::size_t i = 0; i < depths.size(); ++i) {
+  const auto axis = column(odd, "axis"), middles = column(middle, "axis"), depths = column(odd, "depth"),
+             sigmas = column(odd, "sigma"), seen = column(odd, "seen");
+  std::size_t with = 0, without = 0, moved = 0;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
     if (!*seen[i].as<bool>()) continue;
     EXPECT_EQ(is_null(depths[i]), is_null(sigmas[i])) << i;
-    if (is_null(depths[i])) ++without;
+    const bool is_middle = write_json(axis[i]) == write_json(middles[i]);
+    if (is_null(sigmas[i])) {
+      EXPECT_TRUE(is_middle) << i;
+      ++without;
+    } else {
+      ++with;
+      if (!is_middle) ++moved;
+    }
   }
-  EXPECT_GT(without, depths.size() / 10);
-  EXPECT_LT(without, depths.size() * 9 / 10);
+  EXPECT_GT(with, axis.size() / 10);
+  EXPECT_GT(without, axis.size() / 10);
+  EXPECT_GT(moved, with / 2);
+  // The circle goes by the backbone alone: it is not that of the whole tube's middle.
+  EXPECT_LT(number_at(odd, "circle", "arc_deg"), 0.9 * number_at(middle, "circle", "arc_deg"));
   EXPECT_THAT(write_json(*plain.find("notes")), Not(HasSubstr("middle")));
   EXPECT_FALSE(std::ranges::any_of(column(plain, "depth"), is_null));
-  const Node none = answer_with(2000, -5);
+  // Without any ray it is as without a camera.
+  const Node none = answer_with(2000, -3);
   EXPECT_EQ(*none.find("axis_kind")->as<std::string>(), "middle");
   EXPECT_EQ(none.find("depth"), nullptr);
+  for (const char* key : {"axis", "sigma", "circle", "ellipse"})
+    EXPECT_EQ(write_json(*none.find(key)), write_json(*middle.find(key))) << key;
 }
 
 TEST(Measure, RefusesAPictureOfAnotherSizeThanItsCameraIsSaidToBeOf) {

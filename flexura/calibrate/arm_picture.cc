@@ -96,7 +96,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
     }
   }
   if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
-  std::vector<AxisSample> axis = backbone_samples(lens, look.axis);
+  std::vector<AxisSample> axis = backbone_axis(lens, look.axis).known();
   if (match.is_reversed) std::ranges::reverse(axis);
   seen.points = spaced_points(axis, config);
   return seen;

@@ -142,6 +142,8 @@ std::optional<Pose> start_pose(const Lens& lens, std::span<const Vector2d> point
   const double scale = 2 / (H->col(0).norm() + H->col(1).norm());
   Matrix3d axes;
   axes << scale * H->col(0), scale * H->col(1), (scale * H->col(0)).cross(scale * H->col(1));
+  constexpr double parallel = 1e-6;  // A board of which no more than a line is seen: turned about it anyhow.
+  if (!(axes.col(2).norm() > parallel)) return std::nullopt;
   const Matrix3d R_CB = nearest_rotation(axes);
   if (!R_CB.allFinite()) return std::nullopt;
   return Pose{R_CB, scale * H->col(2)};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -326,6 +327,9 @@ TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
   EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.05);
 }
 
+// One line that says where, and this.
+MATCHER_P(OneProblem, what, "") { return arg.ends_with(what) && std::ranges::count(arg, '\n') == 0; }
+
 TEST(EtalonLoop, RefusesWhatItCannotDo) {
   std::string text = etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5});
   EXPECT_THAT(error_of_file(text + "[[task]]\nkind = \"calibrate\"\nmethod = \"etalons\"\n"),
@@ -343,17 +347,17 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
   const LoopRig rig = {.size = 0.5};
   EXPECT_THAT(
       error_of_file(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-      HasSubstr(
+      OneProblem(
           "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key"));
   EXPECT_THAT(
       error_of_file(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
-      HasSubstr(
+      OneProblem(
           "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key"));
   EXPECT_THAT(error_of_file(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
-              HasSubstr("task[0]: has no pose and no zooms with this method: expected none of these keys"));
+              OneProblem("task[0]: has no pose and no zooms with this method: expected none of these keys"));
   EXPECT_THAT(
       error_of_file(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
-      HasSubstr(
+      OneProblem(
           "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
           "no such key"));
   EXPECT_EQ(error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"

@@ -4,11 +4,17 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <limits>
 
 namespace flexura {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+MatrixXd unknown(Eigen::Index rows, Eigen::Index columns) { return MatrixXd::Constant(rows, columns, nan); }
 
 Eigen::ColPivHouseholderQR<MatrixXd> pivoted(const MatrixXd& A, double threshold) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
@@ -19,36 +25,56 @@ Eigen::ColPivHouseholderQR<MatrixXd> pivoted(const MatrixXd& A, double threshold
 }  // namespace
 
 SymmetricEigen symmetric_eigen(const MatrixXd& A) {
+  const Eigen::Index n = A.rows();
+  if (!A.allFinite()) return {unknown(n, 1), unknown(n, n)};
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A);
+  if (solver.info() != Eigen::Success) return {unknown(n, 1), unknown(n, n)};
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 double least_eigenvalue(const MatrixXd& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  if (!symmetric.allFinite()) return nan;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric, Eigen::EigenvaluesOnly);
+  return solver.info() == Eigen::Success ? solver.eigenvalues()[0] : nan;
 }
 
 GeneralEigen general_eigen(const MatrixXd& A) {
+  const Eigen::Index n = A.rows();
+  const GeneralEigen none{unknown(n, 1), unknown(n, n)};
+  if (!A.allFinite()) return none;
   const Eigen::EigenSolver<MatrixXd> solver(A);
+  if (solver.info() != Eigen::Success) return none;
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-VectorXd singular_values(const MatrixXd& A) { return Eigen::JacobiSVD<MatrixXd>(A).singularValues(); }
+VectorXd singular_values(const MatrixXd& A) {
+  if (!A.allFinite()) return unknown(std::min(A.rows(), A.cols()), 1);
+  return Eigen::JacobiSVD<MatrixXd>(A).singularValues();
+}
 
 VectorXd least_norm_solution(const MatrixXd& A, const VectorXd& b) {
+  if (!A.allFinite()) return unknown(A.cols(), 1);
   return A.completeOrthogonalDecomposition().solve(b);
 }
 
-MatrixXd pseudo_inverse(const MatrixXd& A) { return A.completeOrthogonalDecomposition().pseudoInverse(); }
+MatrixXd pseudo_inverse(const MatrixXd& A) {
+  if (!A.allFinite()) return unknown(A.cols(), A.rows());
+  return A.completeOrthogonalDecomposition().pseudoInverse();
+}
 
-Eigen::Index rank_of(const MatrixXd& A, double threshold) { return pivoted(A, threshold).rank(); }
+Eigen::Index rank_of(const MatrixXd& A, double threshold) {
+  return A.allFinite() ? pivoted(A, threshold).rank() : 0;
+}
 
 MatrixXd orthogonal_complement(const MatrixXd& A, double threshold) {
+  if (!A.allFinite()) return unknown(A.rows(), A.rows());
   const auto qr = pivoted(A, threshold);
   const MatrixXd q = qr.householderQ();
   return q.rightCols(A.rows() - qr.rank());
 }
 
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& A) {
+  if (!A.allFinite()) return Eigen::Matrix3d::Constant(nan);
   const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d left = svd.matrixU();
   const Eigen::Matrix3d right = svd.matrixV();

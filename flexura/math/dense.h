@@ -2,8 +2,9 @@
 
 #include <Eigen/Core>
 
-// Decompositions of dense matrices of any size, compiled once: where a source names Eigen's own it takes
-// seconds longer to compile. They allocate: not for inner loops.
+// Decompositions of dense matrices of any size, compiled once: a source that names Eigen's own takes seconds
+// longer to compile. They allocate, as those of dynamic size do. Matrices are not empty; of what is not
+// finite, or does not converge, all that is returned is not a number, and the rank is 0.
 namespace flexura {
 
 /// Of a symmetric n x n matrix, of which the lower triangle counts.

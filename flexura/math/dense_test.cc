@@ -4,7 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <complex>
+#include <limits>
 
 #include "flexura/math/so3.h"
 #include "tests/support/random_cases.h"
@@ -27,9 +30,16 @@ TEST(Dense, EigenvectorsAreOnlyStretchedByTheirValues) {
     EXPECT_LT((vectors.transpose() * vectors - MatrixXd::Identity(n, n)).norm(), 1e-12);
     for (Index i = 1; i < n; ++i) EXPECT_LE(values[i - 1], values[i]);
     EXPECT_NEAR(least_eigenvalue(symmetric), values[0], 1e-12);
+    const MatrixXd lower = symmetric.triangularView<Eigen::Lower>();
+    EXPECT_EQ(symmetric_eigen(lower).values, values) << "the lower triangle counts";
     const auto [turned, ways] = general_eigen(any);
     EXPECT_LT((any * ways - ways * turned.asDiagonal()).norm(), 1e-10);
     EXPECT_NEAR(turned.prod().real(), any.determinant(), 1e-10);
+    for (Index i = 0; i < n; ++i) {
+      EXPECT_NEAR(ways.col(i).norm(), 1, 1e-12);
+      const bool is_first = turned[i].imag() > 0;
+      EXPECT_LT(is_first ? std::abs(turned[i + 1] - std::conj(turned[i])) : 0, 1e-12);
+    }
   });
 }
 
@@ -47,7 +57,11 @@ TEST(Dense, SolutionsOfSingularSystemsAreTheLeast) {
     EXPECT_LT((A * inverse - (A * inverse).transpose()).norm(), 1e-8);
     EXPECT_LT((inverse * A - (inverse * A).transpose()).norm(), 1e-8);
     const VectorXd b = random_matrix(random, rows, 1);
-    EXPECT_LT((least_norm_solution(A, b) - inverse * b).norm(), 1e-8 * (1 + inverse.norm()));
+    const VectorXd x = least_norm_solution(A, b);
+    const double size = 1 + inverse.norm();
+    EXPECT_LT((A.transpose() * (A * x - b)).norm(), 1e-8 * size) << "the least squares";
+    EXPECT_LT((orthogonal_complement(A.transpose(), 1e-9).transpose() * x).norm(), 1e-8 * size)
+        << "nothing of it could be left out";
     const MatrixXd square = orthogonal_complement(A, 1e-9);
     EXPECT_EQ(square.cols(), rows - rank);
     EXPECT_LT((square.transpose() * A).norm(), 1e-8);
@@ -59,9 +73,43 @@ TEST(Dense, SolutionsOfSingularSystemsAreTheLeast) {
   });
 }
 
+// By default only what rounding leaves counts for nothing.
+TEST(Dense, RankByDefaultIsThatToRounding) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Index n = random.integer(2, 8);
+    MatrixXd A = random_matrix(random, n, n);
+    EXPECT_EQ(rank_of(A), n);
+    EXPECT_EQ(orthogonal_complement(A).cols(), 0);
+    A.col(0) = A.col(1);
+    EXPECT_EQ(rank_of(A), n - 1);
+    EXPECT_EQ(orthogonal_complement(A).cols(), 1);
+    A.col(0)[0] += 1e-6;
+    EXPECT_EQ(rank_of(A), n);
+  });
+}
+
+TEST(Dense, OfWhatIsNotFiniteNothingIsKnown) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    MatrixXd A = MatrixXd::Identity(3, 3);
+    A(1, 1) = bad;
+    EXPECT_TRUE(symmetric_eigen(A).values.array().isNaN().all());
+    EXPECT_TRUE(symmetric_eigen(A).vectors.array().isNaN().all());
+    EXPECT_TRUE(std::isnan(least_eigenvalue(A)));
+    EXPECT_TRUE(general_eigen(A).values.real().array().isNaN().all());
+    EXPECT_TRUE(singular_values(A).array().isNaN().all());
+    EXPECT_TRUE(least_norm_solution(A, VectorXd::Ones(3)).array().isNaN().all());
+    EXPECT_TRUE(pseudo_inverse(A).array().isNaN().all());
+    EXPECT_TRUE(orthogonal_complement(A).array().isNaN().all());
+    EXPECT_TRUE(nearest_rotation(A).array().isNaN().all());
+    EXPECT_EQ(rank_of(A), 0);
+  }
+}
+
 TEST(Dense, NoRotationIsNearerThanTheNearest) {
   for_random_cases(100, [](TestRandom& random) {
-    const Eigen::Matrix3d A = random_matrix(random, 3, 3);
+    Eigen::Matrix3d A = random_matrix(random, 3, 3);
+    if (random.integer(0, 4) == 0) A.col(2) = A.col(1);  // Of rank 2: not unique, but some.
     const Eigen::Matrix3d R = nearest_rotation(A);
     EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
     EXPECT_NEAR(R.determinant(), 1, 1e-12);

@@ -125,9 +125,10 @@ void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Nod
 }
 
 // The circle through the axis; one so large that the picture shows a straight line is left out.
-void add_circle(const FoundArm& found, Node::Array& layers) {
+void add_circle(const FoundArm& found, const BackboneAxis& axis, Node::Array& layers) {
   constexpr double largest = 20;  // of the picture's width
-  const AxisPoints points = independent_points(backbone_samples(found.view.lens, found.arm.axis));
+  const std::vector<AxisSample> known = axis.known();
+  const AxisPoints points = independent_points(known.empty() ? axis.samples : known);
   const std::optional<CircleFit> circle = fit_circle(points.pixels, points.sigma);
   if (!circle || !circle->is_curved() || circle->radius > largest * found.view.width) return;
   layers.push_back(layer("circle", "ellipse",
@@ -160,14 +161,15 @@ Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::ve
   Node::Array drawn;
   std::vector<std::string> notes = found.arm.notes;
   if (found.arm.is_found()) {
-    std::vector<AxisSample> axis = found.arm.axis;
-    if (!to_backbone_image(found.view.lens, axis)) notes.emplace_back(middle_in_places);
+    const BackboneAxis backbone = backbone_axis(found.view.lens, found.arm.axis);
+    const std::vector<AxisSample>& axis = backbone.samples;
+    if (!backbone.is_whole()) notes.emplace_back(middle_in_places);
     Points points;
     for (const AxisSample& sample : axis) points.push_back(sample.pixel);
     if (is_wanted("mask")) add_mask(found, drawn);
     if (is_wanted("silhouette")) add_silhouette(found.arm, drawn);
     if (is_wanted("axis")) drawn.push_back(line("axis", points));
-    if (is_wanted("circle")) add_circle(found, drawn);
+    if (is_wanted("circle")) add_circle(found, backbone, drawn);
     if (is_wanted("markers")) add_markers(found, axis, drawn, notes);
   }
   Node::Table answer = outcome(found.arm.is_found(), found.arm.reason, notes);

@@ -208,6 +208,9 @@ class FoldedPicture : public MeasuredArm {
 TEST_F(FoldedPicture, SaysThatPixelsHaveNoRay) {
   EXPECT_THAT(write_json(ask(ShapeRequest{}).result),
               HasSubstr("camera front: the camera's distortion has no ray for some pixels of the arm"));
+  const ViewAnswer answer = ask(MeasureRequest{"front", {{"axis", "circle"}}});
+  EXPECT_THAT(write_json(answer.result), HasSubstr("there the axis is its middle"));
+  EXPECT_EQ(layers_of(answer, "axis").size(), 1);
 }
 
 TEST_F(ThickerArm, IsFoundWithAWordOnItsRadius) {

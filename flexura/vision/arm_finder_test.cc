@@ -212,5 +212,43 @@ TEST(BackboneImage, DepthsAreThoseOfTheBackbone) {
   });
 }
 
+// A bent tube, 12 px wide, before a lens whose picture ends at some 90 px from the middle.
+TEST(BackboneImage, IsNotToldNextToWhereTheLensHasNoRays) {
+  std::vector<AxisSample> axis(80);
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    const double phi = 0.025 * static_cast<double>(i) - 1;
+    axis[i].pixel = Eigen::Vector2d(160, 270) + 150 * Eigen::Vector2d(std::sin(phi), -std::cos(phi));
+    axis[i].normal = {std::sin(phi), -std::cos(phi)};
+    axis[i].width = 12, axis[i].sigma = 0.1, axis[i].is_seen = true;
+  }
+  const auto lens_with = [](double distortion, double cx) {
+    return Lens({.fx = 400, .fy = 400, .cx = cx, .cy = 120, .distortion = {distortion, 0, 0, 0, 0}});
+  };
+  const BackboneAxis whole = backbone_axis(lens_with(0, 160), axis);
+  EXPECT_TRUE(whole.is_whole());
+  EXPECT_EQ(whole.known().size(), axis.size());
+  const Lens lens = lens_with(-3, 160);
+  const BackboneAxis some = backbone_axis(lens, axis);
+  EXPECT_FALSE(some.is_whole());
+  const auto depths = backbone_depths(lens, some.samples, 0.015);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    const double way = (some.samples[i].pixel - axis[i].pixel).norm();
+    if (!some.is_backbone[i]) {
+      EXPECT_EQ(way, 0) << i;
+      continue;
+    }
+    EXPECT_TRUE(std::isfinite(depths[i])) << i;
+    for (const std::size_t near : {i - 1, i, i + 1}) EXPECT_TRUE(has_rays(lens, axis.at(near))) << i;
+    if (way > 0.01) ++moved;
+  }
+  EXPECT_GT(some.known().size(), 20U);
+  EXPECT_LT(some.known().size(), 70U);
+  EXPECT_GT(moved, some.known().size() / 2);
+  const BackboneAxis none = backbone_axis(lens_with(-3, 2000), axis);
+  EXPECT_TRUE(none.known().empty());
+  EXPECT_EQ(none.samples[40].pixel, axis[40].pixel);
+}
+
 }  // namespace
 }  // namespace flexura

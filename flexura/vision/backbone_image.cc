@@ -66,13 +66,31 @@ bool has_rays(const Lens& lens, const AxisSample& sample) {
   return first.allFinite() && second.allFinite();
 }
 
-std::vector<AxisSample> backbone_samples(const Lens& lens, const std::vector<AxisSample>& axis) {
-  std::vector<AxisSample> moved = axis;
-  if (to_backbone_image(lens, moved)) return moved;
-  std::vector<AxisSample> with_rays;
-  for (std::size_t i = 0; i < axis.size(); ++i)
-    if (has_rays(lens, axis[i])) with_rays.push_back(moved[i]);
-  return with_rays;
+bool BackboneAxis::is_whole() const { return std::ranges::find(is_backbone, false) == is_backbone.end(); }
+
+std::vector<AxisSample> BackboneAxis::known() const {
+  std::vector<AxisSample> result;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (is_backbone[i]) result.push_back(samples[i]);
+  return result;
+}
+
+BackboneAxis backbone_axis(const Lens& lens, const std::vector<AxisSample>& axis) {
+  constexpr int fewest = 3;
+  const std::size_t n = axis.size();
+  BackboneAxis result{axis, std::vector<bool>(n, false)};
+  to_backbone_image(lens, result.samples);
+  std::vector<bool> has(n);
+  for (std::size_t i = 0; i < n; ++i) has[i] = has_rays(lens, axis[i]) && has_rays(lens, result.samples[i]);
+  int seen = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    result.is_backbone[i] = has[i] && (i == 0 || has[i - 1]) && (i + 1 == n || has[i + 1]);
+    if (result.is_backbone[i] && axis[i].is_seen) ++seen;
+  }
+  if (!result.is_whole() && seen < fewest) result.is_backbone.assign(n, false);
+  for (std::size_t i = 0; i < n; ++i)
+    if (!result.is_backbone[i]) result.samples[i] = axis[i];
+  return result;
 }
 
 std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis, double radius) {

@@ -19,10 +19,23 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 /// Whether the lens has rays for both borders of a sample as it was measured.
 [[nodiscard]] bool has_rays(const Lens& lens, const AxisSample& sample);
 
-/// Of an axis as it was measured, the samples that have rays, where the backbone is seen.
-[[nodiscard]] std::vector<AxisSample> backbone_samples(const Lens& lens, const std::vector<AxisSample>& axis);
+/// A median axis where the backbone is seen, as far as the lens tells.
+struct BackboneAxis {
+  std::vector<AxisSample> samples;  ///< As many as were measured.
+  /// Of each sample: it, its neighbours and where it was moved have rays. The others stay on the tube's
+  /// middle.
+  std::vector<bool> is_backbone;
 
-/// What to say of an axis of which not all samples have rays.
+  [[nodiscard]] bool is_whole() const;
+  /// The samples that are the backbone's.
+  [[nodiscard]] std::vector<AxisSample> known() const;
+};
+
+/// Of an axis as it was measured. Where rays are lacking and fewer than three samples are seen and the
+/// backbone's, none is.
+[[nodiscard]] BackboneAxis backbone_axis(const Lens& lens, const std::vector<AxisSample>& axis);
+
+/// What to say of one that is not whole.
 inline constexpr std::string_view middle_in_places =
     "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle";
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "flexura/camera/view.h"
 #include "flexura/render/picture.h"
@@ -22,8 +22,10 @@ inline Difference compare(const LightImage& exact, const LightImage& quick) {
   Difference result;
   for (std::size_t i = 0; i < exact.light.values().size(); ++i) {
     const double off = std::abs(exact.light.values()[i] - quick.light.values()[i]);
-    result.worst = std::max(result.worst, off);
-    if (off > 0.002) ++result.count;
+    // Written so that what is not a number differs.
+    if (!(off <= result.worst))
+      result.worst = std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
+    if (!(off <= 0.002)) ++result.count;
     ++result.many;
   }
   for (std::size_t i = 0; i < exact.depth.values().size(); ++i) {

@@ -327,8 +327,11 @@ TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
   EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.05);
 }
 
-// One line that says where, and this.
-MATCHER_P(OneProblem, what, "") { return arg.ends_with(what) && std::ranges::count(arg, '\n') == 0; }
+// What is said of a file, without where.
+std::string problem_of(const std::string& text) {
+  const std::string told = error_of_file(text);
+  return told.substr(told.find(": ") + 2);
+}
 
 TEST(EtalonLoop, RefusesWhatItCannotDo) {
   std::string text = etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5});
@@ -345,21 +348,16 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
           "[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = {.size = 0.5};
-  EXPECT_THAT(
-      error_of_file(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-      OneProblem(
-          "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key"));
-  EXPECT_THAT(
-      error_of_file(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
-      OneProblem(
-          "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key"));
-  EXPECT_THAT(error_of_file(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
-              OneProblem("task[0]: has no pose and no zooms with this method: expected none of these keys"));
-  EXPECT_THAT(
-      error_of_file(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
-      OneProblem(
-          "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
-          "no such key"));
+  EXPECT_EQ(
+      problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
+      "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
+            "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
+            "task[0]: has no pose and no zooms with this method: expected none of these keys");
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
+            "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
+            "no such key");
   EXPECT_EQ(error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
                                      "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
                                      rig)),

@@ -40,10 +40,9 @@ double least_eigenvalue(const MatrixXd& symmetric) {
 
 GeneralEigen general_eigen(const MatrixXd& A) {
   const Eigen::Index n = A.rows();
-  const GeneralEigen none{unknown(n, 1), unknown(n, n)};
-  if (!A.allFinite()) return none;
+  if (!A.allFinite()) return {unknown(n, 1), unknown(n, n)};
   const Eigen::EigenSolver<MatrixXd> solver(A);
-  if (solver.info() != Eigen::Success) return none;
+  if (solver.info() != Eigen::Success) return {unknown(n, 1), unknown(n, n)};
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 

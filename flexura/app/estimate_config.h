@@ -44,8 +44,8 @@ void check_arguments(const EstimateArguments& arguments);
 /// file.
 [[nodiscard]] EstimateConfig estimate_config(const EstimateArguments& arguments);
 
-/// The cameras of a file, checked for two to meet. InputError: a camera without a place or at
-/// the first one's, other than `count` of them.
+/// The cameras of a file, checked for two to meet. InputError: a camera without a
+/// place, all of them at one, other than `count` of them.
 [[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
 
 }  // namespace flexura

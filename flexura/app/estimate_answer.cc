@@ -16,7 +16,7 @@
 namespace flexura {
 namespace {
 
-Node vector(const Eigen::Vector3d& p) {
+Node vector_node(const Eigen::Vector3d& p) {
   return {Node::Array{number_node(p.x()), number_node(p.y()), number_node(p.z())}, {}};
 }
 
@@ -25,7 +25,7 @@ Node image_node(const LookedAt& picture, const Sighting& sighting, const std::op
                     {"camera", {}, text_node(picture.camera)},
                     {"points", {}, {static_cast<std::int64_t>(sighting.points.size()), {}}}};
   if (error) {
-    Node::Table off{{"turn", {}, vector(error->turn)}, {"focal", {}, number_node(error->focal)}};
+    Node::Table off{{"turn", {}, vector_node(error->turn)}, {"focal", {}, number_node(error->focal)}};
     entry.push_back({"camera_error", {}, {std::move(off), {}}});
   }
   if (!picture.reason.empty()) entry.push_back({"reason", {}, text_node(picture.reason)});
@@ -80,7 +80,7 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
   Node::Array markers;
   for (const PlacedMarker& marker : found.markers) {
     Node::Table entry{{"s", {}, number_node(marker.s)},
-                      {"at", {}, vector(backbone.pose(std::min(marker.s, backbone.length())).position)},
+                      {"at", {}, vector_node(backbone.pose(std::min(marker.s, backbone.length())).position)},
                       {"images", {}, {static_cast<std::int64_t>(marker.looks), {}}}};
     markers.push_back({std::move(entry), {}});
   }
@@ -94,7 +94,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, 
   Node::Array points;
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    points.push_back(vector(backbone.pose(share * backbone.length()).position));
+    points.push_back(vector_node(backbone.pose(share * backbone.length()).position));
   }
   answer.push_back({"backbone", {}, {std::move(points), {}}});
   add_angles(direction_angles(backbone, count), "", answer);

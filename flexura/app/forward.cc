@@ -59,7 +59,7 @@ Node answer(const Arm& arm, const ForwardRequest& request) {
   return {std::move(members), {}};
 }
 
-ForwardRequest read_request(const Arm& arm, std::string_view line) {
+ForwardRequest read_forward_request(const Arm& arm, std::string_view line) {
   const Node document = parse_json(line, "");
   Reader reader;
   ForwardRequest request;
@@ -88,7 +88,7 @@ ForwardRequest read_request(const Arm& arm, std::string_view line) {
 
 std::string answer_forward(const Arm& arm, std::string_view line) {
   try {
-    return write_json(answer(arm, read_request(arm, line)));
+    return write_json(answer(arm, read_forward_request(arm, line)));
   } catch (const InputError& error) {
     return write_json({Node::Table{{"error", {}, {joined(error.problems()), {}}}}, {}});
   }

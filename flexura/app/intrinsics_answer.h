@@ -6,8 +6,8 @@
 
 #include "flexura/app/intrinsics_pictures.h"
 #include "flexura/base/node.h"
-#include "flexura/calibrate/board_target.h"
-#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/board/board_target.h"
+#include "flexura/board/intrinsics_fit.h"
 
 namespace flexura {
 

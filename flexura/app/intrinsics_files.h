@@ -10,7 +10,7 @@
 #include "flexura/app/intrinsics.h"
 #include "flexura/base/node.h"
 #include "flexura/base/table.h"
-#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/board/intrinsics_fit.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/camera/measured_camera.h"

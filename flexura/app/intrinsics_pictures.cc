@@ -16,7 +16,7 @@
 #include "flexura/base/bytes.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
-#include "flexura/calibrate/board_bundle.h"
+#include "flexura/board/board_bundle.h"
 #include "flexura/store/text_file.h"
 #include "flexura/vision/picture_file.h"
 

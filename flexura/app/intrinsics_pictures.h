@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "flexura/app/intrinsics.h"
-#include "flexura/calibrate/board_finder.h"
-#include "flexura/calibrate/board_target.h"
-#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/board/board_finder.h"
+#include "flexura/board/board_target.h"
+#include "flexura/board/intrinsics_fit.h"
 
 namespace flexura {
 

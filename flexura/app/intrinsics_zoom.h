@@ -3,7 +3,7 @@
 #include <iosfwd>
 
 #include "flexura/app/intrinsics.h"
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_target.h"
 
 namespace flexura {
 

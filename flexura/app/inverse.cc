@@ -92,7 +92,7 @@ void check_target(const InverseRequest& request, Reader& reader) {
   }
 }
 
-InverseRequest read_request(const Arm& arm, std::string_view line) {
+InverseRequest read_inverse_request(const Arm& arm, std::string_view line) {
   const Node document = parse_json(line, "");
   Reader reader;
   InverseRequest request;
@@ -188,7 +188,7 @@ Node answer(const Arm& arm, const InverseRequest& request) {
 
 std::string inverse_problem(const Arm& arm, std::string_view line) {
   try {
-    (void)read_request(arm, line);
+    (void)read_inverse_request(arm, line);
     return {};
   } catch (const InputError& error) {
     return joined(error.problems());
@@ -197,7 +197,7 @@ std::string inverse_problem(const Arm& arm, std::string_view line) {
 
 std::string answer_inverse(const Arm& arm, std::string_view line) {
   try {
-    return write_json(answer(arm, read_request(arm, line)));
+    return write_json(answer(arm, read_inverse_request(arm, line)));
   } catch (const InputError& error) {
     return write_json({Node::Table{{"error", {}, {joined(error.problems()), {}}}}, {}});
   }

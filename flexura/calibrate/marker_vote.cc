@@ -1,12 +1,13 @@
 #include "flexura/calibrate/marker_vote.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <utility>
 
 #include "flexura/calibrate/marker_features.h"
+#include "flexura/math/small_cholesky.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -239,7 +240,7 @@ class Vote {
         normal += J.transpose() * J, gradient += J.transpose() * off;
       }
     }
-    x -= Eigen::LLT<Eigen::Matrix4d>(normal).solve(gradient);
+    x -= solve_definite(normal, gradient);
     if (!x.allFinite()) return candidate.error;
     return {x.head<3>(), x[3]};
   }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -109,11 +109,11 @@ Eigen::MatrixXd covariance_of(const RigProblem& problem, double bound) {
   for (Eigen::Index i = 0; i < scales.size(); ++i) scales[i] = variables.variable(i).scale;
   const Eigen::MatrixXd whole = normal.selfadjointView<Eigen::Lower>();
   const Eigen::MatrixXd scaled = scales.asDiagonal() * whole * scales.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factors(scaled);
+  const Cholesky factors(scaled);
   constexpr double dependent = 1e-13;
   Eigen::MatrixXd inverse;
-  if (factors.info() == Eigen::Success && factors.rcond() > dependent) {
-    inverse = factors.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  if (factors.is_definite() && factors.rcond() > dependent) {
+    inverse = factors.inverse();
   } else {
     // Directions of which nothing is known get a variance beyond all others.
     const auto [values, vectors] = symmetric_eigen(scaled);

@@ -1,11 +1,12 @@
 #include "flexura/calibrate/rig_descent.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
+#include "flexura/math/dense.h"
 #include "flexura/math/median.h"
 
 namespace flexura {
@@ -55,9 +56,9 @@ class Descent {
     for (; damping_ < most_damping; damping_ *= 5) {
       damped_ = normal_;
       damped_.diagonal() += damping_ * normal_.diagonal().cwiseMax(std::numeric_limits<double>::min());
-      const Eigen::LLT<Eigen::MatrixXd> factors(damped_);
-      if (factors.info() != Eigen::Success) continue;
-      move_ = factors.solve(-gradient_);
+      if (!factors_.compute(damped_)) continue;
+      move_ = -gradient_;
+      factors_.solve_in_place(move_);
       const double promised = -0.5 * gradient_.dot(move_);
       if (!(promised > small * before)) return true;
       there_ = x + move_;
@@ -75,8 +76,10 @@ class Descent {
     constexpr double nothing = 1e-6;
     problem_.normal(bound_of(problem_, config_), gradient_, normal_);
     hold(config_.is_free, gradient_, normal_);
-    const Eigen::LLT<Eigen::MatrixXd> factors(normal_);
-    return factors.info() == Eigen::Success && 0.5 * gradient_.dot(factors.solve(gradient_)) < nothing;
+    if (!factors_.compute(normal_)) return false;
+    move_ = gradient_;
+    factors_.solve_in_place(move_);
+    return 0.5 * gradient_.dot(move_) < nothing;
   }
 
   RigProblem& problem_;
@@ -84,6 +87,7 @@ class Descent {
   double damping_ = 1e-4;
   Eigen::VectorXd gradient_, move_, there_;
   Eigen::MatrixXd normal_, damped_;
+  Cholesky factors_;
 };
 
 }  // namespace

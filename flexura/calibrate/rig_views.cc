@@ -1,6 +1,6 @@
 #include "flexura/calibrate/rig_views.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -97,9 +98,7 @@ class Forecast {
     sum += normal.topLeftCorner(own, own).selfadjointView<Eigen::Lower>().toDenseMatrix();
     if (rest == 0) return sum;
     const Eigen::MatrixXd coupling = normal.bottomLeftCorner(rest, own);
-    const Eigen::LLT<Eigen::MatrixXd> factors(
-        normal.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().toDenseMatrix());
-    const Eigen::MatrixXd solved = factors.matrixL().solve(coupling);
+    const Eigen::MatrixXd solved = Cholesky(normal.bottomRightCorner(rest, rest)).solve_lower(coupling);
     return sum - solved.transpose() * solved;
   }
 
@@ -119,7 +118,7 @@ Eigen::MatrixXd goal_rows(std::span<const ViewGoal> goals, Eigen::Index own) {
 
 double score(const Eigen::MatrixXd& variances, ViewCriterion criterion) {
   if (criterion == ViewCriterion::sum) return variances.trace();
-  return variances.llt().matrixLLT().diagonal().array().log().sum() * 2;
+  return Cholesky(variances).log_determinant();
 }
 
 }  // namespace
@@ -131,13 +130,13 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
   const Eigen::Index own = problem.variables().globals();
   const Eigen::MatrixXd rows = goal_rows(goals, own);
   const Eigen::MatrixXd known = found.covariance.topLeftCorner(own, own);
-  const Eigen::MatrixXd before = known.llt().solve(Eigen::MatrixXd::Identity(own, own));
+  const Eigen::MatrixXd before = Cholesky(known).inverse();
   const Forecast forecast(problem, found, config);
   std::optional<ViewChoice> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto after = forecast.information(before, candidates[i]);
     if (!after) continue;
-    const Eigen::MatrixXd variances = rows * after->llt().solve(rows.transpose());
+    const Eigen::MatrixXd variances = rows * Cholesky(*after).solve(rows.transpose());
     const double value = score(variances, criterion);
     if (!std::isfinite(value) || (best && !(value < best->after))) continue;
     best = ViewChoice{i, score(rows * known * rows.transpose(), criterion), value, {}};

@@ -204,8 +204,8 @@ bool DistributedArm::accelerate(const Eigen::VectorXd& force, Eigen::VectorXd& a
   factor_.compute(mass_);
   acceleration = force - gravity_gradient_ - elastic_gradient_ - damping_force_;
   acceleration.noalias() -= flow_.transpose() * bias_;
-  factor_.solveInPlace(acceleration);
-  return factor_.info() == Eigen::Success && acceleration.allFinite();
+  factor_.solve_in_place(acceleration);
+  return factor_.is_definite() && acceleration.allFinite();
 }
 
 Eigen::Matrix3Xd DistributedArm::positions() const {

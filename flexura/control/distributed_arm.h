@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <functional>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "flexura/control/angle_shapes.h"
+#include "flexura/math/dense.h"
 #include "flexura/math/dormand_prince.h"
 
 namespace flexura {
@@ -97,7 +97,7 @@ class DistributedArm {
   std::array<Eigen::MatrixXd, 3> by_x_;           // d(stretch e)/dx by component, a row a point
   Eigen::MatrixXd flow_, mass_;                   // root_ by_x_, the three components below each other
   Eigen::VectorXd flow_rate_, bias_, point_force_, gravity_gradient_, elastic_gradient_, damping_force_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Cholesky factor_;
 };
 
 /// Drives the arm through time: x and v as one vector (x; v), a force that may depend on all.

@@ -1,4 +1,4 @@
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "flexura/control/distributed_arm.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -107,8 +108,8 @@ std::optional<Eigen::VectorXd> equilibrium(DistributedArm& arm, Eigen::VectorXd 
     Eigen::MatrixXd K = arm.stiffness();
     // Made definite, so that the step leads down.
     double shift = 0;
-    Eigen::LLT<Eigen::MatrixXd> factor(K);
-    while (factor.info() != Eigen::Success && shift < 1e12) {
+    Cholesky factor(K);
+    while (!factor.is_definite() && shift < 1e12) {
       shift = std::max(10 * shift, 1e-3 * K.diagonal().cwiseAbs().maxCoeff());
       factor.compute(K + shift * Eigen::MatrixXd::Identity(K.rows(), K.cols()));
     }

@@ -1,6 +1,6 @@
 #include "flexura/control/image_law.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -81,7 +81,7 @@ void solve_normal(ImageLaw::Work& work) {
   work.factor = work.normal;
   if (!cholesky(work.factor)) {
     // Singular but for rounding, and not damped: some answer, as long as it is one.
-    work.dx = Eigen::LDLT<Eigen::MatrixXd>(work.normal).solve(work.dx).eval();
+    PivotedCholesky(work.normal).solve_in_place(work.dx);
     return;
   }
   solve_lower(work.factor, work.dx, 0);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +13,7 @@
 #include "flexura/control/jacobian_estimate.h"
 #include "flexura/control/limiter.h"
 #include "flexura/control/shape_features.h"
+#include "flexura/math/dense.h"
 #include "tests/support/servo_loop.h"
 #include "tests/support/servo_trials.h"
 #include "tests/support/servo_views.h"
@@ -85,14 +85,12 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
 // J with singular values that fall evenly, in powers, to `least`.
 Eigen::MatrixXd with_singular_values(TestRandom& random, Eigen::Index rows, Eigen::Index columns,
                                      double least) {
-  const auto any = [&random](Eigen::Index m, Eigen::Index n) {
-    Eigen::MatrixXd A(m, n);
+  const auto orthogonal = [&random](Eigen::Index n) {
+    Eigen::MatrixXd A(n, n);
     for (double& entry : A.reshaped()) entry = random.uniform(-1, 1);
-    return A;
+    return symmetric_eigen(A).vectors;
   };
-  const Eigen::MatrixXd U = Eigen::HouseholderQR<Eigen::MatrixXd>(any(rows, columns)).householderQ() *
-                            Eigen::MatrixXd::Identity(rows, columns),
-                        V = Eigen::HouseholderQR<Eigen::MatrixXd>(any(columns, columns)).householderQ();
+  const Eigen::MatrixXd U = orthogonal(rows).leftCols(columns), V = orthogonal(columns);
   Eigen::VectorXd values(columns);
   for (Eigen::Index i = 0; i < columns; ++i)
     values[i] = 300 * std::pow(least, static_cast<double>(i) / static_cast<double>(columns - 1));
@@ -136,7 +134,7 @@ TEST(ImageLaw, StepsAsTheLeastSquaresOfTheTallMatrixDo) {
     tall << J, Eigen::MatrixXd::Identity(6, 6) * damping * std::sqrt(J.squaredNorm() / 6);
     Eigen::VectorXd right(rows + 6);
     right << error, Eigen::VectorXd::Zero(6);
-    const Eigen::VectorXd wanted = (std::exp(-3 * dt) - 1) * tall.colPivHouseholderQr().solve(right);
+    const Eigen::VectorXd wanted = (std::exp(-3 * dt) - 1) * least_norm_solution(tall, right);
     const ImageStep step = law.step(straight, error, J, dt);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_LE((step.asked.bends[i] - wanted.segment<2>(2 * static_cast<Eigen::Index>(i))).norm(),

@@ -1,10 +1,11 @@
 #include "flexura/control/plane_sight.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
 #include "flexura/control/plane_errors.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 
@@ -18,7 +19,7 @@ PlaneSight::PlaneSight(const DistributedArm& arm, const Eigen::VectorXd& target,
   const std::array<double, 2> clamp = arm.model().clamp.value_or(std::array<double, 2>{0, 0});
   clamped_theta_ = clamp[0] * shapes.base, clamped_q_ = clamp[1] * shapes.base;
   const Eigen::MatrixXd weighted = shapes.values.transpose() * shapes.weights.asDiagonal();
-  fit_ = (weighted * shapes.values).ldlt().solve(weighted);
+  fit_ = PivotedCholesky(weighted * shapes.values).solve(weighted);
   theta_ = q_ = e_theta_ = e_q_ = Eigen::VectorXd::Zero(shapes.s.size());
 }
 

@@ -1,9 +1,11 @@
 #include "flexura/estimate/axis_beginning.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "flexura/math/small_cholesky.h"
 
 namespace flexura {
 
@@ -37,8 +39,7 @@ std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vecto
     normal += row * row.transpose(), right += row * across(points[i].pixel);
     sigma = std::max(sigma, points[i].sigma);
   }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
-  const Eigen::Vector3d curve = solver.solve(right), row = row_at(x);
+  const Eigen::Vector3d curve = solve_definite(normal, right), row = row_at(x);
   // Where the arm's image is no parabola, that is what the curve is uncertain by.
   double squares = 0;
   for (std::size_t i = 0; i < count; ++i)
@@ -48,7 +49,7 @@ std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vecto
   const double spacing = length / static_cast<double>(count - 1),
                alike = std::max(1.0, 2 * seen.reach.sigma / spacing);
   return Aside{std::abs(across(pixel) - curve.dot(row)) / std::hypot(1, curve[1] + 2 * curve[2] * x),
-               sigma * std::sqrt(alike * row.dot(solver.solve(row)))};
+               sigma * std::sqrt(alike * row.dot(solve_definite(normal, row)))};
 }
 
 }  // namespace flexura

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/mahalanobis.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/sightings.h"
 
@@ -100,7 +100,7 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasWhereErrorsGoTogether) {
       Eigen::VectorXd off(6);
       for (std::size_t i = 0; i < 3; ++i)
         off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - state.bends[i];
-      return off.dot(found.covariance.ldlt().solve(off));
+      return mahalanobis_square(found.covariance, off);
     };
     told += square_of(), count += 6;
     for (Sighting& one : seen) {

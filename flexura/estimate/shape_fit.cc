@@ -1,6 +1,6 @@
 #include "flexura/estimate/shape_fit.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -42,13 +42,8 @@ double correlation_factor(std::span<const double> series) {
   return factor;
 }
 
-// Whether a symmetric matrix has an inverse, to rounding. LDLT::rcond() does not say: solve() has zero where
-// a pivot is none, as if that unknown were known.
-bool is_regular(const Eigen::LDLT<Eigen::MatrixXd>& solver) {
-  constexpr double rounding = 1e-15;
-  return solver.info() == Eigen::Success &&
-         solver.vectorD().minCoeff() > rounding * solver.vectorD().maxCoeff() && solver.rcond() > rounding;
-}
+// Pivots below this of the greatest are those of a singular matrix.
+constexpr double rounding = 1e-15;
 
 }  // namespace
 
@@ -90,7 +85,8 @@ double ShapeDescent::step(ShapeProblem& problem, double cutoff, double before, d
     damped_ = normal_;
     damped_.diagonal() += damping * (normal_.diagonal().array() + 1e-12).matrix();
     solver_.compute(damped_);
-    step_ = -solver_.solve(gradient_);
+    step_ = -gradient_;
+    solver_.solve_in_place(step_);
     const Shape there = problem.variables().moved(shape, step_);
     if (!step_.allFinite() || !problem.linearise(there)) continue;
     const double gain = before - cost(problem, cutoff);
@@ -177,18 +173,18 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
   damped_.selfadjointView<Eigen::Lower>().rankUpdate(told_);
   damped_ += (normal_ - damped_) / variance;
   solver_.compute(damped_);
-  if (!is_regular(solver_))
+  if (!solver_.is_definite(rounding))
     return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
-  return solver_.solve(Eigen::MatrixXd::Identity(count, count));
+  return solver_.inverse();
 }
 
 // N^-1 (what is told + f A + max(1, f) O) N^-1, with N the normal matrix (docs/estimation.md, How sure).
 Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
   solver_.compute(normal_);
-  if (!is_regular(solver_))
+  if (!solver_.is_definite(rounding))
     return Eigen::MatrixXd::Constant(count, count, std::numeric_limits<double>::infinity());
-  damped_ = solver_.solve(Eigen::MatrixXd::Identity(count, count));
+  damped_ = solver_.inverse();
   load_scatter(problem);
   // With A = G B^T + B G^T and so on: N^-1 G once.
   followed_.noalias() = damped_ * parts_;

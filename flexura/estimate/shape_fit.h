@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
 #include "flexura/estimate/shape_problem.h"
+#include "flexura/math/dense.h"
 
 namespace flexura {
 
@@ -57,7 +57,7 @@ class ShapeDescent {
   Eigen::MatrixXd weighted_, normal_, damped_;                         // Of symmetric ones the lower half.
   Eigen::MatrixXd parts_, alike_, apart_, told_, followed_, scatter_;  // Of the covariance, whole.
   double promised_ = 1;  // How much more the points' mean varies than that of independent ones.
-  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  PivotedCholesky solver_;
 };
 
 }  // namespace flexura

@@ -20,14 +20,14 @@ namespace {
 using Eigen::Vector3d;
 
 // A place of the arm: its direction from a camera, how far it is, and the radius described there, m.
-struct Place {
+struct BackbonePlace {
   Vector3d direction = {0, 0, 1};
   double distance = 0, radius = 0;
 };
-std::vector<Place> places_from(const View& view, const Shape& shape) {
+std::vector<BackbonePlace> places_from(const View& view, const Shape& shape) {
   constexpr int per_section = 50;
   const Backbone backbone(shape.arm, shape.state);
-  std::vector<Place> places;
+  std::vector<BackbonePlace> places;
   double begin = 0;
   for (std::size_t i = 0; i < shape.arm.sections.size(); ++i) {
     const Section& section = shape.arm.sections[i];
@@ -55,14 +55,14 @@ std::optional<Vector3d> direction_of(const Lens& lens, const Eigen::Vector2d& pi
 void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape,
                 std::vector<double>& ratios) {
   const View view = corrected(seen.view, error);
-  const std::vector<Place> places = places_from(view, shape);
+  const std::vector<BackbonePlace> places = places_from(view, shape);
   for (std::size_t i = 0; i < std::min(seen.edges[0].size(), seen.edges[1].size()); ++i) {
     const auto one = direction_of(view.lens, seen.edges[0][i].pixel),
                other = direction_of(view.lens, seen.edges[1][i].pixel);
     if (!one || !other) continue;
     const Vector3d middle = (*one + *other).normalized();
-    const auto there =
-        std::ranges::max_element(places, {}, [&](const Place& place) { return place.direction.dot(middle); });
+    const auto there = std::ranges::max_element(
+        places, {}, [&](const BackbonePlace& place) { return place.direction.dot(middle); });
     const double ratio = 0.5 * (*one - *other).norm() * there->distance / there->radius;
     if (std::isfinite(ratio)) ratios.push_back(ratio);
   }

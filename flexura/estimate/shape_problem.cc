@@ -1,9 +1,11 @@
 #include "flexura/estimate/shape_problem.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -30,12 +32,12 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
     rows += seen.points.size() + seen.borders.size() + 2 + 2 * seen.markers.size() + 4;
   if (belief != nullptr && belief->covariance.cols() == variables_.count() &&
       belief->covariance.allFinite()) {
-    const Eigen::LLT<Eigen::MatrixXd> known(belief->covariance);
+    const Cholesky known(belief->covariance);
     const Eigen::Index count = variables_.count();
-    if (known.info() == Eigen::Success) {
+    if (known.is_definite()) {
       believed_ = belief->mean;
       // Any root of the inverse serves: here that of L L^T.
-      belief_ = known.matrixL().solve(Eigen::MatrixXd::Identity(count, count));
+      belief_ = known.solve_lower(Eigen::MatrixXd::Identity(count, count));
       rows += static_cast<std::size_t>(count);
     }
   }

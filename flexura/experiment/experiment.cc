@@ -6,7 +6,7 @@
 #include <set>
 
 #include "flexura/experiment/calibrate_config.h"
-#include "flexura/experiment/study_config.h"
+#include "flexura/study/study_config.h"
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {

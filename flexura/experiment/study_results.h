@@ -6,7 +6,7 @@
 
 #include "flexura/base/node.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/image_study.h"
+#include "flexura/study/image_study.h"
 #include "flexura/report/report.h"
 
 namespace flexura {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <vector>
 
 #include "flexura/kinematics/bounds.h"
+#include "flexura/math/dense.h"
+#include "flexura/math/small_cholesky.h"
 
 // Levenberg-Marquardt within bounds, for few residuals of possibly many variables. A Problem has
 //   static constexpr int rows (or Eigen::Dynamic), row_count(), types Residual and Jacobian,
@@ -57,16 +58,16 @@ void damped_step(const Jacobian& J, const Residual& r, double damping, Eigen::Ve
   if constexpr (rows != Eigen::Dynamic) {
     Eigen::Matrix<double, rows, rows> A = Eigen::Matrix<double, rows, rows>::Identity() * damping;
     for (Eigen::Index k = 0; k < J.cols(); ++k) A.noalias() += J.col(k) * J.col(k).transpose();
-    const Eigen::Vector<double, rows> y = A.llt().solve(r);
+    const Eigen::Vector<double, rows> y = solve_definite<rows>(A, r);
     for (Eigen::Index k = 0; k < J.cols(); ++k) step[k] = -J.col(k).dot(y);
   } else if (J.rows() < J.cols()) {
     Eigen::MatrixXd A = J * J.transpose();
     A.diagonal().array() += damping;
-    step.noalias() = -(J.transpose() * A.llt().solve(r));
+    step.noalias() = -(J.transpose() * Cholesky(A).solve(r));
   } else {
     Eigen::MatrixXd H = J.transpose() * J;
     H.diagonal().array() += damping;
-    step = -H.llt().solve(J.transpose() * r);
+    step = -Cholesky(H).solve(J.transpose() * r);
   }
 }
 

@@ -46,6 +46,39 @@ GeneralEigen general_eigen(const MatrixXd& A) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+bool Cholesky::compute(const MatrixXd& A) {
+  factors_.compute(A);
+  return is_definite();
+}
+
+double Cholesky::rcond() const { return factors_.rcond(); }
+
+double Cholesky::log_determinant() const { return 2 * factors_.matrixLLT().diagonal().array().log().sum(); }
+
+MatrixXd Cholesky::solve(const MatrixXd& B) const { return factors_.solve(B); }
+
+void Cholesky::solve_in_place(VectorXd& b) const { factors_.solveInPlace(b); }
+
+MatrixXd Cholesky::solve_lower(const MatrixXd& B) const { return factors_.matrixL().solve(B); }
+
+MatrixXd Cholesky::inverse() const { return solve(MatrixXd::Identity(factors_.rows(), factors_.cols())); }
+
+void PivotedCholesky::compute(const MatrixXd& A) { factors_.compute(A); }
+
+bool PivotedCholesky::is_definite(double rounding) const {
+  if (factors_.info() != Eigen::Success) return false;
+  const VectorXd pivots = factors_.vectorD();
+  return pivots.minCoeff() > rounding * pivots.maxCoeff() && factors_.rcond() > rounding;
+}
+
+MatrixXd PivotedCholesky::solve(const MatrixXd& B) const { return factors_.solve(B); }
+
+void PivotedCholesky::solve_in_place(VectorXd& b) const { factors_.solveInPlace(b); }
+
+MatrixXd PivotedCholesky::inverse() const {
+  return solve(MatrixXd::Identity(factors_.rows(), factors_.cols()));
+}
+
 VectorXd singular_values(const MatrixXd& A) {
   if (!A.allFinite()) return unknown(std::min(A.rows(), A.cols()), 1);
   return Eigen::JacobiSVD<MatrixXd>(A).singularValues();

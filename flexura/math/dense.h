@@ -1,10 +1,12 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 // Decompositions of dense matrices of any size, compiled once: a source that names Eigen's own takes seconds
-// longer to compile. They allocate, as those of dynamic size do. Matrices are not empty; of what is not
-// finite, or does not converge, all that is returned is not a number, and the rank is 0.
+// longer to compile (for systems of a few rows in inner loops: small_cholesky.h). They allocate, as those of
+// dynamic size do. Matrices are not empty; of what is not finite, or does not converge, all that is returned
+// is not a number, and the rank is 0.
 namespace flexura {
 
 /// Of a symmetric n x n matrix, of which the lower triangle counts.
@@ -23,6 +25,50 @@ struct GeneralEigen {
   Eigen::MatrixXcd vectors;  ///< n x n: columns of norm 1.
 };
 [[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& A);
+
+/// A = L L^T of a symmetric n x n matrix, of which the lower triangle counts.
+class Cholesky {
+ public:
+  Cholesky() = default;
+  explicit Cholesky(const Eigen::MatrixXd& A) { compute(A); }
+  /// Whether A is positive definite; if not, nothing can be solved. Allocates where the size is a new one.
+  bool compute(const Eigen::MatrixXd& A);
+  [[nodiscard]] bool is_definite() const { return factors_.info() == Eigen::Success; }
+  /// 1 / (|A| |A^-1|) in 1-norms, estimated.
+  [[nodiscard]] double rcond() const;
+  /// log |A|
+  [[nodiscard]] double log_determinant() const;
+  /// A^-1 B, n x columns.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  /// b becomes A^-1 b, without an allocation.
+  void solve_in_place(Eigen::VectorXd& b) const;
+  /// L^-1 B, n x columns.
+  [[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::MatrixXd inverse() const;
+
+ private:
+  Eigen::LLT<Eigen::MatrixXd> factors_;
+};
+
+/// A = P^T L D L^T P of a symmetric n x n matrix, definite or not, of which the lower triangle counts. Where
+/// a pivot is none, what is solved has zero for that unknown, as if it were known.
+class PivotedCholesky {
+ public:
+  PivotedCholesky() = default;
+  explicit PivotedCholesky(const Eigen::MatrixXd& A) { compute(A); }
+  /// Allocates where the size is a new one.
+  void compute(const Eigen::MatrixXd& A);
+  /// Whether A is positive definite, with all pivots above `rounding` of the greatest, and a rcond() that is.
+  [[nodiscard]] bool is_definite(double rounding) const;
+  /// A^-1 B, n x columns.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  /// b becomes A^-1 b, without an allocation.
+  void solve_in_place(Eigen::VectorXd& b) const;
+  [[nodiscard]] Eigen::MatrixXd inverse() const;
+
+ private:
+  Eigen::LDLT<Eigen::MatrixXd> factors_;
+};
 
 /// Descending; as many as the smaller of rows and columns.
 [[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);

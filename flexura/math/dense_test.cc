@@ -9,6 +9,7 @@
 #include <complex>
 #include <limits>
 
+#include "flexura/math/small_cholesky.h"
 #include "flexura/math/so3.h"
 #include "tests/support/random_cases.h"
 
@@ -85,6 +86,74 @@ TEST(Dense, RankByDefaultIsThatToRounding) {
     EXPECT_EQ(orthogonal_complement(A).cols(), 1);
     A.col(0)[0] += 1e-6;
     EXPECT_EQ(rank_of(A), n);
+  });
+}
+
+TEST(Dense, FactorsOfDefiniteMatricesSolve) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Index n = random.integer(1, 12), columns = random.integer(1, 4);
+    const MatrixXd root = random_matrix(random, n, n) + 3 * MatrixXd::Identity(n, n),
+                   A = root * root.transpose(), B = random_matrix(random, n, columns),
+                   lower = A.triangularView<Eigen::Lower>();
+    const VectorXd b = B.col(0);
+    Cholesky factors;
+    EXPECT_TRUE(factors.compute(lower)) << "the lower triangle counts";
+    const double size = 1e-10 * A.norm();
+    EXPECT_LT((A * factors.solve(B) - B).norm(), size);
+    EXPECT_LT((A * factors.inverse() - MatrixXd::Identity(n, n)).norm(), size);
+    const MatrixXd reduced = factors.solve_lower(B);
+    EXPECT_LT((reduced.transpose() * reduced - B.transpose() * factors.solve(B)).norm(), size);
+    EXPECT_NEAR(factors.log_determinant(), std::log(A.determinant()), 1e-9);
+    VectorXd x = b;
+    factors.solve_in_place(x);
+    EXPECT_LT((A * x - b).norm(), size);
+    const double condition =
+        A.cwiseAbs().colwise().sum().maxCoeff() * factors.inverse().cwiseAbs().colwise().sum().maxCoeff();
+    EXPECT_GE(factors.rcond(), (1 - 1e-9) / condition) << "an estimate, of the norm from below";
+    EXPECT_LT(factors.rcond(), 10 / condition);
+
+    const PivotedCholesky pivoted(lower);
+    EXPECT_TRUE(pivoted.is_definite(1e-12));
+    EXPECT_LT((pivoted.solve(B) - factors.solve(B)).norm(), size);
+    EXPECT_LT((pivoted.inverse() - factors.inverse()).norm(), size);
+    x = b;
+    pivoted.solve_in_place(x);
+    EXPECT_LT((A * x - b).norm(), size);
+  });
+}
+
+TEST(Dense, FactorsTellWhatIsNotDefinite) {
+  for_random_cases(100, [](TestRandom& random) {
+    const Index n = random.integer(2, 9);
+    const MatrixXd root = random_matrix(random, n, n), few = root.leftCols(n - 1);
+    const MatrixXd singular = few * few.transpose(), definite = root * root.transpose(),
+                   indefinite = definite - (least_eigenvalue(definite) + 0.1) * MatrixXd::Identity(n, n);
+    EXPECT_FALSE(Cholesky(indefinite).is_definite());
+    EXPECT_FALSE(PivotedCholesky(indefinite).is_definite(0));
+    EXPECT_FALSE(PivotedCholesky(singular).is_definite(1e-14));
+  });
+  // Zero for what a pivot of none would have to tell.
+  const MatrixXd first = Eigen::Vector2d(1, 0).asDiagonal();
+  EXPECT_EQ(PivotedCholesky(first).solve(Eigen::Vector2d(3, 4)), VectorXd(Eigen::Vector2d(3, 0)));
+}
+
+template <int n>
+void expect_that_few_are_solved(TestRandom& random) {
+  const Eigen::Matrix<double, n, n> root = random_matrix(random, n, n), A = root * root.transpose(),
+                                    lower = A.template triangularView<Eigen::Lower>();
+  const Eigen::Vector<double, n> b = random.vector<n>(-1, 1), x = solve_definite(lower, b);
+  EXPECT_LT((A * x - b).norm(), 1e-12 * A.norm() * x.norm());
+  const Eigen::Matrix<double, n, n> off = A - (least_eigenvalue(A) + 0.1) * MatrixXd::Identity(n, n);
+  EXPECT_FALSE(solve_definite<n>(off, b).allFinite());
+  EXPECT_FALSE(solve_definite<n>(Eigen::Matrix<double, n, n>::Zero(), b).allFinite());
+}
+
+TEST(SmallCholesky, SolvesDefiniteSystemsAndNoOthers) {
+  for_random_cases(100, [](TestRandom& random) {
+    expect_that_few_are_solved<1>(random);
+    expect_that_few_are_solved<2>(random);
+    expect_that_few_are_solved<3>(random);
+    expect_that_few_are_solved<6>(random);
   });
 }
 

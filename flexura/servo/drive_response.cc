@@ -1,6 +1,8 @@
 #include "flexura/servo/drive_response.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -50,7 +52,7 @@ Eigen::VectorXd DriveResponse::drives_for(const Eigen::VectorXd& dy) const {
   constexpr double damping = 1e-4;
   const Eigen::MatrixXd& C = matrix();
   const Eigen::MatrixXd normal = C.transpose() * C + damping * identity_;
-  return normal.llt().solve(C.transpose() * dy);
+  return Cholesky(normal).solve(C.transpose() * dy);
 }
 
 }  // namespace flexura

@@ -1,6 +1,5 @@
 #include "flexura/vision/axis_end.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -9,6 +8,8 @@
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "flexura/math/small_cholesky.h"
 
 namespace flexura {
 namespace {
@@ -121,10 +122,10 @@ bool fit_shape(const Reaches& reaches, double half_width, Shape& shape) {
     if (lines[i] != 0) ++found[lines[i] < 0 ? 0 : 1];
   }
   if (found[0] < 2 || found[1] < 2) return false;
-  const Eigen::Vector3d free = normal.ldlt().solve(sum);
+  const Eigen::Vector3d free = solve_definite(normal, sum);
   const double bulge = std::clamp(free.z(), 0.0, half_width);
   const Eigen::Vector2d rest =
-      normal.topLeftCorner<2, 2>().ldlt().solve(sum.head<2>() - bulge * normal.topRightCorner<2, 1>());
+      solve_definite<2>(normal.topLeftCorner<2, 2>(), sum.head<2>() - bulge * normal.topRightCorner<2, 1>());
   shape = {rest.x(), rest.y(), bulge};
   return free.allFinite() && rest.allFinite();
 }

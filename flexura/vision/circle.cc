@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/small_cholesky.h"
 #include "flexura/vision/conic.h"
 
 namespace flexura {
@@ -102,7 +102,7 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
     harmonic += second * second.transpose();
     own_left += distance * unknowns, left += distance * second;
   }
-  const Eigen::LDLT<Matrix3d> solver(own);
+  const PivotedCholesky solver(own);
   const Eigen::Matrix2d gram = harmonic - mixed.transpose() * solver.solve(mixed);
   const Vector2d gradient = left - mixed.transpose() * solver.solve(own_left);
   const auto [values, vectors] = symmetric_eigen(gram);
@@ -140,7 +140,7 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optio
       const Vector3d row(-direction.x(), -direction.y(), -1);
       normal += row * row.transpose(), gradient += miss * row, squares += miss * miss;
     }
-    const Vector3d step = -normal.ldlt().solve(gradient);
+    const Vector3d step = -solve_definite(normal, gradient);
     if (!step.allFinite()) return std::nullopt;
     fit.center += step.head<2>(), fit.radius += step[2];
     if (step.norm() < 1e-10 * unit.size) break;

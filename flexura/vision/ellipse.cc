@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/small_cholesky.h"
 #include "flexura/vision/conic.h"
 
 namespace flexura {
@@ -72,7 +72,7 @@ std::optional<Eigen::Matrix<double, 6, 1>> algebraic(std::span<const Vector2d> p
     quadratic += second * second.transpose(), mixed += second * first.transpose();
     linear += first * first.transpose();
   }
-  const Matrix3d to_first = -linear.ldlt().solve(mixed.transpose());
+  const Matrix3d to_first = -PivotedCholesky(linear).solve(mixed.transpose());
   const Matrix3d reduced = quadratic + mixed * to_first;
   Matrix3d bound_inverse;
   bound_inverse << 0, 0, 0.5, 0, -1, 0, 0.5, 0, 0;
@@ -147,7 +147,7 @@ std::optional<EllipseFit> fit_ellipse(std::span<const Vector2d> points) {
   for (int round = 0; round < 60; ++round) {
     Matrix5 damped = normal;
     damped.diagonal() += damping * normal.diagonal() + Vector5::Constant(1e-12 * normal.trace());
-    const Vector5 step = -damped.ldlt().solve(gradient);
+    const Vector5 step = -solve_definite(damped, gradient);
     EllipseFit next = *fit;
     next.center += step.head<2>(), next.semi_axes += step.segment<2>(2), next.angle += step[4];
     Matrix5 next_normal;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "flexura/math/median.h"
+#include "flexura/math/small_cholesky.h"
 #include "flexura/vision/arm_skin.h"
 #include "flexura/vision/spots.h"
 
@@ -159,7 +159,7 @@ BandFit fitted(const Parts& parts, double half_width) {
     variance += parts[i]->sigma * parts[i]->sigma, ++count;
     fit.mean_front += row[1];
   }
-  const Vector3d solution = normal.ldlt().solve(right);
+  const Vector3d solution = solve_definite(normal, right);
   for (std::size_t i = 0; i < lines; ++i) {
     if (!parts[i]) continue;
     const double miss = parts[i]->middle - row_of(i).dot(solution);

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/math/dense.h"
 #include "flexura/vision/arm_finder.h"
 #include "flexura/vision/border.h"
 #include "flexura/vision/conic.h"
@@ -141,7 +142,7 @@ double rms_of_moved(const Outline& one, const Outline& other, bool rows) {
     EXPECT_GT(count, 0.7 * static_cast<double>(one.points.size()));
     rms = std::sqrt(squares / count);
     normal.diagonal().array() += 1e-9 * normal.trace();
-    h -= normal.ldlt().solve(gradient);
+    h -= PivotedCholesky(normal).solve(gradient);
   }
   return rms;
 }
@@ -191,7 +192,7 @@ TEST(RealPictures, AStripInAPhotographHasAStraightAxis) {
     for (const Eigen::Vector2d& point : points) middle += point / static_cast<double>(points.size());
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     for (const Eigen::Vector2d& point : points) spread += (point - middle) * (point - middle).transpose();
-    const double across = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()[0];
+    const double across = least_eigenvalue(spread);
     EXPECT_LT(std::sqrt(across / static_cast<double>(points.size())), 0.1) << name;
   }
 }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "flexura/base/image.h"
-#include "flexura/calibrate/board_bundle.h"
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_bundle.h"
+#include "flexura/board/board_target.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/math/pose.h"
 #include "flexura/math/so3.h"

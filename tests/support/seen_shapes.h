@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <numbers>
 
 #include "flexura/estimate/shape_estimator.h"
+#include "tests/support/mahalanobis.h"
 #include "tests/support/seen_arms.h"
 #include "tests/support/shape_error.h"
 
@@ -56,7 +56,7 @@ inline double error_square(const ShapeEstimate& found, const ArmState& truth) {
   Eigen::VectorXd off(count);
   for (std::size_t i = 0; i < truth.bends.size(); ++i)
     off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - truth.bends[i];
-  return off.dot(found.covariance.topLeftCorner(count, count).ldlt().solve(off));
+  return mahalanobis_square(found.covariance.topLeftCorner(count, count), off);
 }
 
 /// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly

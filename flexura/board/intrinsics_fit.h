@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/board_bundle.h"
+#include "flexura/board/board_bundle.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/math/pose.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "flexura/experiment/study_target.h"
+#include "flexura/study/study_target.h"
 
 namespace flexura {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "flexura/base/image.h"
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_target.h"
 
 namespace flexura {
 

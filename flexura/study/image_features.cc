@@ -1,4 +1,4 @@
-#include "flexura/experiment/image_features.h"
+#include "flexura/study/image_features.h"
 
 #include <Eigen/Core>
 #include <cmath>

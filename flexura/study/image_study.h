@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "flexura/camera/camera_config.h"
-#include "flexura/experiment/image_features.h"
-#include "flexura/experiment/study_config.h"
-#include "flexura/experiment/study_target.h"
+#include "flexura/study/image_features.h"
+#include "flexura/study/study_config.h"
+#include "flexura/study/study_target.h"
 
 namespace flexura {
 

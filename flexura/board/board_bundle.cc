@@ -1,6 +1,6 @@
-#include "flexura/calibrate/board_bundle.h"
+#include "flexura/board/board_bundle.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/math/dense.h"
+#include "flexura/math/small_cholesky.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -98,8 +100,8 @@ class NormalEquations {
     for (std::size_t view = 0; view < views_.size(); ++view) {
       Matrix6 D = D_[view];
       D.diagonal() *= 1 + damping;
-      const Eigen::LLT<Matrix6> factor(D);
-      if (factor.info() != Eigen::Success) return false;
+      const Cholesky factor(D);
+      if (!factor.is_definite()) return false;
       boards[view] = factor.solve(boards_right_[view]);
       if (cameras.size() == 0) continue;
       const Eigen::Matrix<double, 6, Eigen::Dynamic> through = factor.solve(B_[view].transpose());
@@ -107,13 +109,13 @@ class NormalEquations {
       cameras.noalias() -= B_[view] * boards[view];
     }
     if (cameras.size() == 0) return true;
-    const Eigen::LDLT<MatrixXd> factor(reduced_);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return false;
-    cameras = factor.solve(cameras).eval();
+    const Cholesky factor(reduced_);
+    if (!factor.is_definite()) return false;
+    factor.solve_in_place(cameras);
     for (std::size_t view = 0; view < views_.size(); ++view) {
       Matrix6 D = D_[view];
       D.diagonal() *= 1 + damping;
-      boards[view] -= D.llt().solve(B_[view].transpose() * cameras);
+      boards[view] -= solve_definite<6>(D, B_[view].transpose() * cameras);
     }
     return cameras.allFinite();
   }
@@ -122,7 +124,7 @@ class NormalEquations {
   [[nodiscard]] MatrixXd information() const {
     MatrixXd result = A_;
     for (std::size_t view = 0; result.size() > 0 && view < views_.size(); ++view)
-      result -= B_[view] * D_[view].llt().solve(B_[view].transpose());
+      result -= B_[view] * Cholesky(D_[view]).solve(B_[view].transpose());
     return result;
   }
 

@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_beyond.h"
+#include "flexura/board/board_beyond.h"
 
 #include <algorithm>
 #include <array>

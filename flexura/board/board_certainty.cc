@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_certainty.h"
+#include "flexura/board/board_certainty.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "flexura/calibrate/board_finder.h"
-#include "flexura/calibrate/board_target.h"
-#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/board/board_finder.h"
+#include "flexura/board/board_target.h"
+#include "flexura/board/intrinsics_fit.h"
 #include "flexura/vision/picture_file.h"
 #include "tests/support/boards.h"
 

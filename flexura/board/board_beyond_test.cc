@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_beyond.h"
+#include "flexura/board/board_beyond.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "flexura/base/image.h"
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_target.h"
 #include "flexura/camera/intrinsics.h"
 #include "tests/support/boards.h"
 #include "tests/support/random_cases.h"

@@ -1,4 +1,4 @@
-#include "flexura/experiment/study_view.h"
+#include "flexura/study/study_view.h"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_finder.h"
+#include "flexura/board/board_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_target.h"
 #include "flexura/camera/intrinsics.h"
 #include "tests/support/boards.h"
 #include "tests/support/random_cases.h"

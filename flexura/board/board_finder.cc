@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_finder.h"
+#include "flexura/board/board_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "flexura/calibrate/board_beyond.h"
+#include "flexura/board/board_beyond.h"
 
 namespace flexura {
 namespace {

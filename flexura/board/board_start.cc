@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_start.h"
+#include "flexura/board/board_start.h"
 
 #include <Eigen/LU>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_target.h"
+#include "flexura/board/board_target.h"
 
 #include <Eigen/Core>
 #include <string>

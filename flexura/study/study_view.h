@@ -2,8 +2,8 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/camera/view.h"
-#include "flexura/experiment/study_config.h"
-#include "flexura/experiment/study_target.h"
+#include "flexura/study/study_config.h"
+#include "flexura/study/study_target.h"
 
 namespace flexura {
 

@@ -4,7 +4,7 @@
 
 #include "flexura/camera/sensor.h"
 #include "flexura/camera/view.h"
-#include "flexura/experiment/study_target.h"
+#include "flexura/study/study_target.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/sensor_image.h"
 

@@ -1,4 +1,4 @@
-#include "flexura/experiment/study_config.h"
+#include "flexura/study/study_config.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/camera/lens_ranges.h"
-#include "flexura/experiment/study_view.h"
+#include "flexura/study/study_view.h"
 
 namespace flexura {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "flexura/camera/view.h"
-#include "flexura/experiment/study_config.h"
+#include "flexura/study/study_config.h"
 #include "flexura/math/pose.h"
 #include "flexura/render/renderer.h"
 

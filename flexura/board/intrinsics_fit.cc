@@ -1,4 +1,4 @@
-#include "flexura/calibrate/intrinsics_fit.h"
+#include "flexura/board/intrinsics_fit.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
-#include "flexura/calibrate/board_alone.h"
-#include "flexura/calibrate/board_certainty.h"
-#include "flexura/calibrate/board_start.h"
+#include "flexura/board/board_alone.h"
+#include "flexura/board/board_certainty.h"
+#include "flexura/board/board_start.h"
 
 namespace flexura {
 namespace {

@@ -1,10 +1,11 @@
-#include "flexura/experiment/study_target.h"
+#include "flexura/study/study_target.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
 #include "flexura/camera/mount.h"
+#include "flexura/math/dense.h"
 #include "flexura/render/prepared_scene.h"
 #include "flexura/render/ray_field.h"
 #include "flexura/render/scene.h"
@@ -64,8 +65,7 @@ class RayMeeting {
       if (!here || !right || !below) return std::nullopt;
       Eigen::Matrix<double, 3, 2> by_pixel;
       by_pixel << *right - *here, *below - *here;
-      const Eigen::Vector2d step =
-          (by_pixel / difference).colPivHouseholderQr().solve(Eigen::Vector3d(p_WP - *here));
+      const Eigen::Vector2d step = least_norm_solution(by_pixel / difference, p_WP - *here);
       if (!step.allFinite()) return std::nullopt;
       pixel += step;
       if (step.norm() < small) return pixel;

@@ -1,4 +1,4 @@
-#include "flexura/experiment/measured_target.h"
+#include "flexura/study/measured_target.h"
 
 #include <Eigen/Core>
 #include <Eigen/LU>

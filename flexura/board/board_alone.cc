@@ -1,4 +1,4 @@
-#include "flexura/calibrate/board_alone.h"
+#include "flexura/board/board_alone.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/calibrate/board_start.h"
+#include "flexura/board/board_start.h"
 #include "flexura/math/dense.h"
 #include "flexura/math/median.h"
 #include "flexura/math/so3.h"

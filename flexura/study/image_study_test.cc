@@ -1,4 +1,4 @@
-#include "flexura/experiment/image_study.h"
+#include "flexura/study/image_study.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/node.h"
+#include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
-#include "flexura/experiment/study_view.h"
 #include "flexura/render/truth.h"
-#include "flexura/store/toml.h"
+#include "flexura/study/study_view.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
@@ -168,12 +169,16 @@ TEST(ImageStudy, ItsTwoColumnsAgreeForEveryParameterOfACameraInGeneralPosition) 
   camera.initial.zoom = 1.1;
   for (const FieldInfo& field : fields_of(static_cast<const VaryConfig*>(nullptr)).info().fields) {
     SCOPED_TRACE(field.name);
-    const char* values = "[0.3, 0.5]";
-    if (field.name == "distance" || field.name == "mount_z") values = "[2, 2.4]";
-    if (field.name == "zoom") values = "[1, 1.2]";
-    if (field.name[0] == 'c' || field.name[0] == 'f') values = "[400, 500]";  // px
-    const auto task =
-        read_as<StudyTask>(parse_toml(fmt::format("vary.{} = {}\npoints = 5", field.name, values), "x.toml"));
+    double from = 0.3, to = 0.5;
+    if (field.name == "distance" || field.name == "mount_z") from = 2, to = 2.4;
+    if (field.name == "zoom") from = 1, to = 1.2;
+    if (field.name[0] == 'c' || field.name[0] == 'f') from = 400, to = 500;  // px
+    Node written{Node::Table{}, {}};
+    ASSERT_EQ(set_at_path(written, fmt::format("vary.{}", field.name),
+                          {Node::Array{number_node(from), number_node(to)}, {}}),
+              "");
+    ASSERT_EQ(set_at_path(written, "points", {std::int64_t{5}, {}}), "");
+    const auto task = read_as<StudyTask>(written);
     const ImageStudy found = study_images(task, {camera}, 1);
     EXPECT_EQ(found.variation.name, field.name);
     EXPECT_TRUE(found.is_seen(0));

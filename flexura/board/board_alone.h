@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "flexura/calibrate/board_bundle.h"
+#include "flexura/board/board_bundle.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {

@@ -1,4 +1,4 @@
-#include "flexura/experiment/image_study.h"
+#include "flexura/study/image_study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "flexura/camera/camera.h"
-#include "flexura/experiment/measured_target.h"
-#include "flexura/experiment/study_view.h"
 #include "flexura/render/renderer.h"
+#include "flexura/study/measured_target.h"
+#include "flexura/study/study_view.h"
 
 namespace flexura {
 namespace {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "flexura/experiment/calibrate_config.h"
-#include "flexura/study/study_config.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/study/study_config.h"
 
 namespace flexura {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "flexura/base/node.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/study/image_study.h"
 #include "flexura/report/report.h"
+#include "flexura/study/image_study.h"
 
 namespace flexura {
 

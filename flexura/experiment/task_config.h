@@ -13,9 +13,9 @@
 #include "flexura/experiment/dynamics_task_config.h"
 #include "flexura/experiment/servo_target.h"
 #include "flexura/experiment/servo_task_config.h"
-#include "flexura/study/study_config.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm_config.h"
+#include "flexura/study/study_config.h"
 
 namespace flexura {
 

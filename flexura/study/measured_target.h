@@ -4,9 +4,9 @@
 
 #include "flexura/camera/sensor.h"
 #include "flexura/camera/view.h"
-#include "flexura/study/study_target.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/sensor_image.h"
+#include "flexura/study/study_target.h"
 
 namespace flexura {
 

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "flexura/camera/view.h"
-#include "flexura/study/study_config.h"
 #include "flexura/math/pose.h"
 #include "flexura/render/renderer.h"
+#include "flexura/study/study_config.h"
 
 namespace flexura {
 

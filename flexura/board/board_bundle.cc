@@ -95,6 +95,9 @@ class NormalEquations {
   bool solve(double damping, VectorXd& cameras, std::vector<Vector6>& boards) {
     reduced_ = A_;
     reduced_.diagonal() *= 1 + damping;
+    // What no view tells stays as it is.
+    for (double& entry : reduced_.diagonal())
+      if (entry == 0) entry = 1;
     cameras = cameras_right_;
     boards.resize(views_.size());
     for (std::size_t view = 0; view < views_.size(); ++view) {

@@ -11,7 +11,8 @@
 namespace flexura {
 
 /// What cameras that stand still to each other saw of a board at one time: for each camera the pixels of the
-/// board's points, in the board's order; none where it saw no board.
+/// board's points, in the board's order; none where it saw no board. (Of a camera that never sees one nothing
+/// is told: it stays as it was.)
 struct BoardView {
   std::vector<std::vector<Eigen::Vector2d>> pixels;  ///< (u, v), px.
 };

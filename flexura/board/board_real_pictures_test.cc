@@ -12,12 +12,13 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "flexura/board/board_finder.h"
 #include "flexura/board/board_target.h"
 #include "flexura/board/intrinsics_fit.h"
-#include "flexura/vision/picture_file.h"
+#include "flexura/picture/image_file.h"
 #include "tests/support/boards.h"
 
 namespace flexura {
@@ -36,7 +37,7 @@ class RealBoards : public testing::Test {
   static BoardSighting look(const std::string& name, const BoardTarget& board = {}) {
     std::ifstream in(folder / name, std::ios::binary);
     const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-    return find_board(gray_picture(decode_picture(bytes, name).bytes), board);
+    return find_board(std::get<Image<std::uint8_t>>(read_picture(bytes, name, 1 << 20)), board);
   }
   // Found once for all tests.
   static const std::vector<BoardView>& pairs() {

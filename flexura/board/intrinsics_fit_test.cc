@@ -174,6 +174,21 @@ TEST(BoardBundle, HasTheDerivativesThatDifferencesHave) {
           << i << " " << j;
 }
 
+TEST(BoardBundle, ACameraThatSeesNoBoardStaysAsItIs) {
+  for_random_cases(4, [](TestRandom& random) {
+    const BoardBundle truth = random_pair(random, 6);
+    auto views = seen_boards(truth, points, 0, random);
+    for (BoardView& view : views) view.pixels[1].clear();
+    BoardBundle start = truth;
+    start.lenses[0].fx *= 1.01, start.boards[2].position.z() += 0.01;
+    const BundleFit fit = fit_bundle(points, views, start, {});
+    EXPECT_TRUE(fit.is_converged);
+    EXPECT_NEAR(fit.bundle.lenses[0].fx, truth.lenses[0].fx, 1e-3);
+    EXPECT_EQ(numbers(fit.bundle.lenses[1]), numbers(truth.lenses[1]));
+    EXPECT_EQ(fit.bundle.cameras[1].position, truth.cameras[1].position);
+  });
+}
+
 TEST(IntrinsicsFit, IsOpenCVs) {
   for_random_cases(4, [](TestRandom& random) {
     const BoardBundle truth = random_camera(random, 8);

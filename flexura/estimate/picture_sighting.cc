@@ -81,47 +81,47 @@ Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vec
   return {nearest->normal.y(), -nearest->normal.x()};
 }
 
-// Leaves out what a lens has no ray for: that is no place of the arm.
-class RayCheck {
- public:
-  RayCheck(const Lens& lens, Sighting& seen) : lens_(lens), seen_(seen) {}
+// What a lens has no ray for is no place of the arm.
+void leave_out_what_has_no_ray(const Lens& lens, Sighting& seen) {
+  const auto has_no_ray = [&](const Eigen::Vector2d& pixel) {
+    const bool has_none = !lens.unproject(pixel);
+    seen.leaves_out = seen.leaves_out || has_none;
+    return has_none;
+  };
+  const auto is_out = [&](const auto& point) { return has_no_ray(point.pixel); };
+  std::erase_if(seen.points, is_out), std::erase_if(seen.borders, is_out);
+  std::erase_if(seen.figure, has_no_ray);
+  for (auto& end : seen.ends)
+    if (end && is_out(*end)) end.reset();
+}
 
-  [[nodiscard]] bool has_ray(const Eigen::Vector2d& pixel) {
-    const bool has = lens_.unproject(pixel).has_value();
-    seen_.leaves_out = seen_.leaves_out || !has;
-    return has;
-  }
-  void check_all() {
-    const auto is_out = [this](const auto& point) { return !has_ray(point.pixel); };
-    std::erase_if(seen_.points, is_out), std::erase_if(seen_.borders, is_out);
-    std::erase_if(seen_.figure, [this](const Eigen::Vector2d& pixel) { return !has_ray(pixel); });
-    for (auto& end : seen_.ends)
-      if (end && is_out(*end)) end.reset();
-  }
+// Where the backbone is seen. A lens that shows all of its picture has rays for all of the axis.
+BackboneAxis backbone_of(const ArmSighting& arm, const View& view) {
+  if (!shows_all(view)) return backbone_axis(view.lens, arm.axis);
+  BackboneAxis axis{arm.axis, std::vector<bool>(arm.axis.size(), true)};
+  to_backbone_image(view.lens, axis.samples);
+  return axis;
+}
 
- private:
-  const Lens& lens_;
-  Sighting& seen_;
-};
-
-// `axis`: that of `arm`, where the backbone is seen; as it was measured where the lens has no rays.
-Sighting sighting_along(const ArmSighting& arm, const std::vector<AxisSample>& axis, const View& view) {
+Sighting sighting_along(const ArmSighting& arm, const BackboneAxis& backbone, const View& view) {
   Sighting seen;
   seen.view = view;
   seen.reach.sigma = smoothed;
   for (const BorderPoint& point : arm.unexplained) seen.borders.push_back({point.pixel, border_sigma});
   seen.figure = arm.places;
-  const bool lacks_rays = !shows_all(view);
-  RayCheck rays(view.lens, seen);
+  const std::vector<AxisSample>& axis = backbone.samples;
   const std::vector<bool> tells = telling(arm.axis);
   const auto samples = static_cast<std::size_t>(
       axis.size() < 2 ? 0.0 : stretch / std::max((axis[1].pixel - axis[0].pixel).norm(), 0.5));
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (!tells[i]) continue;
+    if (!backbone.is_backbone[i]) {
+      seen.leaves_out = true;
+      continue;
+    }
     const AxisSample& sample = arm.axis[i];
     const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
     const std::array<Eigen::Vector2d, 2> borders = {sample.pixel + half, sample.pixel - half};
-    if (lacks_rays && !(rays.has_ray(borders[0]) && rays.has_ray(borders[1]))) continue;
     // The axis lies half-way between the borders: each is known by the root of two worse.
     const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
     for (std::size_t side = 0; side < 2; ++side) seen.edges[side].push_back({borders[side], sigma});
@@ -130,15 +130,8 @@ Sighting sighting_along(const ArmSighting& arm, const std::vector<AxisSample>& a
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
     if (arm.is_whole() && arm.ends[end].kind == AxisEndKind::free)
       seen.ends[end] = SeenEnd{arm.ends[end].pixel, arm.ends[end].sigma};
-  if (lacks_rays) rays.check_all();
+  if (!shows_all(view)) leave_out_what_has_no_ray(view.lens, seen);
   return seen;
-}
-
-// Where the backbone is seen.
-std::vector<AxisSample> backbone_axis(const ArmSighting& arm, const View& view) {
-  std::vector<AxisSample> axis = arm.axis;
-  to_backbone_image(view.lens, axis);
-  return axis;
 }
 
 }  // namespace
@@ -151,13 +144,14 @@ bool shows_all(const View& view) {
 }
 
 Sighting sighting_of(const ArmSighting& arm, const View& view) {
-  return sighting_along(arm, backbone_axis(arm, view), view);
+  return sighting_along(arm, backbone_of(arm, view), view);
 }
 
 Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::uint8_t>& picture) {
   ArmSighting corrected = arm;
-  corrected.axis = backbone_axis(arm, view);
-  Sighting seen = sighting_along(arm, corrected.axis, view);
+  const BackboneAxis backbone = backbone_of(arm, view);
+  corrected.axis = backbone.samples;
+  Sighting seen = sighting_along(arm, backbone, view);
   constexpr bool with_spots = false;  // Nothing is known of the backbone there.
   for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
     if (!marker.tells_place()) continue;

@@ -9,6 +9,7 @@
 
 #include "flexura/camera/view.h"
 #include "flexura/vision/arm_finder.h"
+#include "flexura/vision/backbone_image.h"
 
 namespace flexura {
 namespace {
@@ -55,6 +56,10 @@ TEST(PictureSighting, LeavesOutWhatTheLensHasNoRayFor) {
   EXPECT_EQ(seen.edges[0].size(), seen.points.size());
   EXPECT_EQ(seen.edges[1].size(), seen.points.size());
   EXPECT_TRUE(seen.leaves_out);
+  const std::vector<bool> is_backbone = backbone_axis(view.lens, arm.axis).is_backbone;
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < arm.axis.size(); ++i) known += arm.axis[i].is_seen && is_backbone[i] ? 1 : 0;
+  EXPECT_EQ(seen.points.size(), known) << "no more than elsewhere counts as the backbone";
   EXPECT_EQ(whole.points.size(), 80U);
   EXPECT_FALSE(whole.leaves_out);
   for (const CurvePoint& point : seen.points) EXPECT_TRUE(has_ray(point.pixel));
@@ -83,22 +88,19 @@ TEST(PictureSighting, LeavesOutEndsAndBordersWithoutARay) {
   EXPECT_EQ(seen.figure[0].x(), 197);
 }
 
-// A sample beside one without a ray is half-way between its own borders' directions.
-TEST(PictureSighting, CorrectsTheAxisUpToWhereTheRaysEnd) {
+// The backbone is where a calibration and `measure` take it to be.
+TEST(PictureSighting, HasTheBackboneAsFarAsTheLensTells) {
   View view;
   view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
   ArmSighting arm = bridged_axis(40);
   // Not through the middle, where nothing moves.
   for (AxisSample& sample : arm.axis) sample.pixel.y() += 8, sample.is_seen = true;
   const Sighting seen = sighting_of(arm, view);
-  ASSERT_FALSE(seen.points.empty());
-  const double u = seen.points.front().pixel.x();
-  const auto direction = [&](double v) {
-    return Eigen::Vector3d(view.lens.unproject({std::round(u), v})->homogeneous().normalized());
-  };
-  const Eigen::Vector2d expected = *view.lens.project(direction(203) + direction(213));
-  EXPECT_LT((seen.points.front().pixel - expected).norm(), 1e-6);
-  EXPECT_GT(std::abs(expected.y() - 208), 0.01);
+  const std::vector<AxisSample> backbone = backbone_axis(view.lens, arm.axis).known();
+  ASSERT_EQ(seen.points.size(), backbone.size());
+  ASSERT_GT(backbone.size(), 20U);
+  for (std::size_t i = 0; i < backbone.size(); ++i) EXPECT_EQ(seen.points[i].pixel, backbone[i].pixel) << i;
+  EXPECT_GT(std::abs(backbone.front().pixel.y() - 208), 0.01);
 }
 
 }  // namespace

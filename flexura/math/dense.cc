@@ -16,6 +16,12 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 MatrixXd unknown(Eigen::Index rows, Eigen::Index columns) { return MatrixXd::Constant(rows, columns, nan); }
 
+bool is_lower_finite(const MatrixXd& A) {
+  for (Eigen::Index j = 0; j < A.cols(); ++j)
+    if (!A.col(j).tail(A.rows() - j).allFinite()) return false;
+  return true;
+}
+
 Eigen::ColPivHouseholderQR<MatrixXd> pivoted(const MatrixXd& A, double threshold) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
   if (threshold > 0) qr.setThreshold(threshold);
@@ -48,32 +54,57 @@ GeneralEigen general_eigen(const MatrixXd& A) {
 
 bool Cholesky::compute(const MatrixXd& A) {
   factors_.compute(A);
-  return is_definite();
+  is_definite_ = is_lower_finite(A) && factors_.info() == Eigen::Success;
+  return is_definite_;
 }
 
-double Cholesky::rcond() const { return factors_.rcond(); }
+double Cholesky::rcond() const { return is_definite_ ? factors_.rcond() : 0; }
 
-double Cholesky::log_determinant() const { return 2 * factors_.matrixLLT().diagonal().array().log().sum(); }
+double Cholesky::log_determinant() const {
+  return is_definite_ ? 2 * factors_.matrixLLT().diagonal().array().log().sum() : nan;
+}
 
-MatrixXd Cholesky::solve(const MatrixXd& B) const { return factors_.solve(B); }
+MatrixXd Cholesky::solve(const MatrixXd& B) const {
+  if (!is_definite_) return unknown(B.rows(), B.cols());
+  return factors_.solve(B);
+}
 
-void Cholesky::solve_in_place(VectorXd& b) const { factors_.solveInPlace(b); }
+void Cholesky::solve_in_place(VectorXd& b) const {
+  if (is_definite_)
+    factors_.solveInPlace(b);
+  else
+    b.setConstant(nan);
+}
 
-MatrixXd Cholesky::solve_lower(const MatrixXd& B) const { return factors_.matrixL().solve(B); }
+MatrixXd Cholesky::solve_lower(const MatrixXd& B) const {
+  if (!is_definite_) return unknown(B.rows(), B.cols());
+  return factors_.matrixL().solve(B);
+}
 
 MatrixXd Cholesky::inverse() const { return solve(MatrixXd::Identity(factors_.rows(), factors_.cols())); }
 
-void PivotedCholesky::compute(const MatrixXd& A) { factors_.compute(A); }
+void PivotedCholesky::compute(const MatrixXd& A) {
+  factors_.compute(A);
+  is_finite_ = is_lower_finite(A);
+}
 
 bool PivotedCholesky::is_definite(double rounding) const {
-  if (factors_.info() != Eigen::Success) return false;
-  const VectorXd pivots = factors_.vectorD();
+  if (!is_finite_ || factors_.info() != Eigen::Success) return false;
+  const auto pivots = factors_.vectorD();
   return pivots.minCoeff() > rounding * pivots.maxCoeff() && factors_.rcond() > rounding;
 }
 
-MatrixXd PivotedCholesky::solve(const MatrixXd& B) const { return factors_.solve(B); }
+MatrixXd PivotedCholesky::solve(const MatrixXd& B) const {
+  if (!is_finite_) return unknown(B.rows(), B.cols());
+  return factors_.solve(B);
+}
 
-void PivotedCholesky::solve_in_place(VectorXd& b) const { factors_.solveInPlace(b); }
+void PivotedCholesky::solve_in_place(VectorXd& b) const {
+  if (is_finite_)
+    factors_.solveInPlace(b);
+  else
+    b.setConstant(nan);
+}
 
 MatrixXd PivotedCholesky::inverse() const {
   return solve(MatrixXd::Identity(factors_.rows(), factors_.cols()));

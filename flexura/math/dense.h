@@ -31,10 +31,11 @@ class Cholesky {
  public:
   Cholesky() = default;
   explicit Cholesky(const Eigen::MatrixXd& A) { compute(A); }
-  /// Whether A is positive definite; if not, nothing can be solved. Allocates where the size is a new one.
+  /// Whether A is positive definite; if not, what is solved with it is not a number. Allocates where the size
+  /// is a new one.
   bool compute(const Eigen::MatrixXd& A);
-  [[nodiscard]] bool is_definite() const { return factors_.info() == Eigen::Success; }
-  /// 1 / (|A| |A^-1|) in 1-norms, estimated.
+  [[nodiscard]] bool is_definite() const { return is_definite_; }
+  /// 1 / (|A| |A^-1|) in 1-norms, estimated; 0 where A is not definite.
   [[nodiscard]] double rcond() const;
   /// log |A|
   [[nodiscard]] double log_determinant() const;
@@ -44,30 +45,36 @@ class Cholesky {
   void solve_in_place(Eigen::VectorXd& b) const;
   /// L^-1 B, n x columns.
   [[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
+  /// n x n
   [[nodiscard]] Eigen::MatrixXd inverse() const;
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factors_;
+  bool is_definite_ = false;
 };
 
-/// A = P^T L D L^T P of a symmetric n x n matrix, definite or not, of which the lower triangle counts. Where
-/// a pivot is none, what is solved has zero for that unknown, as if it were known.
+/// A = P^T L D L^T P of a symmetric n x n matrix that is semidefinite but for rounding, of which the lower
+/// triangle counts. Where a pivot is none, what is solved has zero for that unknown, as if it were known; of
+/// other matrices nothing is promised.
 class PivotedCholesky {
  public:
   PivotedCholesky() = default;
   explicit PivotedCholesky(const Eigen::MatrixXd& A) { compute(A); }
   /// Allocates where the size is a new one.
   void compute(const Eigen::MatrixXd& A);
-  /// Whether A is positive definite, with all pivots above `rounding` of the greatest, and a rcond() that is.
+  /// Whether A is positive definite, with all pivots above `rounding` of the greatest, and the reciprocal
+  /// condition that Cholesky::rcond() is.
   [[nodiscard]] bool is_definite(double rounding) const;
   /// A^-1 B, n x columns.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
   /// b becomes A^-1 b, without an allocation.
   void solve_in_place(Eigen::VectorXd& b) const;
+  /// n x n
   [[nodiscard]] Eigen::MatrixXd inverse() const;
 
  private:
   Eigen::LDLT<Eigen::MatrixXd> factors_;
+  bool is_finite_ = false;
 };
 
 /// Descending; as many as the smaller of rows and columns.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 
 #include "flexura/math/small_cholesky.h"
 #include "flexura/math/so3.h"
@@ -128,7 +129,10 @@ TEST(Dense, FactorsTellWhatIsNotDefinite) {
     const MatrixXd root = random_matrix(random, n, n), few = root.leftCols(n - 1);
     const MatrixXd singular = few * few.transpose(), definite = root * root.transpose(),
                    indefinite = definite - (least_eigenvalue(definite) + 0.1) * MatrixXd::Identity(n, n);
-    EXPECT_FALSE(Cholesky(indefinite).is_definite());
+    const Cholesky factors(indefinite);
+    EXPECT_FALSE(factors.is_definite());
+    EXPECT_TRUE(factors.solve(MatrixXd::Ones(n, 1)).array().isNaN().all());
+    EXPECT_TRUE(std::isnan(factors.log_determinant()));
     EXPECT_FALSE(PivotedCholesky(indefinite).is_definite(0));
     EXPECT_FALSE(PivotedCholesky(singular).is_definite(1e-14));
   });
@@ -172,6 +176,23 @@ TEST(Dense, OfWhatIsNotFiniteNothingIsKnown) {
     EXPECT_TRUE(orthogonal_complement(A).array().isNaN().all());
     EXPECT_TRUE(nearest_rotation(A).array().isNaN().all());
     EXPECT_EQ(rank_of(A), 0);
+    for (const auto& [row, column] : {std::pair{1, 1}, {2, 0}}) {
+      MatrixXd B = 2 * MatrixXd::Identity(3, 3);
+      B(row, column) = bad;
+      const Cholesky factors(B);
+      EXPECT_FALSE(factors.is_definite());
+      EXPECT_EQ(factors.rcond(), 0);
+      EXPECT_TRUE(std::isnan(factors.log_determinant()));
+      EXPECT_TRUE(factors.inverse().array().isNaN().all());
+      EXPECT_TRUE(factors.solve_lower(A).array().isNaN().all());
+      const PivotedCholesky pivoted(B);
+      EXPECT_FALSE(pivoted.is_definite(0));
+      EXPECT_TRUE(pivoted.inverse().array().isNaN().all());
+      VectorXd x = VectorXd::Ones(3), y = x;
+      factors.solve_in_place(x), pivoted.solve_in_place(y);
+      EXPECT_TRUE(x.array().isNaN().all() && y.array().isNaN().all());
+      EXPECT_FALSE(solve_definite<3>(B, Eigen::Vector3d(1, 2, 3)).allFinite() && std::isnan(bad));
+    }
   }
 }
 

@@ -250,5 +250,26 @@ TEST(BackboneImage, IsNotToldNextToWhereTheLensHasNoRays) {
   EXPECT_EQ(none.samples[40].pixel, axis[40].pixel);
 }
 
+// A sample beside one without a ray is half-way between its own borders' directions.
+TEST(BackboneImage, ComesUpToWhereTheRaysEnd) {
+  const Lens lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
+  std::vector<AxisSample> axis(100);
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    axis[i].pixel = {100.0 + static_cast<double>(i), 208}, axis[i].normal = {0, 1};
+    axis[i].width = 10, axis[i].sigma = 0.01, axis[i].is_seen = true;
+  }
+  std::vector<AxisSample> moved = axis;
+  EXPECT_FALSE(to_backbone_image(lens, moved));
+  std::size_t first = 0;
+  while (!has_rays(lens, axis.at(first))) ++first;
+  ASSERT_GT(first, 0U);
+  const auto direction = [&](double v) {
+    return Eigen::Vector3d(lens.unproject({axis[first].pixel.x(), v})->homogeneous().normalized());
+  };
+  const Eigen::Vector2d expected = *lens.project(direction(203) + direction(213));
+  EXPECT_LT((moved[first].pixel - expected).norm(), 1e-6);
+  EXPECT_GT(std::abs(expected.y() - 208), 0.01);
+}
+
 }  // namespace
 }  // namespace flexura

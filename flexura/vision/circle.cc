@@ -1,5 +1,4 @@
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -118,6 +117,45 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
   fit.detectable_tilt = tilt < 0.5 * pi ? tilt : 0.5 * pi;
 }
 
+// What the points tell of a circle's center and radius, to first order: of both by their directions from the
+// center. Of a flat arc these are nearly one, so they are taken from their mean, which leaves the center
+// (`spread`, `gradient`) and the radius at that mean (`miss`) independent of each other.
+struct Facing {
+  Vector2d mean = Vector2d::Zero();                  // Of the directions.
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of their squares from the mean.
+  Vector2d gradient = Vector2d::Zero();              // Of how far the points are outside, the same way.
+  double miss = 0, squares = 0;                      // Sum of that, px, and of its squares.
+};
+
+Facing facing_of(std::span<const Vector2d> points, const CircleFit& circle) {
+  const auto direction = [&](const Vector2d& way, double distance) {
+    return distance > 0 ? Vector2d(way / distance) : Vector2d(1, 0);
+  };
+  Facing facing;
+  for (const Vector2d& point : points) {
+    const Vector2d way = point - circle.center;
+    facing.mean += direction(way, way.norm()) / static_cast<double>(points.size());
+  }
+  for (const Vector2d& point : points) {
+    const Vector2d way = point - circle.center;
+    const double distance = way.norm(), miss = distance - circle.radius;
+    const Vector2d off = direction(way, distance) - facing.mean;
+    facing.spread += off * off.transpose(), facing.gradient += miss * off;
+    facing.miss += miss, facing.squares += miss * miss;
+  }
+  return facing;
+}
+
+// Of center and radius, for points that are off by 1 px each.
+Matrix3d covariance_of(const Facing& facing, double count) {
+  Matrix3d apart = Matrix3d::Zero(), to_radius = Matrix3d::Identity();
+  apart.col(0).head<2>() = solve_definite<2>(facing.spread, Vector2d::UnitX());
+  apart.col(1).head<2>() = solve_definite<2>(facing.spread, Vector2d::UnitY());
+  apart(2, 2) = 1 / count;
+  to_radius.row(2).head<2>() = -facing.mean.transpose();
+  return to_radius * apart * to_radius.transpose();
+}
+
 }  // namespace
 
 std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optional<double> sigma) {
@@ -128,29 +166,22 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optio
   if (!start || start->tail<1>()[0] > 1e4) return std::nullopt;
   CircleFit fit;
   fit.center = unit.mean + unit.size * start->head<2>(), fit.radius = unit.size * (*start)[2];
-  Matrix3d normal = Matrix3d::Zero();
-  double squares = 0;
+  const auto count = static_cast<double>(points.size());
+  Facing facing;
   for (int round = 0; round < 50; ++round) {
-    Vector3d gradient = Vector3d::Zero();
-    normal.setZero(), squares = 0;
-    for (const Vector2d& point : points) {
-      const Vector2d way = point - fit.center;
-      const double distance = way.norm(), miss = distance - fit.radius;
-      const Vector2d direction = distance > 0 ? Vector2d(way / distance) : Vector2d(1, 0);
-      const Vector3d row(-direction.x(), -direction.y(), -1);
-      normal += row * row.transpose(), gradient += miss * row, squares += miss * miss;
-    }
-    const Vector3d step = -solve_definite(normal, gradient);
-    if (!step.allFinite()) return std::nullopt;
-    fit.center += step.head<2>(), fit.radius += step[2];
-    if (step.norm() < 1e-10 * unit.size) break;
+    facing = facing_of(points, fit);
+    const Vector2d step = solve_definite(facing.spread, facing.gradient);
+    const double growth = facing.miss / count - facing.mean.dot(step);
+    if (!step.allFinite() || !std::isfinite(growth)) return std::nullopt;
+    fit.center += step, fit.radius += growth;
+    if (std::hypot(step.norm(), growth) < 1e-10 * unit.size) break;
   }
   if (!(fit.radius > 0) || !fit.center.allFinite()) return std::nullopt;
-  const auto count = static_cast<double>(points.size());
+  const double squares = facing.squares;
   fit.rms = std::sqrt(squares / count);
   const double spread = sigma.value_or(count > 3 ? std::sqrt(squares / (count - 3)) : 0);
   fit.sigma = sigma.value_or(0);
-  fit.covariance = spread * spread * normal.inverse();
+  fit.covariance = spread * spread * covariance_of(facing, count);
   go_around(points, fit);
   // Five points or fewer lie on an ellipse whatever they are.
   constexpr std::size_t decided = 6;

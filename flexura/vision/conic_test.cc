@@ -59,6 +59,31 @@ TEST(Circle, IsFoundWithItsCovariance) {
   });
 }
 
+// An arm that hangs straight is an arc of a circle of any size (to 1e4 of its own, which is a line).
+TEST(Circle, OfAFlatArcHasItsCurvatureAndHowSure) {
+  for (const double ratio : {100.0, 1000.0, 3000.0, 4000.0}) {
+    int found = 0, cases = 0, within = 0;
+    for_random_cases(100, [&](TestRandom& random) {
+      const double size = 173, radius = ratio * size, from = random.uniform(0, 6);
+      std::vector<Vector2d> points;
+      for (int i = 0; i < 200; ++i) {
+        const double phi = from + 2 / ratio * i / 199, r = radius + 0.02 * normal_noise(random);
+        points.emplace_back(r * Vector2d(std::cos(phi), std::sin(phi)));
+      }
+      ++cases;
+      const auto fit = fit_circle(points, 0.02);
+      if (!fit) return;
+      ++found;
+      for (int i = 0; i < 3; ++i) EXPECT_GT(fit->covariance(i, i), 0) << ratio;
+      // The curvature's errors are normal, the radius's are not.
+      const double sigma = std::sqrt(fit->covariance(2, 2)) / (fit->radius * fit->radius);
+      if (std::abs(1 / fit->radius - 1 / radius) < 2 * sigma) ++within;
+    });
+    EXPECT_GE(found, 0.97 * cases) << ratio;
+    EXPECT_GE(within, 0.85 * found) << ratio;
+  }
+}
+
 TEST(Circle, OfAnOrbitingCameraIsOffByWhatGeometrySays) {
   for (const auto& [degrees, worst] : {std::pair{1.0, 0.015}, {5.0, 0.37}, {10.0, 1.49}}) {
     const auto points = orbit_picture(degrees * pi / 180, 0, 2 * pi, 720);

@@ -13,13 +13,14 @@
 #include <opencv2/core.hpp>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "flexura/board/board_finder.h"
 #include "flexura/board/board_target.h"
 #include "flexura/board/intrinsics_fit.h"
 #include "flexura/math/so3.h"
-#include "flexura/vision/picture_file.h"
+#include "flexura/picture/image_file.h"
 #include "tests/support/boards.h"
 
 namespace flexura {
@@ -52,7 +53,8 @@ Views real_pairs() {
       std::ifstream in(folder / name, std::ios::binary);
       if (!in) return {};
       const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-      const BoardSighting seen = find_board(gray_picture(decode_picture(bytes, name).bytes), board);
+      const BoardSighting seen =
+          find_board(std::get<Image<std::uint8_t>>(read_picture(bytes, name, 1 << 20)), board);
       if (!seen.is_found()) return {};
       view.pixels.push_back(seen.pixels);
     }

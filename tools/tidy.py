@@ -3,10 +3,10 @@
 
 usage: tidy.py --build BUILD [--all]
 
-BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the files as they were
-when clang-tidy last passed on them. Without --all, it takes the files that differ from the record: a source itself; a
-header through one source that includes it (its own, where there is one). With --all it takes every source, which also
-sees what a changed header means for those that include it. What passes is brought up to date in the record.
+BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources as they were
+when clang-tidy last passed on them. Without --all, it checks the sources (.cc) that differ from the record. With --all
+it checks every source, which also shows what a changed header means for those that include it. Each source that passes
+is brought up to date in the record.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
 compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
@@ -80,28 +80,11 @@ def recorded(record):
     return dict(reversed(line.split()) for line in record.read_text().splitlines())
 
 
-def changed_since(record, reach):
-    """The files of `reach` (sources with what they reach) that differ from the record."""
-    now = digests({SETTINGS}.union(*reach.values()))
-    before = recorded(record)
+def changed_since(record, sources):
+    """The sources that differ from the record; all of them when the settings do."""
+    now, before = digests({SETTINGS, *sources}), recorded(record)
     changed = {ROOT / name for name, digest in now.items() if before.get(name) != digest}
-    return {ROOT / name for name in now} if SETTINGS in changed else changed
-
-
-def own_sources_first(header):
-    """Sorts sources: those that bear the header's name, then those of its folder, then the others."""
-    own = (header.stem, f"{header.stem}_test")
-    return lambda source: (source.parent != header.parent, source.stem not in own, str(source))
-
-
-def sources_for(changed, reach):
-    """The changed sources, and for each changed header that none of them reaches one source that does."""
-    sources = [source for source in reach if source in changed]
-    for header in sorted(changed - set(reach)):
-        reaching = [source for source in reach if header in reach[source]]
-        if reaching and not set(reaching) & set(sources):
-            sources.append(min(reaching, key=own_sources_first(header)))
-    return sources
+    return [source for source in sources if source in changed or SETTINGS in changed]
 
 
 def check(build, source, passed):
@@ -125,8 +108,8 @@ def check_all(build, waiting):
 
 
 def keep_record(whole, not_passed):
-    """Brings the record up to date, but for what sources that have not passed reach."""
-    before, left_out = recorded(RECORD), {str(file.relative_to(ROOT)) for file in set().union(*not_passed)}
+    """Brings the record up to date, but for the sources that have not passed."""
+    before, left_out = recorded(RECORD), {str(source.relative_to(ROOT)) for source in not_passed}
     digests_now = {name: digest if name not in left_out else before.get(name) for name, digest in whole.items()}
     RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in digests_now.items() if digest))
 
@@ -146,17 +129,17 @@ def main():
     reach = {source: reached(source, include_folders(command)) for source, command in commands.items()}
     reach = {source: {file for file in files if not file.is_relative_to(ROOT / "build")}
              for source, files in reach.items()}
-    sources = list(reach) if arguments.all else sources_for(changed_since(RECORD, reach), reach)
+    sources = list(reach) if arguments.all else changed_since(RECORD, list(reach))
     passes = {source: cache / key(commands[source], reach[source]) for source in sources}
     waiting = {source: passed for source, passed in passes.items() if not passed.exists()}
 
     start = time.monotonic()
-    whole = digests({SETTINGS}.union(*reach.values()))
+    whole = digests({SETTINGS, *reach})
     failed = 0
     try:
         failed = check_all(arguments.build, waiting)
     finally:
-        keep_record(whole, [reach[source] for source, passed in passes.items() if not passed.exists()])
+        keep_record(whole, [source for source, passed in passes.items() if not passed.exists()])
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
     return 1 if failed else 0

@@ -16,6 +16,7 @@
 #include "flexura/app/terminal_progress.h"
 #include "flexura/app/view.h"
 #include "flexura/app/words.h"
+#include "flexura/base/table.h"
 #include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/export_csv.h"

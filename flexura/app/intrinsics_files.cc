@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/arrays.h"
 #include "flexura/store/json.h"

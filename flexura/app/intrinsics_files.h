@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "flexura/app/intrinsics.h"
+#include "flexura/base/fields.h"
 #include "flexura/base/node.h"
-#include "flexura/base/table.h"
 #include "flexura/board/intrinsics_fit.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/intrinsics.h"

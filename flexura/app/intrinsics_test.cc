@@ -21,6 +21,7 @@
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/board/board_target.h"
 #include "flexura/camera/measured_camera.h"
 #include "flexura/camera/zoom.h"

@@ -20,6 +20,7 @@
 #include "flexura/base/bytes.h"
 #include "flexura/base/problems.h"
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/camera/measured_camera.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 namespace {
 
@@ -57,5 +59,17 @@ std::optional<std::string> from_base64(std::string_view text) {
   }
   return data;
 }
+
+Type Codec<Bytes>::type() { return {.kind = Type::Kind::bytes}; }
+
+bool Codec<Bytes>::read(const Node& node, const Spec&, Reader& reader, Bytes& value) {
+  const auto* written = node.as<std::string>();
+  auto data = written == nullptr ? std::nullopt : from_base64(*written);
+  if (!data) return reader.unexpected(node, "bytes in base64"), false;
+  value.data = std::move(*data);
+  return true;
+}
+
+Node Codec<Bytes>::write(const Bytes& value) { return {base64(value.data), {}}; }
 
 }  // namespace flexura

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 
 namespace flexura {
 
@@ -26,15 +26,9 @@ struct Bytes {
 
 template <>
 struct Codec<Bytes> {
-  static Type type() { return {.kind = Type::Kind::bytes}; }
-  static bool read(const Node& node, const Spec&, Reader& reader, Bytes& value) {
-    const auto* written = node.as<std::string>();
-    auto data = written == nullptr ? std::nullopt : from_base64(*written);
-    if (!data) return reader.unexpected(node, "bytes in base64"), false;
-    value.data = std::move(*data);
-    return true;
-  }
-  static Node write(const Bytes& value) { return {base64(value.data), {}}; }
+  static Type type();
+  static bool read(const Node& node, const Spec& spec, Reader& reader, Bytes& value);
+  static Node write(const Bytes& value);
 };
 
 }  // namespace flexura

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "flexura/base/field.h"
+#include "flexura/base/fields.h"
+#include "flexura/base/names.h"
 #include "flexura/base/node.h"
 #include "flexura/base/reader.h"
 
@@ -26,90 +28,91 @@ namespace flexura {
 template <class T>
 struct Codec;
 
+/// How values of one type are read, written and described, by their addresses.
+struct ValueCodec {
+  bool (*read)(const Node& node, const Spec& spec, Reader& reader, void* value);
+  Node (*write)(const void* value);
+  Type (*type)();
+};
+
+/// The one of a type.
+template <class T>
+inline constexpr ValueCodec codec_of = {
+    [](const Node& node, const Spec& spec, Reader& reader, void* value) {
+      return Codec<T>::read(node, spec, reader, *static_cast<T*>(value));
+    },
+    [](const void* value) { return Codec<T>::write(*static_cast<const T*>(value)); },
+    [] { return Codec<T>::type(); }};
+
+/// A table of fields without its struct's type: what is the same for all, compiled once. Values are addresses
+/// of the struct.
+class AnyTable {
+ public:
+  [[nodiscard]] const TableInfo& info() const { return info_; }
+
+ protected:
+  AnyTable(std::string name, std::string meaning);
+
+  /// A field `offset` bytes into the struct; `default_value` is the address of the member of a default
+  /// struct.
+  void add(std::string name, std::size_t offset, const ValueCodec& codec, const void* default_value,
+           Spec spec);
+  void add_check(std::function<void(const void*, Reader&)> rule) { checks_.push_back(std::move(rule)); }
+  bool read_at(const Node& node, Reader& reader, void* value, std::string_view tag) const;
+  [[nodiscard]] Node write_at(const void* value) const;
+
+ private:
+  struct Binding {
+    std::size_t offset;
+    const ValueCodec* codec;
+  };
+  TableInfo info_;
+  std::vector<Binding> bindings_;
+  std::vector<std::function<void(const void*, Reader&)>> checks_;
+};
+
 /// The table of fields of a struct: each member's name, unit, range, default and meaning, said once. From it
 /// come the typed reader, the errors, the writer, the schema and the reference page.
 ///
 /// A struct S has a table when `const Table<S>& fields_of(const S*)` is found beside it. Defaults are the
 /// members of a default-constructed S.
 template <class S>
-class Table {
+class Table : public AnyTable {
  public:
   /// `name`: the text under "kind" where this is one of several tables. `meaning`: a sentence for the
   /// reference.
-  Table(std::string name, std::string meaning) {
-    info_.name = std::move(name), info_.meaning = std::move(meaning);
-  }
+  Table(std::string name, std::string meaning) : AnyTable(std::move(name), std::move(meaning)) {}
 
   /// Adds a field that fills `member`.
   template <class M>
   Table& field(std::string name, M S::* member, Spec spec) {
-    FieldInfo info{std::move(name), Codec<M>::type(), std::move(spec), {}};
-    if (!info.spec.required) {
-      const Node written = Codec<M>::write(S{}.*member);
-      info.default_text = info.spec.default_text.empty() ? written.literal() : info.spec.default_text;
-    }
-    info_.fields.push_back(std::move(info));
-    bindings_.push_back({[member](const Node& node, const Spec& s, Reader& reader, S& value) {
-                           return Codec<M>::read(node, s, reader, value.*member);
-                         },
-                         [member](const S& value) { return Codec<M>::write(value.*member); }});
+    const S& value = defaults();
+    const M* field = &(value.*member);
+    const auto offset = reinterpret_cast<const char*>(field) - reinterpret_cast<const char*>(&value);
+    add(std::move(name), static_cast<std::size_t>(offset), codec_of<M>, field, std::move(spec));
     return *this;
   }
 
   /// Adds a check across fields, run when every field was read without a problem; it reports to the reader.
-  Table& check(std::function<void(const S&, Reader&)> rule) {
-    checks_.push_back(std::move(rule));
+  template <std::invocable<const S&, Reader&> Rule>
+  Table& check(Rule rule) {
+    add_check([rule](const void* value, Reader& reader) { rule(*static_cast<const S*>(value), reader); });
     return *this;
   }
 
-  [[nodiscard]] const TableInfo& info() const { return info_; }
-
   /// Fills `value` from a table; false when a problem was reported.
   bool read(const Node& node, Reader& reader, S& value, std::string_view tag = {}) const {
-    const std::size_t problems_before = reader.problems().size();
-    const std::vector<FoundField> found = find_fields(node, info_, reader, tag);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i].member == nullptr) continue;
-      const Node::Member& member = *found[i].member;
-      SourcePosition where = member.where;  // the key's, which problems point at; texts stand behind it
-      if (member.node.where.source == where.source && member.node.where.line == where.line)
-        where.text_column = member.node.where.text_column;
-      const Reader::Scope scope(reader, info_.fields[i].name, member.key, where);
-      reader.spelling = found[i].spelling;
-      bindings_[i].read(found[i].member->node, info_.fields[i].spec, reader, value);
-      reader.spelling = {"", 1.0, ""};
-    }
-    if (reader.problems().size() == problems_before) {
-      for (const auto& rule : checks_) rule(value, reader);
-    }
-    return reader.problems().size() == problems_before;
+    return read_at(node, reader, &value, tag);
   }
 
-  /// Every field that says something, in the table's order and in base units.
-  [[nodiscard]] Node write(const S& value) const {
-    Node::Table members;
-    for (std::size_t i = 0; i < bindings_.size(); ++i) {
-      Node node = bindings_[i].write(value);
-      if (!says_nothing(node, info_.fields[i].spec))
-        members.push_back({info_.fields[i].name, {}, std::move(node)});
-    }
-    return {std::move(members), {}};
-  }
+  /// Every field that has something to write, in the table's order and in base units.
+  [[nodiscard]] Node write(const S& value) const { return write_at(&value); }
 
  private:
-  // An array that a file may not leave empty is so when the file leaves it out.
-  static bool says_nothing(const Node& node, const Spec& spec) {
-    const auto* entries = node.as<Node::Array>();
-    return node.empty() || (entries != nullptr && entries->empty() && spec.count.min > 0);
+  static const S& defaults() {
+    static const S value{};
+    return value;
   }
-
-  struct Binding {
-    std::function<bool(const Node&, const Spec&, Reader&, S&)> read;
-    std::function<Node(const S&)> write;
-  };
-  TableInfo info_;
-  std::vector<Binding> bindings_;
-  std::vector<std::function<void(const S&, Reader&)>> checks_;
 };
 
 /// Reads a whole document as an S; throws InputError with every problem found.
@@ -125,16 +128,6 @@ template <class S>
 
 template <class T>
 concept HasFields = requires(const T* null) { fields_of(null); };
-
-/// An enum with `names_of(const E*)`, a vector of its values' names in the order of their numbers from 0.
-template <class E>
-concept HasNames = std::is_enum_v<E> && requires(const E* null) { names_of(null); };
-
-/// Of one of its values, which it has.
-template <HasNames E>
-[[nodiscard]] const std::string& name_of(E value) {
-  return names_of(static_cast<const E*>(nullptr))[static_cast<std::size_t>(value)];
-}
 
 template <>
 struct Codec<double> {

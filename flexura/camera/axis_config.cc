@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexura/camera/axis_fields.h"
+
 namespace flexura {
 
 double commandable(const AxisConfig& axis, double position) {

@@ -8,6 +8,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "flexura/base/table.h"
+#include "flexura/camera/axis_fields.h"
+
 namespace flexura {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
 #include "tests/support/cameras.h"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "flexura/base/degree.h"
+#include "flexura/camera/axis_fields.h"
 
 namespace flexura {
 namespace {

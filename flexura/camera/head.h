@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/axis_config.h"
 #include "flexura/camera/zoom.h"
 #include "flexura/math/pose.h"

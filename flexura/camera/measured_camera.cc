@@ -10,6 +10,7 @@
 #include <memory>
 #include <variant>
 
+#include "flexura/base/table.h"
 #include "flexura/camera/lens_ranges.h"
 
 namespace flexura {

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/camera/view.h"
 #include "flexura/math/pose.h"

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 namespace {
 

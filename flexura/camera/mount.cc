@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/camera/axis_fields.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/axis_config.h"
 #include "flexura/math/pose.h"
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 namespace {
 

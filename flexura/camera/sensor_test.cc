@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "flexura/base/table.h"
 #include "flexura/camera/lens_ranges.h"
 
 namespace flexura {

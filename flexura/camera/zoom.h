@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/intrinsics.h"
 #include "flexura/math/monotone_cubic.h"
 

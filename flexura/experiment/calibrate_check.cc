@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/reader.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/camera_names.h"

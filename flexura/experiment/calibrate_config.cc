@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/table.h"
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/etalon_figure.h"
 #include "flexura/experiment/camera_names.h"

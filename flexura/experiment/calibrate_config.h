@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_hands.h"
 #include "flexura/calibrate/rig_prior.h"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/kinematics/spatial.h"

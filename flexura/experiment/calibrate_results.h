@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/fields.h"
 #include "flexura/base/node.h"
-#include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_task.h"
 #include "flexura/report/image_picture.h"
 #include "flexura/report/report.h"

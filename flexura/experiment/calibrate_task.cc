@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/names.h"
 #include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/commanded_motion.h"
 #include "flexura/experiment/ideal_picture.h"

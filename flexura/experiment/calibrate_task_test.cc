@@ -22,6 +22,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/base/progress.h"
+#include "flexura/base/table.h"
 #include "flexura/calibrate/rig_session_plan.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/messages.h"

@@ -13,6 +13,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/calibrate/arcs_loop.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/messages.h"

@@ -1,3 +1,4 @@
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 
 namespace flexura {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "flexura/base/reader.h"
+
 namespace flexura {
 namespace {
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"

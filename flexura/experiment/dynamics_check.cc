@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/reader.h"
 #include "flexura/experiment/dynamics_plant.h"
 #include "flexura/experiment/dynamics_task_config.h"
 #include "flexura/kinematics/shape.h"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "flexura/base/degree.h"
+#include "flexura/base/node.h"
 #include "flexura/report/chart.h"
 
 namespace flexura {

@@ -1,5 +1,6 @@
 #include "flexura/experiment/dynamics_task_config.h"
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/shape_fields.h"
 
 namespace flexura {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/control/angle_measurement.h"
 #include "flexura/control/angle_shapes.h"
 #include "flexura/control/driven_law.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/study/study_config.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/experiment/task_config.h"
 #include "flexura/kinematics/curves.h"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/schedule.h"

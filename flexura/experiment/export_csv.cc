@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/results_log.h"

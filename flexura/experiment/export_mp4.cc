@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/messages.h"

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/recorder.h"
 #include "flexura/experiment/results.h"

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/kinematics/shape.h"
 
 namespace flexura {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 
 const Table<TimeMessage>& fields_of(const TimeMessage*) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "flexura/base/bytes.h"
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
 

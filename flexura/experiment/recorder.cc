@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/picture/image_file.h"

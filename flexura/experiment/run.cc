@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/node.h"
 #include "flexura/base/version.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/calibrate_results.h"

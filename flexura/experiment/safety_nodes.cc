@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/node.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/safety/violation_groups.h"
 

@@ -1,5 +1,7 @@
 #include "flexura/experiment/scene_messages.h"
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 
 const Table<DurationMessage>& fields_of(const DurationMessage*) {

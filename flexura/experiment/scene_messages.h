@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/experiment/messages.h"
 
 // What stands there and where, for programs that draw logs: laid out as the foxglove.* schemas have it.

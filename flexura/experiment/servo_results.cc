@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/photograph.h"

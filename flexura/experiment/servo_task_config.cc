@@ -7,6 +7,7 @@
 #include <exception>
 #include <utility>
 
+#include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/experiment/camera_names.h"

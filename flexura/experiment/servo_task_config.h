@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/look.h"

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/experiment/results.h"
 #include "flexura/store/csv.h"
 #include "flexura/store/text_file.h"

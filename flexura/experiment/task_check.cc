@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexura/base/reader.h"
 #include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/task_config.h"
 #include "flexura/kinematics/expression.h"

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/shape_fields.h"
 
 namespace flexura {

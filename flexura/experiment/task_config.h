@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/dynamics_task_config.h"
 #include "flexura/experiment/servo_target.h"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "flexura/base/reader.h"
 #include "flexura/kinematics/planar.h"
 
 namespace flexura {

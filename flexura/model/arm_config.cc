@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "flexura/base/table.h"
 #include "flexura/math/arrays.h"
 
 namespace flexura {

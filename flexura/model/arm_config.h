@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/field.h"
+#include "flexura/base/fields.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/look.h"
 

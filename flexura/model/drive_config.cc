@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexura/base/table.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {

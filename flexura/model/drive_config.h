@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive.h"
 

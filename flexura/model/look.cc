@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "flexura/base/table.h"
 #include "flexura/model/ranges.h"
 
 namespace flexura {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/model/arm.h"
 
 namespace flexura {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexura/base/table.h"
 #include "flexura/math/arrays.h"
 #include "flexura/model/ranges.h"
 

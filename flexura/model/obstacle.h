@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 
 namespace flexura {
 

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <string>
 
+#include "flexura/base/table.h"
 #include "flexura/math/arrays.h"
 #include "flexura/model/ranges.h"
 

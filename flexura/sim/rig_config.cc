@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "flexura/base/reader.h"
 #include "flexura/base/source.h"
 #include "flexura/base/unit.h"
 #include "flexura/kinematics/shape.h"

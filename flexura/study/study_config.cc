@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
 #include "flexura/camera/lens_ranges.h"
 #include "flexura/study/study_view.h"

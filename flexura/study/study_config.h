@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/field.h"
+#include "flexura/base/fields.h"
 #include "flexura/camera/camera_config.h"
 
 namespace flexura {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/model/backbone.h"

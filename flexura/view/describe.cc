@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/render/scene_maker.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/fields.h"
 #include "flexura/base/node.h"
-#include "flexura/base/table.h"
 #include "flexura/math/pose.h"
 #include "flexura/view/viewed_rig.h"
 

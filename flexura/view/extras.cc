@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "flexura/base/node.h"
 #include "flexura/store/json.h"
 #include "flexura/view/describe.h"
 

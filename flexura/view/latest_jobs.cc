@@ -3,6 +3,8 @@
 #include <exception>
 #include <utility>
 
+#include "flexura/base/node.h"
+
 namespace flexura {
 
 void LatestJobs::ask(const Key& key, Job job, Reply reply) {

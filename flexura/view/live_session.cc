@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/experiment/results.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "flexura/base/problems.h"
+#include "flexura/base/reader.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/kinematics/tendons.h"

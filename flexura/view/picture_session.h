@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "flexura/base/node.h"
 #include "flexura/view/background.h"
 #include "flexura/view/image_streams.h"
 #include "flexura/view/latest_jobs.h"

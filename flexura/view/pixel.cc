@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/base/node.h"
 #include "flexura/render/truth.h"
 
 namespace flexura {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "flexura/base/source.h"
+#include "flexura/base/table.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/results_log.h"

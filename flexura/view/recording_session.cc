@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/results.h"
 #include "flexura/picture/image_file.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flexura/base/problems.h"
+#include "flexura/base/table.h"
 #include "flexura/store/json.h"
 #include "flexura/view/seen_arm.h"
 

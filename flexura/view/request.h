@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/base/table.h"
+#include "flexura/base/fields.h"
 #include "flexura/model/arm_config.h"
 
 // What clients ask (docs/viewer-protocol.md, "From the page").

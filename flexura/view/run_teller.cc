@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/store/json.h"
 #include "flexura/view/extras.h"

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "flexura/base/image.h"
+#include "flexura/base/node.h"
 #include "flexura/estimate/picture_sighting.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_hint.h"

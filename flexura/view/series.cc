@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/kinematics/spatial.h"

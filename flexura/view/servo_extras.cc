@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/model/backbone.h"
 #include "flexura/servo/servo_error.h"

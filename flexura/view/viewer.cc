@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "flexura/base/table.h"
 #include "flexura/base/version.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"

@@ -23,12 +23,10 @@ Picture read_png_file(std::span<const std::uint8_t> file, std::size_t most_pixel
 }
 
 // The rest of PNG's signature shows what a transfer as text has done to the file: the library says so.
-constexpr std::array known_kinds = {KnownKind{"\x89PNG"sv, read_png_file},
-                                    KnownKind{"\xFF\xD8\xFF"sv, read_jpeg},
-                                    KnownKind{"II*\0"sv, read_tiff},
-                                    KnownKind{"MM\0*"sv, read_tiff},
-                                    KnownKind{"II+\0"sv, read_tiff},
-                                    KnownKind{"MM\0+"sv, read_tiff}};
+constexpr std::array known_kinds = {
+    KnownKind{"\x89PNG"sv, read_png_file}, KnownKind{"\xFF\xD8\xFF"sv, read_jpeg},
+    KnownKind{"II*\0"sv, read_tiff},       KnownKind{"MM\0*"sv, read_tiff},
+    KnownKind{"II+\0"sv, read_tiff},       KnownKind{"MM\0+"sv, read_tiff}};
 
 bool is_pnm(std::string_view text) {
   constexpr std::string_view blanks = " \t\n\v\f\r"sv;

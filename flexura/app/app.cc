@@ -161,8 +161,7 @@ void add_measure(CLI::App& app, Command& chosen) {
       app.add_subcommand("measure", "Find the arm, its markers, a circle or the etalon in pictures");
   measure
       ->add_option("IMAGE", arguments->images,
-                   "Pictures: PNG, JPEG, JPEG 2000, TIFF, WebP, PNM, PAM, BMP or Sun raster, up to 16 bits, "
-                   "gray or colour")
+                   "Pictures: PNG, JPEG, TIFF or PNM, up to 16 bits, gray or colour")
       ->required();
   measure->add_option("--what", arguments->what, "arm, etalon, circle or markers")
       ->type_name("WHAT")

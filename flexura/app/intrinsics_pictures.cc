@@ -175,6 +175,7 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
 }
 
 std::vector<std::string> pictures_in(const std::string& folder) {
+  // With kinds that are not read: rather an error that names them than a fit of the others alone.
   static const std::vector<std::string> kinds = {".png",  ".jpg",  ".jpeg", ".jp2", ".j2k", ".tif",
                                                  ".tiff", ".webp", ".bmp",  ".dib", ".pbm", ".pgm",
                                                  ".ppm",  ".pnm",  ".pam",  ".ras", ".sr"};

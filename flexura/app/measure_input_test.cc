@@ -129,13 +129,12 @@ TEST(Measure, AnswersSeveralPicturesInLinesAndTellsTheWorstByItsStatus) {
   EXPECT_THROW((void)status({bad}, text), InputError);
 }
 
-TEST(Measure, ReadsARareKindOfFileAndNamesWhatItDoesNotRead) {
+TEST(Measure, ReadsAPlainKindOfFileAndNamesWhatItDoesNotRead) {
   const TemporaryFolder folder;
   const Image<std::uint8_t> image = tube();
-  std::string pam = "P7\nWIDTH " + std::to_string(image.width()) + "\nHEIGHT " +
-                    std::to_string(image.height()) + "\nDEPTH " + std::to_string(image.channels()) +
-                    "\nMAXVAL 255\nENDHDR\n";
-  for (const std::uint8_t value : image.values()) pam += static_cast<char>(value);
+  std::string pnm = (image.channels() == 1 ? "P5 " : "P6 ") + std::to_string(image.width()) + " " +
+                    std::to_string(image.height()) + " 255\n";
+  for (const std::uint8_t value : image.values()) pnm += static_cast<char>(value);
   const auto line_of = [&](const std::string& name, const std::string& bytes) {
     write_new_file(folder.path() / name, bytes);
     MeasureArguments arguments;
@@ -145,11 +144,9 @@ TEST(Measure, ReadsARareKindOfFileAndNamesWhatItDoesNotRead) {
     const std::string line = out.str().substr(0, out.str().find('\n'));
     return line.substr(line.find(',') + 1);  // After the file's name.
   };
-  EXPECT_EQ(line_of("tube.pam", pam), line_of("tube.png", png(image)));
-  EXPECT_EQ(
-      line_of("depth.pfm", "Pf\n1 1\n-1\n0000"),
-      "\"error\":\"the PFM file has floating point values: expected a kind of file with whole ones of 1 to "
-      "16 bits\"}");
+  EXPECT_EQ(line_of("tube.pnm", pnm), line_of("tube.png", png(image)));
+  EXPECT_EQ(line_of("depth.pfm", "Pf\n1 1\n-1\n0000"),
+            "\"error\":\"PFM files are not read: expected PNG, JPEG, TIFF or PNM\"}");
 }
 
 }  // namespace

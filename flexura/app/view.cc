@@ -20,7 +20,6 @@
 #include "embedded/page.h"
 #include "flexura/app/browser.h"
 #include "flexura/app/commands.h"
-#include "flexura/app/kept_token.h"
 #include "flexura/app/stop_signal.h"
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
@@ -86,15 +85,12 @@ std::unique_ptr<ViewServer> serve(const ViewStart& start, const ViewerArguments&
   config.address = arguments.address;
   config.names = arguments.names;
   config.port = arguments.port.value_or(usual_port);
-  // A port that the system chose is another one the next time: nothing would find its token again.
-  if (config.port != 0) config.token = [](std::uint16_t port) { return kept_token(private_folder(), port); };
   try {
     return std::make_unique<ViewServer>(start, config, assets);
   } catch (const std::system_error&) {
     if (arguments.port) throw;
   }
   config.port = 0;
-  config.token = {};
   return std::make_unique<ViewServer>(start, config, assets);
 }
 

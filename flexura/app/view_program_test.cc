@@ -113,31 +113,6 @@ TEST_F(ViewerProgram, RefusesANameByWhichNobodyCanCallIt) {
   }
 }
 
-TEST_F(ViewerProgram, KeepsTheTokenOfAPortWhenItIsStartedAgain) {
-  // What a viewer prints, started once and ended.
-  const auto printed = [this](const std::string& options) {
-    std::filesystem::remove(path("out"));
-    const pid_t child = start("view --no-browser " + options, path("out"));
-    std::string text = told_in(path("out"));
-    kill(child, SIGTERM);
-    EXPECT_EQ(wait(child).status, 0);
-    return text;
-  };
-  std::filesystem::create_directory(path("runtime"));
-  setenv("XDG_RUNTIME_DIR", path("runtime").c_str(), 1);
-  const std::string any = printed("--port 0");
-  EXPECT_FALSE(std::filesystem::exists(path("runtime/flexura")));
-  const std::size_t at = any.find("127.0.0.1:") + 10;
-  const std::string port = any.substr(at, any.find('/', at) - at);
-  const std::string first = printed("--port " + port);
-  EXPECT_NE(first, any);
-  EXPECT_EQ(printed("--port " + port), first);
-  std::filesystem::permissions(path("runtime/flexura"), std::filesystem::perms::others_exec,
-                               std::filesystem::perm_options::add);
-  EXPECT_NE(printed("--port " + port), first);
-  unsetenv("XDG_RUNTIME_DIR");
-}
-
 TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_EQ(run("run " + paper_file + " --out results").status, 0);
   const Ended of_the_log = run("view results/log.mcap --no-browser");

@@ -23,24 +23,19 @@ struct PngConfig {
 /// The picture in a file of any of these kinds, told apart by their first bytes:
 /// - PNG, 1 to 16 bits a value, interlaced or not;
 /// - JPEG of gray, colours or four inks (CMYK, YCCK; inverted, as Adobe began it), progressive too;
-/// - JPEG 2000 (JP2 or the stream alone) of gray, sRGB, sYCC or a palette, 1 to 16 bits a value, without
-///   channels of fewer pixels;
 /// - TIFF (its first page) of gray, RGB or a palette, 1 to 16 bits a value, or of CMYK, YCbCr or CIELab in
 ///   bytes, in strips or tiles, compressed in any way that libtiff reads but JBIG and the JPEG of before
 ///   1995;
-/// - WebP of one picture, always as colours;
-/// - PNM (P1 to P6) and PAM (P7) of gray or RGB;
-/// - BMP of 1, 4, 8, 16, 24 or 32 bits a pixel: plain, in runs (RLE4, RLE8), of bit fields;
-/// - Sun raster of 1, 8, 24 or 32 bits a pixel, in runs or not.
+/// - PNM (P1 to P6).
 ///
 /// One channel for gray, and for a palette of grays alone; three (red, green, blue) for colours. Up to 8 bits
 /// give bytes from 0 to 255; more give words as they stand in the file. Nothing is turned, whatever the file
 /// says of its orientation; a transparent part is as it is coloured, alpha is left out; colour profiles count
-/// for nothing. OpenEXR, Radiance HDR and PFM are refused by their names: their values are floating point.
+/// for nothing. Other common kinds (BMP, WebP, JPEG 2000, OpenEXR, ...) are refused by their names.
 ///
 /// Throws InputError of `name` with one line: of no such kind, cut short, damaged, without pixels or with
 /// more than `most_pixels` (nothing is allocated for those). Writes nothing to standard error, and may be
-/// called by several threads at once. OpenJPEG takes 4 bytes a value meanwhile.
+/// called by several threads at once.
 [[nodiscard]] Picture read_picture(std::span<const std::uint8_t> file, const std::string& name,
                                    std::size_t most_pixels);
 

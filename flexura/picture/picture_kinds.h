@@ -17,11 +17,6 @@ namespace flexura {
 [[nodiscard]] Picture read_jpeg(std::span<const std::uint8_t> file, std::size_t most_pixels);
 [[nodiscard]] Picture read_tiff(std::span<const std::uint8_t> file, std::size_t most_pixels);
 [[nodiscard]] Picture read_pnm(std::span<const std::uint8_t> file, std::size_t most_pixels);
-[[nodiscard]] Picture read_pam(std::span<const std::uint8_t> file, std::size_t most_pixels);
-[[nodiscard]] Picture read_bmp(std::span<const std::uint8_t> file, std::size_t most_pixels);
-[[nodiscard]] Picture read_sun_raster(std::span<const std::uint8_t> file, std::size_t most_pixels);
-[[nodiscard]] Picture read_webp(std::span<const std::uint8_t> file, std::size_t most_pixels);
-[[nodiscard]] Picture read_jpeg2000(std::span<const std::uint8_t> file, std::size_t most_pixels);
 
 /// Throws for a size without pixels, or with more than `most_pixels`. To be asked before memory is taken: a
 /// small file can claim a huge picture.
@@ -30,18 +25,6 @@ void check_picture_size(std::int64_t width, std::int64_t height, std::size_t mos
 /// What to throw: `kind` is "PNG", ...; `text` is what a library said, of which printable ASCII is kept.
 [[nodiscard]] std::runtime_error cut_short(std::string_view kind);
 [[nodiscard]] std::runtime_error damaged(std::string_view kind, std::string_view text);
-
-/// The number that `size` bytes (4 at most) make from `at` on, the lowest first or the highest first. Throws
-/// cut_short(kind) where the file has fewer.
-[[nodiscard]] std::int64_t low_first_number(std::span<const std::uint8_t> file, std::size_t at,
-                                            std::size_t size, std::string_view kind);
-[[nodiscard]] std::int64_t high_first_number(std::span<const std::uint8_t> file, std::size_t at,
-                                             std::size_t size, std::string_view kind);
-
-/// A value of 0 to `most` as one of 0 to 255.
-[[nodiscard]] constexpr std::uint8_t byte_of(std::int64_t value, std::int64_t most) {
-  return static_cast<std::uint8_t>((value * 255 + most / 2) / most);
-}
 
 /// The colours that a file's indices stand for; those that it does not list are black.
 using Palette = std::array<std::array<std::uint8_t, 3>, 256>;

@@ -1,6 +1,7 @@
 // Every kind of file, made by its own library or by hand, gives the values that were put into it.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -124,24 +125,56 @@ TEST(PictureReader, ReadsEveryPnm) {
   });
 }
 
-TEST(PictureReader, ReadsEveryBmp) {
-  for_random_cases(40, [](TestRandom& random) {
-    for (const bool is_top_first : {false, true}) {
-      const bool is_short = !is_top_first && random.integer(0, 1) == 1;
-      for (const int bits : {1, 4, 8}) {
-        const auto indices =
-            random_values<std::uint8_t>(random, side(random), side(random), 1, (1 << bits) - 1);
-        for (const bool is_gray : {false, true}) {
-          const Colors colors = random_colors(random, bits, is_gray);
-          EXPECT_EQ(read_bytes(bmp_file(indices, {bits, is_top_first, is_short, colors})),
-                    colored(indices, colors, is_gray));
-        }
+TEST(PictureReader, ReadsEveryTiffOfMoreThanEightBits) {
+  for_random_cases(30, [](TestRandom& random) {
+    for (const int bits : {10, 12, 14})
+      for (const int channels : {1, 3, 4}) {
+        TiffForm form{.bits = bits, .photometric = channels == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB};
+        form.tile = random.integer(0, 1) * 16, form.rows = random.integer(1, 50);
+        form.is_separate = random.integer(0, 1) == 1, form.is_high_first = random.integer(0, 1) == 1;
+        const auto words =
+            random_values<std::uint16_t>(random, side(random), side(random), channels, (1 << bits) - 1);
+        EXPECT_EQ(read_words(tiff_file(words, form)), without_alpha(words)) << bits << " " << channels;
       }
-      const auto colors = random_values<std::uint8_t>(random, side(random), side(random), 3, 255);
-      for (const int bits : {24, 32})
-        EXPECT_EQ(read_bytes(bmp_file(colors, {bits, is_top_first, is_short})), colors);
-    }
   });
+}
+
+TEST(PictureReader, ReadsTheColorsThatLibtiffMixes) {
+  const auto read_one = [](std::initializer_list<std::uint8_t> values, int photometric) {
+    Image<std::uint8_t> image(3, 2, static_cast<int>(values.size()));
+    for (std::size_t i = 0; i < image.values().size(); ++i)
+      image.values()[i] = values.begin()[i % values.size()];
+    const auto colors = read_bytes(tiff_file(image, {.photometric = photometric}));
+    EXPECT_EQ(colors.width(), 3);
+    EXPECT_EQ(colors.height(), 2);
+    return std::array<int, 3>{colors.at(2, 1, 0), colors.at(2, 1, 1), colors.at(2, 1, 2)};
+  };
+  // Inks of 255 are full ones; brightness 76 with these differences is red.
+  EXPECT_EQ(read_one({0, 255, 0, 0}, PHOTOMETRIC_SEPARATED), (std::array<int, 3>{255, 0, 255}));
+  EXPECT_EQ(read_one({0, 0, 0, 255}, PHOTOMETRIC_SEPARATED), (std::array<int, 3>{0, 0, 0}));
+  const auto red = read_one({76, 85, 255}, PHOTOMETRIC_YCBCR);
+  EXPECT_NEAR(red[0], 254, 2);
+  EXPECT_NEAR(red[1], 0, 2);
+  // Without a profile CIELab's white is a screen's, not quite 255.
+  for (const int value : read_one({255, 0, 0}, PHOTOMETRIC_CIELAB)) EXPECT_GT(value, 200);
+  for (const int value : read_one({0, 0, 0}, PHOTOMETRIC_CIELAB)) EXPECT_LT(value, 5);
+}
+
+// Inks stand inverted in files: 255 for none.
+TEST(PictureReader, ReadsTheInksOfAJpegNearly) {
+  for (const bool is_luma : {false, true})
+    for (const bool is_progressive : {false, true}) {
+      Image<std::uint8_t> inks(45, 33, 4, 255);
+      Image<std::uint8_t> expected(45, 33, 3);
+      for (int v = 0; v < inks.height(); ++v)
+        for (int u = 0; u < inks.width(); ++u)
+          for (int c = 0; c < 3; ++c) {
+            inks.at(u, v, c) = static_cast<std::uint8_t>(60 + 3 * u + v + 10 * c);
+            inks.at(u, v, 3) = static_cast<std::uint8_t>(255 - 3 * v);
+            expected.at(u, v, c) = static_cast<std::uint8_t>(inks.at(u, v, c) * inks.at(u, v, 3) / 255);
+          }
+      EXPECT_LT(mean_difference(read_bytes(jpeg_file(inks, is_progressive, is_luma)), expected), 4);
+    }
 }
 
 }  // namespace

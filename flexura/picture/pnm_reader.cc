@@ -81,6 +81,11 @@ PnmHeader read_header(std::uint8_t kind, PnmText& text, std::size_t most_pixels)
   return header;
 }
 
+// A value of 0 to `most` as one of 0 to 255.
+std::uint8_t byte_of(std::int64_t value, std::int64_t most) {
+  return static_cast<std::uint8_t>((value * 255 + most / 2) / most);
+}
+
 // `next` gives value after value.
 template <typename Value, typename Next>
 Image<Value> image_of(const PnmHeader& header, Next&& next) {

@@ -16,7 +16,7 @@ constexpr std::string_view page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
     "'self'; font-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-constexpr std::array<std::pair<int, std::string_view>, 20> phrases = {{
+constexpr std::array<std::pair<int, std::string_view>, 17> phrases = {{
     {101, "Switching Protocols"},
     {200, "OK"},
     {204, "No Content"},
@@ -27,14 +27,11 @@ constexpr std::array<std::pair<int, std::string_view>, 20> phrases = {{
     {405, "Method Not Allowed"},
     {408, "Request Timeout"},
     {409, "Conflict"},
-    {411, "Length Required"},
     {413, "Content Too Large"},
-    {417, "Expectation Failed"},
     {421, "Misdirected Request"},
     {426, "Upgrade Required"},
     {431, "Request Header Fields Too Large"},
     {500, "Internal Server Error"},
-    {501, "Not Implemented"},
     {503, "Service Unavailable"},
     {505, "HTTP Version Not Supported"},
 }};

@@ -70,11 +70,8 @@ bool is_loopback(std::string_view address) { return address.starts_with("127.") 
 
 }  // namespace
 
-Gate::Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token, std::string ticket)
-    : port_(port),
-      token_(std::move(token)),
-      ticket_(std::move(ticket)),
-      cookie_name_("flexura_" + std::to_string(port)) {
+Gate::Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token)
+    : port_(port), token_(std::move(token)) {
   for (const std::string& name : names) hosts_.push_back(with_port(name, port));
 }
 
@@ -89,29 +86,23 @@ bool Gate::knows_origin(std::string_view origin, std::string_view local) const {
   return origin.starts_with(scheme) && knows_host(origin.substr(scheme.size()), local);
 }
 
-bool Gate::has_bearer(const RequestHead& head) const {
-  const std::string* value = head.find("authorization");
-  constexpr std::string_view scheme = "bearer ";
-  if (value == nullptr || in_lower_case(value->substr(0, scheme.size())) != scheme) return false;
-  return equal_in_constant_time(trimmed(std::string_view(*value).substr(scheme.size())), token_);
-}
-
 bool Gate::has_token(const RequestHead& head) const {
-  bool found = has_bearer(head);
+  bool found = false;
+  if (const std::string* value = head.find("authorization")) {
+    constexpr std::string_view scheme = "bearer ";
+    found = in_lower_case(value->substr(0, scheme.size())) == scheme &&
+            equal_in_constant_time(trimmed(std::string_view(*value).substr(scheme.size())), token_);
+  }
   const std::string* value = head.find("cookie");
   for (std::string_view rest = value == nullptr ? std::string_view() : *value; !rest.empty();) {
     const std::string_view pair = trimmed(rest.substr(0, rest.find(';')));
     rest.remove_prefix(std::min(rest.size(), rest.find(';')));
     if (!rest.empty()) rest.remove_prefix(1);
     const std::size_t equals = pair.find('=');
-    if (equals == std::string_view::npos || pair.substr(0, equals) != cookie_name_) continue;
-    found = equal_in_constant_time(pair.substr(equals + 1), ticket_) || found;
+    if (equals == std::string_view::npos) continue;
+    found = equal_in_constant_time(pair.substr(equals + 1), token_) || found;
   }
   return found;
-}
-
-std::string Gate::cookie() const {
-  return cookie_name_ + '=' + ticket_ + "; Path=/; HttpOnly; SameSite=Strict";
 }
 
 bool is_host(std::string_view text) {

@@ -13,8 +13,7 @@ namespace flexura {
 class Gate {
  public:
   /// `names`: further hosts, each with this port where it has none of its own ("name", "name:port").
-  /// `ticket`: the secret in the cookie, another than the token, which may outlive this gate.
-  Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token, std::string ticket);
+  Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token);
 
   /// Whether a Host header names this server; `local` is the address at which the connection came in, without
   /// port, for which "localhost" is a name where it is loopback. Browsers that were lured here by a name of
@@ -23,20 +22,15 @@ class Gate {
   /// Whether an Origin header is a page of this server. It is held against the list and not against Host: the
   /// port counts, for cookies are shared between ports.
   [[nodiscard]] bool knows_origin(std::string_view origin, std::string_view local) const;
-  /// Whether the request has the token in its Authorization header.
-  [[nodiscard]] bool has_bearer(const RequestHead& head) const;
-  /// The same, or the ticket in the cookie.
+  /// Whether the request shows the token: "Bearer TOKEN" in its Authorization header, or a cookie of any
+  /// name whose value it is.
   [[nodiscard]] bool has_token(const RequestHead& head) const;
-  /// The value of Set-Cookie for one who has shown the token.
-  [[nodiscard]] std::string cookie() const;
   [[nodiscard]] const std::string& token() const { return token_; }
 
  private:
   std::uint16_t port_;
   std::vector<std::string> hosts_;  // "name:port" in lower case.
   std::string token_;
-  std::string ticket_;
-  std::string cookie_name_;
 };
 
 /// Whether a browser can call a server so: a name of letters, digits, - and _ between single dots, or an IP

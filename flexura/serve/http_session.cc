@@ -35,19 +35,17 @@ HttpSession::HttpSession(const Site& site, std::string local) : site_(&site), lo
 void HttpSession::feed(std::string_view bytes) { buffer_ += bytes; }
 
 Step HttpSession::next() {
-  if (!head_) {
-    if (const int status = read_head(); status != 0) {
-      last_ = true;
-      return refusal(status, {}, last_);
-    }
+  std::optional<RequestHead> head;
+  if (const int status = read_head(&head); status != 0) {
+    last_ = true;
+    return refusal(status, {}, last_);
   }
-  if (!head_ || !read_body()) return ReadMore{};
-  const RequestHead head = *std::exchange(head_, std::nullopt);
-  last_ = !head.keep_alive;
-  return decide(head);
+  if (!head) return ReadMore{};
+  last_ = !head->keep_alive;
+  return decide(*head);
 }
 
-int HttpSession::read_head() {
+int HttpSession::read_head(std::optional<RequestHead>* head) {
   const std::size_t end = buffer_.find(end_of_head, looked_);
   const std::size_t length = end == std::string::npos ? buffer_.size() : end + end_of_head.size();
   if (length > site_->longest_header) return 431;
@@ -59,16 +57,8 @@ int HttpSession::read_head() {
   buffer_.erase(0, length);
   looked_ = 0;
   if (const auto* refused = std::get_if<Refusal>(&parsed)) return refused->status;
-  head_ = std::get<RequestHead>(std::move(parsed));
-  body_left_ = head_->body;
-  return body_left_ > site_->longest_body ? 413 : 0;
-}
-
-bool HttpSession::read_body() {
-  const std::size_t count = std::min(body_left_, buffer_.size());
-  buffer_.erase(0, count);
-  body_left_ -= count;
-  return body_left_ == 0;
+  *head = std::get<RequestHead>(std::move(parsed));
+  return 0;
 }
 
 Step HttpSession::decide(const RequestHead& head) const {
@@ -80,28 +70,11 @@ Step HttpSession::decide(const RequestHead& head) const {
   if (!target) return refusal(400, {}, last_);
   // Assets are found by the path as it came: there is one way to spell it.
   const std::string_view path = std::string_view(head.target).substr(0, head.target.find('?'));
-  if (path == "/session") return session(head);
   if (head.method != "GET") return refusal(405, "Allow: GET\r\n", last_);
   const auto asset = std::ranges::find(site_->assets, path == "/" ? "/index.html" : path, &Asset::path);
   if (asset != site_->assets.end()) return page(*asset);
   if (path == "/" || target->path.starts_with("/assets/")) return refusal(404, {}, last_);
   return secret(head, path);
-}
-
-Step HttpSession::session(const RequestHead& head) const {
-  if (head.method != "POST") return refusal(405, "Allow: POST\r\n", last_);
-  if (!site_->gate.has_bearer(head)) return refusal(401, "WWW-Authenticate: Bearer\r\n", last_);
-  const std::string cookie = "Set-Cookie: " + site_->gate.cookie() + "\r\n";
-  Answer answer;
-  answer.head = format_head({.status = 204,
-                             .content_type = {},
-                             .length = 0,
-                             .policy = {},
-                             .cache = "no-store",
-                             .more = cookie,
-                             .last = last_});
-  answer.last = last_;
-  return answer;
 }
 
 Step HttpSession::secret(const RequestHead& head, std::string_view path) const {

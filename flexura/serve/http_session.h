@@ -19,7 +19,6 @@ struct Site {
   Gate gate;
   std::span<const Asset> assets;
   std::size_t longest_header = std::size_t{16} * 1024;
-  std::size_t longest_body = std::size_t{256} * 1024;
 };
 
 /// What a connection is to do next.
@@ -35,8 +34,7 @@ struct Upgrade {
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
 /// One HTTP connection without its socket: bytes go in, what to do next comes out. Requests that came
-/// together are answered one after the other; bodies are read over, for no request has one that says
-/// anything.
+/// together are answered one after the other.
 class HttpSession {
  public:
   /// `local`: the address at which the connection came in, without its port.
@@ -52,16 +50,14 @@ class HttpSession {
   /// To an Upgrade that cannot be.
   [[nodiscard]] Answer refuse(int status) const;
   /// Whether a request has begun to come.
-  [[nodiscard]] bool begun() const { return head_.has_value() || !buffer_.empty(); }
+  [[nodiscard]] bool begun() const { return !buffer_.empty(); }
   /// The bytes it holds.
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
  private:
-  /// 0 or the status of a refusal; without a head_ then, more is to be read.
-  int read_head();
-  bool read_body();
+  /// 0 or the status of a refusal; without a `head` then, more is to be read.
+  int read_head(std::optional<RequestHead>* head);
   [[nodiscard]] Step decide(const RequestHead& head) const;
-  [[nodiscard]] Step session(const RequestHead& head) const;
   [[nodiscard]] Step secret(const RequestHead& head, std::string_view path) const;
   [[nodiscard]] Step upgrade(const RequestHead& head) const;
   [[nodiscard]] Answer page(const Asset& asset) const;
@@ -70,9 +66,7 @@ class HttpSession {
   std::string local_;
   std::string buffer_;
   std::size_t looked_ = 0;  // So far into buffer_ there is no end of a head.
-  std::optional<RequestHead> head_;
-  std::size_t body_left_ = 0;
-  bool last_ = false;  // The request being answered is the last.
+  bool last_ = false;       // The request being answered is the last.
 };
 
 }  // namespace flexura

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
 namespace flexura {
@@ -10,10 +9,9 @@ namespace flexura {
 namespace {
 
 // A second one of these could be read by another than the first.
-constexpr std::array<std::string_view, 12> single_fields = {
-    "host",           "origin",       "authorization",     "cookie",
-    "content-length", "expect",       "transfer-encoding", "sec-websocket-key",
-    "sec-fetch-site", "content-type", "content-encoding",  "sec-websocket-version"};
+constexpr std::array<std::string_view, 8> single_fields = {
+    "host",           "origin",         "authorization",     "cookie",
+    "content-length", "sec-fetch-site", "sec-websocket-key", "sec-websocket-version"};
 
 bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -71,18 +69,9 @@ int parse_field(std::string_view line, RequestHead& head) {
   return 0;
 }
 
-/// How long the body is; 0 or the status that refuses it.
-int parse_framing(RequestHead& head) {
+bool has_body(const RequestHead& head) {
   const std::string* length = head.find("content-length");
-  if (const std::string* encoding = head.find("transfer-encoding")) {
-    if (length != nullptr || head.minor == 0) return 400;
-    return in_lower_case(*encoding) == "chunked" ? 411 : 501;
-  }
-  if (head.find("expect") != nullptr) return 417;
-  if (length == nullptr) return 0;
-  if (length->empty() || length->find_first_not_of("0123456789") != std::string::npos) return 400;
-  const auto [end, error] = std::from_chars(length->data(), length->data() + length->size(), head.body);
-  return error == std::errc() ? 0 : 413;
+  return head.find("transfer-encoding") != nullptr || (length != nullptr && *length != "0");
 }
 
 }  // namespace
@@ -107,7 +96,7 @@ std::variant<RequestHead, Refusal> parse_request_head(std::string_view text) {
   int status = parse_request_line(take(text, "\r\n"), head);
   while (status == 0 && !text.empty()) status = parse_field(take(text, "\r\n"), head);
   if (status == 0 && head.minor == 1 && head.find("host") == nullptr) status = 400;
-  if (status == 0) status = parse_framing(head);
+  if (status == 0 && has_body(head)) status = 413;
   if (status != 0) return Refusal{status};
   head.keep_alive = head.minor == 1 && !head.lists("connection", "close");
   return head;

@@ -20,7 +20,6 @@ struct RequestHead {
   std::string target;  ///< As it came.
   int minor = 1;       ///< Of HTTP/1.minor.
   std::vector<Field> fields;
-  std::size_t body = 0;     ///< Bytes that follow the head.
   bool keep_alive = false;  ///< Whether the client wants the connection to go on.
 
   /// The value of a field, by its name in lower case; null without. Of the fields that decide something there
@@ -37,8 +36,8 @@ struct Refusal {
 
 /// Reads a head, from its first line to its last CRLF, without the empty line. What two readers could
 /// understand differently is refused, where RFC 9112 lets a reader choose: bare line feeds, folded lines,
-/// blanks around a name, a length said twice, two Hosts, both a length and an encoding. Bodies have a length:
-/// chunked ones get 411.
+/// blanks around a name, a length said twice, two Hosts. No request here has a body: one of any length or
+/// encoding gets 413.
 std::variant<RequestHead, Refusal> parse_request_head(std::string_view text);
 
 /// ASCII letters in lower case, whatever the locale.

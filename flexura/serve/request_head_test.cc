@@ -21,14 +21,13 @@ int refusal_of(const std::string& lines, const std::string& first = "GET / HTTP/
 
 TEST(RequestHead, HoldsMethodTargetAndFields) {
   const auto parsed =
-      parse_request_head("POST /a%20b?c HTTP/1.1\r\nHOST:\t a:1 \r\nX-Y: 1,2\r\nContent-Length: 12");
+      parse_request_head("POST /a%20b?c HTTP/1.1\r\nHOST:\t a:1 \r\nX-Y: 1,2\r\nContent-Length: 0");
   const auto& head = std::get<RequestHead>(parsed);
   EXPECT_EQ(head.method, "POST");
   EXPECT_EQ(head.target, "/a%20b?c");
   EXPECT_EQ(*head.find("host"), "a:1");
   EXPECT_EQ(*head.find("x-y"), "1,2");
   EXPECT_EQ(head.find("x"), nullptr);
-  EXPECT_EQ(head.body, 12U);
   EXPECT_TRUE(head.keep_alive);
 }
 
@@ -78,21 +77,17 @@ TEST(RequestHead, NeedsAHostUnlessItIsOld) {
   EXPECT_TRUE(std::holds_alternative<RequestHead>(parse_request_head("GET / HTTP/1.0")));
 }
 
-TEST(RequestHead, RefusesBodiesOfADoubtfulLength) {
-  EXPECT_EQ(refusal_of("Content-Length: 5\r\nTransfer-Encoding: chunked"), 400);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked\r\nContent-Length: 5"), 400);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked", "POST / HTTP/1.0"), 400);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"), 400);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: Chunked"), 411);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: gzip, chunked"), 501);
-  EXPECT_EQ(refusal_of("Transfer-Encoding: xchunked"), 501);
-  EXPECT_EQ(refusal_of("Content-Length: 5\r\nContent-Length: 5"), 400);
-  for (const std::string& length : Texts{"", "+5", "-5", "5,5", "5 5", "0x5", "5.0", "five"}) {
-    EXPECT_EQ(refusal_of("Content-Length: " + length), 400) << length;
+TEST(RequestHead, RefusesBodies) {
+  for (const std::string& lines :
+       Texts{"Content-Length: 5", "Content-Length: ", "Content-Length: +0", "Content-Length: 0,0",
+             "Content-Length: 00", "Content-Length: 99999999999999999999999", "Transfer-Encoding: chunked",
+             "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked", "Transfer-Encoding: gzip",
+             "Content-Length: 0\r\nTransfer-Encoding: chunked"}) {
+    EXPECT_EQ(refusal_of(lines), 413) << lines;
   }
-  EXPECT_EQ(refusal_of("Content-Length: 99999999999999999999999"), 413);
-  EXPECT_EQ(refusal_of("Content-Length: 18446744073709551615"), 0);
-  EXPECT_EQ(refusal_of("Expect: 100-continue\r\nContent-Length: 5"), 417);
+  EXPECT_EQ(refusal_of("Transfer-Encoding: chunked", "POST / HTTP/1.0"), 413);
+  EXPECT_EQ(refusal_of("Content-Length: 0\r\nContent-Length: 0"), 400);
+  EXPECT_EQ(refusal_of("Content-Length: 0"), 0);
 }
 
 }  // namespace

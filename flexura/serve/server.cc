@@ -55,9 +55,7 @@ tcp::acceptor Server::Loop::listen(net::io_context& context, const ServerConfig&
 }
 
 Site Server::Loop::make_site(std::span<const Asset> assets) const {
-  std::string token = config_.token ? config_.token(port_) : new_token();
-  return {Gate(port_, config_.names, std::move(token), new_token()), assets, config_.longest_header,
-          config_.longest_body};
+  return {Gate(port_, config_.names, new_token()), assets, config_.longest_header};
 }
 
 std::string Server::Loop::make_url() const {

@@ -17,10 +17,7 @@ struct ServerConfig {
   std::string address = "127.0.0.1";  ///< Of the interface; another than loopback only when someone asks.
   std::uint16_t port = 0;             ///< 0: any that is free.
   std::vector<std::string> names;     ///< Further hosts by which it may be called, beside its own addresses.
-  /// Gives the token for the port that it listens on; a new one where there is nothing here.
-  std::function<std::string(std::uint16_t port)> token = {};
   std::size_t longest_header = std::size_t{16} * 1024;
-  std::size_t longest_body = std::size_t{256} * 1024;
   std::size_t longest_message = std::size_t{64} * 1024;
   std::size_t clients = 8;
   /// Of a client that does not read; one more and it is cut off. From a quarter of them on nothing is read

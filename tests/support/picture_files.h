@@ -239,53 +239,6 @@ std::string tiff_file(const Image<T>& image, const TiffForm& form) {
   return file.bytes;
 }
 
-/// A number of `size` bytes, the lowest first.
-inline std::string low_first(std::int64_t number, int size) {
-  std::string bytes;
-  for (int i = 0; i < size; ++i, number >>= 8) bytes += static_cast<char>(number & 0xFF);
-  return bytes;
-}
-
-struct BmpForm {
-  int bits = 24;
-  bool is_top_first = false;
-  bool is_short = false;  ///< With the header of OS/2.
-  Colors palette = {};
-};
-
-/// Indices (one channel) with a palette, or colours.
-inline std::string bmp_file(const Image<std::uint8_t>& image, const BmpForm& form) {
-  std::string palette, pixels;
-  for (const auto& [red, green, blue] : form.palette) {
-    palette += {static_cast<char>(blue), static_cast<char>(green), static_cast<char>(red)};
-    if (!form.is_short) palette += '\0';
-  }
-  for (int i = 0; i < image.height(); ++i) {
-    const int v = form.is_top_first ? i : image.height() - 1 - i;
-    std::string row;
-    if (form.bits <= 8) row = packed<std::uint8_t>(image.row(v), form.bits);
-    for (int u = 0; form.bits > 8 && u < image.width(); ++u) {
-      for (const int c : {2, 1, 0}) row += static_cast<char>(image.at(u, v, c));
-      if (form.bits == 32) row += '\x7F';
-    }
-    row.resize((row.size() + 3) / 4 * 4);
-    pixels += row;
-  }
-  std::string header;
-  if (form.is_short) {
-    header = low_first(12, 4) + low_first(image.width(), 2) + low_first(image.height(), 2) + low_first(1, 2) +
-             low_first(form.bits, 2);
-  } else {
-    header = low_first(40, 4) + low_first(image.width(), 4) +
-             low_first(form.is_top_first ? -image.height() : image.height(), 4) + low_first(1, 2) +
-             low_first(form.bits, 2) + std::string(16, '\0') +
-             low_first(static_cast<std::int64_t>(form.palette.size()), 4) + std::string(4, '\0');
-  }
-  const auto begin = static_cast<std::int64_t>(14 + header.size() + palette.size());
-  return "BM" + low_first(begin + static_cast<std::int64_t>(pixels.size()), 4) + std::string(4, '\0') +
-         low_first(begin, 4) + header + palette + pixels;
-}
-
 /// P2 or P3 for `is_plain`, else P5 or P6, with a comment.
 template <typename T>
 std::string pnm_file(const Image<T>& image, int most, bool is_plain) {

@@ -11,7 +11,7 @@ import './panels/cameras.css';
 import './plots/plots.css';
 import './timeline/timeline.css';
 import './teach/teach.css';
-import { forget_token, keep_pasted, kept_token, storage_of_tab, take_token } from './connection/address';
+import { cookie_of, pasted_token, take_token } from './connection/address';
 import { bindings_of, is_in_sight } from './keys/bindings';
 import { KeyMap } from './keys/keys';
 import { preferences, theme_now } from './state/preferences';
@@ -19,26 +19,30 @@ import { Viewer } from './state/viewer';
 import { AppContext, make_app } from './ui/app';
 import { Page } from './ui/Page';
 
-const storage = storage_of_tab(() => sessionStorage);
-take_token(location, history, storage);
+let token = take_token(location, history);
 const viewer = new Viewer({
   base: new URL('.', location.href).href,
-  token: () => kept_token(storage),
-  forget: () => forget_token(storage),
+  token: () => token,
+  settle: (tried, is_good) => {
+    if (is_good) document.cookie = cookie_of(tried, location.port);
+    if (tried === token) token = null;
+  },
 });
+const come_in = (with_token: string | null): boolean => {
+  if (with_token === null) return false;
+  token = with_token;
+  void viewer.link.open();
+  return true;
+};
 const app = make_app(viewer, new KeyMap({
   enabled: (binding) => preferences.keys.value && is_in_sight(binding, app.route.value),
 }));
 app.keys.add(...bindings_of(app));
-app.use_token = (text) => {
-  if (!keep_pasted(text, storage)) return false;
-  void viewer.link.open();
-  return true;
-};
+app.use_token = (text) => come_in(pasted_token(text));
 addEventListener('keydown', app.keys.handle);
 const route = (): void => {
   // An address pasted into this very tab changes the hash only.
-  if (take_token(location, history, storage)) void viewer.link.open();
+  come_in(take_token(location, history));
   app.route.value = location.hash === '#/teach' ? 'teach' : 'viewer';
 };
 addEventListener('hashchange', route);

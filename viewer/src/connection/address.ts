@@ -1,64 +1,25 @@
-// The token comes behind the address's #, which never leaves the browser; it is taken out of the address bar at once
-// and kept for this tab only, so that reloading works.
-const key = 'flexura.token';
-/** The one that this tab had before, which may be the right one. */
-const key_before = 'flexura.token.before';
-
-/** What a token is kept in. */
-export type TokenStorage = Pick<Storage, 'getItem' | 'setItem' | 'removeItem'>;
-
-/** This tab's storage; where that is switched off, the page's own memory, which ends with the page. */
-export function storage_of_tab(tab: () => TokenStorage): TokenStorage {
-  try {
-    const storage = tab();
-    storage.getItem(key);
-    return storage;
-  } catch {
-    const kept = new Map<string, string>();
-    return {
-      getItem: (name) => kept.get(name) ?? null,
-      setItem: (name, value) => void kept.set(name, value),
-      removeItem: (name) => void kept.delete(name),
-    };
-  }
-}
+// The token comes behind the address's #, which never leaves the browser; it is taken out of the address bar at once.
+// One that lets in is kept in a cookie, which ends with the browser: so reloading works, and another tab comes in too.
 
 /** Tokens are 128 bits in hexadecimal digits. */
 export function is_token(text: string): boolean {
   return /^[0-9a-fA-F]{32}$/.test(text);
 }
 
-function keep(token: string, storage: TokenStorage): void {
-  const before = storage.getItem(key);
-  if (before !== null && before !== token) storage.setItem(key_before, before);
-  storage.setItem(key, token);
-}
-
-/** Takes `#token=...` out of the address; true when there was one. What is no token is one that lets nobody in. */
-export function take_token(location: Location, history: History, storage: TokenStorage): boolean {
+/** Takes `#token=...` out of the address, also what is no token; null when there is nothing of that. */
+export function take_token(location: Location, history: History): string | null {
   const token = /^#token=(.*)$/.exec(location.hash)?.[1];
-  if (token === undefined) return false;
-  keep(token, storage);
+  if (token === undefined) return null;
   history.replaceState(null, '', location.pathname + location.search);
-  return true;
+  return token;
 }
 
-/** Forgets a token that lets nobody in: the one before counts again, if there was any. */
-export function forget_token(storage: TokenStorage): void {
-  const before = storage.getItem(key_before);
-  storage.removeItem(key_before);
-  if (before === null) storage.removeItem(key);
-  else storage.setItem(key, before);
+/** The token in what someone pasted: the whole address or the digits alone. Null when there is none. */
+export function pasted_token(text: string): string | null {
+  return /(?:^|token=)([0-9a-fA-F]{32})$/.exec(text.trim())?.[1] ?? null;
 }
 
-export function kept_token(storage: TokenStorage): string | null {
-  return storage.getItem(key);
-}
-
-/** Keeps the token in what someone pasted: the whole address or the digits alone. False when there is none. */
-export function keep_pasted(text: string, storage: TokenStorage): boolean {
-  const token = /(?:^|token=)([0-9a-fA-F]{32})$/.exec(text.trim())?.[1];
-  if (!token) return false;
-  keep(token, storage);
-  return true;
+/** For `document.cookie`. Cookies know no ports, but two programs on one host have one each. */
+export function cookie_of(token: string, port: string): string {
+  return `flexura_${port}=${token}; path=/; SameSite=Strict`;
 }

@@ -1,8 +1,10 @@
 // What a person does to the rig, each kind with one request outstanding and only the newest waiting.
 import { signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
+import type { Link } from '../connection/link';
 import type { TipResult, Vector3 } from '../protocol/types';
-import type { Viewer } from './viewer';
+import type { Notices } from './notices';
+import type { Playback } from './playback';
 
 export type ArmCommand = Record<string, unknown>;
 
@@ -15,8 +17,7 @@ export class Commander {
   private is_tip_led = false;
   private readonly axes = new Map<string, Latest<Record<string, unknown>>>();
 
-  constructor(private readonly viewer: Viewer) {
-    const { link, notices } = viewer;
+  constructor(private readonly link: Link, private readonly notices: Notices, private readonly playback: Playback) {
     const told = (_: unknown, error: Error | null): void => {
       if (error) notices.error(error);
     };
@@ -31,14 +32,14 @@ export class Commander {
   }
 
   arm(values: ArmCommand): void {
-    this.viewer.playback.go_live();
+    this.playback.go_live();
     this.forget_tip();
     this.arm_latest.ask(values);
   }
 
   /** The tip is to be there. */
   tip(position: Vector3): void {
-    this.viewer.playback.go_live();
+    this.playback.go_live();
     this.is_tip_led = true;
     this.tip_goal.value = position;
     this.tip_latest.ask(position);
@@ -63,8 +64,8 @@ export class Commander {
     let latest = this.axes.get(key);
     if (!latest) {
       latest = new Latest<Record<string, unknown>>(
-        (all) => this.viewer.link.request(what, all),
-        (_, error) => error && this.viewer.notices.error(error),
+        (all) => this.link.request(what, all),
+        (_, error) => error && this.notices.error(error),
       );
       this.axes.set(key, latest);
     }
@@ -85,10 +86,10 @@ export class Commander {
 
   private async ask(what: string, values: Record<string, unknown> = {}): Promise<boolean> {
     try {
-      await this.viewer.link.request(what, values);
+      await this.link.request(what, values);
       return true;
     } catch (error) {
-      this.viewer.notices.error(error);
+      this.notices.error(error);
       return false;
     }
   }

@@ -77,7 +77,7 @@ export class Viewer implements LinkListener {
       show: (state) => this.show(state),
       failed: (error) => this.notices.error(error),
     });
-    this.commander = new Commander(this);
+    this.commander = new Commander(this.link, this.notices, this.playback);
     this.measured.start(this, preferences.overlays);
     setInterval(() => this.watch_states(), 500);
   }

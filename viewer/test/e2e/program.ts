@@ -9,7 +9,7 @@ export const program = process.env.FLEXURA_PROGRAM;
 export class Program {
   /** What it printed. */
   url = '';
-  /** In which it works, and keeps its secrets. */
+  /** In which it works. */
   readonly folder = mkdtempSync(join(tmpdir(), 'flexura-e2e-'));
   private child: ChildProcess | null = null;
 
@@ -23,7 +23,7 @@ export class Program {
   async start(port = 0): Promise<void> {
     const words = typeof this.what === 'string' ? ['view', this.what] : this.what;
     const child = spawn(program!, [...words, '--no-browser', '--port', String(port)], {
-      cwd: this.folder, env: { ...process.env, XDG_RUNTIME_DIR: this.folder }, stdio: ['ignore', 'pipe', 'inherit'],
+      cwd: this.folder, stdio: ['ignore', 'pipe', 'inherit'],
     });
     this.child = child;
     this.url = await new Promise<string>((resolve, reject) => {

@@ -80,14 +80,16 @@ test('another session starts afresh: nothing of the old one stays', async () => 
   server.tell_all({ type: 'event', time: 1, level: 'error', name: 'old news', text: 'of before' });
   await page.getByRole('tab', { name: 'Events' }).click();
   await until(async () => (await page.locator('.events').textContent())!.includes('old news'));
-  await server.restart(true);
-  await until(async () => (await badge()) === 'live', 12000);
+  await server.restart();
+  await until(async () => (await page.locator('[role="alertdialog"]').count()) > 0, 12000);
+  await page.goto(server.url);
+  await until(async () => (await badge()) === 'live');
   await until(async () => !(await page.locator('.left').textContent())!.includes('old news'));
   expect(await page.locator('[role="status"]').allTextContents().then((all) => all.join())).toContain('started again');
 });
 
-test('a restart with another token is told plainly, and a pasted address lets one in', async () => {
-  await server.restart(false);
+test('a restart brings another token, which is said plainly, and a pasted address lets one in', async () => {
+  await server.restart();
   await until(async () => (await page.locator('[role="alertdialog"]').count()) > 0, 12000);
   expect(await badge()).toBe('lost');
   expect(await page.locator('[role="alertdialog"]').textContent()).toContain('token');
@@ -107,16 +109,17 @@ test('a wrong token in the address ends no session that is good, nor is it kept'
     await page.waitForTimeout(300);
     expect(await badge()).toBe('live');
   }
-  // The token that let it in counts again: the program started anew takes it, and knows the old cookie no more.
-  await page.context().clearCookies();
-  await server.restart(true);
-  await until(async () => (await badge()) === 'live', 12000);
-  expect(await page.locator('[role="alertdialog"]').count()).toBe(0);
-});
-
-test('a reloaded page comes in again', async () => {
   await page.reload();
   await until(async () => (await badge()) === 'live');
+});
+
+test('a reloaded page comes in again, and so does another tab without the token', async () => {
+  await page.reload();
+  await until(async () => (await badge()) === 'live');
+  const other = await page.context().newPage();
+  await other.goto(server.url.replace(/#.*/, ''));
+  await other.waitForSelector('.badge[data-kind="live"]');
+  await other.close();
 });
 
 test('bytes that are no state are told and do no harm', async () => {

@@ -87,11 +87,11 @@ export class FakeServer {
     await new Promise<void>((resolve) => (this.http ? this.http.close(() => resolve()) : resolve()));
   }
 
-  /** As when someone ends the program and starts it again: everything is new, the token too unless it is kept. */
-  async restart(keep_token = false): Promise<void> {
+  /** As when someone ends the program and starts it again: everything is new, the token too. */
+  async restart(): Promise<void> {
     await this.stop();
     this.id = randomBytes(8).toString('hex');
-    if (!keep_token) this.token = randomBytes(16).toString('hex');
+    this.token = randomBytes(16).toString('hex');
     this.session = new FakeSession(this.rig, this.session.mode);
     await this.start();
   }
@@ -114,7 +114,7 @@ export class FakeServer {
 
   private may(request: IncomingMessage): boolean {
     return request.headers.authorization === `Bearer ${this.token}`
-      || (request.headers.cookie ?? '').includes(`flexura_${this.port}=${this.token}`);
+      || (request.headers.cookie ?? '').includes(`=${this.token}`);
   }
 
   private http_request(request: IncomingMessage, response: ServerResponse): void {
@@ -125,11 +125,6 @@ export class FakeServer {
     const end = (status: number, body: string | Buffer = '', type = 'text/plain'): void => {
       response.writeHead(status, { 'Content-Type': type }).end(body);
     };
-    if (pathname === '/session' && request.method === 'POST') {
-      if (request.headers.authorization !== `Bearer ${this.token}`) return end(401);
-      response.setHeader('Set-Cookie', `flexura_${this.port}=${this.token}; HttpOnly; SameSite=Strict; Path=/`);
-      return end(204);
-    }
     const image = /^\/image\/(.+)\.png$/.exec(pathname);
     if (image || pathname === '/series' || pathname === '/report') {
       if (!this.may(request)) return end(401);

@@ -1,64 +1,63 @@
-import { expect, test } from 'vitest';
-import { forget_token, is_token, keep_pasted, kept_token, storage_of_tab, take_token } from '../../src/connection/address';
+import { expect, test, vi } from 'vitest';
+import { cookie_of, is_token, pasted_token, take_token } from '../../src/connection/address';
 import { Backoff } from '../../src/connection/backoff';
+import { enter } from '../../src/connection/entry';
 import { Latest } from '../../src/connection/latest';
 
-function storage(): Storage {
-  const kept = new Map<string, string>();
-  return { getItem: (k: string) => kept.get(k) ?? null, setItem: (k: string, v: string) => void kept.set(k, v), removeItem: (k: string) => void kept.delete(k) } as unknown as Storage;
-}
-
-test('the token leaves the address bar and stays with the tab', () => {
-  const kept = storage();
+test('a token leaves the address bar, also what is none', () => {
   const replaced: string[] = [];
   const history = { replaceState: (_: unknown, __: string, to: string) => replaced.push(to) } as unknown as History;
-  const at = (hash: string): Location => ({ hash, pathname: '/', search: '' }) as Location;
-  expect(take_token(at('#/teach'), history, kept)).toBe(false);
-  expect(take_token(at('#token=00ff00ff'), history, kept)).toBe(true);
-  expect(kept_token(kept)).toBe('00ff00ff');
-  expect(replaced).toEqual(['/']);
-});
-
-test('a token that lets nobody in leaves the address bar too, and the one before counts again', () => {
-  const kept = storage();
-  const replaced: string[] = [];
-  const history = { replaceState: (_: unknown, __: string, to: string) => replaced.push(to) } as unknown as History;
-  const take = (hash: string): boolean => take_token({ hash, pathname: '/', search: '' } as Location, history, kept);
-  expect(take('#token=zz')).toBe(true);
-  expect(take('#token=')).toBe(true);
+  const take = (hash: string): string | null => take_token({ hash, pathname: '/', search: '' } as Location, history);
+  expect(take('#/teach')).toBe(null);
+  expect(replaced).toEqual([]);
+  expect(take('#token=00ff00ff')).toBe('00ff00ff');
+  expect(take('#token=')).toBe('');
   expect(replaced).toEqual(['/', '/']);
-  expect(kept_token(kept)).toBe('');
-  forget_token(kept);
-  forget_token(kept);
-  expect(kept_token(kept)).toBe(null);
-  take('#token=00ff');
-  take('#token=zz');
-  forget_token(kept);
-  expect(kept_token(kept)).toBe('00ff');
 });
 
 test('a pasted address or token is taken, other text is not', () => {
-  const kept = storage();
   const token = 'ab'.repeat(16);
-  expect(keep_pasted(' http://127.0.0.1:8421/#token=' + token + '\n', kept)).toBe(true);
-  expect(kept_token(kept)).toBe(token);
-  expect(keep_pasted(token, kept)).toBe(true);
-  expect(keep_pasted('http://127.0.0.1:8421/', kept)).toBe(false);
-  expect(keep_pasted('', kept)).toBe(false);
-  expect(keep_pasted(token + 'a', kept)).toBe(false);
+  expect(pasted_token(' http://127.0.0.1:8421/#token=' + token + '\n')).toBe(token);
+  expect(pasted_token(token)).toBe(token);
+  for (const other of ['http://127.0.0.1:8421/', '', token + 'a']) expect(pasted_token(other)).toBe(null);
   expect(is_token(token)).toBe(true);
   for (const other of ['', token.slice(1), token + 'a', 'a'.repeat(100000), 'g'.repeat(32)]) expect(is_token(other)).toBe(false);
 });
 
-test('without the tab’s storage the page remembers for itself', () => {
-  const kept = storage_of_tab(() => {
-    throw new DOMException('switched off', 'SecurityError');
+test('the cookie is of one program, and no foreign page has it sent', () => {
+  expect(cookie_of('00ff', '8421')).toBe('flexura_8421=00ff; path=/; SameSite=Strict');
+});
+
+test('a token that lets in is kept, one that does not is forgotten, and the cookie may do all the same', async () => {
+  const good = 'ab'.repeat(16);
+  const wrong = 'cd'.repeat(16);
+  let cookie: string | null = null;
+  const asked: (string | undefined)[] = [];
+  vi.stubGlobal('fetch', (_: URL, { credentials, headers }: RequestInit) => {
+    const header = (headers as Record<string, string> | undefined)?.['Authorization'];
+    asked.push(header ?? credentials);
+    const shown = header?.slice(7) ?? (credentials === 'omit' ? null : cookie);
+    return Promise.resolve({ status: shown === good ? 404 : 401 });
   });
-  const token = 'cd'.repeat(16);
-  expect(keep_pasted(token, kept)).toBe(true);
-  expect(kept_token(kept)).toBe(token);
-  forget_token(kept);
-  expect(kept_token(kept)).toBe(null);
+  const come_with = async (token: string | null): Promise<string> => {
+    asked.length = 0;
+    const settle = (tried: string, is_good: boolean): void => void (is_good && (cookie = tried));
+    return (await enter({ base: 'http://127.0.0.1:1/', token: () => token, settle }, 1000)).kind;
+  };
+  try {
+    expect(await come_with(null)).toBe('refused');
+    expect(await come_with(wrong)).toBe('refused');
+    expect(await come_with('zz')).toBe('refused');
+    expect(asked).toEqual(['same-origin']);
+    expect(await come_with(good)).toBe('in');
+    expect(asked).toEqual([`Bearer ${good}`]);
+    expect(cookie).toBe(good);
+    expect(await come_with(null)).toBe('in');
+    for (const bad of [wrong, 'zz', '']) expect(await come_with(bad)).toBe('in');
+    expect(cookie).toBe(good);
+  } finally {
+    vi.unstubAllGlobals();
+  }
 });
 
 test('attempts come less and less often, up to a limit, and soon again after success', () => {

@@ -94,7 +94,7 @@ test('a recording’s quantities of one group are one plot', () => {
 
 function watched() {
   vi.useFakeTimers();
-  const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null });
+  const viewer = new Viewer({ base: 'http://127.0.0.1:1/', token: () => null, settle: () => {} });
   const session = new FakeSession(spatial_rig());
   const state = (time: number): ArrayBuffer => {
     session.time = time;

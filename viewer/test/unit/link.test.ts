@@ -36,7 +36,7 @@ function connect(token: () => string, patience?: Patience): Link {
     }
   }
   Object.assign(globalThis, { WebSocket: WithToken });
-  link = new Link(listener, { base: `http://127.0.0.1:${server.port}/`, token }, patience);
+  link = new Link(listener, { base: `http://127.0.0.1:${server.port}/`, token, settle: () => {} }, patience);
   void link.open();
   return link;
 }
@@ -70,10 +70,10 @@ test('each request gets its own answer, and a refusal is an error with the serve
   await expect(open.request('dance')).rejects.toBeInstanceOf(RequestError);
 });
 
-test('it comes back by itself after a restart, and sees another session', async () => {
+test('it comes back after a restart with the new token, and sees another session', async () => {
   connect(() => server.token);
   await until(() => seen.hellos.length === 1);
-  await server.restart(true);
+  await server.restart();
   await until(() => seen.hellos.length === 2);
   expect(seen.hellos[0]).not.toBe(seen.hellos[1]);
   expect(seen.closed).toBe(1);
@@ -83,7 +83,7 @@ test('an old token is told as such, and not tried again', async () => {
   const old = server.token;
   const open = connect(() => old);
   await until(() => seen.hellos.length === 1);
-  await server.restart(false);
+  await server.restart();
   await until(() => open.status.value.kind === 'refused');
   expect(open.status.value).toMatchObject({ why: expect.stringMatching(/token/) as string });
 });
@@ -151,8 +151,8 @@ test('what is shown is stale within three seconds of the last word', async () =>
       close(): void {}
     }
     vi.stubGlobal('WebSocket', Silent);
-    vi.stubGlobal('fetch', () => Promise.resolve({ status: 204 }));
-    link = new Link(listener, { base: 'http://127.0.0.1:1/', token: () => 'a'.repeat(32) });
+    vi.stubGlobal('fetch', () => Promise.resolve({ status: 404 }));
+    link = new Link(listener, { base: 'http://127.0.0.1:1/', token: () => 'a'.repeat(32), settle: () => {} });
     await link.open();
     sockets[0].onopen();
     await vi.advanceTimersByTimeAsync(1900);

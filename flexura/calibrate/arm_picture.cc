@@ -63,6 +63,13 @@ MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::v
   return expected_scene(marker_picture(arm, state, markers, view, marked), {});
 }
 
+std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin) {
+  return static_cast<std::size_t>(std::ranges::count_if(scene.markers, [&](const auto& place) {
+    return place && place->pixel.minCoeff() >= margin && place->pixel.x() <= view.width - 1 - margin &&
+           place->pixel.y() <= view.height - 1 - margin;
+  }));
+}
+
 ArmFigure ArmPicture::look(const Picture& picture) {
   const ArmSighting& arm = finder_.find(picture, config_.white);
   ArmFigure look;

@@ -61,6 +61,9 @@ struct SeenArm {
   return expected_markers(arm, state, markers, view, arm);
 }
 
+/// How many of them are inside the picture, so many px from its border at least.
+[[nodiscard]] std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin);
+
 /// Markers and axis points of a look, when it is known which marker is which. `lens` corrects for what a wide
 /// tube shows of itself (vision/backbone_image.h).
 [[nodiscard]] SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,

@@ -81,7 +81,7 @@ SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, con
 }
 
 EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config)
-    : believed_(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
+    : RigEyes(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
 
 bool EtalonEyes::look(std::size_t i, const Picture& picture) {
   const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
@@ -98,8 +98,7 @@ SeenArm EtalonEyes::unkept(const View& /*view*/) const {
 
 SeenArm EtalonEyes::keep(std::size_t stance, std::size_t pose, const RigModel* found) {
   looks_.push_back({stance, pose, last_.sighting});
-  return drawn_etalon(last_.sighting, *config_.etalon,
-                      view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
+  return drawn_etalon(last_.sighting, *config_.etalon, view_of(model(found), stances_.at(stance)));
 }
 
 RigObservations EtalonEyes::observations(const RigModel& model) const {
@@ -115,7 +114,7 @@ RigObservations EtalonEyes::observations(const RigModel& model) const {
 // Which red line is which is told by the rig that was found before or, where that leads nowhere, by the
 // guess; and told again by the rig that is found.
 RigReading EtalonEyes::read(const RigModel* found) const {
-  RigReading reading = read_by(found != nullptr ? *found : believed_);
+  RigReading reading = read_by(model(found));
   if (found != nullptr && !reading.is_whole()) {
     RigReading again = read_by(believed_);
     if (again.found.is_found && (!reading.found.is_found || again.explained > reading.explained))

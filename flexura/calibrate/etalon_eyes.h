@@ -28,16 +28,17 @@ class EtalonEyes : public RigEyes {
   /// All outlive it; the configuration has an etalon.
   EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config);
 
-  std::vector<ArmState>& poses() override { return poses_; }
-  std::vector<RigStance>& stances() override { return stances_; }
-  bool look(std::size_t i, const Picture& picture) override;
-  SeenArm unkept(const View& view) const override;
-  SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override;
   std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
   RigReading read(const RigModel* found) const override;
   RigImage told(const RigModel& model, const RigSight& sight) const override;
 
  private:
+  std::vector<ArmState>& poses() override { return poses_; }
+  std::vector<RigStance>& stances() override { return stances_; }
+  bool look(std::size_t i, const Picture& picture) override;
+  SeenArm unkept(const View& view) const override;
+  SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override;
+
   struct Look {
     std::size_t stance = 0, pose = 0;
     EtalonSighting seen;
@@ -45,7 +46,6 @@ class EtalonEyes : public RigEyes {
   [[nodiscard]] RigObservations observations(const RigModel& model) const;
   [[nodiscard]] RigReading read_by(const RigModel& first) const;
 
-  const RigModel& believed_;
   const RigPrior& prior_;
   const RigSessionConfig& config_;
   EtalonFigure etalon_;

@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "flexura/base/degree.h"
-#include "flexura/calibrate/rig_aim.h"
-#include "flexura/camera/axis_config.h"
 
 namespace flexura {
 namespace {
@@ -38,11 +36,7 @@ LookLoop::LookLoop(const RigPorts& ports, const RigModel& believed, const LoopCo
 LookLoop::Trouble LookLoop::begin() {
   auto trouble = trip_.begin();
   result_.start = stands_ = trip_.start();
-  return trouble;
-}
-
-LookLoop::Trouble LookLoop::look_from_one_side() const {
-  return look_from_one_side(believed_, {start(0), start(1)}, "believed");
+  return trouble ? trouble : look_from_one_side(believed_, stands_, "believed");
 }
 
 LookLoop::Trouble LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
@@ -105,15 +99,39 @@ LookLoop::Trouble LookLoop::go(std::size_t i, const RigStance& stance) {
   return hands_.settle();
 }
 
-RigStance LookLoop::commandable_stance(std::size_t i, const RigStance& stance) const {
-  RigStance drawn = stance;
-  const auto& [pan, tilt, zoom] = cameras_[i].head_axes();
-  drawn.head = {commandable(pan, stance.head.pan), commandable(tilt, stance.head.tilt),
-                commandable(zoom, stance.head.zoom)};
-  for (Eigen::Index j = 0; j < 3; ++j)
-    drawn.stage.offset[j] =
-        commandable(cameras_[i].stage_axes()[static_cast<std::size_t>(j)], stance.stage.offset[j]);
-  return drawn;
+LookLoop::Trouble LookLoop::begin_zoomed(std::size_t i, double zoom, const char* step, const char* why) {
+  RigStance next = stands_[i];
+  next.head.zoom = zoom;
+  next = commandable_stance(i, next);
+  if (stands_there(i, next)) return std::nullopt;
+  decide(i, step, 0, 0, "px", fmt::format(fmt::runtime(why), next.head.zoom));
+  return go(i, next);
+}
+
+LookLoop::Trouble LookLoop::turn_towards(std::size_t i, const char* what,
+                                         const std::optional<Eigen::Vector2d>& seen, double near,
+                                         const Intrinsics& lens, const char* in_vain,
+                                         const std::string& reason) {
+  if (!seen) return fmt::format("the {} is out of view of camera {}: {}", what, name(i), reason);
+  const Eigen::Vector2d off = *seen - Eigen::Vector2d(lens.cx, lens.cy);
+  RigStance next = stands_[i];
+  next.head = turned_towards(next.head, lens, off);
+  next = commandable_stance(i, next);
+  if (off.norm() < near || stands_there(i, next)) return fmt::format(fmt::runtime(in_vain), name(i), reason);
+  decide(i, "into view", off.norm(), 0, "px", "turn towards what is seen: " + reason);
+  return go(i, next);
+}
+
+LookLoop::Trouble LookLoop::go_longer(std::size_t i, const RigStance& stance) {
+  decide(i, "principal point", 0, 0, "px",
+         fmt::format("zoom to {:.5g}, for what stays where it is", stance.head.zoom));
+  return go(i, stance);
+}
+
+RigStance LookLoop::zoomed(std::size_t i, double ratio) const {
+  RigStance next = stands_[i];
+  next.head.zoom = zoom_by(cameras_[i], next.head.zoom, ratio);
+  return commandable_stance(i, next);
 }
 
 bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
@@ -132,8 +150,13 @@ LoopResult LookLoop::finish(const Trouble& trouble) {
   return std::move(result_);
 }
 
-double zoom_by(const Camera& camera, double from, double ratio) {
-  return zoom_at(camera, camera.lens().ratio(from) * ratio);
+std::array<int, 2> best_steps(const std::function<double(int, int)>& cost) {
+  std::array<int, 2> best = {0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (const int a : {0, -1, 1})
+    for (const int b : {0, -1, 1})
+      if (const double value = cost(a, b); value < least) least = value, best = {a, b};
+  return best;
 }
 
 }  // namespace flexura

@@ -124,8 +124,8 @@ TEST(WantedRig, IsOrthogonalWithinHalfAStepOfTheHeads) {
     EXPECT_LE(std::abs(wanted.remainder.angle), 0.51 * step);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_LE(wanted.remainder.aim[i].norm(), 2 * step * 3.2);
-      const HeadState& head = wanted.stances[i].head;
-      EXPECT_EQ(head, commanded_head(model.cameras[i], head));
+      const RigStance& stance = wanted.stances[i];
+      EXPECT_EQ(stance.head, commanded(Camera(model.cameras[i]), stance).head);
     }
   });
 }

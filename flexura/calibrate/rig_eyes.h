@@ -17,21 +17,18 @@ namespace flexura {
 class RigEyes {
  public:
   virtual ~RigEyes() = default;
-  RigEyes() = default;
   RigEyes(const RigEyes&) = delete;
   RigEyes& operator=(const RigEyes&) = delete;
 
-  /// The commanded poses and the stances, as read, of what is kept.
-  [[nodiscard]] virtual std::vector<ArmState>& poses() = 0;
-  [[nodiscard]] virtual std::vector<RigStance>& stances() = 0;
-
-  /// Measures a picture of the session's camera `i`. Whether it tells anything.
-  [[nodiscard]] virtual bool look(std::size_t i, const Picture& picture) = 0;
-  /// What was measured last, as far as it says what it is without being kept. `view`: as far as it is known.
-  [[nodiscard]] virtual SeenArm unkept(const View& view) const = 0;
-  /// Keeps what was measured last, seen from this stance in this pose. What it is, by the rig that was found
-  /// before, if there is one.
-  [[nodiscard]] virtual SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) = 0;
+  /// The session's camera `i` was sent there: what it sees from now on it sees from another stance.
+  void sent(std::size_t i, const RigStance& stance);
+  /// Measures a picture of the session's camera `i`, keeps what it tells, if anything, and fills in what that
+  /// is, by all that is kept and the rig that was `found` before, if there is one.
+  void see(std::size_t i, const RigModel* found, RigSight& sight);
+  /// From which of the kept stances the camera has looked since it was sent; none yet.
+  [[nodiscard]] const std::optional<std::size_t>& stance(std::size_t i) const { return cameras_[i].stance; }
+  /// Markers that can be recognised, in the last picture.
+  [[nodiscard]] virtual std::size_t markers() const { return 0; }
   /// Where in the picture something of it was measured last, px, if anything was.
   [[nodiscard]] virtual std::optional<Eigen::Vector2d> whereabouts() const { return std::nullopt; }
 
@@ -39,6 +36,32 @@ class RigEyes {
   [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
   /// What a picture that was kept tells, by the rig as found, for stance and pose 0.
   [[nodiscard]] virtual RigImage told(const RigModel& model, const RigSight& sight) const = 0;
+
+ protected:
+  explicit RigEyes(const RigModel& believed) : believed_(believed) {}
+  /// The commanded poses and the stances, as read, of what is kept.
+  [[nodiscard]] virtual std::vector<ArmState>& poses() = 0;
+  [[nodiscard]] virtual std::vector<RigStance>& stances() = 0;
+  /// Measures a picture of the session's camera `i`. Whether it tells anything.
+  [[nodiscard]] virtual bool look(std::size_t i, const Picture& picture) = 0;
+  /// What was measured last, as far as it says what it is without being kept. `view`: as far as it is known.
+  [[nodiscard]] virtual SeenArm unkept(const View& view) const = 0;
+  /// Keeps what was measured last, seen from this stance in this pose. What it is, by the rig that was found
+  /// before, if there is one.
+  [[nodiscard]] virtual SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) = 0;
+  [[nodiscard]] const RigModel& model(const RigModel* found) const {
+    return found != nullptr ? *found : believed_;
+  }
+
+  const RigModel& believed_;
+
+ private:
+  struct Sent {
+    RigStance to;
+    bool is_turned = true;                    // Since the last picture that was kept.
+    std::optional<std::size_t> stance, last;  // Of what is kept: since it was sent, and before.
+  };
+  std::array<Sent, 2> cameras_;
 };
 
 /// Those of a session with this configuration, which outlives them as the others do. `target`: what the

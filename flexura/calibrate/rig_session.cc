@@ -44,6 +44,7 @@ class Session {
   RigSessionResult run() {
     Trouble trouble = trip_.begin();
     stands_ = trip_.start();
+    for (std::size_t i = 0; i < 2; ++i) eyes_->sent(i, stands_[i]);
     if (!trouble) trouble = look_and_move();
     if (trouble) {
       result_.is_done = false;
@@ -94,8 +95,7 @@ class Session {
     ++result_.looks;
     const auto arm = hands_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    if (eyes_->poses().empty() || eyes_->poses().back() != std::get<ArmState>(arm))
-      eyes_->poses().push_back(std::get<ArmState>(arm));
+    pose_ = std::get<ArmState>(arm);
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;
       // As long as nothing is known, the arm may have bent out of view.
@@ -118,10 +118,8 @@ class Session {
     if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
     watcher_.camera_sent(hands_.now(), stance);
     if (auto trouble = hands_.go(stance)) return trouble;
-    is_turned_[place_of(stance.camera)] |=
-        stance.head.pan != stands.head.pan || stance.head.tilt != stands.head.tilt;
     stands = stance;
-    stance_[place_of(stance.camera)].reset();
+    eyes_->sent(place_of(stance.camera), stance);
     return std::nullopt;
   }
   [[nodiscard]] std::size_t place_of(std::size_t camera) const {
@@ -140,17 +138,16 @@ class Session {
   Trouble picture(std::size_t i, bool is_search = false) {
     const auto taken = hands_.frame(config_.cameras[i], hands_.now());
     if (const auto* why = std::get_if<std::string>(&taken)) return *why;
-    const auto& frame = std::get<Frame>(taken);
     const auto stance = hands_.stance(config_.cameras[i]);
     if (const auto* why = std::get_if<std::string>(&stance)) return *why;
     sight_ = {.look = is_search ? 0 : result_.looks,
               .stance = std::get<RigStance>(stance),
-              .pose = eyes_->poses().back(),
-              .frame = frame,
+              .pose = pose_,
+              .frame = std::get<Frame>(taken),
               .seen = {},
               .values = {},
               .circle = {}};
-    sight_.seen = measure(i, *frame.picture);
+    eyes_->see(i, before(), sight_);
     ++result_.pictures[i];
     const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
@@ -165,19 +162,16 @@ class Session {
     return std::nullopt;
   }
 
-  // Keeps what a picture tells, if anything, and says what it is by all that is kept.
-  SeenArm measure(std::size_t i, const Picture& picture) {
-    if (!eyes_->look(i, picture)) return eyes_->unkept(view_of(model(), sight_.stance));
-    if (!stance_[i]) {
-      RigStance stance = sight_.stance;
-      if (!is_turned_[i]) stance.turned_as = last_stance_[i];
-      eyes_->stances().push_back(stance);
-      stance_[i] = last_stance_[i] = eyes_->stances().size() - 1;
-      is_turned_[i] = false;
-    }
-    return eyes_->keep(*stance_[i], eyes_->poses().size() - 1, before());
-  }
   [[nodiscard]] const RigModel* before() const { return found_ ? &found_->model : nullptr; }
+
+  [[nodiscard]] RigStance commanded(const RigStance& stance) const {
+    return flexura::commanded(Camera(believed_.cameras[stance.camera]), stance);
+  }
+  Trouble try_from(std::size_t i, const RigStance& stance) {
+    if (auto trouble = send(commanded(stance))) return trouble;
+    if (auto trouble = hands_.settle()) return trouble;
+    return picture(i, true);
+  }
 
   // Towards what is seen of it, as long as all of it is not.
   Trouble approach(std::size_t i) {
@@ -187,12 +181,8 @@ class Session {
       if (!seen) return std::nullopt;
       const Intrinsics lens = view_of(model(), stands_[i]).lens.intrinsics();
       RigStance stance = stands_[i];
-      stance.head.pan -= std::atan((seen->x() - lens.cx) / lens.fx);
-      stance.head.tilt -= std::atan((seen->y() - lens.cy) / lens.fy);
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
-      if (auto trouble = send(stance)) return trouble;
-      if (auto trouble = hands_.settle()) return trouble;
-      if (auto trouble = picture(i, true)) return trouble;
+      stance.head = turned_towards(stance.head, lens, *seen - Eigen::Vector2d(lens.cx, lens.cy));
+      if (auto trouble = try_from(i, stance)) return trouble;
     }
     return std::nullopt;
   }
@@ -207,10 +197,7 @@ class Session {
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
       RigStance stance = middle;
       stance.head.pan += way.x(), stance.head.tilt += way.y();
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
-      if (auto trouble = send(stance)) return trouble;
-      if (auto trouble = hands_.settle()) return trouble;
-      if (auto trouble = picture(i, true)) return trouble;
+      if (auto trouble = try_from(i, stance)) return trouble;
       if (misses_[i] == 0) return std::nullopt;
     }
     misses_[i] = misses;
@@ -260,7 +247,7 @@ class Session {
     for (RigStance& stance : another.stances) {
       if (!config_.etalon) break;
       stance.head.pan += result_.looks % 2 == 0 ? -aside : aside;
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
+      stance = commanded(stance);
     }
     return another;
   }
@@ -309,9 +296,9 @@ class Session {
     for (RigStep& step : result_.steps)
       if (step.is_found) step.remainder = remainder(found_->model, step.wanted, target);
     // Where the cameras truly stand, as far as the pictures tell.
-    if (stance_[0] && stance_[1] && result_.is_done)
-      result_.remainder =
-          remainder(found_->model, {found_->stances[*stance_[0]], found_->stances[*stance_[1]]}, target);
+    if (eyes_->stance(0) && eyes_->stance(1) && result_.is_done)
+      result_.remainder = remainder(
+          found_->model, {found_->stances[*eyes_->stance(0)], found_->stances[*eyes_->stance(1)]}, target);
     result_.found = std::move(*found_);
     if (result_.is_done) note_what_is_unknown(result_.steps.back().sigmas);
   }
@@ -344,8 +331,7 @@ class Session {
 
   std::array<RigStance, 2> stands_;  // As they were last sent.
   bool has_moved_ = false;
-  std::array<bool, 2> is_turned_ = {true, true};  // Since the last stance.
-  std::array<std::optional<std::size_t>, 2> stance_, last_stance_;
+  ArmState pose_;  // As the drives say of the last look.
   std::array<int, 2> misses_ = {0, 0};
   std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was seen.
   RigSight sight_;                     // The last one.

@@ -277,14 +277,9 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
 bool RigSessionPlan::is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const {
   const View view = view_of(model, stance);
   if (config_.etalon) return EtalonFigure(*config_.etalon).expected(view, 0).has_value();
-  std::size_t inside = 0;
-  for (const auto& marker :
-       expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm).markers)
-    inside += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
-                      marker->pixel.y() <= view.height - 1
-                  ? 1
-                  : 0;
-  return inside >= config_.fewest;
+  const MarkerScene scene =
+      expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm);
+  return markers_inside(scene, view, 0) >= config_.fewest;
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

@@ -33,13 +33,11 @@ struct ViewGoal {
   double wanted = 1;  ///< Standard deviation that would do, in the quantity's unit; > 0.
 };
 
-/// A: the sum of the goals' variances, each in units of its wanted one. D: the product.
-enum class ViewCriterion { sum, product };
-
 struct ViewChoice {
   std::size_t candidate = 0;
-  double before = 0, after = 0;  ///< Sum, or logarithm of the product, without and with it.
-  std::vector<double> sigmas;    ///< Of the goals, with it.
+  double before = 0,
+         after = 0;  ///< Sum of the goals' variances, in units of the wanted ones, without and with it.
+  std::vector<double> sigmas;  ///< Of the goals, with it.
 };
 
 /// The candidate whose pictures will make the goals most certain, of equals the first; none when the arm is
@@ -47,8 +45,7 @@ struct ViewChoice {
 [[nodiscard]] std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
                                                        std::span<const ViewCandidate> candidates,
                                                        std::span<const ViewGoal> goals,
-                                                       const ViewConfig& config = {},
-                                                       ViewCriterion criterion = ViewCriterion::sum);
+                                                       const ViewConfig& config = {});
 
 /// Where to look for candidates.
 struct ViewGrid {

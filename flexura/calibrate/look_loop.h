@@ -9,7 +9,6 @@
 
 #include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_aim.h"
-#include "flexura/calibrate/rig_hands.h"
 #include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
@@ -77,10 +76,10 @@ class LookLoop {
   }
   [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
   /// As sent.
-  [[nodiscard]] const RigStance& stance(std::size_t i) const { return stands_[i]; }
+  [[nodiscard]] const RigStance& stance(std::size_t i) const { return trip_.stances()[i]; }
   [[nodiscard]] const RigStance& start(std::size_t i) const { return result_.start[i]; }
   /// The believed lens at the zoom as it stands.
-  [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stands_[i].head.zoom); }
+  [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stance(i).head.zoom); }
   [[nodiscard]] LoopResult& result() { return result_; }
   [[nodiscard]] const RigSight& sight() const { return sight_; }
 
@@ -88,12 +87,10 @@ class LookLoop {
   const RigModel& believed_;
   const LoopConfig& config_;
   RigSessionWatcher& watcher_;
-  RigHands hands_;
   RigTrip trip_;
   std::array<Camera, 2> cameras_;
   LoopResult result_;
   RigSight sight_;
-  std::array<RigStance, 2> stands_;
 };
 
 /// Of the positions of two heads, each a step or none beside where it stands, the pair of least cost.

@@ -21,12 +21,10 @@ namespace {
 
 using Trouble = RigHands::Trouble;
 
-void check(const RigPorts& ports, const RigModel& believed, const RigSessionConfig& config) {
+void check(const RigSessionConfig& config) {
   const bool sees_nothing = config.picture.markers.empty() && !config.etalon;
   if (config.poses.empty() || sees_nothing || config.images < 3 || config.first < 1)
     throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
-  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
-    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
 }
 
 class Session {
@@ -36,15 +34,13 @@ class Session {
       : believed_(believed),
         config_(config),
         watcher_(watcher),
-        hands_(ports, believed, config.patience),
-        trip_(hands_, watcher, config.cameras, config.move_duration),
+        trip_(ports, believed, config.cameras, config.patience, config.move_duration, watcher),
         plan_(believed, config),
         eyes_(session_eyes(believed, prior, config, plan_.target(believed))) {}
 
   RigSessionResult run() {
     Trouble trouble = trip_.begin();
-    stands_ = trip_.start();
-    for (std::size_t i = 0; i < 2; ++i) eyes_->sent(i, stands_[i]);
+    for (std::size_t i = 0; i < 2; ++i) eyes_->sent(i, trip_.start()[i]);
     if (!trouble) trouble = look_and_move();
     if (trouble) {
       result_.is_done = false;
@@ -57,7 +53,8 @@ class Session {
  private:
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
-      if (auto trouble = look({pose(i), {plan_.first(stands_[0]), plan_.first(stands_[1])}})) return trouble;
+      if (auto trouble = look({pose(i), {plan_.first(trip_.stances()[0]), plan_.first(trip_.stances()[1])}}))
+        return trouble;
     while (result_.looks + 1 < config_.images) {
       if (auto trouble = calibrate()) return trouble;
       if (found_ && is_enough()) break;
@@ -91,9 +88,9 @@ class Session {
       if (auto trouble = trip_.show(what.pose)) return trouble;
     for (const RigStance& stance : what.stances)
       if (auto trouble = send(stance)) return trouble;
-    if (auto trouble = hands_.settle()) return trouble;
+    if (auto trouble = trip_.settle()) return trouble;
     ++result_.looks;
-    const auto arm = hands_.arm();
+    const auto arm = trip_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
     pose_ = std::get<ArmState>(arm);
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
@@ -114,16 +111,11 @@ class Session {
   }
 
   Trouble send(const RigStance& stance) {
-    RigStance& stands = stands_[place_of(stance.camera)];
+    const std::size_t i = stance.camera == config_.cameras[0] ? 0 : 1;
+    const RigStance& stands = trip_.stances()[i];
     if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
-    watcher_.camera_sent(hands_.now(), stance);
-    if (auto trouble = hands_.go(stance)) return trouble;
-    stands = stance;
-    eyes_->sent(place_of(stance.camera), stance);
-    return std::nullopt;
-  }
-  [[nodiscard]] std::size_t place_of(std::size_t camera) const {
-    return camera == config_.cameras[0] ? 0 : 1;
+    eyes_->sent(i, stance);
+    return trip_.send(i, stance);
   }
   [[nodiscard]] const std::string& name(std::size_t i) const {
     return believed_.cameras[config_.cameras[i]].name;
@@ -136,17 +128,9 @@ class Session {
 
   // Takes a picture and measures it; what is of use becomes an image of the observations.
   Trouble picture(std::size_t i, bool is_search = false) {
-    const auto taken = hands_.frame(config_.cameras[i], hands_.now());
+    auto taken = trip_.picture(i, is_search ? 0 : result_.looks);
     if (const auto* why = std::get_if<std::string>(&taken)) return *why;
-    const auto stance = hands_.stance(config_.cameras[i]);
-    if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-    sight_ = {.look = is_search ? 0 : result_.looks,
-              .stance = std::get<RigStance>(stance),
-              .pose = pose_,
-              .frame = std::get<Frame>(taken),
-              .seen = {},
-              .values = {},
-              .circle = {}};
+    sight_ = std::get<RigSight>(std::move(taken)), sight_.pose = pose_;
     eyes_->see(i, before(), sight_);
     ++result_.pictures[i];
     const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
@@ -169,7 +153,7 @@ class Session {
   }
   Trouble try_from(std::size_t i, const RigStance& stance) {
     if (auto trouble = send(commanded(stance))) return trouble;
-    if (auto trouble = hands_.settle()) return trouble;
+    if (auto trouble = trip_.settle()) return trouble;
     return picture(i, true);
   }
 
@@ -179,8 +163,8 @@ class Session {
     for (int turn = 0; turn < most && misses_[i] > 0; ++turn) {
       const auto seen = eyes_->whereabouts();
       if (!seen) return std::nullopt;
-      const Intrinsics lens = view_of(model(), stands_[i]).lens.intrinsics();
-      RigStance stance = stands_[i];
+      const Intrinsics lens = view_of(model(), trip_.stances()[i]).lens.intrinsics();
+      RigStance stance = trip_.stances()[i];
       stance.head = turned_towards(stance.head, lens, *seen - Eigen::Vector2d(lens.cx, lens.cy));
       if (auto trouble = try_from(i, stance)) return trouble;
     }
@@ -190,7 +174,7 @@ class Session {
   // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
   // one miss in all.
   Trouble search(std::size_t i) {
-    const RigStance middle = stands_[i];
+    const RigStance middle = trip_.stances()[i];
     const int misses = misses_[i];
     if (auto trouble = approach(i)) return trouble;
     if (misses_[i] == 0) return std::nullopt;
@@ -202,7 +186,7 @@ class Session {
     }
     misses_[i] = misses;
     if (auto trouble = send(middle)) return trouble;
-    return hands_.settle();
+    return trip_.settle();
   }
 
   Trouble calibrate() {
@@ -210,7 +194,7 @@ class Session {
     problem_ = std::move(reading.problem);
     RigCalibration& found = reading.found;
     RigStep& step = result_.steps.emplace_back();
-    step.time = hands_.now(), step.looks = result_.looks;
+    step.time = trip_.now(), step.looks = result_.looks;
     step.is_found = found.is_found, step.reason = found.reason, step.rms = found.rms;
     step.doubts = found.doubts.size();
     found_.reset();
@@ -221,7 +205,7 @@ class Session {
       return std::nullopt;
     }
     found_ = std::move(found);
-    wanted_ = plan_.wanted(found_->model, stands_);
+    wanted_ = plan_.wanted(found_->model, trip_.stances());
     plan_.know(problem_->variables(), *found_, wanted_, step);
     choose(step);
     watcher_.known(step);
@@ -236,12 +220,12 @@ class Session {
           result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
       return;
     }
-    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, stands_, missed_);
+    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, trip_.stances(), missed_);
     next_ = candidate, step.next = why;
   }
   [[nodiscard]] ViewCandidate next() const {
     if (next_) return *next_;
-    ViewCandidate another{pose(result_.looks), {stands_[0], stands_[1]}};
+    ViewCandidate another{pose(result_.looks), {trip_.stances()[0], trip_.stances()[1]}};
     // What stands still looks the same from the same place.
     constexpr double aside = 0.03;  // rad
     for (RigStance& stance : another.stances) {
@@ -322,14 +306,12 @@ class Session {
   const RigModel& believed_;
   const RigSessionConfig& config_;
   RigSessionWatcher& watcher_;
-  RigHands hands_;
   RigTrip trip_;
   RigSessionPlan plan_;
   std::unique_ptr<RigEyes> eyes_;
   const char* what_ = config_.etalon ? "cylinder" : "arm";
   RigSessionResult result_;
 
-  std::array<RigStance, 2> stands_;  // As they were last sent.
   bool has_moved_ = false;
   ArmState pose_;  // As the drives say of the last look.
   std::array<int, 2> misses_ = {0, 0};
@@ -346,7 +328,7 @@ class Session {
 RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
                                           const RigPrior& prior, const RigSessionConfig& config,
                                           RigSessionWatcher& watcher) {
-  check(ports, believed, config);
+  check(config);
   return Session(ports, believed, prior, config, watcher).run();
 }
 

@@ -123,8 +123,7 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
                                          std::span<const ViewGoal> goals, const ViewConfig& config) {
   const Eigen::Index own = problem.variables().globals();
   const Eigen::MatrixXd rows = goal_rows(goals, own);
-  const Eigen::MatrixXd known = found.covariance.topLeftCorner(own, own);
-  const Eigen::MatrixXd before = Cholesky(known).inverse();
+  const Eigen::MatrixXd before = Cholesky(found.covariance.topLeftCorner(own, own)).inverse();
   const Forecast forecast(problem, found, config);
   std::optional<ViewChoice> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -133,7 +132,7 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
     const Eigen::MatrixXd variances = rows * Cholesky(*after).solve(rows.transpose());
     const double value = variances.trace();
     if (!std::isfinite(value) || (best && !(value < best->after))) continue;
-    best = ViewChoice{i, (rows * known * rows.transpose()).trace(), value, {}};
+    best = ViewChoice{i, value, {}};
     for (std::size_t j = 0; j < goals.size(); ++j)
       best->sigmas.push_back(goals[j].wanted * std::sqrt(variances.diagonal()[static_cast<Eigen::Index>(j)]));
   }

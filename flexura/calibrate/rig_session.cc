@@ -133,7 +133,7 @@ class Session {
     sight_ = std::get<RigSight>(std::move(taken)), sight_.pose = pose_;
     eyes_->see(i, before(), sight_);
     ++result_.pictures[i];
-    const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
+    const std::size_t fewest = found_ ? std::min(RigEyes::few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
     if (!is_of_use && sight_.seen.reason.empty())
       sight_.seen.reason =

@@ -153,18 +153,19 @@ RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vec
 }
 
 std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid) {
-  const double far = grid.spread;
-  const std::array<Eigen::Vector2d, 5> places = {
-      {{0, 0}, {-far, -far}, {far, -far}, {-far, far}, {far, far}}};
+  constexpr std::array<std::array<double, 2>, 5> places = {{{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
   std::vector<ViewCandidate> candidates;
   for (const ArmState& pose : grid.poses) {
-    const Eigen::Vector3d middle = arm_middle(model, pose);
+    const Eigen::Vector3d target = grid.target ? *grid.target : arm_middle(model, pose);
     for (const double zoom : grid.zooms) {
       for (const Eigen::Vector3d& slide : grid.slides) {
-        for (const Eigen::Vector2d& place : places) {
+        for (const auto& [across, down] : places) {
           ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{pose, {}});
-          for (std::size_t i = 0; i < model.cameras.size(); ++i)
-            candidate.stances.push_back(looking_at(model, i, slide, zoom, middle, place));
+          for (std::size_t i = 0; i < model.cameras.size(); ++i) {
+            const auto [ratio, spread] = grid.own ? grid.own(i, zoom) : std::array{zoom, grid.spread};
+            candidate.stances.push_back(
+                looking_at(model, i, slide, ratio, target, spread * Eigen::Vector2d(across, down)));
+          }
         }
       }
     }

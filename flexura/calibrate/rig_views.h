@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -35,8 +36,7 @@ struct ViewGoal {
 
 struct ViewChoice {
   std::size_t candidate = 0;
-  double before = 0,
-         after = 0;  ///< Sum of the goals' variances, in units of the wanted ones, without and with it.
+  double after = 0;            ///< Sum of the goals' variances with it, in units of the wanted ones.
   std::vector<double> sigmas;  ///< Of the goals, with it.
 };
 
@@ -52,9 +52,12 @@ struct ViewGrid {
   std::vector<ArmState> poses;
   std::vector<double> zooms = {1};  ///< Ratios; each camera goes to where its own lens has them.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
-  /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
-  /// of half the image.
+  /// What is looked at, the arm's middle when left out, is brought to the image's middle, and so far from
+  /// there towards its four corners; share of half the image.
   double spread = 0.4;
+  std::optional<Eigen::Vector3d> target = {};
+  /// For a camera and one of the zooms its own ratio and spread, where these differ.
+  std::function<std::array<double, 2>(std::size_t camera, double zoom)> own = {};
 };
 
 /// A stance of camera `number` from which a point of W is seen at this place of the image, in shares of half

@@ -283,7 +283,7 @@ class ArcsCorrected : public ArcsLoop {
   RigSessionConfig seen_as_;
   std::unique_ptr<RigEyes> eyes_;                     // With all pictures.
   std::optional<RigReading> reading_;                 // What they tell.
-  std::array<bool, 2> is_centered_ = {false, false};  // A longer focal length told the principal point.
+  std::array<bool, 2> is_centered_ = {false, false};  // By a longer focal length.
   Angle angle_;
   std::optional<Angle> foretold_;  // Before the last pictures were taken.
   std::array<RigStance, 2> wanted_;

@@ -54,7 +54,7 @@ class ArcsLoop {
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_as_printed(LookLoop& loop);
 /// Made well posed: both cameras see both arcs, by their markers and axes; what moves a camera from where all
 /// these pictures put it to where the simulator has it is commanded, until nothing finer can be, or pictures
-/// tell nothing finer. Then both look once with a longer focal length, which tells principal points, and go
+/// tell nothing finer. Then both look once with a longer focal length, which shows principal points, and go
 /// on from what is known now. Pictures that do not agree within their standard deviations are trouble, and so
 /// is what cannot be commanded.
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_corrected(LookLoop& loop);

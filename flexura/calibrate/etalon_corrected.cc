@@ -81,7 +81,7 @@ class EtalonCorrected : public EtalonLoop {
                               "camera {} cannot have all of the cylinder in its picture: {}", view.reason);
   }
 
-  // All four in one picture; again with the principal point that a longer focal length tells.
+  // All four in one picture; again with the principal point that a longer focal length shows.
   Trouble align(std::size_t i) override {
     for (const bool is_centered : {false, true}) {
       if (is_centered)

@@ -88,8 +88,8 @@ class EtalonEyes : public RigEyes {
       : RigEyes(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
 
   std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
-  // Which red line is which is told by the rig that was found before or, where that leads nowhere, by the
-  // guess; and told again by the rig that is found.
+  // The rig that was found before says which red line is which or, where that leads nowhere, the guess; and
+  // then the rig that is found.
   RigReading read(const RigModel* found) const override {
     std::vector<RigReading> readings;
     readings.push_back(read_by(model(found)));

@@ -47,7 +47,7 @@ class EtalonLoop {
   [[nodiscard]] virtual Trouble align(std::size_t i) = 0;
   /// How much larger the first camera shows the cylinder.
   [[nodiscard]] virtual double ratio() const = 0;
-  /// What follows the zooms, and why the end is none.
+  /// What follows the zooms, and why that is no good end.
   [[nodiscard]] virtual Trouble finish() = 0;
 
   /// Looks and moves until these offsets hold in one picture, or nothing finer can be commanded.
@@ -67,7 +67,7 @@ class EtalonLoop {
 /// (docs/calibration-paper.md). Where a loop goes on for ever, or runs away, it says so.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_as_printed(LookLoop& loop);
 /// Corrected: borders to a part of a pixel, steps that shrink until all four hold in one picture, and again
-/// with the principal point that a longer focal length tells: where things stay; in the end, of the heads'
+/// with the principal point that a longer focal length shows: where things stay; in the end, of the heads'
 /// positions around, those whose axes are the most nearly orthogonal.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_corrected(LookLoop& loop);
 

@@ -53,7 +53,7 @@ class LookLoop {
   /// be turned: `in_vain`, of the camera's name and the reason.
   Trouble turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen,
                        double near, const Intrinsics& lens, const char* in_vain, const std::string& reason);
-  /// A principal point is told by a focal length that is so many times as long, or more; where noise counts
+  /// A principal point shows by a focal length that is so many times as long, or more: there noise counts
   /// eight times.
   static constexpr double least_longer = 1.2;
   /// Sends a camera to where it has it.
@@ -77,7 +77,6 @@ class LookLoop {
   [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
   /// As sent.
   [[nodiscard]] const RigStance& stance(std::size_t i) const { return trip_.stances()[i]; }
-  [[nodiscard]] const RigStance& start(std::size_t i) const { return result_.start[i]; }
   /// The believed lens at the zoom as it stands.
   [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stance(i).head.zoom); }
   [[nodiscard]] LoopResult& result() { return result_; }

@@ -38,7 +38,7 @@ class RigEyes {
 
   /// The session's camera `i` was sent there: what it sees from now on it sees from another stance.
   void sent(std::size_t i, const RigStance& stance);
-  /// Measures a picture of the session's camera `i`, keeps what it tells, if anything, and fills in what that
+  /// Measures a picture of the session's camera `i`, keeps what it shows, if anything, and fills in what that
   /// is, by all that is kept and the rig that was `found` before, if there is one.
   void see(std::size_t i, const RigModel* found, RigSight& sight);
   /// From which of the kept stances the camera has looked since it was sent; none yet.
@@ -51,7 +51,7 @@ class RigEyes {
   /// The rig that explains most of what was kept; `found`: the one before. None where a camera recognises
   /// nothing.
   [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
-  /// What a picture that was kept tells, by the rig as found, for stance and pose 0.
+  /// What a picture that was kept shows, by the rig as found, for stance and pose 0.
   [[nodiscard]] virtual RigImage told(const RigModel& model, const RigSight& sight) const = 0;
 
  protected:

@@ -53,7 +53,7 @@ class LookLoop {
   /// be turned: `in_vain`, of the camera's name and the reason.
   Trouble turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen,
                        double near, const Intrinsics& lens, const char* in_vain, const std::string& reason);
-  /// A principal point shows by a focal length that is so many times as long, or more: there noise counts
+  /// A principal point shows by a focal length that is so many times as long at least, where noise counts
   /// eight times.
   static constexpr double least_longer = 1.2;
   /// Sends a camera to where it has it.

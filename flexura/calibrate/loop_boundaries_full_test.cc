@@ -67,8 +67,9 @@ TEST(LoopBoundaries, EtalonEndsWhereTheStageIsTurnedByLessThanARightAngleAndRuns
     const bool is_tilted = random.integer(0, 1) == 1, is_beyond = random.integer(0, 1) == 1;
     const double turned = (is_beyond ? to_a_side(random, 97, 115) : to_a_side(random, 40, 70)) * degree;
     SCOPED_TRACE(fmt::format("{} by {} deg", is_tilted ? "tilted" : "turned", turned / degree));
+    const double off_line = is_tilted ? (is_beyond ? 0.1 : 0.15) : 0.06;
     CalibrationBench bench(
-        turned_stage(is_tilted, turned, to_a_side(random, 1, 1) * (is_tilted ? 0.12 : 0.06)));
+        turned_stage(is_tilted, turned, is_beyond ? off_line : to_a_side(random, off_line, off_line)));
     const LoopResult result = bench.calibrate();
     EXPECT_EQ(result.is_done, !is_beyond) << result.reason;
     const std::vector<double> off = slides(result, is_tilted);

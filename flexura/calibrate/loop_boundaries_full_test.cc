@@ -62,29 +62,32 @@ std::vector<double> slides(const LoopResult& result, bool is_tilted) {
   return slides;
 }
 
+void expect_end_of_turned_stage(bool is_tilted, bool is_beyond, TestRandom& random) {
+  const double turned = (is_beyond ? to_a_side(random, 97, 115) : to_a_side(random, 40, 70)) * degree;
+  SCOPED_TRACE(fmt::format("{} by {} deg", is_tilted ? "tilted" : "turned", turned / degree));
+  const double away = is_tilted ? (is_beyond ? 0.1 : 0.15) : 0.06;
+  CalibrationBench bench(turned_stage(is_tilted, turned, is_beyond ? away : to_a_side(random, away, away)));
+  const LoopResult result = bench.calibrate();
+  EXPECT_EQ(result.is_done, !is_beyond) << result.reason;
+  const std::vector<double> off = slides(result, is_tilted);
+  ASSERT_GE(off.size(), 2U);
+  // Each step leaves the eigenvalue 1 - cos(turned); of ways that grow half is taken from there on.
+  if (is_beyond) {
+    EXPECT_THAT(result.reason, HasSubstr("al positioning of camera front runs away"));
+    EXPECT_NEAR((is_tilted ? 2 : 1) * off[1] / off[0], 1 - std::cos(turned), 0.15);
+    bench.expect_back();
+    return;
+  }
+  EXPECT_LT(std::abs(bench.truth(result).angle), 0.2 * degree);
+  EXPECT_LT(bench.truth(result).aim[0].norm(), 0.01);
+  for (std::size_t i = 1; i < off.size() && std::abs(off[i - 1]) > (is_tilted ? 0.08 : 1); ++i)
+    EXPECT_NEAR(off[i] / off[i - 1], 1 - std::cos(turned), 0.12);
+}
+
 TEST(LoopBoundaries, EtalonEndsWhereTheStageIsTurnedByLessThanARightAngleAndRunsAwayBeyond) {
-  for_random_cases(10, [](TestRandom& random) {
-    const bool is_tilted = random.integer(0, 1) == 1, is_beyond = random.integer(0, 1) == 1;
-    const double turned = (is_beyond ? to_a_side(random, 97, 115) : to_a_side(random, 40, 70)) * degree;
-    SCOPED_TRACE(fmt::format("{} by {} deg", is_tilted ? "tilted" : "turned", turned / degree));
-    const double off_line = is_tilted ? (is_beyond ? 0.1 : 0.15) : 0.06;
-    CalibrationBench bench(
-        turned_stage(is_tilted, turned, is_beyond ? off_line : to_a_side(random, off_line, off_line)));
-    const LoopResult result = bench.calibrate();
-    EXPECT_EQ(result.is_done, !is_beyond) << result.reason;
-    const std::vector<double> off = slides(result, is_tilted);
-    ASSERT_GE(off.size(), 2U);
-    // Each step leaves the eigenvalue 1 - cos(turned); of ways that grow half is taken from there on.
-    if (is_beyond) {
-      EXPECT_THAT(result.reason, HasSubstr("al positioning of camera front runs away"));
-      EXPECT_NEAR((is_tilted ? 2 : 1) * off[1] / off[0], 1 - std::cos(turned), 0.15);
-      bench.expect_back();
-      return;
-    }
-    EXPECT_LT(std::abs(bench.truth(result).angle), 0.2 * degree);
-    EXPECT_LT(bench.truth(result).aim[0].norm(), 0.01);
-    for (std::size_t i = 1; i < off.size() && std::abs(off[i - 1]) > (is_tilted ? 0.08 : 1); ++i)
-      EXPECT_NEAR(off[i] / off[i - 1], 1 - std::cos(turned), 0.12);
+  for_random_cases(4, [](TestRandom& random) {
+    for (const bool is_tilted : {false, true})
+      for (const bool is_beyond : {false, true}) expect_end_of_turned_stage(is_tilted, is_beyond, random);
   });
 }
 
@@ -113,8 +116,8 @@ std::vector<double> zoom_offsets(const LoopResult& result) {
 }
 
 TEST(LoopBoundaries, EtalonsZoomEndsWhereLensesGrowByLessThanTwiceWhatIsBelieved) {
-  for_random_cases(10, [](TestRandom& random) {
-    const bool is_beyond = random.integer(0, 1) == 1;
+  for_random_cases(10, [is_beyond = false](TestRandom& random) mutable {
+    is_beyond = !is_beyond;
     const double power = is_beyond ? random.uniform(2.2, 2.5) : random.uniform(0.4, 1.6);
     CalibrationBench bench(wrong_zoom(power, to_a_side(random, 0.15, 0.15)));
     const LoopResult result = bench.calibrate();
@@ -176,8 +179,8 @@ std::string wrong_lens(TestRandom& random, double focal) {
 }
 
 TEST(LoopBoundaries, ArcsPaperCentresTheCircleWithAFocalLengthBelowTwiceTheBelieved) {
-  for_random_cases(10, [](TestRandom& random) {
-    const bool is_beyond = random.integer(0, 1) == 1;
+  for_random_cases(10, [is_beyond = false](TestRandom& random) mutable {
+    is_beyond = !is_beyond;
     const double focal = is_beyond ? random.uniform(2.15, 2.4) : random.uniform(1.2, 1.8);
     CalibrationBench bench(wrong_lens(random, focal));
     const LoopResult result = bench.calibrate();

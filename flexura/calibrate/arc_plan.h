@@ -36,13 +36,4 @@ struct ArcPlan {
 /// at the middle of the space that the arcs take. Those who watch are told of it. Or why there is none.
 [[nodiscard]] std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan);
 
-/// Waits for rest; refuses cameras that are believed to look from one side.
-[[nodiscard]] LookLoop::Trouble begin_with_arm(LookLoop& loop);
-/// Zooms to where the plan has it.
-[[nodiscard]] LookLoop::Trouble zoom_as_planned(LookLoop& loop, const ArcPlan& plan);
-
-/// Step 13: the zooms after which each camera shows its arc as large as the simulator's picture does, by
-/// normalised cross-correlation, twice.
-[[nodiscard]] LookLoop::Trouble equalize_zooms(LookLoop& loop, const ArcPlan& plan);
-
 }  // namespace flexura

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,10 +10,35 @@
 #include "flexura/calibrate/arc_plan.h"
 #include "flexura/calibrate/rig_calibration.h"
 #include "flexura/calibrate/rig_quantities.h"
+#include "flexura/model/backbone.h"
 #include "tests/support/rig_trials.h"
 
 namespace flexura {
 namespace {
+
+TEST(ArcState, IsOneArcOfACircleInItsPlaneWhereTheArmCan) {
+  Arm arm = believed_rig().arm;
+  arm.sections[2].length *= 0.8;
+  for (Section& section : arm.sections) section.max_bend = 2;
+  for_random_cases(100, [&](TestRandom& random) {
+    const double bend = random.uniform(0.3, 4), way = random.uniform(-3, 3);
+    const Eigen::Vector3d towards(std::cos(way), 0, std::sin(way));
+    const auto state = arc_state(arm, bend, towards);
+    ASSERT_TRUE(state);
+    const Backbone backbone(arm, *state);
+    const double radius = arm.length() / bend;
+    for (int i = 0; i <= 20; ++i) {
+      const Eigen::Vector3d p = backbone.pose(arm.length() * i / 20).position - arm.X_WB.position;
+      EXPECT_NEAR((p - radius * towards).norm(), radius, 1e-12);
+      EXPECT_NEAR(p.dot(towards.cross(Eigen::Vector3d::UnitY())), 0, 1e-12);
+    }
+  });
+  EXPECT_FALSE(arc_state(arm, 6.4, Eigen::Vector3d::UnitX()));  // A section bends by 2 rad at most.
+  EXPECT_FALSE(arc_state(arm, 1, Eigen::Vector3d::UnitY()));
+  arm.kind = ArmKind::planar;
+  EXPECT_TRUE(arc_state(arm, 1, Eigen::Vector3d::UnitX()));
+  EXPECT_FALSE(arc_state(arm, 1, Eigen::Vector3d::UnitZ()));
+}
 
 constexpr RigTrialConfig known_lenses = {
     .zero = 0, .focal = 0, .principal_point = 1, .noise = 0.2, .markers = 12};

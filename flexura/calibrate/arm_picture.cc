@@ -28,19 +28,22 @@ MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& 
   return scene;
 }
 
-std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis, const ArmPictureConfig& config) {
+// So far apart that their errors have nothing to do with each other: a width of the arm, and px at least. No
+// one is known better than lenses are.
+std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis) {
+  constexpr double spacing = 10, least_sigma = 0.05;
   std::vector<CurvePoint> points;
   double way = 0, next = 0;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (i > 0) way += (axis[i].pixel - axis[i - 1].pixel).norm();
-    const double pitch = std::max(config.spacing, config.spacing_widths * axis[i].width);
+    const double pitch = std::max(spacing, axis[i].width);
     if (i == 0) next = pitch;
     if (way < next || !axis[i].is_seen) continue;
-    points.push_back({axis[i].pixel, std::max(axis[i].sigma, config.least_sigma)});
+    points.push_back({axis[i].pixel, std::max(axis[i].sigma, least_sigma)});
     next = way + pitch;
   }
   // The last one keeps away from the end as the first one does.
-  if (!points.empty() && (points.back().pixel - axis.back().pixel).norm() < config.spacing) points.pop_back();
+  if (!points.empty() && (points.back().pixel - axis.back().pixel).norm() < spacing) points.pop_back();
   return points;
 }
 
@@ -61,6 +64,13 @@ MarkerPicture marker_picture(const Arm& arm, const ArmState& state, const std::v
 MarkerScene expected_markers(const Arm& arm, const ArmState& state, const std::vector<KnownMarker>& markers,
                              const View& view, const Arm& marked) {
   return expected_scene(marker_picture(arm, state, markers, view, marked), {});
+}
+
+std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin) {
+  return static_cast<std::size_t>(std::ranges::count_if(scene.markers, [&](const auto& place) {
+    return place && place->pixel.minCoeff() >= margin && place->pixel.x() <= view.width - 1 - margin &&
+           place->pixel.y() <= view.height - 1 - margin;
+  }));
 }
 
 ArmFigure ArmPicture::look(const Picture& picture) {
@@ -98,7 +108,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
   std::vector<AxisSample> axis = backbone_axis(lens, look.axis).known();
   if (match.is_reversed) std::ranges::reverse(axis);
-  seen.points = spaced_points(axis, config);
+  seen.points = spaced_points(axis);
   return seen;
 }
 

@@ -21,12 +21,7 @@ namespace flexura {
 /// What is known of an arm and of its pictures beforehand.
 struct ArmPictureConfig {
   std::vector<KnownMarker> markers;  ///< Of the arm, base first.
-  /// Axis points are taken so far apart that their errors have nothing to do with each other: so many widths
-  /// of the arm, and px at least.
-  double spacing_widths = 1, spacing = 10;
-  /// No axis point is known better than this, px: lenses are not. Markers are known to 0.2 px at best.
-  double least_sigma = 0.05;
-  int white = 255;  ///< The largest value of a picture.
+  int white = 255;                   ///< The largest value of a picture.
 };
 
 /// What is seen of an arm in one picture before anybody asks which of its markers is which.
@@ -60,6 +55,9 @@ struct SeenArm {
                                                   const std::vector<KnownMarker>& markers, const View& view) {
   return expected_markers(arm, state, markers, view, arm);
 }
+
+/// How many of them are inside the picture, so many px from its border at least.
+[[nodiscard]] std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin);
 
 /// Markers and axis points of a look, when it is known which marker is which. `lens` corrects for what a wide
 /// tube shows of itself (vision/backbone_image.h).

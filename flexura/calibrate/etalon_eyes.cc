@@ -80,74 +80,96 @@ SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, con
   return drawn;
 }
 
-EtalonEyes::EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config)
-    : believed_(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
+namespace {
 
-bool EtalonEyes::look(std::size_t i, const Picture& picture) {
-  const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
-  last_ = view_etalon(eight_bits(picture, camera.sensor.white()),
-                      Camera(camera).lens().at(Camera(camera).initial_head().zoom), config_.etalon->radius);
-  return last_.reason.empty();
-}
+class EtalonEyes : public RigEyes {
+ public:
+  EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config)
+      : RigEyes(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
 
-SeenArm EtalonEyes::unkept(const View& /*view*/) const {
-  SeenArm nothing;
-  nothing.reason = last_.reason;
-  return nothing;
-}
-
-SeenArm EtalonEyes::keep(std::size_t stance, std::size_t pose, const RigModel* found) {
-  looks_.push_back({stance, pose, last_.sighting});
-  return drawn_etalon(last_.sighting, *config_.etalon,
-                      view_of(found != nullptr ? *found : believed_, stances_.at(stance)));
-}
-
-RigObservations EtalonEyes::observations(const RigModel& model) const {
-  RigObservations result{.poses = poses_, .stances = stances_, .images = {}, .etalon = config_.etalon};
-  for (const Look& look : looks_)
-    result.images.push_back(
-        {.stance = look.stance,
-         .pose = look.pose,
-         .etalon = etalon_points(look.seen, etalon_, view_of(model, stances_[look.stance]))});
-  return result;
-}
-
-// Which red line is which is told by the rig that was found before or, where that leads nowhere, by the
-// guess; and told again by the rig that is found.
-RigReading EtalonEyes::read(const RigModel* found) const {
-  RigReading reading = read_by(found != nullptr ? *found : believed_);
-  if (found != nullptr && !reading.is_whole()) {
-    RigReading again = read_by(believed_);
-    if (again.found.is_found && (!reading.found.is_found || again.explained > reading.explained))
-      reading = std::move(again);
+  std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
+  // The rig that was found before says which red line is which or, where that leads nowhere, the guess; and
+  // then the rig that is found.
+  RigReading read(const RigModel* found) const override {
+    std::vector<RigReading> readings;
+    readings.push_back(read_by(model(found)));
+    if (found != nullptr && !readings.back().is_whole()) readings.push_back(read_by(believed_));
+    return best_of(readings);
   }
-  return reading;
-}
-
-RigReading EtalonEyes::read_by(const RigModel& first) const {
-  RigReading reading;
-  RigModel model = first;
-  constexpr int rounds = 2;
-  for (int round = 0; round < rounds; ++round) {
-    reading.problem.emplace(believed_, prior_, observations(model));
-    reading.found = calibrate_rig(*reading.problem);
-    if (!reading.found.is_found) break;
-    model = reading.found.model;
+  RigImage told(const RigModel& model, const RigSight& sight) const override {
+    RigImage image;
+    const auto last = std::ranges::find_if(looks_.rbegin(), looks_.rend(), [&](const Look& look) {
+      return stances_[look.stance].camera == sight.stance.camera;
+    });
+    if (last != looks_.rend())
+      image.etalon = etalon_points(last->seen, etalon_, view_of(model, sight.stance));
+    return image;
   }
-  for (const RigImage& image : reading.problem->observations().images)
-    reading.things += static_cast<double>(image.things());
-  reading.amiss = static_cast<double>(reading.found.doubts.size());
-  reading.explained = reading.things - 2 * reading.amiss;
-  return reading;
-}
 
-RigImage EtalonEyes::told(const RigModel& model, const RigSight& sight) const {
-  RigImage image;
-  const auto last = std::ranges::find_if(looks_.rbegin(), looks_.rend(), [&](const Look& look) {
-    return stances_[look.stance].camera == sight.stance.camera;
-  });
-  if (last != looks_.rend()) image.etalon = etalon_points(last->seen, etalon_, view_of(model, sight.stance));
-  return image;
+ private:
+  std::vector<ArmState>& poses() override { return poses_; }
+  std::vector<RigStance>& stances() override { return stances_; }
+  bool look(std::size_t i, const Picture& picture) override {
+    const CameraConfig& camera = believed_.cameras.at(config_.cameras.at(i));
+    last_ = view_etalon(eight_bits(picture, camera.sensor.white()),
+                        Camera(camera).lens().at(Camera(camera).initial_head().zoom), config_.etalon->radius);
+    return last_.reason.empty();
+  }
+  SeenArm unkept(const View& /*view*/) const override {
+    SeenArm nothing;
+    nothing.reason = last_.reason;
+    return nothing;
+  }
+  SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override {
+    looks_.push_back({stance, pose, last_.sighting});
+    return drawn_etalon(last_.sighting, *config_.etalon, view_of(model(found), stances_.at(stance)));
+  }
+
+  [[nodiscard]] RigObservations observations(const RigModel& model) const {
+    RigObservations result{.poses = poses_, .stances = stances_, .images = {}, .etalon = config_.etalon};
+    for (const Look& look : looks_)
+      result.images.push_back(
+          {.stance = look.stance,
+           .pose = look.pose,
+           .etalon = etalon_points(look.seen, etalon_, view_of(model, stances_[look.stance]))});
+    return result;
+  }
+
+  [[nodiscard]] RigReading read_by(const RigModel& first) const {
+    RigReading reading;
+    RigModel model = first;
+    constexpr int rounds = 2;
+    for (int round = 0; round < rounds; ++round) {
+      reading.problem.emplace(believed_, prior_, observations(model));
+      reading.found = calibrate_rig(*reading.problem);
+      if (!reading.found.is_found) break;
+      model = reading.found.model;
+    }
+    for (const RigImage& image : reading.problem->observations().images)
+      reading.things += static_cast<double>(image.things());
+    reading.amiss = static_cast<double>(reading.found.doubts.size());
+    reading.explained = reading.things - 2 * reading.amiss;
+    return reading;
+  }
+
+  struct Look {
+    std::size_t stance = 0, pose = 0;
+    EtalonSighting seen;
+  };
+  const RigPrior& prior_;
+  const RigSessionConfig& config_;
+  EtalonFigure etalon_;
+  std::vector<ArmState> poses_;
+  std::vector<RigStance> stances_;
+  std::vector<Look> looks_;
+  EtalonView last_;
+};
+
+}  // namespace
+
+std::unique_ptr<RigEyes> etalon_eyes(const RigModel& believed, const RigPrior& prior,
+                                     const RigSessionConfig& config) {
+  return std::make_unique<EtalonEyes>(believed, prior, config);
 }
 
 }  // namespace flexura

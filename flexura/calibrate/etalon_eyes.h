@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "flexura/calibrate/etalon_figure.h"
@@ -21,38 +19,9 @@ namespace flexura {
 /// the silhouette its four corners as points.
 [[nodiscard]] SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, const View& view);
 
-/// The eyes of a session before the calibration cylinder. What they say of a picture is as drawn_etalon has
-/// it.
-class EtalonEyes : public RigEyes {
- public:
-  /// All outlive it; the configuration has an etalon.
-  EtalonEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config);
-
-  std::vector<ArmState>& poses() override { return poses_; }
-  std::vector<RigStance>& stances() override { return stances_; }
-  bool look(std::size_t i, const Picture& picture) override;
-  SeenArm unkept(const View& view) const override;
-  SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override;
-  std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
-  RigReading read(const RigModel* found) const override;
-  RigImage told(const RigModel& model, const RigSight& sight) const override;
-
- private:
-  struct Look {
-    std::size_t stance = 0, pose = 0;
-    EtalonSighting seen;
-  };
-  [[nodiscard]] RigObservations observations(const RigModel& model) const;
-  [[nodiscard]] RigReading read_by(const RigModel& first) const;
-
-  const RigModel& believed_;
-  const RigPrior& prior_;
-  const RigSessionConfig& config_;
-  EtalonFigure etalon_;
-  std::vector<ArmState> poses_;
-  std::vector<RigStance> stances_;
-  std::vector<Look> looks_;
-  EtalonView last_;
-};
+/// The eyes of a session before the calibration cylinder, which its configuration has. What they say of a
+/// picture is as drawn_etalon has it. All outlive them.
+[[nodiscard]] std::unique_ptr<RigEyes> etalon_eyes(const RigModel& believed, const RigPrior& prior,
+                                                   const RigSessionConfig& config);
 
 }  // namespace flexura

@@ -34,8 +34,15 @@ View seen_by(const RigModel& model, std::size_t camera, const HeadState& head = 
   return view_of(model, {.camera = camera, .head = head});
 }
 
+// A point of the surface, at an angle around the axis.
+Eigen::Vector3d surface_point(const EtalonConfig& etalon, double angle, double height) {
+  return vector(etalon.position) +
+         rotation_of(etalon.rotation) *
+             Eigen::Vector3d(etalon.radius * std::sin(angle), height, etalon.radius * std::cos(angle));
+}
+
 // What is leftmost, rightmost, highest and lowest of a great many points of the surface.
-TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEnds) {
+TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) {
   for_random_cases(20, [](TestRandom& random) {
     EtalonConfig etalon = random_etalon(random);
     etalon.position[1] = random.uniform(-0.8, 1.2);  // Also from above and below.
@@ -43,66 +50,46 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEnds) {
     const View view = seen_by(true_rig(believed_rig(), {.turn = 0.02, .roll = 0}, random), 0);
     const auto expected = figure.expected(view, -1e4);
     ASSERT_TRUE(expected);
-    std::vector<Eigen::Vector2d> surface;
-    double least = 1e9, most = -1e9;  // Across the image of the left side, and of the right side.
-    const auto across = [&](const EtalonPoint& a, const EtalonPoint& b, const Eigen::Vector2d& pixel) {
-      const Eigen::Vector2d way = (b.pixel - a.pixel).normalized();
-      return Eigen::Vector2d(way.y(), -way.x()).dot(pixel - a.pixel);
+    for (const EtalonPoint& point : *expected) {
+      const auto place = figure.nearest(point, view);
+      ASSERT_TRUE(place);
+      EXPECT_LE((*view.project(*place) - point.pixel).norm(), 1e-9);
+    }
+    const auto& points = *expected;
+    ASSERT_EQ(points[0].part, EtalonPart::left_side);
+    ASSERT_EQ(points[2].part, EtalonPart::right_side);
+    // Where a side, by its two points, is in a row.
+    const auto side_at = [&](std::size_t first, double v) {
+      const Eigen::Vector2d &a = points[first].pixel, &b = points[first + 1].pixel;
+      return a.x() + (b.x() - a.x()) * (v - a.y()) / (b.y() - a.y());
     };
-    const EtalonPoint &left0 = (*expected)[0], &left1 = (*expected)[1], &right0 = (*expected)[2],
-                      &right1 = (*expected)[3];
-    ASSERT_EQ(left0.part, EtalonPart::left_side);
-    ASSERT_EQ(right0.part, EtalonPart::right_side);
-    EXPECT_LT(left0.pixel.x(), right0.pixel.x());
-    const double sign = left1.pixel.y() < left0.pixel.y() ? -1 : 1;  // To the right is positive.
+    std::vector<Eigen::Vector2d> rims;
+    double least = 1e9, most = -1e9;
     constexpr int around = 2000, up = 40;
     for (int i = 0; i < around; ++i) {
-      const double angle = 2 * std::numbers::pi * i / around;
       for (int j = 0; j <= up; ++j) {
-        const Eigen::Vector3d p_WP = figure.middle() + Eigen::Vector3d(etalon.radius * std::sin(angle),
-                                                                       etalon.height * (1.0 * j / up - 0.5),
-                                                                       etalon.radius * std::cos(angle));
-        const Eigen::Vector2d pixel = *view.project(p_WP);
-        least = std::min(least, sign * across(left0, left1, pixel));
-        most = std::max(most, sign * across(right0, right1, pixel));
-        if (j == 0 || j == up) surface.push_back(pixel);
+        const Eigen::Vector2d pixel =
+            *view.project(surface_point(etalon, 2 * std::numbers::pi * i / around, etalon.height * j / up));
+        least = std::min(least, pixel.x() - side_at(0, pixel.y()));
+        most = std::max(most, pixel.x() - side_at(2, pixel.y()));
+        if (j == 0 || j == up) rims.push_back(pixel);
       }
     }
     EXPECT_NEAR(least, 0, 2e-3);
     EXPECT_NEAR(most, 0, 2e-3);
     // As pictures are measured: where the silhouette ends in two columns, a quarter of its width at that end
     // beside its middle.
-    const auto end_of = [&](double way, double v) {
-      const auto at = [&](const EtalonPoint& a, const EtalonPoint& b) {
-        return a.pixel.x() + (b.pixel.x() - a.pixel.x()) * (v - a.pixel.y()) / (b.pixel.y() - a.pixel.y());
-      };
-      const double left = at(left0, left1), right = at(right0, right1);
-      double sum = 0;
+    for (const auto& [rim, way] : {std::pair{4, -1.0}, {5, 1.0}}) {
+      const double v = points[static_cast<std::size_t>(rim)].pixel.y();
+      const double left = side_at(0, v), width = side_at(2, v) - left;
+      double middle = 0;
       for (const double share : {0.25, 0.75}) {
         double end = -1e9;
-        for (const Eigen::Vector2d& pixel : surface)
-          if (std::abs(pixel.x() - left - share * (right - left)) < 0.1) end = std::max(end, way * pixel.y());
-        sum += 0.5 * way * end;
+        for (const Eigen::Vector2d& pixel : rims)
+          if (std::abs(pixel.x() - left - share * width) < 0.1) end = std::max(end, way * pixel.y());
+        middle += 0.5 * way * end;
       }
-      return sum;
-    };
-    for (const auto& [rim, way] : {std::pair{4, -1.0}, {5, 1.0}}) {
-      const double v = (*expected)[static_cast<std::size_t>(rim)].pixel.y();
-      EXPECT_NEAR(end_of(way, v), v, 0.1) << rim;
-    }
-  });
-}
-
-TEST(EtalonFigure, FindsThePointThatAPixelShows) {
-  for_random_cases(50, [](TestRandom& random) {
-    const EtalonFigure figure(random_etalon(random));
-    const View view = seen_by(true_rig(believed_rig(), {}, random), 1);
-    const auto expected = figure.expected(view, -1e4);
-    ASSERT_TRUE(expected);
-    for (const EtalonPoint& point : *expected) {
-      const auto place = figure.nearest(point, view);
-      ASSERT_TRUE(place);
-      EXPECT_LE((*view.project(*place) - point.pixel).norm(), 1e-9);
+      EXPECT_NEAR(middle, v, 0.1) << rim;
     }
   });
   EtalonConfig around_camera;
@@ -158,13 +145,8 @@ TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
     Eigen::AlignedBox2d told, drawn;
     for (const Eigen::Vector2d& point : *outline) told.extend(point);
     for (const double height : {0.0, etalon.height})
-      for (int i = 0; i < 1000; ++i) {
-        const double angle = 2e-3 * std::numbers::pi * i;
-        drawn.extend(*view.project(
-            vector(etalon.position) +
-            rotation_of(etalon.rotation) *
-                Eigen::Vector3d(etalon.radius * std::sin(angle), height, etalon.radius * std::cos(angle))));
-      }
+      for (int i = 0; i < 1000; ++i)
+        drawn.extend(*view.project(surface_point(etalon, 2e-3 * std::numbers::pi * i, height)));
     EXPECT_LT((told.min() - drawn.min()).norm(), 0.5);
     EXPECT_LT((told.max() - drawn.max()).norm(), 0.5);
     EXPECT_FALSE(figure.outline(view, told.min().minCoeff() + 1));

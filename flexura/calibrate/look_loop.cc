@@ -2,47 +2,29 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "flexura/base/degree.h"
-#include "flexura/calibrate/rig_aim.h"
-#include "flexura/camera/axis_config.h"
 
 namespace flexura {
-namespace {
-
-const CameraConfig& camera_of(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
-                              std::size_t i) {
-  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
-    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
-  return believed.cameras.at(config.cameras[i]);
-}
-
-}  // namespace
 
 LookLoop::LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
                    RigSessionWatcher& watcher)
     : believed_(believed),
       config_(config),
       watcher_(watcher),
-      hands_(ports, believed, config.patience),
-      trip_(hands_, watcher, config.cameras, config.move_duration),
-      cameras_{Camera(camera_of(ports, believed, config, 0)), Camera(camera_of(ports, believed, config, 1))} {
-}
+      trip_(ports, believed, config.cameras, config.patience, config.move_duration, watcher),
+      cameras_{Camera(believed.cameras.at(config.cameras[0])),
+               Camera(believed.cameras.at(config.cameras[1]))} {}
 
 LookLoop::Trouble LookLoop::begin() {
   auto trouble = trip_.begin();
-  result_.start = stands_ = trip_.start();
-  return trouble;
-}
-
-LookLoop::Trouble LookLoop::look_from_one_side() const {
-  return look_from_one_side(believed_, {start(0), start(1)}, "believed");
+  result_.start = trip_.start();
+  return trouble ? trouble : look_from_one_side(believed_, trip_.start(), "believed");
 }
 
 LookLoop::Trouble LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
@@ -60,19 +42,12 @@ LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {
   if (result_.pictures[i] >= config_.images)
     return fmt::format("the limit of {} pictures of camera {} is reached, during {}", config_.images, name(i),
                        result_.steps.empty() ? "the first step" : result_.steps.back().step);
-  const auto taken = hands_.frame(config_.cameras[i], hands_.now());
+  auto taken = trip_.picture(i, result_.pictures[i] + 1);
   if (const auto* why = std::get_if<std::string>(&taken)) return *why;
-  const auto stance = hands_.stance(config_.cameras[i]);
-  if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-  const auto arm = hands_.arm();
+  const auto arm = trip_.arm();
   if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-  sight_ = {.look = ++result_.pictures[i],
-            .stance = std::get<RigStance>(stance),
-            .pose = std::get<ArmState>(arm),
-            .frame = std::get<Frame>(taken),
-            .seen = {},
-            .values = {},
-            .circle = {}};
+  ++result_.pictures[i];
+  sight_ = std::get<RigSight>(std::move(taken)), sight_.pose = std::get<ArmState>(arm);
   measure(sight_);
   watcher_.seen(sight_);
   if (!result_.before[i]) result_.before[i] = sight_;
@@ -82,12 +57,12 @@ LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {
 
 void LookLoop::plan(std::size_t i, const std::string& plane, const ArmState& arc, const View& ideal,
                     const Image<std::uint8_t>& picture) {
-  watcher_.planned({hands_.now(), config_.cameras[i], plane, arc, ideal, picture});
+  watcher_.planned({trip_.now(), config_.cameras[i], plane, arc, ideal, picture});
 }
 
 void LookLoop::decide(std::size_t i, const std::string& step, double offset, double accepted,
                       const std::string& unit, const std::string& next) {
-  result_.steps.push_back({.time = hands_.now(),
+  result_.steps.push_back({.time = trip_.now(),
                            .looks = result_.pictures[0] + result_.pictures[1],
                            .camera = config_.cameras[i],
                            .step = step,
@@ -99,26 +74,48 @@ void LookLoop::decide(std::size_t i, const std::string& step, double offset, dou
 }
 
 LookLoop::Trouble LookLoop::go(std::size_t i, const RigStance& stance) {
-  watcher_.camera_sent(hands_.now(), stance);
-  stands_[i] = stance;
-  if (auto trouble = hands_.go(stance)) return trouble;
-  return hands_.settle();
+  if (auto trouble = trip_.send(i, stance)) return trouble;
+  return trip_.settle();
 }
 
-RigStance LookLoop::commandable_stance(std::size_t i, const RigStance& stance) const {
-  RigStance drawn = stance;
-  const auto& [pan, tilt, zoom] = cameras_[i].head_axes();
-  drawn.head = {commandable(pan, stance.head.pan), commandable(tilt, stance.head.tilt),
-                commandable(zoom, stance.head.zoom)};
-  for (Eigen::Index j = 0; j < 3; ++j)
-    drawn.stage.offset[j] =
-        commandable(cameras_[i].stage_axes()[static_cast<std::size_t>(j)], stance.stage.offset[j]);
-  return drawn;
+LookLoop::Trouble LookLoop::begin_zoomed(std::size_t i, double zoom, const char* step, const char* why) {
+  RigStance next = stance(i);
+  next.head.zoom = zoom;
+  next = commandable_stance(i, next);
+  if (stands_there(i, next)) return std::nullopt;
+  decide(i, step, 0, 0, "px", fmt::format(fmt::runtime(why), next.head.zoom));
+  return go(i, next);
+}
+
+LookLoop::Trouble LookLoop::turn_towards(std::size_t i, const char* what,
+                                         const std::optional<Eigen::Vector2d>& seen, double near,
+                                         const Intrinsics& lens, const char* in_vain,
+                                         const std::string& reason) {
+  if (!seen) return fmt::format("the {} is out of view of camera {}: {}", what, name(i), reason);
+  const Eigen::Vector2d off = *seen - Eigen::Vector2d(lens.cx, lens.cy);
+  RigStance next = stance(i);
+  next.head = turned_towards(next.head, lens, off);
+  next = commandable_stance(i, next);
+  if (off.norm() < near || stands_there(i, next)) return fmt::format(fmt::runtime(in_vain), name(i), reason);
+  decide(i, "into view", off.norm(), 0, "px", "turn towards what is seen: " + reason);
+  return go(i, next);
+}
+
+LookLoop::Trouble LookLoop::go_longer(std::size_t i, const RigStance& stance) {
+  decide(i, "principal point", 0, 0, "px",
+         fmt::format("zoom to {:.5g}, for what stays where it is", stance.head.zoom));
+  return go(i, stance);
+}
+
+RigStance LookLoop::zoomed(std::size_t i, double ratio) const {
+  RigStance next = stance(i);
+  next.head.zoom = zoom_by(cameras_[i], next.head.zoom, ratio);
+  return commandable_stance(i, next);
 }
 
 bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
   constexpr double rounding = 1e-9;
-  const RigStance& is = stands_[i];
+  const RigStance& is = stance(i);
   return std::abs(stance.head.pan - is.head.pan) < rounding &&
          std::abs(stance.head.tilt - is.head.tilt) < rounding &&
          std::abs(stance.head.zoom - is.head.zoom) < rounding * (1 + std::abs(is.head.zoom)) &&
@@ -128,12 +125,17 @@ bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
 LoopResult LookLoop::finish(const Trouble& trouble) {
   result_.is_done = !trouble;
   if (trouble) result_.reason = *trouble + trip_.retreat();
-  result_.stances = trouble ? result_.start : stands_;
+  result_.stances = trouble ? result_.start : trip_.stances();
   return std::move(result_);
 }
 
-double zoom_by(const Camera& camera, double from, double ratio) {
-  return zoom_at(camera, camera.lens().ratio(from) * ratio);
+std::array<int, 2> best_steps(const std::function<double(int, int)>& cost) {
+  std::array<int, 2> best = {0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (const int a : {0, -1, 1})
+    for (const int b : {0, -1, 1})
+      if (const double value = cost(a, b); value < least) least = value, best = {a, b};
+  return best;
 }
 
 }  // namespace flexura

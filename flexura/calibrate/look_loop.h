@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "flexura/calibrate/loop_session.h"
-#include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_trip.h"
 #include "flexura/camera/camera.h"
 
@@ -28,11 +28,11 @@ class LookLoop {
   LookLoop(const LookLoop&) = delete;
   LookLoop& operator=(const LookLoop&) = delete;
 
-  /// Waits for rest, and remembers where everything stands.
+  /// Waits for rest, remembers where everything stands, and refuses cameras that are believed to look from
+  /// one side.
   Trouble begin();
-  /// Why the axes can be believed to make no right angle: they are more than 45 degrees from one.
-  [[nodiscard]] Trouble look_from_one_side() const;
-  /// The same of a rig whose cameras stand so; `how` that is known.
+  /// Why the axes of a rig whose cameras stand so make no right angle: they are more than 45 degrees from
+  /// one; `how` that is known.
   [[nodiscard]] static Trouble look_from_one_side(const RigModel& rig,
                                                   const std::array<RigStance, 2>& stances, const char* how);
   /// A fresh picture of what stands; trouble when there were too many.
@@ -46,9 +46,25 @@ class LookLoop {
   /// Sends a camera, or the arm by way of the shape in which it began, and waits.
   Trouble go(std::size_t i, const RigStance& stance);
   Trouble show(const ArmState& pose) { return trip_.show(pose); }
+  /// Sends a camera's zoom there before the loop begins, unless it stands there; `why` in words, of the zoom.
+  Trouble begin_zoomed(std::size_t i, double zoom, const char* step, const char* why);
+  /// Turns a camera towards where something is `seen` of `what` it looks for, in which there is nothing to
+  /// measure for a `reason`. Trouble where nothing is, or less than `near` px from the middle, or it cannot
+  /// be turned: `in_vain`, of the camera's name and the reason.
+  Trouble turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen,
+                       double near, const Intrinsics& lens, const char* in_vain, const std::string& reason);
+  /// A principal point shows by a focal length that is so many times as long at least, where noise counts
+  /// eight times.
+  static constexpr double least_longer = 1.2;
+  /// Sends a camera to where it has it.
+  Trouble go_longer(std::size_t i, const RigStance& stance);
   /// What the camera can be sent to that is nearest, and whether that is where it was sent already.
-  [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const;
+  [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const {
+    return commanded(cameras_[i], stance);
+  }
   [[nodiscard]] bool stands_there(std::size_t i, const RigStance& stance) const;
+  /// Such a stance by a focal length that is `ratio` times as long.
+  [[nodiscard]] RigStance zoomed(std::size_t i, double ratio) const;
   /// The result, with how things stand at the end; in trouble everything is sent back first.
   LoopResult finish(const Trouble& trouble);
 
@@ -60,10 +76,9 @@ class LookLoop {
   }
   [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
   /// As sent.
-  [[nodiscard]] const RigStance& stance(std::size_t i) const { return stands_[i]; }
-  [[nodiscard]] const RigStance& start(std::size_t i) const { return result_.start[i]; }
+  [[nodiscard]] const RigStance& stance(std::size_t i) const { return trip_.stances()[i]; }
   /// The believed lens at the zoom as it stands.
-  [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stands_[i].head.zoom); }
+  [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stance(i).head.zoom); }
   [[nodiscard]] LoopResult& result() { return result_; }
   [[nodiscard]] const RigSight& sight() const { return sight_; }
 
@@ -71,16 +86,13 @@ class LookLoop {
   const RigModel& believed_;
   const LoopConfig& config_;
   RigSessionWatcher& watcher_;
-  RigHands hands_;
   RigTrip trip_;
   std::array<Camera, 2> cameras_;
   LoopResult result_;
   RigSight sight_;
-  std::array<RigStance, 2> stands_;
 };
 
-/// The lens's position at which the focal length is `ratio` times that at position `from`, or comes nearest
-/// to it within the head's limits.
-[[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
+/// Of the positions of two heads, each a step or none beside where it stands, the pair of least cost.
+[[nodiscard]] std::array<int, 2> best_steps(const std::function<double(int, int)>& cost);
 
 }  // namespace flexura

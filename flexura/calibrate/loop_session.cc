@@ -1,9 +1,7 @@
 #include "flexura/calibrate/loop_session.h"
 
 #include "flexura/calibrate/arcs_loop.h"
-#include "flexura/calibrate/arcs_paper_loop.h"
 #include "flexura/calibrate/etalon_loop.h"
-#include "flexura/calibrate/etalon_paper_loop.h"
 #include "flexura/calibrate/look_loop.h"
 
 namespace flexura {
@@ -14,13 +12,13 @@ LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed, co
   const auto run = [&]() -> LookLoop::Trouble {
     switch (config.method) {
       case LoopMethod::etalon:
-        return EtalonLoop(loop).run();
+        return etalon_corrected(loop)->run();
       case LoopMethod::etalon_paper:
-        return EtalonPaperLoop(loop).run();
+        return etalon_as_printed(loop)->run();
       case LoopMethod::arcs:
-        return ArcsLoop(loop).run();
+        return arcs_corrected(loop)->run(false);
       case LoopMethod::arcs_paper:
-        return ArcsPaperLoop(loop).run();
+        return arcs_as_printed(loop)->run(true);
     }
     return "no such method";
   };

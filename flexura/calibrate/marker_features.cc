@@ -11,6 +11,24 @@ Eigen::Vector3d chromaticity(const Eigen::Vector3d& color) {
   return sum > 0 ? Eigen::Vector3d(color / sum) : Eigen::Vector3d::Constant(1.0 / 3);
 }
 
+std::vector<std::array<std::size_t, 2>> anchors(const std::vector<MarkerFeature>& seen) {
+  std::vector<std::array<std::size_t, 2>> all, chosen;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    for (std::size_t j = i + 1; j < seen.size(); ++j) all.push_back({i, j});
+  std::ranges::stable_sort(all, std::ranges::greater{},
+                           [&](const auto& pair) { return std::abs(seen[pair[0]].at - seen[pair[1]].at); });
+  constexpr std::size_t most = 12;
+  constexpr int most_each = 3;
+  std::vector<int> count(seen.size(), 0);
+  for (const auto& [i, j] : all) {
+    if (chosen.size() == most) break;
+    if (count[i] == most_each || count[j] == most_each) continue;
+    ++count[i], ++count[j];
+    chosen.push_back({i, j});
+  }
+  return chosen;
+}
+
 }  // namespace
 
 MarkerPalette::MarkerPalette(const MarkerScene& expected, const MarkerScene& seen) {
@@ -58,22 +76,17 @@ std::vector<double> tolerances(const std::vector<MarkerFeature>& expected) {
   return result;
 }
 
-std::vector<std::array<std::size_t, 2>> anchors(const std::vector<MarkerFeature>& seen) {
-  std::vector<std::array<std::size_t, 2>> all, chosen;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    for (std::size_t j = i + 1; j < seen.size(); ++j) all.push_back({i, j});
-  std::ranges::stable_sort(all, std::ranges::greater{},
-                           [&](const auto& pair) { return std::abs(seen[pair[0]].at - seen[pair[1]].at); });
-  constexpr std::size_t most = 12;
-  constexpr int most_each = 3;
-  std::vector<int> count(seen.size(), 0);
-  for (const auto& [i, j] : all) {
-    if (chosen.size() == most) break;
-    if (count[i] == most_each || count[j] == most_each) continue;
-    ++count[i], ++count[j];
-    chosen.push_back({i, j});
+void for_likely_moves(const std::vector<MarkerFeature>& expected, const std::vector<MarkerFeature>& seen,
+                      const MarkerMove& move) {
+  for (const auto& [i, j] : anchors(seen)) {
+    for (const MarkerFeature& a : expected) {
+      for (const MarkerFeature& b : expected) {
+        if (&a == &b || a.kind != seen[i].kind || b.kind != seen[j].kind) continue;
+        const std::complex<double> way = b.at - a.at;
+        if (std::abs(way) > 1) move((seen[j].at - seen[i].at) / way, a.at, seen[i].at);
+      }
+    }
   }
-  return chosen;
 }
 
 MarkerPairs nearest_pairs(const std::vector<MarkerFeature>& expected, const std::vector<double>& tolerance,

@@ -4,6 +4,7 @@
 #include <array>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "flexura/calibrate/marker_match.h"
@@ -36,9 +37,13 @@ class MarkerPalette {
 /// nearest other one of its kind, and 40 px at most.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
 
-/// Pairs of seen features that say most of how a picture is moved: the farthest apart, a dozen at most, and
-/// none of which any is in more than three.
-[[nodiscard]] std::vector<std::array<std::size_t, 2>> anchors(const std::vector<MarkerFeature>& seen);
+/// What may have turned and enlarged the expected picture (a factor), and brought one place in it to another.
+using MarkerMove = std::function<void(const std::complex<double>& turn, const std::complex<double>& from,
+                                      const std::complex<double>& to)>;
+/// Does that for each two expected features and two seen ones of their kinds. Of the seen ones the pairs that
+/// say most: the farthest apart, a dozen at most, and none of which any is in more than three.
+void for_likely_moves(const std::vector<MarkerFeature>& expected, const std::vector<MarkerFeature>& seen,
+                      const MarkerMove& move);
 
 /// Which seen feature is which expected one, and what speaks for it.
 struct MarkerPairs {

@@ -41,23 +41,13 @@ class Matcher {
     Trial best;
     // As it is expected.
     if (!expected_.empty() && std::isfinite(doubt_.shift)) try_map({}, best);
-    for (const auto& [i, j] : anchors(seen_)) {
-      for (std::size_t a = 0; a < expected_.size(); ++a)
-        for (std::size_t b = 0; b < expected_.size(); ++b) try_pairs(i, j, a, b, best);
-    }
+    for_likely_moves(expected_, seen_, [&](const Point& turn, const Point& from, const Point& to) {
+      try_map({turn, to - turn * from}, best);
+    });
     return best;
   }
 
  private:
-  void try_pairs(std::size_t i, std::size_t j, std::size_t a, std::size_t b, Trial& best) {
-    if (a == b || expected_[a].kind != seen_[i].kind || expected_[b].kind != seen_[j].kind) return;
-    const Point way = expected_[b].at - expected_[a].at;
-    if (!(std::abs(way) > 1)) return;
-    Similarity map;
-    map.turn = (seen_[j].at - seen_[i].at) / way;
-    map.shift = seen_[i].at - map.turn * expected_[a].at;
-    try_map(map, best);
-  }
   void try_map(const Similarity& map, Trial& best) {
     if (!is_plausible(map)) return;
     Trial trial = tried(map);

@@ -110,20 +110,10 @@ class Vote {
     const Side& side = sides_[k];
     constexpr std::size_t most = 40;
     std::vector<Candidate> likely;
-    for (const auto& [i, j] : anchors(side.seen)) {
-      for (std::size_t a = 0; a < side.expected.size(); ++a) {
-        for (std::size_t b = 0; b < side.expected.size(); ++b) {
-          if (a == b || side.expected[a].kind != side.seen[i].kind ||
-              side.expected[b].kind != side.seen[j].kind)
-            continue;
-          const Point way = side.expected[b].at - side.expected[a].at;
-          if (!(std::abs(way) > 1)) continue;
-          const Point turn = (side.seen[j].at - side.seen[i].at) / way;
-          if (const auto error = error_of(pictures_[k].view, turn, side.expected[a].at, side.seen[i].at))
-            keep(tried(*error, k, k + 1), most, likely);
-        }
-      }
-    }
+    for_likely_moves(side.expected, side.seen, [&](const Point& turn, const Point& from, const Point& to) {
+      if (const auto error = error_of(pictures_[k].view, turn, from, to))
+        keep(tried(*error, k, k + 1), most, likely);
+    });
     for (const Candidate& one : likely) keep(tried(one.error, 0, sides_.size()), most_kept, best_);
   }
   // The error that turns and scales a picture like this, and brings one place in it to another.

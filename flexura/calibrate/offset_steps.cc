@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace flexura {
 namespace {
@@ -12,46 +13,24 @@ namespace {
 constexpr std::size_t patience = 6;
 
 // The last offsets change sign each time and become no smaller.
-bool goes_back_and_forth(const std::vector<double>& offsets) {
-  if (offsets.size() < patience) return false;
-  for (std::size_t i = offsets.size() - patience + 1; i < offsets.size(); ++i)
-    if (offsets[i] * offsets[i - 1] >= 0) return false;
+bool goes_back_and_forth(std::span<const double> last) {
+  for (std::size_t i = 1; i < last.size(); ++i)
+    if (last[i] * last[i - 1] >= 0) return false;
   constexpr double as_large = 0.8;
-  return std::abs(offsets.back()) > as_large * std::abs(offsets[offsets.size() - patience]);
+  return std::abs(last.back()) > as_large * std::abs(last.front());
 }
 
-// The last offsets only grow.
-bool runs_away(const std::vector<double>& offsets) {
-  if (offsets.size() < patience) return false;
-  for (std::size_t i = offsets.size() - patience + 1; i < offsets.size(); ++i)
-    if (std::abs(offsets[i]) <= std::abs(offsets[i - 1])) return false;
+// They only grow.
+bool runs_away(std::span<const double> last) {
+  for (std::size_t i = 1; i < last.size(); ++i)
+    if (std::abs(last[i]) <= std::abs(last[i - 1])) return false;
   return true;
 }
 
 }  // namespace
 
-LoopState EqualSteps::take(double offset) {
-  offsets_.push_back(offset);
-  move_ = 0;
-  if (std::abs(offset) <= accepted_) return LoopState::holds;
-  if (goes_back_and_forth(offsets_)) {
-    const double changes = std::abs(offsets_.back() - offsets_[offsets_.size() - 2]);
-    reason_ = fmt::format(
-        "goes back and forth and cannot stop: a step changes the offset by {:.3g}, and {:.3g} is accepted, "
-        "which is less than half of that",
-        changes, accepted_);
-    return LoopState::stuck;
-  }
-  if (runs_away(offsets_)) {
-    reason_ = fmt::format("runs away: the offset grew from {:.4g} to {:.4g} in {} steps",
-                          offsets_[offsets_.size() - patience], offset, patience - 1);
-    return LoopState::stuck;
-  }
-  move_ = std::copysign(step_, offset);
-  return LoopState::moves;
-}
-
-LoopState ShrinkingSteps::take(double offset) {
+LoopState OffsetSteps::take(double offset) {
+  const bool are_alike = !(largest_ > 0);
   if (!offsets_.empty()) {
     const double last = offsets_.back();
     const bool is_over = offset * last < 0 && std::abs(offset) > 0.5 * std::abs(last);
@@ -60,12 +39,19 @@ LoopState ShrinkingSteps::take(double offset) {
   offsets_.push_back(offset);
   move_ = 0;
   if (std::abs(offset) <= accepted_) return LoopState::holds;
-  if (runs_away(offsets_)) {
-    reason_ = fmt::format("runs away: what is missing grew from {:.4g} to {:.4g} in {} steps",
-                          offsets_[offsets_.size() - patience], offset, patience - 1);
-    return LoopState::stuck;
+  if (offsets_.size() >= patience) {
+    const auto last = std::span(offsets_).last(patience);
+    if (are_alike && goes_back_and_forth(last))
+      reason_ = fmt::format(
+          "goes back and forth and cannot stop: a step changes the offset by {:.3g}, and {:.3g} is accepted, "
+          "which is less than half of that",
+          std::abs(offset - last[patience - 2]), accepted_);
+    else if (runs_away(last))
+      reason_ = fmt::format("runs away: {} grew from {:.4g} to {:.4g} in {} steps",
+                            are_alike ? "the offset" : "what is missing", last.front(), offset, patience - 1);
+    if (!reason_.empty()) return LoopState::stuck;
   }
-  move_ = std::clamp(share_ * offset, -largest_, largest_);
+  move_ = are_alike ? std::copysign(1.0, offset) : std::clamp(share_ * offset, -largest_, largest_);
   return LoopState::moves;
 }
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string>
 
 #include "tests/support/random_cases.h"
@@ -19,161 +18,109 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// How a loop went: the number of moves until its offset held, or nothing finer could be commanded, and what
-// the offset was then. None when it got stuck, or was not there within `most`.
+// How an offset went that each move changes by `behaviour` times itself.
 struct LoopEnd {
+  LoopState state = LoopState::moves;
   int moves = 0;
   double offset = 0;
+  std::string reason;
 };
-template <class Steps>
-std::optional<LoopEnd> end_of(Steps steps, double offset, double behaviour, int most, double resolution = 0) {
-  for (int move = 0; move <= most; ++move) {
+LoopEnd end_of(OffsetSteps steps, double offset, double behaviour, double resolution = 0) {
+  constexpr int most = 300;
+  for (int moves = 0; moves <= most; ++moves) {
     const LoopState state = steps.take(offset);
-    if (state == LoopState::holds) return LoopEnd{move, offset};
-    if (state == LoopState::stuck) return std::nullopt;
+    if (state != LoopState::moves) return {state, moves, offset, steps.reason()};
     double by = steps.move();
     if (resolution > 0) by = resolution * std::round(by / resolution);
-    if (by == 0) return LoopEnd{move, offset};
+    if (by == 0) return {LoopState::holds, moves, offset, ""};
     offset -= behaviour * by;
   }
-  return std::nullopt;
+  return {};
 }
 
-TEST(EqualSteps, EndFromEverywhereWhereHalfAStepsChangeIsAccepted) {
-  for_random_cases(2000, [](TestRandom& random) {
-    const double step = random.uniform(0.1, 2), behaviour = random.uniform(0.5, 20);
-    const double accepted = 0.5 * step * behaviour * random.uniform(1.0001, 2);
-    const double offset = random.uniform(-100, 100) * step * behaviour;
-    const auto end = end_of(EqualSteps(step, accepted), offset, behaviour, 200);
-    ASSERT_TRUE(end);
-    EXPECT_EQ(end->moves,
-              std::max(0.0, std::ceil((std::abs(offset) - accepted) / (step * behaviour) - 1e-9)));
-  });
-}
-
-TEST(EqualSteps, NoticeThatTheyGoBackAndForthWhereLessIsAccepted) {
-  // With a share a < 1 of half a step's change accepted, they end from the share a of all starts.
-  for (const double share : {0.25, 0.5, 0.9}) {
+// From everywhere with half a step's change accepted; with the share a < 1 of that from the share a of all
+// starts.
+TEST(StepsAllAlike, EndOrNoticeThatTheyGoBackAndForth) {
+  for (const double share : {0.25, 0.5, 0.9, 1.0001, 1.7}) {
     int ended = 0, tried = 0;
     for_random_cases(1000, [&](TestRandom& random) {
-      const double step = random.uniform(0.1, 2), behaviour = random.uniform(0.5, 20);
-      EqualSteps steps(step, 0.5 * share * step * behaviour);
-      double offset = random.uniform(-30, 30) * step * behaviour;
-      LoopState state = LoopState::moves;
-      for (int i = 0; i < 200 && state == LoopState::moves; ++i) {
-        state = steps.take(offset);
-        offset -= behaviour * steps.move();
+      const double behaviour = random.uniform(0.5, 20), accepted = 0.5 * share * behaviour;
+      const double offset = random.uniform(-100, 100) * behaviour;
+      const LoopEnd end = end_of(OffsetSteps(accepted), offset, behaviour);
+      ASSERT_NE(end.state, LoopState::moves);
+      const double needed = std::max(0.0, std::ceil((std::abs(offset) - accepted) / behaviour - 1e-9));
+      if (end.state == LoopState::holds) {
+        EXPECT_EQ(end.moves, needed);
+      } else {
+        EXPECT_THAT(end.reason, HasSubstr("goes back and forth"));
       }
-      ASSERT_NE(state, LoopState::moves);
-      if (state == LoopState::stuck) {
-        EXPECT_THAT(steps.reason(), HasSubstr("goes back and forth"));
-      }
-      ++tried, ended += state == LoopState::holds ? 1 : 0;
+      ++tried, ended += end.state == LoopState::holds ? 1 : 0;
     });
-    EXPECT_NEAR(static_cast<double>(ended) / tried, share, one_case_of > 1 ? 0.15 : 0.05);
+    EXPECT_NEAR(static_cast<double>(ended) / tried, std::min(share, 1.0),
+                share > 1 ? 0 : (one_case_of > 1 ? 0.15 : 0.05));
   }
 }
 
-TEST(EqualSteps, NoticeThatTheyRunAway) {
-  EqualSteps steps(1, 0.5);
-  double offset = 2;
-  while (steps.take(offset) == LoopState::moves) offset += 0.7 * steps.move();
-  EXPECT_THAT(steps.reason(), HasSubstr("runs away"));
-  EXPECT_LT(offset, 10);
-}
-
-TEST(ShrinkingSteps, EndForEveryBehaviourThatHasTheBelievedSign) {
+TEST(StepsThatShrink, EndForEveryBehaviourThatHasTheBelievedSign) {
   for_random_cases(2000, [](TestRandom& random) {
     const double behaviour = std::exp(random.uniform(std::log(0.1), std::log(8.0)));
-    const double offset = random.uniform(-1, 1);
-    const auto end = end_of(ShrinkingSteps(1e-6, 100), offset, behaviour, 300);
-    ASSERT_TRUE(end) << behaviour;
-    EXPECT_LE(std::abs(end->offset), 1e-6);
+    const LoopEnd end = end_of(OffsetSteps(1e-6, 100), random.uniform(-1, 1), behaviour);
+    ASSERT_EQ(end.state, LoopState::holds) << behaviour;
+    EXPECT_LE(std::abs(end.offset), 1e-6);
     // Within half of the believed behaviour each step leaves half at most.
     if (behaviour > 0.5 && behaviour < 1.5) {
-      EXPECT_LE(end->moves, 21);
+      EXPECT_LE(end.moves, 21);
     }
+    const double near = random.uniform(0.6, 1.4), resolution = random.uniform(0.01, 0.1);
+    const LoopEnd drawn = end_of(OffsetSteps(1e-9, 100), random.uniform(-3, 3), near, resolution);
+    ASSERT_EQ(drawn.state, LoopState::holds);
+    // Half a step of a head; twice that where a last step jumped over, and was halved.
+    EXPECT_LE(std::abs(drawn.offset), resolution);
   });
 }
 
-TEST(ShrinkingSteps, RunAwayForTheOtherSignAndSayso) {
+TEST(OffsetSteps, NoticeThatTheyRunAway) {
   for_random_cases(500, [](TestRandom& random) {
-    const double behaviour = -random.uniform(0.05, 3);
-    ShrinkingSteps steps(1e-6, 100);
-    double offset = random.uniform(0.1, 1);
-    LoopState state = LoopState::moves;
-    for (int i = 0; i < 100 && state == LoopState::moves; ++i) {
-      state = steps.take(offset);
-      offset -= behaviour * steps.move();
+    const double behaviour = -random.uniform(0.05, 3), offset = random.uniform(0.6, 1);
+    for (const OffsetSteps& steps : {OffsetSteps(1e-6, 100), OffsetSteps(0.5)}) {
+      const LoopEnd end = end_of(steps, offset, behaviour);
+      EXPECT_EQ(end.state, LoopState::stuck);
+      EXPECT_THAT(end.reason, HasSubstr("runs away"));
     }
-    ASSERT_EQ(state, LoopState::stuck);
-    EXPECT_THAT(steps.reason(), HasSubstr("runs away"));
-  });
-}
-
-TEST(ShrinkingSteps, WithoutHalvingTheBoundaryIsAtTwiceTheBelievedBehaviour) {
-  // The same steps held at their first size, each the first of a loop: |1 - k| < 1.
-  for_random_cases(1000, [](TestRandom& random) {
-    const double behaviour = random.uniform(0.02, 4);
-    if (std::abs(behaviour - 2) < 0.01) return;
-    double offset = 1;
-    for (int i = 0; i < 4000 && std::abs(offset) > 1e-6 && std::abs(offset) < 1e6; ++i) {
-      ShrinkingSteps first(1e-9, 1e9);
-      ASSERT_EQ(first.take(offset), LoopState::moves);
-      offset -= behaviour * first.move();
-    }
-    EXPECT_EQ(std::abs(offset) <= 1e-6, behaviour < 2) << behaviour;
   });
 }
 
 // Two offsets of one picture, e -> e - K m, nulled as `etalon` does: the first until it holds, then a step of
 // the second, and the first again. Whether both come to hold; or what became of it.
-std::string end_of_pair(const Eigen::Matrix2d& behaviour, Eigen::Vector2d offsets, double largest) {
+std::string end_of_pair(const Eigen::Matrix2d& behaviour, Eigen::Vector2d offsets) {
   // What is accepted of the first is not nulled, and there the second follows K_22 alone.
   constexpr std::array<double, 2> held = {1e-9, 1e-6};
-  std::array<ShrinkingSteps, 2> steps = {ShrinkingSteps(held[0], largest), ShrinkingSteps(held[1], largest)};
+  std::array<OffsetSteps, 2> steps = {OffsetSteps(held[0], 100), OffsetSteps(held[1], 100)};
   constexpr int most = 3000;
   for (int move = 0; move < most; ++move) {
     const Eigen::Index i = std::abs(offsets[0]) > held[0] ? 0 : 1;
-    ShrinkingSteps& chosen = steps[static_cast<std::size_t>(i)];
+    OffsetSteps& chosen = steps[static_cast<std::size_t>(i)];
     const LoopState state = chosen.take(offsets[i]);
     if (state == LoopState::holds) return "holds";
     if (state == LoopState::stuck) return chosen.reason();
-    if (i == 1)
-      steps[0] = ShrinkingSteps(held[0], largest);  // What comes now is not what its last step left.
+    if (i == 1) steps[0] = OffsetSteps(held[0], 100);  // What comes now is not what its last step left.
     offsets -= behaviour.col(i) * chosen.move();
   }
   return "goes on";
 }
 
 // The second one follows det K / K_11 once the first is nulled after each of its steps.
-TEST(ShrinkingSteps, EndAsAPairWhereTheSecondOffsetFollowsWhenTheFirstIsHeld) {
+TEST(StepsThatShrink, EndAsAPairWhereTheSecondOffsetFollowsWhenTheFirstIsHeld) {
   int ended = 0, ran = 0;
   for_random_cases(2000, [&](TestRandom& random) {
     Eigen::Matrix2d K;
     K << random.uniform(0.6, 1.4), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1.4, 1.4);
     const double follows = K.determinant() / K(0, 0);
     if (std::abs(follows) < 0.1 || follows > 1.4) return;
-    const std::string end = end_of_pair(K, random.vector<2>(-1, 1), 100);
-    if (follows > 0) {
-      EXPECT_EQ(end, "holds") << K;
-      ++ended;
-    } else {
-      EXPECT_THAT(end, HasSubstr("runs away")) << K;
-      ++ran;
-    }
+    EXPECT_THAT(end_of_pair(K, random.vector<2>(-1, 1)), HasSubstr(follows > 0 ? "holds" : "runs away")) << K;
+    ++(follows > 0 ? ended : ran);
   });
   EXPECT_GT(std::min(ended, ran), 600 / one_case_of);
-}
-
-TEST(ShrinkingSteps, EndWhereNothingFinerCanBeCommanded) {
-  for_random_cases(1000, [](TestRandom& random) {
-    const double behaviour = random.uniform(0.6, 1.4), resolution = random.uniform(0.01, 0.1);
-    const auto end = end_of(ShrinkingSteps(1e-9, 100), random.uniform(-3, 3), behaviour, 200, resolution);
-    ASSERT_TRUE(end);
-    // Half a step; twice that where a last step jumped over, and was halved.
-    EXPECT_LE(std::abs(end->offset), resolution);
-  });
 }
 
 }  // namespace

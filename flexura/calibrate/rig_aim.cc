@@ -24,19 +24,21 @@ double focal_of(const Camera& camera, double zoom) {
   return std::sqrt(lens.fx * lens.fy);
 }
 
-// Where in the zoom's travel the focal length is this, or comes nearest; it grows or falls all the way.
-double zoom_of(const Camera& camera, double focal) {
-  auto [low, high] = camera.head_axes()[2].limits;
-  low = std::max(low, camera.lens().first()), high = std::min(high, camera.lens().last());
-  if (focal_of(camera, low) > focal_of(camera, high)) std::swap(low, high);
-  if (!(focal > focal_of(camera, low))) return low;
-  if (!(focal < focal_of(camera, high))) return high;
-  constexpr int halvings = 100;
+// The lens's position at which a size that grows with its focal length is this, or comes nearest to it.
+template <class Size>
+double zoom_where(const Camera& camera, double wanted, int halvings, const Size& size) {
+  auto [low, high] = zoom_ends(camera);
+  if (!(wanted > size(low))) return low;
+  if (!(wanted < size(high))) return high;
   for (int i = 0; i < halvings; ++i) {
     const double middle = 0.5 * (low + high);
-    (focal_of(camera, middle) < focal ? low : high) = middle;
+    (size(middle) < wanted ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+double zoom_of(const Camera& camera, double focal) {
+  return zoom_where(camera, focal, 100, [&](double zoom) { return focal_of(camera, zoom); });
 }
 
 // Two cameras on their way to the wanted configuration.
@@ -85,7 +87,7 @@ class Seeker {
           focal_of(cameras_[i], zoom_of(cameras_[i], std::numeric_limits<double>::infinity())) / depth(i);
       least = std::max(least, a), most = std::min(most, b);
     }
-    const double wanted = wish_.magnification.value_or(std::sqrt(start_[0] * start_[1]));
+    const double wanted = std::sqrt(start_[0] * start_[1]);
     magnification_ = std::min(std::max(wanted, least), most);
     is_zoom_short_ = least > most;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
@@ -226,15 +228,11 @@ std::array<double, 2> zoom_ends(const Camera& camera) {
 }
 
 double zoom_at(const Camera& camera, double ratio) {
-  auto [low, high] = zoom_ends(camera);
-  if (!(ratio > camera.lens().ratio(low))) return low;
-  if (!(ratio < camera.lens().ratio(high))) return high;
-  constexpr int halvings = 60;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (camera.lens().ratio(middle) < ratio ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return zoom_where(camera, ratio, 60, [&](double zoom) { return camera.lens().ratio(zoom); });
+}
+
+double zoom_by(const Camera& camera, double from, double ratio) {
+  return zoom_at(camera, camera.lens().ratio(from) * ratio);
 }
 
 HeadState aimed(const CameraConfig& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
@@ -258,10 +256,20 @@ Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance
   return stance.stage.offset + camera.mount().rotation.transpose() * (p_WC - now);
 }
 
-HeadState commanded_head(const CameraConfig& model, const HeadState& head) {
-  const Camera camera(model);
+RigStance commanded(const Camera& camera, RigStance stance) {
   const auto& [pan, tilt, zoom] = camera.head_axes();
-  return {commandable(pan, head.pan), commandable(tilt, head.tilt), commandable(zoom, head.zoom)};
+  stance.head = {commandable(pan, stance.head.pan), commandable(tilt, stance.head.tilt),
+                 commandable(zoom, stance.head.zoom)};
+  for (std::size_t j = 0; j < 3; ++j) {
+    double& offset = stance.stage.offset[static_cast<Eigen::Index>(j)];
+    offset = commandable(camera.stage_axes()[j], offset);
+  }
+  return stance;
+}
+
+HeadState turned_towards(HeadState head, const Intrinsics& lens, const Eigen::Vector2d& off) {
+  head.pan -= std::atan(off.x() / lens.fx), head.tilt -= std::atan(off.y() / lens.fy);
+  return head;
 }
 
 RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& stances,

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,22 +26,23 @@ namespace flexura {
 [[nodiscard]] Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
                                             const Eigen::Vector3d& p_WC);
 
-/// The nearest position of the head that can be commanded.
-[[nodiscard]] HeadState commanded_head(const CameraConfig& model, const HeadState& head);
+/// The nearest stance that can be commanded.
+[[nodiscard]] RigStance commanded(const Camera& camera, RigStance stance);
+/// The head turned so that what is seen `off` px to the right of and below the principal point comes there.
+[[nodiscard]] HeadState turned_towards(HeadState head, const Intrinsics& lens, const Eigen::Vector2d& off);
 
 /// The lens's positions of its shortest focal length and of its longest, within the head's limits.
 [[nodiscard]] std::array<double, 2> zoom_ends(const Camera& camera);
 /// The lens's position at which its ratio is this, or comes nearest to it within the head's limits.
 [[nodiscard]] double zoom_at(const Camera& camera, double ratio);
+/// Likewise where the focal length is `ratio` times that at position `from`.
+[[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
 
 /// The configuration that section 3.4 of the paper asks for.
 struct RigWish {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< What both cameras look at, in W, m.
   std::array<RigStance, 2> now;                      ///< From where they go: of two cameras.
   bool may_use_stages = true;                        ///< Else they stay where they stand.
-  /// Focal length over depth that both shall have, px/m; the one between their present ones that both can
-  /// reach when left out.
-  std::optional<double> magnification;
 };
 
 /// What remains of it, by the model.
@@ -60,7 +60,8 @@ struct WantedRig {
   std::vector<std::string> notes;    ///< What keeps it from being had: "front: pan ends at ...".
 };
 
-/// The commands after which both cameras look at the target along orthogonal axes and show it equally large:
+/// The commands after which both cameras look at the target along orthogonal axes and show it equally large,
+/// between as large as they do now:
 /// the stages (by as little as does it) bring the lines of sight to 90 degrees, as far as they travel, and
 /// the heads turn along these. What the stages cannot do, the heads do half each: orthogonal axes come before
 /// axes through the target. Then everything is drawn to what can be commanded; of the positions around it,

@@ -104,22 +104,18 @@ RigHands::Trouble RigHands::camera_elsewhere(std::size_t camera) const {
   if (const auto* trouble = std::get_if<std::string>(&where)) return *trouble;
   const RigStance &sent = *sent_[camera], &reads = std::get<RigStance>(where);
   const Camera& optics = cameras_[camera];
-  const auto off = [&](const char* device, const char* axis_name, const AxisConfig& axis, double to,
-                       double is) -> Trouble {
-    if (stands(axis, to, is)) return std::nullopt;
-    return fmt::format("the {} of camera {} does not follow: {} was sent to {:.6g} and stands at {:.6g}",
-                       device, name(camera), axis_name, commandable(axis, to), is);
+  constexpr std::array<const char*, 6> names = {"pan", "tilt", "zoom", "x", "y", "z"};
+  const auto places = [](const RigStance& stance) {
+    const HeadState& head = stance.head;
+    const Eigen::Vector3d& slid = stance.stage.offset;
+    return std::array{head.pan, head.tilt, head.zoom, slid.x(), slid.y(), slid.z()};
   };
-  const auto& [pan, tilt, zoom] = optics.head_axes();
-  if (auto trouble = off("head", "pan", pan, sent.head.pan, reads.head.pan)) return trouble;
-  if (auto trouble = off("head", "tilt", tilt, sent.head.tilt, reads.head.tilt)) return trouble;
-  if (auto trouble = off("head", "zoom", zoom, sent.head.zoom, reads.head.zoom)) return trouble;
-  constexpr std::array<const char*, 3> names = {"x", "y", "z"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto j = static_cast<Eigen::Index>(i);
-    if (auto trouble =
-            off("stage", names[i], optics.stage_axes()[i], sent.stage.offset[j], reads.stage.offset[j]))
-      return trouble;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const AxisConfig axis = i < 3 ? optics.head_axes()[i] : optics.stage_axes()[i - 3];
+    const double to = places(sent)[i], is = places(reads)[i];
+    if (!stands(axis, to, is))
+      return fmt::format("the {} of camera {} does not follow: {} was sent to {:.6g} and stands at {:.6g}",
+                         i < 3 ? "head" : "stage", name(camera), names[i], commandable(axis, to), is);
   }
   return std::nullopt;
 }

@@ -21,12 +21,10 @@ namespace {
 
 using Trouble = RigHands::Trouble;
 
-void check(const RigPorts& ports, const RigModel& believed, const RigSessionConfig& config) {
+void check(const RigSessionConfig& config) {
   const bool sees_nothing = config.picture.markers.empty() && !config.etalon;
   if (config.poses.empty() || sees_nothing || config.images < 3 || config.first < 1)
     throw std::invalid_argument("a calibration needs a pose, markers and at least 3 images");
-  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1])
-    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
 }
 
 class Session {
@@ -36,14 +34,13 @@ class Session {
       : believed_(believed),
         config_(config),
         watcher_(watcher),
-        hands_(ports, believed, config.patience),
-        trip_(hands_, watcher, config.cameras, config.move_duration),
+        trip_(ports, believed, config.cameras, config.patience, config.move_duration, watcher),
         plan_(believed, config),
         eyes_(session_eyes(believed, prior, config, plan_.target(believed))) {}
 
   RigSessionResult run() {
     Trouble trouble = trip_.begin();
-    stands_ = trip_.start();
+    for (std::size_t i = 0; i < 2; ++i) eyes_->sent(i, trip_.start()[i]);
     if (!trouble) trouble = look_and_move();
     if (trouble) {
       result_.is_done = false;
@@ -56,7 +53,8 @@ class Session {
  private:
   Trouble look_and_move() {
     for (std::size_t i = 0; i < config_.first; ++i)
-      if (auto trouble = look({pose(i), {plan_.first(stands_[0]), plan_.first(stands_[1])}})) return trouble;
+      if (auto trouble = look({pose(i), {plan_.first(trip_.stances()[0]), plan_.first(trip_.stances()[1])}}))
+        return trouble;
     while (result_.looks + 1 < config_.images) {
       if (auto trouble = calibrate()) return trouble;
       if (found_ && is_enough()) break;
@@ -90,12 +88,11 @@ class Session {
       if (auto trouble = trip_.show(what.pose)) return trouble;
     for (const RigStance& stance : what.stances)
       if (auto trouble = send(stance)) return trouble;
-    if (auto trouble = hands_.settle()) return trouble;
+    if (auto trouble = trip_.settle()) return trouble;
     ++result_.looks;
-    const auto arm = hands_.arm();
+    const auto arm = trip_.arm();
     if (const auto* why = std::get_if<std::string>(&arm)) return *why;
-    if (eyes_->poses().empty() || eyes_->poses().back() != std::get<ArmState>(arm))
-      eyes_->poses().push_back(std::get<ArmState>(arm));
+    pose_ = std::get<ArmState>(arm);
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;
       // As long as nothing is known, the arm may have bent out of view.
@@ -114,18 +111,11 @@ class Session {
   }
 
   Trouble send(const RigStance& stance) {
-    RigStance& stands = stands_[place_of(stance.camera)];
+    const std::size_t i = stance.camera == config_.cameras[0] ? 0 : 1;
+    const RigStance& stands = trip_.stances()[i];
     if (stance.head == stands.head && stance.stage == stands.stage) return std::nullopt;
-    watcher_.camera_sent(hands_.now(), stance);
-    if (auto trouble = hands_.go(stance)) return trouble;
-    is_turned_[place_of(stance.camera)] |=
-        stance.head.pan != stands.head.pan || stance.head.tilt != stands.head.tilt;
-    stands = stance;
-    stance_[place_of(stance.camera)].reset();
-    return std::nullopt;
-  }
-  [[nodiscard]] std::size_t place_of(std::size_t camera) const {
-    return camera == config_.cameras[0] ? 0 : 1;
+    eyes_->sent(i, stance);
+    return trip_.send(i, stance);
   }
   [[nodiscard]] const std::string& name(std::size_t i) const {
     return believed_.cameras[config_.cameras[i]].name;
@@ -138,21 +128,12 @@ class Session {
 
   // Takes a picture and measures it; what is of use becomes an image of the observations.
   Trouble picture(std::size_t i, bool is_search = false) {
-    const auto taken = hands_.frame(config_.cameras[i], hands_.now());
+    auto taken = trip_.picture(i, is_search ? 0 : result_.looks);
     if (const auto* why = std::get_if<std::string>(&taken)) return *why;
-    const auto& frame = std::get<Frame>(taken);
-    const auto stance = hands_.stance(config_.cameras[i]);
-    if (const auto* why = std::get_if<std::string>(&stance)) return *why;
-    sight_ = {.look = is_search ? 0 : result_.looks,
-              .stance = std::get<RigStance>(stance),
-              .pose = eyes_->poses().back(),
-              .frame = frame,
-              .seen = {},
-              .values = {},
-              .circle = {}};
-    sight_.seen = measure(i, *frame.picture);
+    sight_ = std::get<RigSight>(std::move(taken)), sight_.pose = pose_;
+    eyes_->see(i, before(), sight_);
     ++result_.pictures[i];
-    const std::size_t fewest = found_ ? std::min(RigReader::few, config_.fewest) : config_.fewest;
+    const std::size_t fewest = found_ ? std::min(RigEyes::few, config_.fewest) : config_.fewest;
     const bool is_of_use = sight_.seen.markers.size() >= fewest;
     if (!is_of_use && sight_.seen.reason.empty())
       sight_.seen.reason =
@@ -165,19 +146,16 @@ class Session {
     return std::nullopt;
   }
 
-  // Keeps what a picture tells, if anything, and says what it is by all that is kept.
-  SeenArm measure(std::size_t i, const Picture& picture) {
-    if (!eyes_->look(i, picture)) return eyes_->unkept(view_of(model(), sight_.stance));
-    if (!stance_[i]) {
-      RigStance stance = sight_.stance;
-      if (!is_turned_[i]) stance.turned_as = last_stance_[i];
-      eyes_->stances().push_back(stance);
-      stance_[i] = last_stance_[i] = eyes_->stances().size() - 1;
-      is_turned_[i] = false;
-    }
-    return eyes_->keep(*stance_[i], eyes_->poses().size() - 1, before());
-  }
   [[nodiscard]] const RigModel* before() const { return found_ ? &found_->model : nullptr; }
+
+  [[nodiscard]] RigStance commanded(const RigStance& stance) const {
+    return flexura::commanded(Camera(believed_.cameras[stance.camera]), stance);
+  }
+  Trouble try_from(std::size_t i, const RigStance& stance) {
+    if (auto trouble = send(commanded(stance))) return trouble;
+    if (auto trouble = trip_.settle()) return trouble;
+    return picture(i, true);
+  }
 
   // Towards what is seen of it, as long as all of it is not.
   Trouble approach(std::size_t i) {
@@ -185,14 +163,10 @@ class Session {
     for (int turn = 0; turn < most && misses_[i] > 0; ++turn) {
       const auto seen = eyes_->whereabouts();
       if (!seen) return std::nullopt;
-      const Intrinsics lens = view_of(model(), stands_[i]).lens.intrinsics();
-      RigStance stance = stands_[i];
-      stance.head.pan -= std::atan((seen->x() - lens.cx) / lens.fx);
-      stance.head.tilt -= std::atan((seen->y() - lens.cy) / lens.fy);
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
-      if (auto trouble = send(stance)) return trouble;
-      if (auto trouble = hands_.settle()) return trouble;
-      if (auto trouble = picture(i, true)) return trouble;
+      const Intrinsics lens = view_of(model(), trip_.stances()[i]).lens.intrinsics();
+      RigStance stance = trip_.stances()[i];
+      stance.head = turned_towards(stance.head, lens, *seen - Eigen::Vector2d(lens.cx, lens.cy));
+      if (auto trouble = try_from(i, stance)) return trouble;
     }
     return std::nullopt;
   }
@@ -200,22 +174,19 @@ class Session {
   // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
   // one miss in all.
   Trouble search(std::size_t i) {
-    const RigStance middle = stands_[i];
+    const RigStance middle = trip_.stances()[i];
     const int misses = misses_[i];
     if (auto trouble = approach(i)) return trouble;
     if (misses_[i] == 0) return std::nullopt;
     for (const Eigen::Vector2d& way : plan_.search_ways()) {
       RigStance stance = middle;
       stance.head.pan += way.x(), stance.head.tilt += way.y();
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
-      if (auto trouble = send(stance)) return trouble;
-      if (auto trouble = hands_.settle()) return trouble;
-      if (auto trouble = picture(i, true)) return trouble;
+      if (auto trouble = try_from(i, stance)) return trouble;
       if (misses_[i] == 0) return std::nullopt;
     }
     misses_[i] = misses;
     if (auto trouble = send(middle)) return trouble;
-    return hands_.settle();
+    return trip_.settle();
   }
 
   Trouble calibrate() {
@@ -223,7 +194,7 @@ class Session {
     problem_ = std::move(reading.problem);
     RigCalibration& found = reading.found;
     RigStep& step = result_.steps.emplace_back();
-    step.time = hands_.now(), step.looks = result_.looks;
+    step.time = trip_.now(), step.looks = result_.looks;
     step.is_found = found.is_found, step.reason = found.reason, step.rms = found.rms;
     step.doubts = found.doubts.size();
     found_.reset();
@@ -234,7 +205,7 @@ class Session {
       return std::nullopt;
     }
     found_ = std::move(found);
-    wanted_ = plan_.wanted(found_->model, stands_);
+    wanted_ = plan_.wanted(found_->model, trip_.stances());
     plan_.know(problem_->variables(), *found_, wanted_, step);
     choose(step);
     watcher_.known(step);
@@ -249,18 +220,18 @@ class Session {
           result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
       return;
     }
-    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, stands_, missed_);
+    const auto [candidate, why] = plan_.next(*problem_, *found_, wanted_, trip_.stances(), missed_);
     next_ = candidate, step.next = why;
   }
   [[nodiscard]] ViewCandidate next() const {
     if (next_) return *next_;
-    ViewCandidate another{pose(result_.looks), {stands_[0], stands_[1]}};
+    ViewCandidate another{pose(result_.looks), {trip_.stances()[0], trip_.stances()[1]}};
     // What stands still looks the same from the same place.
     constexpr double aside = 0.03;  // rad
     for (RigStance& stance : another.stances) {
       if (!config_.etalon) break;
       stance.head.pan += result_.looks % 2 == 0 ? -aside : aside;
-      stance.head = commanded_head(believed_.cameras[stance.camera], stance.head);
+      stance = commanded(stance);
     }
     return another;
   }
@@ -309,9 +280,9 @@ class Session {
     for (RigStep& step : result_.steps)
       if (step.is_found) step.remainder = remainder(found_->model, step.wanted, target);
     // Where the cameras truly stand, as far as the pictures tell.
-    if (stance_[0] && stance_[1] && result_.is_done)
-      result_.remainder =
-          remainder(found_->model, {found_->stances[*stance_[0]], found_->stances[*stance_[1]]}, target);
+    if (eyes_->stance(0) && eyes_->stance(1) && result_.is_done)
+      result_.remainder = remainder(
+          found_->model, {found_->stances[*eyes_->stance(0)], found_->stances[*eyes_->stance(1)]}, target);
     result_.found = std::move(*found_);
     if (result_.is_done) note_what_is_unknown(result_.steps.back().sigmas);
   }
@@ -335,17 +306,14 @@ class Session {
   const RigModel& believed_;
   const RigSessionConfig& config_;
   RigSessionWatcher& watcher_;
-  RigHands hands_;
   RigTrip trip_;
   RigSessionPlan plan_;
   std::unique_ptr<RigEyes> eyes_;
   const char* what_ = config_.etalon ? "cylinder" : "arm";
   RigSessionResult result_;
 
-  std::array<RigStance, 2> stands_;  // As they were last sent.
   bool has_moved_ = false;
-  std::array<bool, 2> is_turned_ = {true, true};  // Since the last stance.
-  std::array<std::optional<std::size_t>, 2> stance_, last_stance_;
+  ArmState pose_;  // As the drives say of the last look.
   std::array<int, 2> misses_ = {0, 0};
   std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was seen.
   RigSight sight_;                     // The last one.
@@ -360,7 +328,7 @@ class Session {
 RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
                                           const RigPrior& prior, const RigSessionConfig& config,
                                           RigSessionWatcher& watcher) {
-  check(ports, believed, config);
+  check(config);
   return Session(ports, believed, prior, config, watcher).run();
 }
 

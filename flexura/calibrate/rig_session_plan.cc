@@ -112,8 +112,8 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
 
 // Ratios of a camera from its shortest to the longest that shows all of the cylinder, and how far beside the
 // image's middle it still does.
-std::vector<RigSessionPlan::EtalonZoom> RigSessionPlan::etalon_zooms(const RigModel& model,
-                                                                     std::size_t camera) const {
+std::array<std::array<double, 2>, 3> RigSessionPlan::etalon_zooms(const RigModel& model,
+                                                                  std::size_t camera) const {
   constexpr double longer = 1.05, most = 20, margin = 20, spread = 0.6;
   const Camera optics(model.cameras[camera]);
   const EtalonFigure etalon(*config_.etalon);
@@ -135,46 +135,30 @@ std::vector<RigSessionPlan::EtalonZoom> RigSessionPlan::etalon_zooms(const RigMo
   double fits = start;
   for (double ratio = start * longer; ratio <= std::min(end, most * start) && room(ratio); ratio *= longer)
     fits = ratio;
-  std::vector<EtalonZoom> zooms;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const double ratio = start * std::pow(fits / start, share);
-    zooms.push_back({ratio, room(ratio).value_or(0)});
+  std::array<std::array<double, 2>, 3> zooms{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double ratio = start * std::pow(fits / start, 0.5 * static_cast<double>(i));
+    zooms[i] = {ratio, room(ratio).value_or(0)};
   }
   return zooms;
 }
 
-std::vector<ViewCandidate> RigSessionPlan::etalon_candidates(const RigModel& model) const {
-  std::vector<std::vector<EtalonZoom>> zooms;
-  zooms.reserve(config_.cameras.size());
-  for (const std::size_t camera : config_.cameras) zooms.push_back(etalon_zooms(model, camera));
-  constexpr std::array<std::array<double, 2>, 5> places = {{{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
-  std::vector<ViewCandidate> candidates;
-  for (std::size_t zoom = 0; zoom < zooms[0].size(); ++zoom) {
-    for (const Eigen::Vector3d& slide : grid().slides) {
-      for (const auto& [across, down] : places) {
-        ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{config_.poses.front(), {}});
-        for (std::size_t i = 0; i < 2; ++i) {
-          const EtalonZoom& own = zooms[i][zoom];
-          candidate.stances.push_back(looking_at(model, config_.cameras[i], slide, own.ratio,
-                                                 EtalonFigure(*config_.etalon).middle(),
-                                                 own.room * Eigen::Vector2d(across, down)));
-        }
-      }
-    }
-  }
-  return candidates;
-}
-
-ViewGrid RigSessionPlan::grid() const {
+ViewGrid RigSessionPlan::grid(const RigModel& model) const {
   ViewGrid grid;
   grid.poses = config_.poses, grid.spread = 0.6;
-  const Camera camera(believed_.cameras[config_.cameras[0]]);
   grid.zooms.clear();
+  const Camera camera(believed_.cameras[config_.cameras[0]]);
   const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
     // As far as the lens goes.
     const double reached = camera.lens().ratio(zoom_at(camera, start * ratio));
     if (std::ranges::find(grid.zooms, reached) == grid.zooms.end()) grid.zooms.push_back(reached);
+  }
+  if (config_.etalon) {
+    grid.poses.resize(1), grid.zooms = {0, 1, 2}, grid.target = EtalonFigure(*config_.etalon).middle();
+    std::vector<std::array<std::array<double, 2>, 3>> zooms;
+    for (std::size_t i = 0; i < model.cameras.size(); ++i) zooms.push_back(etalon_zooms(model, i));
+    grid.own = [zooms](std::size_t i, double zoom) { return zooms[i][static_cast<std::size_t>(zoom)]; };
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
@@ -189,8 +173,7 @@ ViewGrid RigSessionPlan::grid() const {
 std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
     const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const {
-  std::vector<ViewCandidate> candidates =
-      config_.etalon ? etalon_candidates(found.model) : view_candidates(found.model, grid());
+  std::vector<ViewCandidate> candidates = view_candidates(found.model, grid(found.model));
   for (ViewCandidate& candidate : candidates) {
     if (!config_.may_use_stages)
       for (RigStance& stance : candidate.stances)
@@ -277,14 +260,9 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
 bool RigSessionPlan::is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const {
   const View view = view_of(model, stance);
   if (config_.etalon) return EtalonFigure(*config_.etalon).expected(view, 0).has_value();
-  std::size_t inside = 0;
-  for (const auto& marker :
-       expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm).markers)
-    inside += marker && marker->pixel.minCoeff() >= 0 && marker->pixel.x() <= view.width - 1 &&
-                      marker->pixel.y() <= view.height - 1
-                  ? 1
-                  : 0;
-  return inside >= config_.fewest;
+  const MarkerScene scene =
+      expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm);
+  return markers_inside(scene, view, 0) >= config_.fewest;
 }
 
 std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {

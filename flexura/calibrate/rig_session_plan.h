@@ -47,13 +47,10 @@ class RigSessionPlan {
  private:
   [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
                                             const WantedRig& wanted) const;
-  [[nodiscard]] ViewGrid grid() const;
-  struct EtalonZoom {
-    double ratio = 1;  // Of focal length.
-    double room = 0;   // Beside the image's middle, a share of half the image.
-  };
-  [[nodiscard]] std::vector<EtalonZoom> etalon_zooms(const RigModel& model, std::size_t camera) const;
-  [[nodiscard]] std::vector<ViewCandidate> etalon_candidates(const RigModel& model) const;
+  [[nodiscard]] ViewGrid grid(const RigModel& model) const;
+  // Three zooms: ratios of focal length, and shares of half the image beside its middle.
+  [[nodiscard]] std::array<std::array<double, 2>, 3> etalon_zooms(const RigModel& model,
+                                                                  std::size_t camera) const;
   [[nodiscard]] bool is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const;
 
   const RigModel& believed_;

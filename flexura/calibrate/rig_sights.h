@@ -27,8 +27,6 @@ class RigSights {
   RigSights(const Arm& marked, ArmPictureConfig config, const std::array<std::size_t, 2>& cameras)
       : marked_(marked), config_(std::move(config)), cameras_(cameras) {}
 
-  [[nodiscard]] const std::array<std::size_t, 2>& cameras() const { return cameras_; }
-
   std::vector<ArmState> poses;     ///< As commanded.
   std::vector<RigStance> stances;  ///< As read.
   std::vector<Look> looks;

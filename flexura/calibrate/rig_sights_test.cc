@@ -14,6 +14,38 @@
 namespace flexura {
 namespace {
 
+// Equal markers in a row, of which a picture shows some: shifted by one they look the same.
+TEST(MarkerMatch, TakesTheLikelierOfTwoShifts) {
+  MarkerScene expected, seen;
+  for (int i = 0; i < 12; ++i) {
+    expected.markers.emplace_back(MarkerScene::Place{{320.0, 40.0 * i + 20}});
+    if (i >= 2 && i < 9) seen.markers.emplace_back(MarkerScene::Place{{324.0, 40.0 * i + 23}});
+  }
+  const MarkerMatch match =
+      match_markers(expected, seen, {640, 480}, {.shift = 10, .turn = 0.05, .scale = 0.05});
+  EXPECT_EQ(match.count, 7U);
+  for (std::size_t i = 0; i < match.markers.size(); ++i) EXPECT_EQ(match.markers[i], i + 2);
+}
+
+TEST(LikelyErrors, AreTheCamerasWhereItIsTurnedAndItsLensIsLonger) {
+  for_random_cases(20, [](TestRandom& random) {
+    const RigModel believed = believed_rig();
+    const SightError error{random.vector<3>(-0.1, 0.1), random.uniform(-0.1, 0.1)};
+    std::vector<MarkerPicture> pictures;
+    for (const ArmState& pose : some_poses()) {
+      MarkerPicture& picture = pictures.emplace_back(
+          marker_picture(believed.arm, pose, bands(), view_of(believed, {.camera = 0}), believed.arm));
+      picture.seen = expected_scene(picture, error);
+    }
+    const auto found = likely_errors(pictures, rough, 3);
+    ASSERT_FALSE(found.empty());
+    // What is guessed counts a little.
+    EXPECT_LT((found.front().turn - error.turn).norm(), 6e-3);
+    EXPECT_NEAR(found.front().scale, error.scale, 6e-3);
+  });
+  EXPECT_TRUE(likely_errors({}, rough, 3).empty());
+}
+
 // What a camera truly sees of an arm, and which of its markers each one is: some are missed, some are
 // nobody's.
 struct TrueSight {

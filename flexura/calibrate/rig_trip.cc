@@ -1,10 +1,18 @@
 #include "flexura/calibrate/rig_trip.h"
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
 namespace flexura {
+
+RigTrip::RigTrip(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
+                 const RigPatience& patience, double move_duration, RigSessionWatcher& watcher)
+    : hands_(ports, believed, patience), watcher_(watcher), cameras_(cameras), move_duration_(move_duration) {
+  if (ports.cameras.size() != believed.cameras.size() || cameras[0] == cameras[1])
+    throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
+}
 
 RigTrip::Trouble RigTrip::begin() {
   if (auto trouble = hands_.settle()) return trouble;
@@ -16,6 +24,7 @@ RigTrip::Trouble RigTrip::begin() {
     if (const auto* why = std::get_if<std::string>(&stance)) return *why;
     start_[i] = std::get<RigStance>(stance);
   }
+  stands_ = start_;
   has_begun_ = true;
   return std::nullopt;
 }
@@ -32,6 +41,26 @@ RigTrip::Trouble RigTrip::bend(const ArmState& state) {
   if (auto trouble = hands_.bend(state, move_duration_)) return trouble;
   shown_ = state;
   return hands_.settle();
+}
+
+RigTrip::Trouble RigTrip::send(std::size_t i, const RigStance& stance) {
+  watcher_.camera_sent(hands_.now(), stance);
+  stands_[i] = stance;
+  return hands_.go(stance);
+}
+
+std::variant<RigSight, std::string> RigTrip::picture(std::size_t i, std::size_t look) const {
+  const auto taken = hands_.frame(cameras_[i], hands_.now());
+  if (const auto* why = std::get_if<std::string>(&taken)) return *why;
+  const auto stance = hands_.stance(cameras_[i]);
+  if (const auto* why = std::get_if<std::string>(&stance)) return *why;
+  return RigSight{.look = look,
+                  .stance = std::get<RigStance>(stance),
+                  .pose = {},
+                  .frame = std::get<Frame>(taken),
+                  .seen = {},
+                  .values = {},
+                  .circle = {}};
 }
 
 std::string RigTrip::retreat() {

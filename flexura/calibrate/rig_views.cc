@@ -116,30 +116,23 @@ Eigen::MatrixXd goal_rows(std::span<const ViewGoal> goals, Eigen::Index own) {
   return rows;
 }
 
-double score(const Eigen::MatrixXd& variances, ViewCriterion criterion) {
-  if (criterion == ViewCriterion::sum) return variances.trace();
-  return Cholesky(variances).log_determinant();
-}
-
 }  // namespace
 
 std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
                                          std::span<const ViewCandidate> candidates,
-                                         std::span<const ViewGoal> goals, const ViewConfig& config,
-                                         ViewCriterion criterion) {
+                                         std::span<const ViewGoal> goals, const ViewConfig& config) {
   const Eigen::Index own = problem.variables().globals();
   const Eigen::MatrixXd rows = goal_rows(goals, own);
-  const Eigen::MatrixXd known = found.covariance.topLeftCorner(own, own);
-  const Eigen::MatrixXd before = Cholesky(known).inverse();
+  const Eigen::MatrixXd before = Cholesky(found.covariance.topLeftCorner(own, own)).inverse();
   const Forecast forecast(problem, found, config);
   std::optional<ViewChoice> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto after = forecast.information(before, candidates[i]);
     if (!after) continue;
     const Eigen::MatrixXd variances = rows * Cholesky(*after).solve(rows.transpose());
-    const double value = score(variances, criterion);
+    const double value = variances.trace();
     if (!std::isfinite(value) || (best && !(value < best->after))) continue;
-    best = ViewChoice{i, score(rows * known * rows.transpose(), criterion), value, {}};
+    best = ViewChoice{i, value, {}};
     for (std::size_t j = 0; j < goals.size(); ++j)
       best->sigmas.push_back(goals[j].wanted * std::sqrt(variances.diagonal()[static_cast<Eigen::Index>(j)]));
   }
@@ -150,31 +143,29 @@ RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vec
                      const Eigen::Vector3d& target, const Eigen::Vector2d& place) {
   const CameraConfig& camera = model.cameras[number];
   const Camera optics(camera);
-  RigStance stance{number, {0, 0, commandable(optics.head_axes()[2], zoom_at(optics, ratio))}, {}};
-  for (Eigen::Index i = 0; i < 3; ++i)
-    stance.stage.offset[i] = commandable(optics.stage_axes()[static_cast<std::size_t>(i)], slide[i]);
+  RigStance stance = commanded(optics, {number, {0, 0, zoom_at(optics, ratio)}, {slide}});
   stance.head = aimed(camera, stance, target);
   // What lies to the right and below of the middle is brought there by turning left and up.
   const Intrinsics lens = optics.lens().at(stance.head.zoom);
   stance.head.pan += std::atan(0.5 * place.x() * static_cast<double>(camera.sensor.width) / lens.fx);
   stance.head.tilt += std::atan(0.5 * place.y() * static_cast<double>(camera.sensor.height) / lens.fy);
-  stance.head = commanded_head(camera, stance.head);
-  return stance;
+  return commanded(optics, stance);
 }
 
 std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid) {
-  const double far = grid.spread;
-  const std::array<Eigen::Vector2d, 5> places = {
-      {{0, 0}, {-far, -far}, {far, -far}, {-far, far}, {far, far}}};
+  constexpr std::array<std::array<double, 2>, 5> places = {{{0, 0}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
   std::vector<ViewCandidate> candidates;
   for (const ArmState& pose : grid.poses) {
-    const Eigen::Vector3d middle = arm_middle(model, pose);
+    const Eigen::Vector3d target = grid.target ? *grid.target : arm_middle(model, pose);
     for (const double zoom : grid.zooms) {
       for (const Eigen::Vector3d& slide : grid.slides) {
-        for (const Eigen::Vector2d& place : places) {
+        for (const auto& [across, down] : places) {
           ViewCandidate& candidate = candidates.emplace_back(ViewCandidate{pose, {}});
-          for (std::size_t i = 0; i < model.cameras.size(); ++i)
-            candidate.stances.push_back(looking_at(model, i, slide, zoom, middle, place));
+          for (std::size_t i = 0; i < model.cameras.size(); ++i) {
+            const auto [ratio, spread] = grid.own ? grid.own(i, zoom) : std::array{zoom, grid.spread};
+            candidate.stances.push_back(
+                looking_at(model, i, slide, ratio, target, spread * Eigen::Vector2d(across, down)));
+          }
         }
       }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -33,13 +34,10 @@ struct ViewGoal {
   double wanted = 1;  ///< Standard deviation that would do, in the quantity's unit; > 0.
 };
 
-/// A: the sum of the goals' variances, each in units of its wanted one. D: the product.
-enum class ViewCriterion { sum, product };
-
 struct ViewChoice {
   std::size_t candidate = 0;
-  double before = 0, after = 0;  ///< Sum, or logarithm of the product, without and with it.
-  std::vector<double> sigmas;    ///< Of the goals, with it.
+  double after = 0;            ///< Sum of the goals' variances with it, in units of the wanted ones.
+  std::vector<double> sigmas;  ///< Of the goals, with it.
 };
 
 /// The candidate whose pictures will make the goals most certain, of equals the first; none when the arm is
@@ -47,17 +45,19 @@ struct ViewChoice {
 [[nodiscard]] std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
                                                        std::span<const ViewCandidate> candidates,
                                                        std::span<const ViewGoal> goals,
-                                                       const ViewConfig& config = {},
-                                                       ViewCriterion criterion = ViewCriterion::sum);
+                                                       const ViewConfig& config = {});
 
 /// Where to look for candidates.
 struct ViewGrid {
   std::vector<ArmState> poses;
   std::vector<double> zooms = {1};  ///< Ratios; each camera goes to where its own lens has them.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Of each camera's stage, m.
-  /// The arm's middle is brought to the image's middle, and so far from there towards its four corners; share
-  /// of half the image.
+  /// What is looked at, the arm's middle when left out, is brought to the image's middle, and so far from
+  /// there towards its four corners; share of half the image.
   double spread = 0.4;
+  std::optional<Eigen::Vector3d> target = {};
+  /// For a camera and one of the zooms its own ratio and spread, where these differ.
+  std::function<std::array<double, 2>(std::size_t camera, double zoom)> own = {};
 };
 
 /// A stance of camera `number` from which a point of W is seen at this place of the image, in shares of half

@@ -1,0 +1,298 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "flexura/base/degree.h"
+#include "flexura/calibrate/arcs_loop.h"
+#include "flexura/calibrate/etalon_view.h"
+#include "flexura/calibrate/rig_eyes.h"
+#include "flexura/calibrate/rig_quantities.h"
+#include "flexura/camera/mount.h"
+#include "flexura/vision/eight_bits.h"
+
+namespace flexura {
+
+RigPrior arcs_prior(RigPrior prior) {
+  // The same factors in both arcs. Two cameras that each look from about one place would not tell how the
+  // planes of two arcs stand to each other that bend each as they like.
+  prior.arm.bend_share = prior.arm.bend = 0;
+  for (CameraPrior& camera : prior.cameras) {
+    camera.pan_zero = camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
+    camera.focal = camera.aspect = camera.zoom_row = 0;
+    camera.distortion = {0, 0, 0, 0, 0};
+    camera.principal_point = 1;
+  }
+  return prior;
+}
+
+namespace {
+
+RigSessionConfig eyes_of_arcs(const LoopConfig& config) {
+  RigSessionConfig session;
+  session.cameras = config.cameras, session.picture = config.picture;
+  session.fewest = std::min(session.fewest, config.picture.markers.size());
+  return session;
+}
+
+class ArcsCorrected : public ArcsLoop {
+ public:
+  explicit ArcsCorrected(LookLoop& loop)
+      : ArcsLoop(loop),
+        prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.believed())))),
+        seen_as_(eyes_of_arcs(loop.config())),
+        eyes_(
+            arm_eyes(loop.believed(), prior_, seen_as_,
+                     arm_middle(loop.believed(), ArmState::straight(loop.believed().arm.sections.size())))) {}
+
+ private:
+  [[nodiscard]] const RigModel* before() const { return reading_ ? &reading_->found.model : nullptr; }
+  [[nodiscard]] const RigModel& model() const { return reading_ ? *before() : loop_.believed(); }
+  [[nodiscard]] const CameraConfig& found(std::size_t i) const {
+    return model().cameras[loop_.config().cameras[i]];
+  }
+  [[nodiscard]] double pan_step(std::size_t i) const { return loop_.camera(i).head_axes()[0].resolution; }
+
+  Trouble align() override {
+    for (const bool is_centered : {false, true}) {
+      if (is_centered)
+        if (auto trouble = center()) return trouble;
+      last_.fill(std::numeric_limits<double>::infinity());
+      if (auto trouble = settle({0, 1})) return trouble;
+      if (auto trouble = disagreement()) return trouble;
+    }
+    loop_.result().notes.push_back(fmt::format(
+        "the angle between the axes is known within {:.3f} deg (standard deviation); residuals are "
+        "{:.2f} times their noise",
+        angle_.sigma / degree, reading_->found.rms));
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!is_centered_[i]) continue;
+      const Intrinsics was = loop_.lens(i), is = Camera(found(i)).lens().at(loop_.stance(i).head.zoom);
+      loop_.result().principal_point[i] = Eigen::Vector2d(is.cx - was.cx, is.cy - was.cy);
+    }
+    return std::nullopt;
+  }
+
+  // Turns towards what is dark in the picture until enough markers are seen, whichever they are.
+  Trouble look(std::size_t i) override {
+    for (;;) {
+      eyes_->sent(i, loop_.stance(i));
+      auto trouble = loop_.look(i, [&](RigSight& sight) {
+        eyes_->see(i, before(), sight);
+        if (eyes_->markers() < seen_as_.fewest && sight.seen.reason.empty())
+          sight.seen.reason =
+              fmt::format("{} markers are seen, fewer than {}", eyes_->markers(), seen_as_.fewest);
+        sight.values = {{"markers", static_cast<double>(sight.seen.markers.size())}};
+      });
+      if (trouble || eyes_->markers() >= seen_as_.fewest) return trouble;
+      constexpr double near = 4;  // px: it is in the middle, and yet too little is seen.
+      const RigSight& sight = loop_.sight();
+      trouble = loop_.turn_towards(
+          i, "arm", dark_centroid(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white())), near,
+          loop_.lens(i), "camera {} does not see enough of the arm: {}", sight.seen.reason);
+      if (trouble) return trouble;
+    }
+  }
+
+  // Where the cameras are by all that was seen, and where they should go.
+  Trouble learn() override {
+    foretold_.reset();
+    if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
+    RigReading reading = eyes_->read(before());
+    if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
+    reading_ = std::move(reading);
+    const RigVariables& variables = reading_->problem->variables();
+    angle_ = angle({observed_stance(variables, eyes_->stance(0).value()),
+                    observed_stance(variables, eyes_->stance(1).value())});
+    for (std::size_t i = 0; i < 2; ++i) loop_.result().roll[i] = roll_of(pose(i).rotation);
+    loop_.result().angle = angle_.value - std::numbers::pi / 2;
+    find_wanted();
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Pose pose(std::size_t i) const { return view_of(model(), loop_.stance(i)).X_WC; }
+
+  struct Angle {
+    double value = 0, sigma = 0;  // Between the axes, rad.
+  };
+  [[nodiscard]] Angle angle(const std::array<AskedStance, 2>& stances) const {
+    const RigVariables& variables = reading_->problem->variables();
+    const RigQuantity asked = axes_angle(optical_axis(variables, reading_->found.x, stances[0]),
+                                         optical_axis(variables, reading_->found.x, stances[1]));
+    Angle angle{asked.value, asked.sigma(reading_->found.covariance)};
+    // What heads do with commands of which nothing was seen yet.
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!stances[i].observed)
+        angle.sigma = std::hypot(angle.sigma, prior_.cameras[loop_.config().cameras[i]].steps * pan_step(i));
+    return angle;
+  }
+
+  // Why what was seen cannot be trusted.
+  [[nodiscard]] Trouble disagreement() const {
+    if (!reading_->is_whole())
+      return fmt::format(
+          "{:.0f} of {:.0f} things that were seen are not explained: expected a twentieth at most",
+          reading_->amiss, reading_->things);
+    if (!foretold_) return std::nullopt;
+    constexpr double farthest = 6;  // Standard deviations.
+    const double off = std::abs(angle_.value - foretold_->value);
+    if (off <= farthest * foretold_->sigma) return std::nullopt;
+    return fmt::format(
+        "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, "
+        "foretold were {:.3f} deg with a standard deviation of {:.3f} deg",
+        angle_.value / degree, foretold_->value / degree, foretold_->sigma / degree);
+  }
+
+  // From the arc's plane to where a camera should be.
+  [[nodiscard]] double distance(std::size_t i) const {
+    return std::abs((plan_.ideal[i].X_WC.position - plan_.centers[i]).dot(plan_.normals[i]));
+  }
+
+  // How far a camera's picture is from the simulator's, as the larger of turn and shift, px.
+  [[nodiscard]] double offset(std::size_t i) const {
+    const Pose is = pose(i);
+    const Pose& ideal = plan_.ideal[i].X_WC;
+    const double turn = std::acos(std::clamp(is.rotation.col(2).dot(ideal.rotation.col(2)), -1.0, 1.0));
+    const Eigen::Vector3d shift = ideal.rotation.transpose() * (is.position - ideal.position);
+    return loop_.lens(i).fx * std::max(turn, shift.norm() / distance(i));
+  }
+
+  // How far it may be when nothing brings it nearer: by what the pictures do not tell, and what cannot be
+  // commanded, px.
+  [[nodiscard]] double allowed(std::size_t i) const {
+    constexpr double likely = 4;  // Standard deviations, or steps.
+    const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
+    double finest = std::max({angle_.sigma, pan.resolution, tilt.resolution});
+    for (const auto& axis : loop_.camera(i).stage_axes())
+      finest = std::max(finest, axis.resolution / distance(i));
+    return std::max(loop_.config().accepted, likely * loop_.lens(i).fx * finest);
+  }
+
+  // The commands that bring both cameras to where the simulator has them; of the heads' positions around, the
+  // pans whose axes are together the most nearly orthogonal.
+  void find_wanted() {
+    std::array<RigStance, 2> asked = {loop_.stance(0), loop_.stance(1)};
+    std::array<double, 2> pans = {0, 0};
+    for (std::size_t i = 0; i < 2; ++i) {
+      asked[i].head = Camera(found(i)).looking_along(plan_.ideal[i].X_WC.rotation.col(2), asked[i].head.zoom);
+      pans[i] = asked[i].head.pan;
+      const double tilt = asked[i].head.tilt;
+      asked[i] = loop_.commandable_stance(i, asked[i]);
+      // Where the pupil will be by then decides how far the stage goes.
+      asked[i].stage.offset = stage_towards(found(i), asked[i], plan_.ideal[i].X_WC.position);
+      asked[i].head.tilt = tilt;
+    }
+    const auto beside = [&](std::size_t i, int steps) {
+      RigStance tried = asked[i];
+      tried.head.pan += steps * pan_step(i);
+      return loop_.commandable_stance(i, tried);
+    };
+    const auto best = best_steps([&](int a, int b) {
+      const double off0 = beside(0, a).head.pan - pans[0], off1 = beside(1, b).head.pan - pans[1];
+      constexpr double aim = 0.01;
+      return std::abs(off0 - off1) + aim * (std::abs(off0) + std::abs(off1));
+    });
+    for (std::size_t i = 0; i < 2; ++i) {
+      const RigStance& next = wanted_[i] = beside(i, best[i]);
+      const auto is_beyond = [](double is, double wanted, const AxisConfig& axis) {
+        return std::abs(is - wanted) > 2 * axis.resolution + 1e-9;
+      };
+      const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
+      is_short_[i] =
+          is_beyond(next.head.pan, pans[i], pan) || is_beyond(next.head.tilt, asked[i].head.tilt, tilt);
+      for (int k = 0; k < 3; ++k)
+        is_short_[i] |= is_beyond(next.stage.offset[k], asked[i].stage.offset[k],
+                                  loop_.camera(i).stage_axes()[static_cast<std::size_t>(k)]);
+    }
+  }
+
+  Trouble decide(std::size_t i, std::optional<RigStance>& next) override {
+    const double off = offset(i), last = std::exchange(last_[i], off);
+    const bool is_there = loop_.stands_there(i, wanted_[i]), is_far = off > allowed(i);
+    if (is_far && (is_there || is_short_[i])) {
+      const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "seen");
+      return fmt::format("{}camera {}: what can be commanded ends {:.4g} px before it holds",
+                         side ? *side + "; " : "", loop_.name(i), off);
+    }
+    std::string what;
+    // Small steps that shrink no more are what the pictures do not tell.
+    if (off <= loop_.config().accepted || is_there)
+      what = "holds, or nothing finer can be commanded";
+    else if (off > 0.5 * last && !is_far)
+      what = "holds: the pictures tell nothing finer";
+    else
+      next = wanted_[i];
+    if (next)
+      what = fmt::format(
+          "residuals are {:.2f} times their noise, the angle between the axes is known within {:.3f} deg; "
+          "pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
+          reading_->found.rms, angle_.sigma / degree, next->head.pan, next->head.tilt, next->stage.offset.x(),
+          next->stage.offset.y(), next->stage.offset.z());
+    loop_.decide(i, "orientation and positioning", off, loop_.config().accepted, "px", what);
+    return std::nullopt;
+  }
+
+  // How many times as long a focal length shows half of the markers of both arcs still.
+  [[nodiscard]] double longer(std::size_t i) const {
+    constexpr double most = 2.5, less = 0.95, margin = 20;  // px
+    const std::vector<KnownMarker>& markers = loop_.config().picture.markers;
+    const std::size_t enough = std::max(seen_as_.fewest, markers.size() / 2);
+    for (double times = most; times > 1; times *= less) {
+      RigStance stance = loop_.stance(i);
+      stance.head.zoom = zoom_by(loop_.camera(i), stance.head.zoom, times);
+      const View view = view_of(model(), stance);
+      if (std::ranges::all_of(plan_.arcs, [&](const ArmState& arc) {
+            return markers_inside(
+                       expected_markers(model().arm, model().bent(arc), markers, view, loop_.believed().arm),
+                       view, margin) >= enough;
+          }))
+        return times;
+    }
+    return 1;
+  }
+
+  // What a longer focal length moves in the picture moves away from the principal point.
+  Trouble center() {
+    std::array<RigStance, 2> wide = {loop_.stance(0), loop_.stance(1)};
+    std::vector<std::size_t> looking;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const RigStance next = loop_.zoomed(i, longer(i));
+      const double times = loop_.camera(i).lens().at(next.head.zoom).fx / loop_.lens(i).fx;
+      if (times < LookLoop::least_longer) {
+        loop_.result().notes.push_back(fmt::format(
+            "{}: the principal point is taken to be known within 1 px: enough of the arm is in the "
+            "picture up to {:.2f} times the focal length, expected {}",
+            loop_.name(i), std::max(1.0, times), LookLoop::least_longer));
+        continue;
+      }
+      looking.push_back(i), is_centered_[i] = true;
+      if (auto trouble = loop_.go_longer(i, next)) return trouble;
+    }
+    if (looking.empty()) return std::nullopt;
+    if (auto trouble = look_at({0, 1}, looking)) return trouble;
+    for (const std::size_t i : looking)
+      if (auto trouble = loop_.go(i, wide[i])) return trouble;
+    return std::nullopt;
+  }
+
+  RigPrior prior_;
+  RigSessionConfig seen_as_;
+  std::unique_ptr<RigEyes> eyes_;                     // With all pictures.
+  std::optional<RigReading> reading_;                 // What they tell.
+  std::array<bool, 2> is_centered_ = {false, false};  // By a longer focal length.
+  Angle angle_;
+  std::optional<Angle> foretold_;  // Before the last pictures were taken.
+  std::array<RigStance, 2> wanted_;
+  std::array<bool, 2> is_short_{};  // A head or stage does not reach where it should.
+  std::array<double, 2> last_{};    // Offsets.
+};
+
+}  // namespace
+
+std::unique_ptr<ArcsLoop> arcs_corrected(LookLoop& loop) { return std::make_unique<ArcsCorrected>(loop); }
+
+}  // namespace flexura

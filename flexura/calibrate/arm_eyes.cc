@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "flexura/calibrate/rig_eyes.h"
+#include "flexura/calibrate/rig_sights.h"
+#include "flexura/math/arrays.h"
+
+namespace flexura {
+namespace {
+
+// What may be wrong with where the cameras of a rig that was found look.
+constexpr SightDoubt of_found = {.sideways = 0.03, .roll = 0.02, .scale = 0.05};
+
+// Finds the rig that explains pictures of which nobody knows yet which marker is which: recognised by a rig,
+// the rig found by that, and recognised anew.
+class ArmEyes : public RigEyes {
+ public:
+  ArmEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config,
+          const Eigen::Vector3d& target)
+      : RigEyes(believed),
+        prior_(prior),
+        config_(config),
+        sights_(believed.arm, config.picture, config.cameras) {
+    for (const std::size_t i : config.cameras) {
+      ArmPictureConfig picture = config.picture;
+      picture.white = believed.cameras.at(i).sensor.white();
+      pictures_.emplace_back(std::move(picture));
+      const CameraPrior& camera = prior.cameras.at(i);
+      const double moved = camera.position / (vector(believed.cameras[i].mount.position) - target).norm();
+      doubt_.sideways = std::max(doubt_.sideways, std::hypot(camera.rotation, moved));
+      doubt_.roll = std::max(doubt_.roll, camera.rotation);
+      doubt_.scale = std::max(doubt_.scale, std::hypot(camera.focal, moved));
+    }
+  }
+
+  std::size_t markers() const override { return count_; }
+  // By markers as the rig that was found before has them, if there is one, and as long as something is amiss
+  // as the guess has them, those of one camera, or of both, taken for something else if need be.
+  RigReading read(const RigModel* found) const override {
+    std::vector<RigReading> readings;
+    if (found != nullptr) readings.push_back(read_as(*found, of_found, {0, 0}));
+    constexpr std::array<std::array<std::size_t, 2>, 6> ranks = {
+        {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}}};
+    for (const auto& rank : ranks) {
+      if (!readings.empty() && readings.back().is_whole()) break;
+      readings.push_back(read_as(believed_, doubt_, rank));
+    }
+    return best_of(readings);
+  }
+  RigImage told(const RigModel& /*model*/, const RigSight& sight) const override {
+    return {.stance = 0, .pose = 0, .markers = sight.seen.markers, .points = sight.seen.points};
+  }
+
+ private:
+  std::vector<ArmState>& poses() override { return sights_.poses; }
+  std::vector<RigStance>& stances() override { return sights_.stances; }
+  bool look(std::size_t i, const Picture& picture) override {
+    figure_ = pictures_[i].look(picture);
+    // One marker alone may be any.
+    constexpr std::size_t fewest = 2;
+    count_ = markers_of(figure_.scene);
+    return count_ >= fewest;
+  }
+  SeenArm unkept(const View& view) const override {
+    MarkerMatch none;
+    none.markers.resize(figure_.markers.size());
+    return recognised(figure_, none, view.lens, config_.picture);
+  }
+  SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) override {
+    sights_.looks.push_back({.stance = stance, .pose = pose, .arm = std::move(figure_)});
+    const MarkerMatch match = sights_.recognise_last(model(found), found != nullptr ? of_found : doubt_);
+    return sights_.seen(model(found), sights_.looks.size() - 1, match);
+  }
+
+  // Recognised anew with each rig that is found, until nothing changes, or for so many rounds; the round that
+  // explains most.
+  [[nodiscard]] RigReading read_as(const RigModel& first, const SightDoubt& doubt,
+                                   const std::array<std::size_t, 2>& rank) const {
+    RigReading best;
+    std::vector<MarkerMatch> matches = sights_.recognise(first, doubt, rank);
+    RigModel model = first;
+    constexpr int rounds = 4;
+    for (int round = 0; round < rounds; ++round) {
+      RigReading now;
+      now.problem.emplace(believed_, prior_,
+                          sights_.observations(model, matches, round == 0 ? config_.fewest : few));
+      now.found = calibrate_rig(*now.problem);
+      rate(matches, now);
+      const bool is_found = now.found.is_found;
+      if (is_found) model = now.found.model;
+      if (round == 0 || (is_found && now.explained >= best.explained)) best = std::move(now);
+      if (!is_found) break;
+      std::vector<MarkerMatch> again = sights_.recognise(model, of_found);
+      // The first round leaves out looks of few markers.
+      if (round > 0 && again == matches) break;
+      matches = std::move(again);
+    }
+    return best;
+  }
+
+  // Nothing is found by one camera alone.
+  void rate(const std::vector<MarkerMatch>& matches, RigReading& reading) const {
+    double unknown = 0;
+    std::vector<std::size_t> images(believed_.cameras.size(), 0);
+    for (const RigImage& image : reading.problem->observations().images) {
+      reading.things += static_cast<double>(image.things());
+      ++images[sights_.stances[image.stance].camera];
+    }
+    for (const std::size_t camera : config_.cameras) {
+      if (images[camera] > 0 || !reading.found.is_found) continue;
+      reading.found.is_found = false;
+      reading.found.reason =
+          fmt::format("the arm is recognised in no picture of camera {}", believed_.cameras[camera].name);
+    }
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      unknown +=
+          static_cast<double>(markers_of(sights_.looks[i].arm.scene)) - static_cast<double>(matches[i].count);
+    const auto doubted = static_cast<double>(reading.found.doubts.size());
+    reading.amiss = doubted + unknown;
+    reading.explained = reading.things - 2 * doubted - unknown;
+  }
+
+  const RigPrior& prior_;
+  const RigSessionConfig& config_;
+  SightDoubt doubt_ = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};  // Of cameras as they were guessed.
+  std::vector<ArmPicture> pictures_;                                    // Of each camera.
+  RigSights sights_;
+  ArmFigure figure_;  // The last one.
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<RigEyes> arm_eyes(const RigModel& believed, const RigPrior& prior,
+                                  const RigSessionConfig& config, const Eigen::Vector3d& target) {
+  return std::make_unique<ArmEyes>(believed, prior, config, target);
+}
+
+}  // namespace flexura

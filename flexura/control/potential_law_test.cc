@@ -17,7 +17,6 @@
 #include "flexura/control/plane_errors.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/distributed_arms.h"
-#include "tests/support/watched_runs.h"
 
 namespace flexura {
 namespace {
@@ -25,6 +24,37 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+constexpr OdeTolerance fine = {.relative = 1e-9, .absolute = 1e-11};
+
+// What drives an arm by a law; it returns what the law's damping takes.
+DistributedMotion::Force forces_of(const PotentialLaw& law) {
+  return [&law](double, const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+                Eigen::VectorXd& Q) {
+    law.force(arm, x, v, Q);
+    return law.dissipation(v);
+  };
+}
+
+// A run from rest, watched; it ends early where the arm comes near to the coordinates' end.
+LyapunovVerdict watched_run(const DistributedArm& arm, const PotentialLaw& law,
+                                   const DistributedMotion::Force& force, const Eigen::VectorXd& start,
+                                   double until, Eigen::VectorXd* end = nullptr) {
+  DistributedMotion motion(arm, force, fine);
+  motion.start(start);
+  LyapunovMonitor monitor;
+  for (int i = 0; i <= 100; ++i) {
+    if (i > 0 && !motion.advance(until * i / 100)) break;
+    // With a shaped elasticity V_e is part of Pi.
+    const bool is_shaped = law.gains().elasticity == ElasticityRule::shaped;
+    monitor.add({motion.time(), motion.arm().kinetic_energy(), law.potential(motion.arm(), motion.x()),
+                 motion.arm().gravity_energy(), is_shaped ? 0 : motion.arm().elastic_energy(),
+                 motion.summed(), motion.damped()});
+    if (motion.arm().q().cwiseAbs().maxCoeff() > 1.45) break;
+  }
+  if (end != nullptr) *end = motion.x();
+  return monitor.verdict();
+}
 
 DistributedArm small_arm(std::optional<double> bending = {}) {
   return DistributedArm({.bending_stiffness = bending.value_or(0.5), .nodes = 3, .points = 8});
@@ -87,7 +117,7 @@ TEST(PotentialLaw, PushesDownTheSlopeOfItsPotential) {
 
 TEST(PotentialLaw, LetsLyapunovsFunctionFallOnEveryRun) {
   double rise = 0, imbalance = 0;
-  for_random_cases(16, [&](TestRandom& random) {
+  for_random_cases(8, [&](TestRandom& random) {
     DistributedArmModel model = random_distributed_arm(random);
     model.nodes = random.integer(2, 4);
     if (random.integer(0, 1) == 1) model.damping = 0.3, model.length_damping = 2;
@@ -238,40 +268,31 @@ TEST(PotentialLaw, NeedsAMinimumOfPotentialAndElasticityTogether) {
   EXPECT_THAT(PotentialLaw(arm, target, gains).violations(), IsEmpty());
 }
 
-TEST(PotentialLaw, SeesTheSameThroughTwoParallelViews) {
+// The paper's first-order errors are no potential's: W still settles, its balance is not exact.
+TEST(PotentialLaw, SettlesByTheErrorsOfTwoParallelViews) {
   const DistributedArm arm = small_arm();
   for_random_cases(4, [&](TestRandom& random) {
     const Eigen::VectorXd target = random_coordinates(random, arm, 0.8);
     DistributedArm desired = arm;
     desired.set(target, Eigen::VectorXd::Zero(arm.size()));
     const PotentialLaw law(arm, target, {});
-    for (const bool is_exact : {true, false}) {
-      const auto seen = [&](double, const DistributedArm& now, const Eigen::VectorXd& x,
-                            const Eigen::VectorXd& v, Eigen::VectorXd& Q) {
-        Eigen::VectorXd e_theta(now.theta().size()), e_q(now.theta().size());
-        for (Eigen::Index j = 0; j < e_q.size(); ++j) {
-          const PlaneView measured = plane_view(now.theta()[j], now.q()[j]),
-                          wanted = plane_view(desired.theta()[j], desired.q()[j]);
-          const PlaneError error =
-              is_exact ? exact_plane_error(measured, wanted) : plane_error(measured, wanted);
-          e_theta[j] = error.e_theta, e_q[j] = error.e_q;
-        }
-        law.force_of_errors(now, e_theta, e_q, x, v, Q);
-        if (is_exact) {
-          Eigen::VectorXd known;
-          law.force(now, x, v, known);
-          EXPECT_LE((Q - known).cwiseAbs().maxCoeff(), 1e-10);
-        }
-        return law.dissipation(v);
-      };
-      Eigen::VectorXd end;
-      const LyapunovVerdict verdict =
-          watched_run(arm, law, seen, random_coordinates(random, arm, 0.8), 4, &end);
-      EXPECT_TRUE(verdict.is_settled);
-      EXPECT_LE((end - target).cwiseAbs().maxCoeff(), 2e-2);
-      // The paper's first-order errors are no potential's: W still settles, its balance is not exact.
-      EXPECT_EQ(verdict.is_balanced, is_exact);
-    }
+    const auto seen = [&](double, const DistributedArm& now, const Eigen::VectorXd& x,
+                          const Eigen::VectorXd& v, Eigen::VectorXd& Q) {
+      Eigen::VectorXd e_theta(now.theta().size()), e_q(now.theta().size());
+      for (Eigen::Index j = 0; j < e_q.size(); ++j) {
+        const PlaneError error = plane_error(plane_view(now.theta()[j], now.q()[j]),
+                                             plane_view(desired.theta()[j], desired.q()[j]));
+        e_theta[j] = error.e_theta, e_q[j] = error.e_q;
+      }
+      law.force_of_errors(now, e_theta, e_q, x, v, Q);
+      return law.dissipation(v);
+    };
+    Eigen::VectorXd end;
+    const LyapunovVerdict verdict =
+        watched_run(arm, law, seen, random_coordinates(random, arm, 0.8), 4, &end);
+    EXPECT_TRUE(verdict.is_settled);
+    EXPECT_LE((end - target).cwiseAbs().maxCoeff(), 2e-2);
+    EXPECT_FALSE(verdict.is_balanced);
   });
 }
 

@@ -21,7 +21,7 @@ namespace flexura {
 /// to the law's force that these can give.
 class PotentialRun {
  public:
-  /// `start`: coordinates, at rest. `drives`: G (driven_law.h); empty: every point is driven.
+  /// `start`: coordinates, at rest. `drives`: G (section_drives.h); empty: every point is driven.
   /// std::invalid_argument: a size that does not fit, numbers that are not finite.
   PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
                const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {},

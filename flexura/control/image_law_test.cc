@@ -19,28 +19,6 @@ namespace {
 
 constexpr double dt = 1.0 / 30;
 
-TEST(ImageLaw, FallsExponentiallyWhereTheModelIsRight) {
-  FeatureImages images(servo_arm(), FeatureSet::of_points(6));
-  const ImageLaw law(servo_arm(), {.rate = 3, .damping = 0});
-  ArmState state = {{{0.3, 0.2}, {0.1, -0.2}, {0.2, 0.4}}, {1, 1, 1}};
-  const ArmState target = {{{0.31, 0.21}, {0.09, -0.19}, {0.2, 0.41}}, {1, 1, 1}};
-  Eigen::VectorXd desired, seen;
-  Eigen::MatrixXd by_state;
-  ASSERT_TRUE(images.values(target, servo_views(), desired));
-  double before = 0;
-  for (int k = 0; k < 10; ++k) {
-    ASSERT_TRUE(images.derive(state, servo_views(), seen, by_state));
-    const Eigen::VectorXd error = feature_error(images.set(), seen, desired);
-    if (k > 0) {
-      EXPECT_NEAR(error.norm() / before, std::exp(-3 * dt), 2e-3);
-    }
-    before = error.norm();
-    const ImageStep step = law.step(state, error, law.by_variables(by_state), dt);
-    EXPECT_FALSE(step.is_singular);
-    state = step.asked;
-  }
-}
-
 TEST(ImageLaw, TellsWhatItCannotSee) {
   // One camera that sees a straight arm end on: nothing of its stretch.
   Arm arm = servo_arm();
@@ -53,7 +31,8 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
   const ArmState straight = ArmState::straight(3);
   Eigen::VectorXd seen;
   Eigen::MatrixXd by_state;
-  ASSERT_TRUE(FeatureImages(arm, FeatureSet::of_points(6)).derive(straight, std::array{above}, seen, by_state));
+  ASSERT_TRUE(
+      FeatureImages(arm, FeatureSet::of_points(6)).derive(straight, std::array{above}, seen, by_state));
   const Eigen::MatrixXd J = law.by_variables(by_state);
   const ImageStep step = law.step(straight, Eigen::VectorXd::Ones(12), J, dt);
   EXPECT_TRUE(step.is_singular);

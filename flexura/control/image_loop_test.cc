@@ -1,5 +1,5 @@
-// Loops without pictures: features of the true arm by the true cameras, the law's Jacobian by the cameras as they
-// are believed to be, the limiter in between.
+// Loops without pictures: features of the true arm by the true cameras, the law's Jacobian by the cameras as
+// they are believed to be, the limiter in between.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -58,8 +58,8 @@ struct ServoEnd {
   bool is_lost = false;
 };
 
-// From `start` towards `target` for so many seconds: asked(k, state, sent) is what the law asks for in step k, none
-// where a lens shows nothing.
+// From `start` towards `target` for so many seconds: asked(k, state, sent) is what the law asks for in step
+// k, none where a lens shows nothing.
 template <class Asked>
 ServoEnd run_loop(const ServoLoop& loop, const ArmState& start, const ArmState& target, double seconds,
                   const Asked& asked) {
@@ -118,8 +118,8 @@ ServoEnd servo(const ServoLoop& loop, const ArmState& start, const ArmState& tar
                   });
 }
 
-// By the edges of both images, six places along the arm; derivatives and normals are those of the arm that the
-// cameras are believed to see.
+// By the edges of both images, six places along the arm; derivatives and normals are those of the arm that
+// the cameras are believed to see.
 ServoEnd servo_by_edges(const ServoLoop& loop, const ArmState& start, const ArmState& target,
                         double seconds) {
   const ImageLaw law = loop.law();
@@ -229,7 +229,8 @@ TEST(ImageLoop, ReachesItsTargetsHoweverWrongTheCamerasAreBelievedToBe) {
   EXPECT_EQ(share.converged, share.all);
 }
 
-// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are told.
+// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are
+// told.
 ArmState turned_state(const ArmState& sent) {
   ArmState state = sent;
   const double c = std::cos(1.75), s = std::sin(1.75);

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "flexura/control/lyapunov_monitor.h"
-#include "flexura/control/plane_errors.h"
 #include "flexura/math/derivative_check.h"
 #include "tests/support/distributed_arms.h"
 
@@ -25,35 +24,13 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr OdeTolerance fine = {.relative = 1e-9, .absolute = 1e-11};
-
-// What drives an arm by a law; it returns what the law's damping takes.
-DistributedMotion::Force forces_of(const PotentialLaw& law) {
-  return [&law](double, const DistributedArm& arm, const Eigen::VectorXd& x, const Eigen::VectorXd& v,
-                Eigen::VectorXd& Q) {
-    law.force(arm, x, v, Q);
-    return law.dissipation(v);
-  };
-}
-
-// A run from rest, watched; it ends early where the arm comes near to the coordinates' end.
-LyapunovVerdict watched_run(const DistributedArm& arm, const PotentialLaw& law,
-                                   const DistributedMotion::Force& force, const Eigen::VectorXd& start,
-                                   double until, Eigen::VectorXd* end = nullptr) {
-  DistributedMotion motion(arm, force, fine);
-  motion.start(start);
-  LyapunovMonitor monitor;
-  for (int i = 0; i <= 100; ++i) {
-    if (i > 0 && !motion.advance(until * i / 100)) break;
-    // With a shaped elasticity V_e is part of Pi.
-    const bool is_shaped = law.gains().elasticity == ElasticityRule::shaped;
-    monitor.add({motion.time(), motion.arm().kinetic_energy(), law.potential(motion.arm(), motion.x()),
-                 motion.arm().gravity_energy(), is_shaped ? 0 : motion.arm().elastic_energy(),
-                 motion.summed(), motion.damped()});
-    if (motion.arm().q().cwiseAbs().maxCoeff() > 1.45) break;
-  }
-  if (end != nullptr) *end = motion.x();
-  return monitor.verdict();
+// A run from rest, until where the coordinates end at most.
+LyapunovVerdict watched_run(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
+                            double until, Eigen::VectorXd& end) {
+  PotentialRun run(arm, law, start, {}, {.relative = 1e-9, .absolute = 1e-11});
+  const LyapunovVerdict verdict = watched(run, until, until / 100);
+  end = run.motion().x();
+  return verdict;
 }
 
 DistributedArm small_arm(std::optional<double> bending = {}) {
@@ -130,8 +107,7 @@ TEST(PotentialLaw, LetsLyapunovsFunctionFallOnEveryRun) {
     const PotentialLaw law(arm, target, gains);
     EXPECT_THAT(law.violations(), IsEmpty());
     Eigen::VectorXd end;
-    const LyapunovVerdict verdict =
-        watched_run(arm, law, forces_of(law), random_coordinates(random, arm, 0.8), 4, &end);
+    const LyapunovVerdict verdict = watched_run(arm, law, random_coordinates(random, arm, 0.8), 4, end);
     EXPECT_TRUE(verdict.is_monotone) << verdict.largest_rise;
     EXPECT_TRUE(verdict.is_balanced) << verdict.imbalance;
     EXPECT_TRUE(verdict.is_settled);
@@ -154,7 +130,7 @@ TEST(PotentialLaw, BringsLengthsToTheirTargetsToo) {
   target.tail(2) << 0.12, -0.08;
   const PotentialLaw law(arm, target, {});
   Eigen::VectorXd end;
-  const LyapunovVerdict verdict = watched_run(arm, law, forces_of(law), bent(arm, -0.4, 0.3), 4, &end);
+  const LyapunovVerdict verdict = watched_run(arm, law, bent(arm, -0.4, 0.3), 4, end);
   EXPECT_THAT(verdict.reasons, IsEmpty());
   EXPECT_LE((end - target).cwiseAbs().maxCoeff(), 1e-3);
 }
@@ -171,7 +147,7 @@ Violated violated(const DistributedArm& arm, const PotentialGains& gains) {
   Eigen::VectorXd end;
   Violated result;
   result.said = law.violations();
-  result.shown = watched_run(arm, law, forces_of(law), bent(arm, 0.3, -0.2), 3, &end);
+  result.shown = watched_run(arm, law, bent(arm, 0.3, -0.2), 3, end);
   result.off = (end - target).cwiseAbs().maxCoeff();
   return result;
 }
@@ -238,7 +214,7 @@ TEST(PotentialLaw, MayIgnoreElasticityThatIsAtRestAtTheTarget) {
     EXPECT_THAT(law.violations(), IsEmpty());
     Eigen::VectorXd start = bent(arm, 1, -0.6), end;
     start.tail(2) << 0.05, -0.05;
-    const LyapunovVerdict verdict = watched_run(arm, law, forces_of(law), start, 4, &end);
+    const LyapunovVerdict verdict = watched_run(arm, law, start, 4, end);
     EXPECT_THAT(verdict.reasons, IsEmpty());
     EXPECT_TRUE(verdict.is_monotone);
     EXPECT_LE((end - straight).cwiseAbs().maxCoeff(), 1e-2);
@@ -260,40 +236,12 @@ TEST(PotentialLaw, NeedsAMinimumOfPotentialAndElasticityTogether) {
   EXPECT_THAT(law.violations(), Contains(HasSubstr("no minimum")));
   Eigen::VectorXd start = target, end;
   start.tail(arm.nodes()).array() += 0.01;
-  const LyapunovVerdict verdict = watched_run(arm, law, forces_of(law), start, 4, &end);
+  const LyapunovVerdict verdict = watched_run(arm, law, start, 4, end);
   EXPECT_FALSE(verdict.is_settled);
   EXPECT_THAT(verdict.reasons, Contains(HasSubstr("no minimum at the target")));
   EXPECT_GT(end.tail(arm.nodes()).cwiseAbs().maxCoeff(), 0.2);
   gains.stiffness = {60, 60};
   EXPECT_THAT(PotentialLaw(arm, target, gains).violations(), IsEmpty());
-}
-
-// The paper's first-order errors are no potential's: W still settles, its balance is not exact.
-TEST(PotentialLaw, SettlesByTheErrorsOfTwoParallelViews) {
-  const DistributedArm arm = small_arm();
-  for_random_cases(4, [&](TestRandom& random) {
-    const Eigen::VectorXd target = random_coordinates(random, arm, 0.8);
-    DistributedArm desired = arm;
-    desired.set(target, Eigen::VectorXd::Zero(arm.size()));
-    const PotentialLaw law(arm, target, {});
-    const auto seen = [&](double, const DistributedArm& now, const Eigen::VectorXd& x,
-                          const Eigen::VectorXd& v, Eigen::VectorXd& Q) {
-      Eigen::VectorXd e_theta(now.theta().size()), e_q(now.theta().size());
-      for (Eigen::Index j = 0; j < e_q.size(); ++j) {
-        const PlaneError error = plane_error(plane_view(now.theta()[j], now.q()[j]),
-                                             plane_view(desired.theta()[j], desired.q()[j]));
-        e_theta[j] = error.e_theta, e_q[j] = error.e_q;
-      }
-      law.force_of_errors(now, e_theta, e_q, x, v, Q);
-      return law.dissipation(v);
-    };
-    Eigen::VectorXd end;
-    const LyapunovVerdict verdict =
-        watched_run(arm, law, seen, random_coordinates(random, arm, 0.8), 4, &end);
-    EXPECT_TRUE(verdict.is_settled);
-    EXPECT_LE((end - target).cwiseAbs().maxCoeff(), 2e-2);
-    EXPECT_FALSE(verdict.is_balanced);
-  });
 }
 
 TEST(PotentialLaw, RefusesNumbersThatAreNone) {

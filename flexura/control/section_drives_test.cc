@@ -6,21 +6,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "flexura/control/lyapunov_monitor.h"
 #include "flexura/control/potential_law.h"
-#include "flexura/control/potential_run.h"
 #include "tests/support/distributed_arms.h"
 
 namespace flexura {
 namespace {
-
-// What a run by some drives comes to.
-LyapunovVerdict driven(PotentialRun& run) {
-  LyapunovMonitor monitor;
-  monitor.add(run.sample());
-  for (int i = 1; i <= 100 && run.advance(0.03 * i); ++i) monitor.add(run.sample());
-  return monitor.verdict();
-}
 
 TEST(SectionDrives, GiveTheWholeForceWhereTheyMoveAllThatMoves) {
   for_random_cases(6, [](TestRandom& random) {
@@ -37,7 +27,7 @@ TEST(SectionDrives, GiveTheWholeForceWhereTheyMoveAllThatMoves) {
       ASSERT_EQ(G.cols(), 9);
       const PotentialLaw law(arm, random_coordinates(random, arm, 0.8), {});
       PotentialRun run(arm, law, random_coordinates(random, arm, 0.8), {}, {}, G);
-      EXPECT_THAT(driven(run).reasons, testing::IsEmpty());
+      EXPECT_THAT(watched(run, 3, 0.03).reasons, testing::IsEmpty());
       EXPECT_LE(run.left_over(), 1e-10);
     }
   });
@@ -81,7 +71,7 @@ TEST(SectionDrives, LeaveForcesOverOfAnArmThatHasMoreThanTheyMove) {
   };
   const PotentialLaw law(arm, bent(0.6, -0.1), {});
   PotentialRun run(arm, law, bent(-0.3, 0.2), {}, {}, section_moments(arm));
-  const LyapunovVerdict cut = driven(run);
+  const LyapunovVerdict cut = watched(run, 3, 0.03);
   EXPECT_FALSE(cut.is_balanced);
   EXPECT_THAT(cut.reasons, testing::Contains(testing::HasSubstr("not those of the law")));
   EXPECT_GT(run.left_over(), 0.01);

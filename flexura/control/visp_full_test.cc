@@ -24,7 +24,8 @@ VispPoint visp_point(const Eigen::Vector3d& p_CP) {
   return {p_CP.x() / p_CP.z(), p_CP.y() / p_CP.z(), p_CP.z()};
 }
 
-// A point's interaction matrix in the literature (F. Chaumette, S. Hutchinson, "Visual servo control I", 2006, eq. 11).
+// A point's interaction matrix in the literature (F. Chaumette, S. Hutchinson, "Visual servo control I",
+// 2006, eq. 11).
 Eigen::Matrix<double, 2, 6> point_interaction(const Eigen::Vector3d& p) {
   const double x = p.x() / p.z(), y = p.y() / p.z(), Z = p.z();
   Eigen::Matrix<double, 2, 6> L;

@@ -164,29 +164,19 @@ TEST(SimulatedHead, CountsFromWhereItIsBelievedToStand) {
   EXPECT_NEAR(stage.truth(60).offset.x() - stage.read().value().state.offset.x(), 0.01, 1e-12);
 }
 
-TEST(SimulatedStage, MovesAfterItsDelay) {
-  CameraConfig config = cameras_at({5, 5})[0];
-  config.mount.stage.delay = 0.25, config.mount.stage.x.limits = {-0.2, 0.2};
-  const Camera camera(config);
-  SimulatedClock clock;
-  SimulatedStage stage(camera, camera.initial_stage(), clock, forever);
-  clock.wait_until(1);
-  ASSERT_TRUE(stage.command({{0.1, 0, 0}}));
-  EXPECT_EQ(stage.truth(1.25).offset, camera.initial_stage().offset);
-  clock.wait_until(1.5);
-  EXPECT_GT(stage.truth(1.5).offset.x(), camera.initial_stage().offset.x());
-}
-
-TEST(SimulatedHead, MovesAfterItsDelayAndArrives) {
+TEST(SimulatedHead, MovesAfterItsDelayAndArrivesAndSoDoesItsStage) {
   for_random_cases(40, [](TestRandom& random) {
     const Camera camera(real_camera(random));
     const double delay = camera.config().head.delay;
     SimulatedClock clock;
     SimulatedHead head(camera, camera.initial_head(), clock, forever);
+    SimulatedStage stage(camera, camera.initial_stage(), clock, forever);
     clock.wait_until(1);
     const HeadState target = anywhere(random);
     ASSERT_TRUE(head.command(target));
+    ASSERT_TRUE(stage.command({camera.initial_stage().offset + Eigen::Vector3d::Constant(1)}));
     EXPECT_EQ(head.truth(1 + delay), camera.initial_head());
+    EXPECT_EQ(stage.truth(1 + camera.config().mount.stage.delay).offset, camera.initial_stage().offset);
     EXPECT_TRUE(head.read().value().moving);
     clock.wait_until(60 + delay);
     const HeadReading reading = head.read().value();

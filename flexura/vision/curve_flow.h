@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// How far what is seen at places moves from one gray picture to the next of the same size, px, by the pyramidal
-/// method of Lucas and Kanade (J.-Y. Bouguet, 2001; OpenCV's); none where it is not found again.
+/// How far what is seen at places moves from one gray picture to the next of the same size, px, by the
+/// pyramidal method of Lucas and Kanade (J.-Y. Bouguet, 2001; OpenCV's); none where it is not found again.
 /// std::invalid_argument: pictures of different sizes, or not gray.
-[[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(
-    const Image<std::uint8_t>& before, const Image<std::uint8_t>& after,
-    std::span<const Eigen::Vector2d> places);
+[[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(const Image<std::uint8_t>& before,
+                                                                  const Image<std::uint8_t>& after,
+                                                                  std::span<const Eigen::Vector2d> places);
 
 /// Angles of a curve's tangent, integrated from their turns from picture to picture and drawn back to
 /// measured angles, since what is integrated drifts.

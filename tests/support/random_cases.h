@@ -64,8 +64,8 @@ inline constexpr int one_case_of = 4;
 inline constexpr int one_case_of = 1;
 #endif
 
-/// Calls body(TestRandom&) for `count` cases (one of `one_case_of` in a sanitized build; FLEXURA_CASES=N in the
-/// environment makes it N times as many); stops at the first that fails, whose seed the failure shows.
+/// Calls body(TestRandom&) for `count` cases (one of `one_case_of` in a sanitized build; FLEXURA_CASES=N in
+/// the environment makes it N times as many); stops at the first that fails, whose seed the failure shows.
 template <typename Body>
 void for_random_cases(int count, Body&& body) {
   if (const char* times = std::getenv("FLEXURA_CASES")) count *= std::max(1, std::atoi(times));

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "flexura/control/distributed_arm.h"
-#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {

@@ -74,7 +74,7 @@ class EstimateBench : public testing::Test {
     std::string& png = drawn[camera + read_text_file(file(experiment + ".toml"), most_picture_bytes)];
     const std::string name = file(experiment + "_" + camera + ".png");
     if (!png.empty()) {
-      write_new_file(name, png);
+      replace_file(name, png);
       return name;
     }
     std::ostringstream out;

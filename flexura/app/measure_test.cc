@@ -338,7 +338,7 @@ TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
 
 // Two parallel sides lie on a long ellipse.
 TEST(Measure, TakesNoStraightSidesForAnEllipse) {
-  for_random_cases(40, [](TestRandom& random) {
+  for_random_cases(15, [](TestRandom& random) {
     const double width = random.uniform(30, 120), height = random.uniform(30, 120);
     // Its corners, or its ends, may be round: of a capsule the two sides remain.
     const double corner = (random.integer(0, 2) == 0 ? 0.5 : 0.15) * std::min(width, height);

@@ -77,7 +77,7 @@ TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
     const std::string printed = told_in(path("out"));
     const bool is_expected = options.empty();
     // What is not to come is given a while in which it would.
-    for (int i = 0; i < (is_expected ? 3000 : 50) && !std::filesystem::exists(path("opened")); ++i)
+    for (int i = 0; i < (is_expected ? 3000 : 10) && !std::filesystem::exists(path("opened")); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     kill(child, SIGTERM);
     EXPECT_EQ(wait(child).status, 0);

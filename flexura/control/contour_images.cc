@@ -138,15 +138,6 @@ void ContourImages::derive(const View& view, const ContourImage& image,
   }
 }
 
-Eigen::Matrix<double, 1, 6> contour_interaction(const ContourImage& image, Eigen::Index i) {
-  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
-  if (!image.has(i)) return row;
-  // Seen from a camera that moves, the skin moves by -v - w x p.
-  const Eigen::Vector3d p = image.places.col(i), slope = image.slopes.col(i);
-  row << -slope.transpose(), -p.cross(slope).transpose();
-  return row;
-}
-
 void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2Xd>& seen,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired_normals,

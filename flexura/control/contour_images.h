@@ -74,10 +74,6 @@ class ContourImages {
   Jacobian by_;
 };
 
-/// How the curve moves along its normal at point i while the camera moves by the twist [v; w] (m/s, rad/s),
-/// relative to W and expressed in C; zeros where there is no contour.
-[[nodiscard]] Eigen::Matrix<double, 1, 6> contour_interaction(const ContourImage& image, Eigen::Index i);
-
 /// How far what is seen lies from what is desired, across the edges: pixels of at.pixels' order, whose
 /// normals are those of the contours `at` and, where it shall be, `desired_normals`; along the direction
 /// half-way between the two, which is the way of a piece of edge that turns as evenly as it goes. 0 where one

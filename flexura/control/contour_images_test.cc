@@ -7,12 +7,10 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "flexura/math/derivative_check.h"
-#include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/silhouette.h"
@@ -136,80 +134,10 @@ TEST(ContourImages, MoveAlongTheirNormalsAsTheirDerivativesSay) {
                                         .transpose();
         ++compared;
         EXPECT_LT((by_state.row(i).transpose() - row).norm(), 1e-5 * (1 + row.norm()));
-        const Eigen::VectorXd by_twist =
-            numerical_jacobian(
-                [&](const Eigen::VectorXd& twist) -> Eigen::VectorXd {
-                  View there = view;
-                  there.X_WC.position += view.X_WC.rotation * twist.head<3>();
-                  there.X_WC.rotation = (view.X_WC.rotation * so3_exp(twist.tail<3>())).eval();
-                  return Eigen::VectorXd::Constant(1,
-                                                   crossing(bent.arm, bent.state, there, from, share, i % 2));
-                },
-                Eigen::VectorXd::Zero(6), 1e-3)
-                .value.row(0)
-                .transpose();
-        EXPECT_LT((contour_interaction(image, i).transpose() - by_twist).norm(),
-                  1e-5 * (1 + by_twist.norm()));
       }
     });
   }
   EXPECT_GT(compared, 40 / one_case_of);
-}
-
-// Where the line from `from` along `normal` meets the outline of about an arc length nearest, px.
-std::optional<double> outline_at(const BentArm& bent, const View& view, const EdgePoint& from, double s) {
-  const Scene scene = scene_of(bent);
-  Renderer renderer;
-  renderer.prepare(scene, view);
-  const Eigen::Vector2d heading(-from.normal.y(), from.normal.x());
-  std::optional<double> nearest;
-  for (const Outline& outline : outlines(renderer, 0.25)) {
-    if (outline.kind == OutlineKind::rim) continue;
-    for (std::size_t k = 1; k < outline.points.size(); ++k) {
-      const auto &a = outline.points[k - 1].pixel, &b = outline.points[k].pixel;
-      if (!a || !b || std::abs(outline.points[k].s - s) > 0.05) continue;
-      const double before = heading.dot(*a - from.pixel), after = heading.dot(*b - from.pixel);
-      if ((before < 0) == (after < 0)) continue;
-      const double off = from.normal.dot(*a + before / (before - after) * (*b - *a) - from.pixel);
-      if (std::abs(off) < std::abs(nearest.value_or(1e9))) nearest = off;
-    }
-  }
-  return nearest;
-}
-
-// The same by the renderer's exact outlines of two states.
-TEST(ContourImages, MoveAsTheRenderersOutlinesDo) {
-  int compared = 0;
-  double worst = 0;
-  for_random_cases(4, [&](TestRandom& random) {
-    const BentArm bent = random_bent_arm(random, 0);
-    const View view = bent_view_of(random, bent.backbone());
-    const std::vector<double> shares = {0.3, 0.8};
-    ContourImages contours(bent.arm, shares);
-    contours.set(bent.state);
-    ContourImage image;
-    if (!contours.see(view, image)) return;
-    Eigen::MatrixXd by_state(contours.count(), contours.columns());
-    contours.derive(view, image, by_state);
-    for (Eigen::Index i = 0; i < contours.count(); ++i) {
-      if (!image.has(i) || (image.places.col(i) - image.places.col(i ^ 1)).norm() < 0.04) continue;
-      const EdgePoint from{image.pixels.col(i), image.normals.col(i)};
-      for (const Eigen::Index column : {0, 1, 3}) {
-        constexpr double step = 5e-3;
-        BentArm on = bent, back = bent;
-        on.state.bends[static_cast<std::size_t>(column / 3)][column % 3] += step;
-        back.state.bends[static_cast<std::size_t>(column / 3)][column % 3] -= step;
-        const double s = shares[static_cast<std::size_t>(i / 2)] * bent.arm.length();
-        const auto far = outline_at(on, view, from, s), near = outline_at(back, view, from, s);
-        if (!far || !near) continue;
-        const double slope = (*far - *near) / (2 * step);
-        ++compared, worst = std::max(worst, std::abs(slope - by_state(i, column)));
-        EXPECT_NEAR(slope, by_state(i, column), 0.02 * by_state.row(i).norm() + 0.5);
-      }
-    }
-  });
-  std::printf("%d displacements, farthest from the outlines' %.2f px/rad\n", compared, worst);
-  EXPECT_GT(compared, one_case_of > 1 ? 0 : 8);
 }
 
 TEST(ContourImages, OfAStraightTubeAreInClosedForm) {
@@ -289,7 +217,6 @@ TEST(ContourImages, AreNoneWhereTheArmPointsAtTheCamera) {
   EXPECT_FALSE(image.has(0) || image.has(3));
   EXPECT_EQ(by_state.norm(), 0);
   EXPECT_EQ(error.norm(), 0);
-  EXPECT_EQ(contour_interaction(image, 1).norm(), 0);
   // Behind the camera a lens shows nothing.
   EXPECT_FALSE(
       contours.see(pinhole_view(look_at({0.5, 3, 0}, {0.5, 4, 0}, {1, 0, 0}), 100, 100, 100), image));

@@ -223,11 +223,4 @@ Eigen::Vector3d DistributedArm::tip() const {
   return tip;
 }
 
-Eigen::MatrixXd DistributedArm::tip_jacobian() const {
-  Eigen::MatrixXd J(3, size_);
-  for (Eigen::Index i = 0; i < 3; ++i)
-    J.row(i) = shapes_.weights.transpose() * by_x_[static_cast<std::size_t>(i)];
-  return J;
-}
-
 }  // namespace flexura

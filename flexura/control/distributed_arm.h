@@ -79,8 +79,6 @@ class DistributedArm {
   /// Of the points, from the base's, and of the tip, m in W.
   [[nodiscard]] Eigen::Matrix3Xd positions() const;
   [[nodiscard]] Eigen::Vector3d tip() const;
-  /// d tip/dx, 3 x size().
-  [[nodiscard]] Eigen::MatrixXd tip_jacobian() const;
 
  private:
   void set_angles(const Eigen::VectorXd& x, const Eigen::VectorXd& v);
@@ -136,11 +134,5 @@ class DistributedMotion {
   double time_ = 0;
   Eigen::VectorXd y_, x_, v_, Q_, acceleration_;
 };
-
-/// Where V_g + V_e - force . x is stationary, by Newton's method with steps that lead down, from x; none
-/// where that does not settle to `tolerance` (N m, N) in 200 steps. `force` are constant generalized forces.
-[[nodiscard]] std::optional<Eigen::VectorXd> equilibrium(DistributedArm& arm, Eigen::VectorXd x,
-                                                         const Eigen::VectorXd& force,
-                                                         double tolerance = 1e-11);
 
 }  // namespace flexura

@@ -1,14 +1,11 @@
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "flexura/control/distributed_arm.h"
-#include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
@@ -92,34 +89,6 @@ bool DistributedMotion::advance(double until, const std::function<bool()>& go_on
   x_ = y_.head(arm_.size()), v_ = y_.segment(arm_.size(), arm_.size());
   arm_.set(x_, v_);
   return progress.is_there;
-}
-
-std::optional<Eigen::VectorXd> equilibrium(DistributedArm& arm, Eigen::VectorXd x,
-                                           const Eigen::VectorXd& force, double tolerance) {
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(x.size());
-  const auto energy = [&](const Eigen::VectorXd& at) {
-    arm.set(at, still);
-    return arm.gravity_energy() + arm.elastic_energy() - force.dot(at);
-  };
-  for (int i = 0; i < 200; ++i) {
-    const double now = energy(x);
-    const Eigen::VectorXd gradient = arm.gravity_gradient() + arm.elastic_gradient() - force;
-    if (gradient.cwiseAbs().maxCoeff() <= tolerance) return x;
-    Eigen::MatrixXd K = arm.stiffness();
-    // Made definite, so that the step leads down.
-    double shift = 0;
-    Cholesky factor(K);
-    while (!factor.is_definite() && shift < 1e12) {
-      shift = std::max(10 * shift, 1e-3 * K.diagonal().cwiseAbs().maxCoeff());
-      factor.compute(K + shift * Eigen::MatrixXd::Identity(K.rows(), K.cols()));
-    }
-    const Eigen::VectorXd step = -factor.solve(gradient);
-    double share = std::min(1.0, 0.5 / std::max(step.cwiseAbs().maxCoeff(), 1e-300));
-    // The last steps are below what the energy's rounding shows: taken as they are.
-    while (share > 1e-10 && energy(x + share * step) > now + 1e-14 * std::abs(now)) share *= 0.5;
-    x += share * step;
-  }
-  return std::nullopt;
 }
 
 }  // namespace flexura

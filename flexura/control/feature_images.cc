@@ -105,18 +105,4 @@ bool FeatureImages::derive(const ArmState& state, std::span<const View> views, E
   return true;
 }
 
-bool FeatureImages::by_camera(const View& view, Eigen::MatrixXd& by_twist) {
-  by_twist.resize(set_.rows(), 6);
-  Eigen::VectorXd same(set_.rows());
-  if (!points_.see(view, pixels_) || !write_values(same)) return false;
-  Eigen::MatrixXd by(2 * points_.count(), 6);
-  for (Eigen::Index i = 0; i < points_.count(); ++i) {
-    const auto interaction = point_interaction(view.lens, view.X_WC.inverse() * points_.place(i));
-    if (!interaction) return false;
-    by.middleRows<2>(2 * i) = *interaction;
-  }
-  write_rows(by, by_twist);
-  return true;
-}
-
 }  // namespace flexura

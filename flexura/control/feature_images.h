@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// The features of one arm's images, state after state: what shape_features() says, without allocation after
-/// the first time.
+/// The features of one arm's images, state after state, without allocation after the first time, and their
+/// derivatives through the cameras' own models and the backbone's Jacobian.
 class FeatureImages {
  public:
   /// std::invalid_argument: a share outside [0, 1], no features, moments of fewer than two points.
@@ -30,8 +30,6 @@ class FeatureImages {
   /// And its derivatives by the state; columns are each section's bend_x, bend_y (rad), stretch.
   [[nodiscard]] bool derive(const ArmState& state, std::span<const View> views, Eigen::VectorXd& values,
                             Eigen::MatrixXd& by_state);
-  /// And, after derive(), those of one camera's features, set().rows() of them, by its twist [v; w] in C.
-  [[nodiscard]] bool by_camera(const View& view, Eigen::MatrixXd& by_twist);
 
  private:
   using Rows = Eigen::Ref<Eigen::MatrixXd>;

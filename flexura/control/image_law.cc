@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "flexura/kinematics/plus_way.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {
@@ -157,16 +156,6 @@ void ImageLaw::step(const ArmState& sent, const Eigen::VectorXd& error, const Ei
   work.x += work.dx;
   if (work.x.allFinite()) project(variables_.bounds(), work.x);
   variables_.state(work.x, step.asked);
-}
-
-ArmState shape_step(const ArmState& sent, const ArmState& seen, const ArmState& desired, double rate,
-                    double dt) {
-  const std::size_t count = sent.bends.size();
-  for (const ArmState* state : {&sent, &seen, &desired})
-    if (state->bends.size() != count || state->stretches.size() != count)
-      throw std::invalid_argument("the law on shapes needs states of one arm");
-  const double share = 1 - std::exp(-rate * dt);
-  return plus_way(sent, seen, desired, share);
 }
 
 }  // namespace flexura

@@ -59,11 +59,4 @@ class ImageLaw {
   ImageLawGains gains_;
 };
 
-/// The law on shapes: where to send an arm that was last sent to `sent` and is seen in the shape `seen`, dt s
-/// later: sent + (1 - exp(-rate dt)) (desired - seen), section by section. What the arm does wrong with its
-/// commands is made up for; what the sight gets wrong is not. std::invalid_argument: states of different
-/// arms.
-[[nodiscard]] ArmState shape_step(const ArmState& sent, const ArmState& seen, const ArmState& desired,
-                                  double rate, double dt);
-
 }  // namespace flexura

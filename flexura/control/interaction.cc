@@ -3,18 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "flexura/math/so3.h"
-
 namespace flexura {
-
-std::optional<Eigen::Matrix<double, 2, 6>> point_interaction(const Lens& lens, const Eigen::Vector3d& p_CP) {
-  const auto projection = lens.project_with_derivatives(p_CP);
-  if (!projection) return std::nullopt;
-  // Seen from a camera that moves, the point moves by -v - w x p.
-  Eigen::Matrix<double, 3, 6> seen;
-  seen << -Eigen::Matrix3d::Identity(), skew(p_CP);
-  return projection->by_point * seen;
-}
 
 PixelFeature chord_angle(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;

@@ -1,20 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
-#include "flexura/camera/intrinsics.h"
-
-// How features of an image change: with the motion of the camera, and with the pixels that they are made of
-// (docs/control.md, eq. 16 to 19).
+// How features of an image change with the pixels that they are made of (docs/control.md, eq. 18 and 19).
 namespace flexura {
-
-/// 2 x 6: the rates of a fixed point's pixel (px/s) per unit of the camera's twist [v; w] (m/s, rad/s),
-/// relative to W and expressed in C. For a lens with fx = fy = 1 and no distortion the interaction matrix of
-/// the literature (F. Chaumette, S. Hutchinson, "Visual servo control I", 2006, eq. 11). None where the lens
-/// shows the point nowhere.
-[[nodiscard]] std::optional<Eigen::Matrix<double, 2, 6>> point_interaction(const Lens& lens,
-                                                                           const Eigen::Vector3d& p_CP);
 
 /// A feature and its derivatives by the coordinates of the two pixels it is made of.
 struct PixelFeature {

@@ -18,11 +18,6 @@ struct PlaneView {
 struct PlaneError {
   double theta = 0, q = 0;      ///< Measured, rad.
   double e_theta = 0, e_q = 0;  ///< Of the angles, rad.
-  double spatial = 0;           ///< sqrt(e_q^2 + cos^2 q e_theta^2), rad.
-  /// d q/d alpha_1: how strongly an error of the first view enters q.
-  double gain = 0;
-  /// |theta| is within 10 degrees of a quarter turn: the second view says little of q there. Triangulate.
-  bool is_singular = false;
 };
 
 /// Whether the planes tell the way from one direction to another, each of the angles theta and q, rad: both
@@ -40,8 +35,5 @@ struct PlaneError {
 ///   e_theta = e_1,
 ///   e_q = cos theta / cos^2 alpha_2 cos^2 q e_2 - sin q cos q tan theta e_1.
 [[nodiscard]] PlaneError plane_error(const PlaneView& measured, const PlaneView& desired);
-
-/// With the angles of both computed first: exact for any size of error, as long as neither is singular.
-[[nodiscard]] PlaneError exact_plane_error(const PlaneView& measured, const PlaneView& desired);
 
 }  // namespace flexura

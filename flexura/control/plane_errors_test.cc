@@ -27,32 +27,22 @@ TEST(PlaneErrors, AreTheDerivativesOfTheViewsReading) {
     EXPECT_NEAR(plane_error(view, by_2).e_q, reading.value(0, 1), 1e-8);
     EXPECT_NEAR(plane_error(view, by_1).e_theta, 1, 1e-15);
     const PlaneError none = plane_error(view, view);
-    EXPECT_EQ(none.spatial, 0);
+    EXPECT_EQ(none.e_theta, 0);
+    EXPECT_EQ(none.e_q, 0);
     EXPECT_NEAR(none.theta, theta, 1e-12);
     EXPECT_NEAR(none.q, q, 1e-9);
-    EXPECT_NEAR(none.gain, reading.value(0, 0), 1e-8);
-    // The spatial error of neighbours is the angle between their directions.
-    const double dt = random.uniform(-1e-4, 1e-4), dq = random.uniform(-1e-4, 1e-4);
-    const PlaneView near = plane_view(theta + dt, q + dq);
-    const auto e = [](double a, double b) {
-      return Eigen::Vector3d(std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b));
-    };
-    const double angle = (e(theta + dt, q + dq) - e(theta, q)).norm();
-    EXPECT_NEAR(exact_plane_error(near, view).spatial, angle, 1e-7);
-    EXPECT_NEAR(plane_error(near, view).spatial, angle, 5e-7);
   });
 }
 
-TEST(PlaneErrors, GrowWithoutBoundTowardsTheQuarterTurn) {
-  const auto at = [](double theta) { return plane_error(plane_view(theta * degree, 20 * degree), {}); };
-  EXPECT_NEAR(at(30).gain, -0.19, 0.005);
-  EXPECT_NEAR(at(80).gain, -1.8, 0.05);
-  EXPECT_NEAR(at(89).gain, -18.4, 0.05);
-  EXPECT_FALSE(at(79.9).is_singular);
-  EXPECT_TRUE(at(80.1).is_singular);
-  EXPECT_TRUE(at(-95).is_singular);
-  EXPECT_FALSE(at(120).is_singular);
-  EXPECT_TRUE(exact_plane_error({0, 0}, plane_view(89 * degree, 0)).is_singular);
+TEST(PlaneErrors, TellNothingWithin10DegreesOfTheQuarterTurn) {
+  const auto tells = [](double theta, double theta_d) {
+    return planes_tell({theta * degree, 20 * degree}, {theta_d * degree, 0});
+  };
+  EXPECT_TRUE(tells(79.9, 0));
+  EXPECT_FALSE(tells(80.1, 0));
+  EXPECT_FALSE(tells(0, 89));
+  EXPECT_FALSE(tells(-95, -120));
+  EXPECT_TRUE(tells(120, 120));
 }
 
 }  // namespace

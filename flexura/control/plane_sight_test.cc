@@ -70,7 +70,7 @@ TEST(PlaneSight, HasTheNoiseOfItsPlanes) {
   EXPECT_NEAR(std::sqrt(of_theta) / sigma, 1, 0.03);
   const PlaneView view = plane_view(theta, q);
   const double by_2 = std::cos(theta) * std::pow(std::cos(q) / std::cos(view.alpha_2), 2);
-  const double by_1 = plane_error(view, view).gain;
+  const double by_1 = -std::sin(q) * std::cos(q) * std::tan(theta);
   EXPECT_NEAR(std::sqrt(of_q) / sigma, std::hypot(by_1, 2 * by_2), 0.03);
   EXPECT_EQ(sight.triangulated(), 0);
 }
@@ -129,7 +129,7 @@ TEST(PlaneSight, TriangulatesWhereThePlanesContradictEachOther) {
 }
 
 TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
-  for_random_cases(3, [](TestRandom& random) {
+  for_random_cases(2, [](TestRandom& random) {
     DistributedArmModel model = random_distributed_arm(random);
     model.nodes = random.integer(2, 4);
     const DistributedArm arm(model);
@@ -142,10 +142,10 @@ TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
     // Late and with noise it comes near, and the same way each time.
     measurement.delay = 0.06, measurement.noise = {0.01, 0.01};
     PotentialRun noisy(arm, law, start, measurement), again(arm, law, start, measurement);
-    ASSERT_TRUE(noisy.advance(4)) << noisy.stopped();
-    ASSERT_TRUE(again.advance(4));
-    EXPECT_LE((noisy.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.1);
+    ASSERT_TRUE(noisy.advance(0.5) && again.advance(0.5)) << noisy.stopped();
     EXPECT_EQ(noisy.motion().x(), again.motion().x());
+    ASSERT_TRUE(noisy.advance(4)) << noisy.stopped();
+    EXPECT_LE((noisy.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.1);
     EXPECT_NE(noisy.motion().x(), by_planes.motion().x());
   });
 }

@@ -21,7 +21,7 @@ namespace flexura {
 /// to the law's force that these can give.
 class PotentialRun {
  public:
-  /// `start`: coordinates, at rest. `drives`: G (driven_law.h); empty: every point is driven.
+  /// `start`: coordinates, at rest. `drives`: G (section_drives.h); empty: every point is driven.
   /// std::invalid_argument: a size that does not fit, numbers that are not finite.
   PotentialRun(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
                const std::optional<AngleMeasurement>& measurement = {}, const OdeTolerance& tolerance = {},
@@ -38,7 +38,6 @@ class PotentialRun {
 
   /// Time, coordinates and rates now, and the arm set to them.
   [[nodiscard]] const DistributedMotion& motion() const { return motion_; }
-  [[nodiscard]] const PotentialLaw& law() const { return law_; }
   /// The most of the law's force that the drives could not give, share of the largest that it asked for.
   [[nodiscard]] double left_over() const { return largest_ > 0 ? left_over_ / largest_ : 0; }
   /// PlaneSight::triangulated; 0 where the law does not go by two planes.

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "flexura/control/feature_images.h"
 #include "flexura/control/interaction.h"
 
 namespace flexura {
@@ -66,21 +65,6 @@ std::optional<Eigen::VectorXd> feature_values(const FeatureSet& set, const Eigen
     return std::nullopt;
   }
   return values;
-}
-
-std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,
-                                            std::span<const View> views, const FeatureSet& set) {
-  FeatureImages images(arm, set);
-  ShapeFeatures features;
-  if (!images.derive(state, views, features.values, features.by_state)) return std::nullopt;
-  const Eigen::Index rows = set.rows(), cameras = static_cast<Eigen::Index>(views.size());
-  features.by_cameras = Eigen::MatrixXd::Zero(cameras * rows, 6 * cameras);
-  Eigen::MatrixXd by_twist;
-  for (Eigen::Index camera = 0; camera < cameras; ++camera) {
-    if (!images.by_camera(views[static_cast<std::size_t>(camera)], by_twist)) return std::nullopt;
-    features.by_cameras.block(camera * rows, 6 * camera, rows, 6) = by_twist;
-  }
-  return features;
 }
 
 Eigen::VectorXd feature_error(const FeatureSet& set, const Eigen::VectorXd& seen,

@@ -3,11 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <span>
 #include <vector>
-
-#include "flexura/camera/view.h"
-#include "flexura/model/arm.h"
 
 namespace flexura {
 
@@ -34,21 +30,6 @@ struct FeatureSet {
   /// Rows that one camera gives.
   [[nodiscard]] Eigen::Index rows() const;
 };
-
-/// What all cameras see of an arm in these terms, camera by camera: points, chords, moments.
-struct ShapeFeatures {
-  Eigen::VectorXd values;    ///< All in px.
-  Eigen::MatrixXd by_state;  ///< J_s: columns are each section's bend_x, bend_y (rad), stretch.
-  /// L_s: columns are the twists [v; w] of the first camera, relative to W in C, then the next one's.
-  Eigen::MatrixXd by_cameras;
-};
-
-/// The features of an arm in a state with their derivatives, through the cameras' own models and the
-/// backbone's Jacobian; of many states feature_images.h has them faster. None where a camera's lens shows a
-/// needed point nowhere, or an image has no direction or length. std::invalid_argument: a share outside [0,
-/// 1], no features, a state that does not fit.
-[[nodiscard]] std::optional<ShapeFeatures> shape_features(const Arm& arm, const ArmState& state,
-                                                          std::span<const View> views, const FeatureSet& set);
 
 /// The shares of the arm whose pixels a camera needs for the features, in the order in which feature_values()
 /// takes them: points, chords' ends, the polygon's corners. std::invalid_argument: a share outside [0, 1].

@@ -10,8 +10,8 @@
 #include "flexura/base/fields.h"
 #include "flexura/control/angle_measurement.h"
 #include "flexura/control/angle_shapes.h"
-#include "flexura/control/driven_law.h"
 #include "flexura/control/potential_law.h"
+#include "flexura/control/section_drives.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/arm_config.h"
 

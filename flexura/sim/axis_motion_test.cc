@@ -63,7 +63,7 @@ struct RandomCase {
 };
 
 TEST(AxisMotion, ObeysItsLimitsRateAndAcceleration) {
-  for_random_cases(400, [](TestRandom& random) {
+  for_random_cases(150, [](TestRandom& random) {
     const RandomCase one(random);
     const AxisMotion motion = one.commanded();
     constexpr double step = 1e-3;
@@ -81,7 +81,7 @@ TEST(AxisMotion, ObeysItsLimitsRateAndAcceleration) {
 }
 
 TEST(AxisMotion, ArrivesAtThePositionNearestToItsTarget) {
-  for_random_cases(400, [](TestRandom& random) {
+  for_random_cases(150, [](TestRandom& random) {
     RandomCase one(random);
     one.commands.back().is_halt = false;
     const AxisMotion motion = one.commanded();
@@ -93,7 +93,7 @@ TEST(AxisMotion, ArrivesAtThePositionNearestToItsTarget) {
 }
 
 TEST(AxisMotion, IsTheSameToTheBitHoweverOftenItIsAsked) {
-  for_random_cases(300, [](TestRandom& random) {
+  for_random_cases(100, [](TestRandom& random) {
     const RandomCase one(random);
     AxisMotion asked = one.motion(), unasked = one.motion();
     double time = 0;
@@ -110,7 +110,7 @@ TEST(AxisMotion, IsTheSameToTheBitHoweverOftenItIsAsked) {
 }
 
 TEST(AxisMotion, DoesNotKnowACommandBeforeItsDelay) {
-  for_random_cases(300, [](TestRandom& random) {
+  for_random_cases(100, [](TestRandom& random) {
     const RandomCase one(random);
     AxisMotion motion = one.motion();
     for (const Command& command : one.commands) {
@@ -124,7 +124,7 @@ TEST(AxisMotion, DoesNotKnowACommandBeforeItsDelay) {
 
 // The play operator, followed in small steps.
 TEST(AxisMotion, CarriesThroughItsPlay) {
-  for_random_cases(200, [](TestRandom& random) {
+  for_random_cases(60, [](TestRandom& random) {
     RandomCase one(random);
     one.axis.max_rate = std::min(one.axis.max_rate, 10.0);
     const AxisMotion motion = one.commanded();
@@ -162,7 +162,7 @@ TEST(AxisMotion, TakesNoLongerThanItMust) {
 
 TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
   int timed = 0, braked = 0;
-  for_random_cases(500, [&](TestRandom& random) {
+  for_random_cases(200, [&](TestRandom& random) {
     RandomCase one(random);
     one.commands.back().is_halt = false;
     one.commands.back().duration = 0;
@@ -189,8 +189,8 @@ TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
     const double before = start + end(slow) - 1e-6;
     EXPECT_NEAR(slow.motor(before), target, 1e-6 * one.axis.max_acceleration * 1e-5 + 1e-9);
   });
-  EXPECT_GT(timed, 300 / one_case_of);
-  EXPECT_GT(braked, 100 / one_case_of);
+  EXPECT_GT(timed, 120 / one_case_of);
+  EXPECT_GT(braked, 40 / one_case_of);
 }
 
 TEST(AxisMotion, WithoutLimitsIsThereAtOnce) {

@@ -61,7 +61,6 @@ class SimulatedRig {
   [[nodiscard]] SimulatedArm& arm() { return arm_; }  ///< Likewise.
   /// In the order of the truth's cameras.
   [[nodiscard]] SimulatedView& camera(std::size_t index) { return *cameras_.at(index); }
-  [[nodiscard]] std::size_t camera_count() const { return cameras_.size(); }
 
  private:
   SimulatedClock clock_;

@@ -197,7 +197,7 @@ TEST(McapReader, ReadsWhatAKilledWriterLeft) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::size_t most = 0;
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < 8; ++round) {
     const TestFolder folder;
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);

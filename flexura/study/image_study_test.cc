@@ -15,7 +15,6 @@
 #include "flexura/base/node.h"
 #include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
-#include "flexura/render/truth.h"
 #include "flexura/study/study_view.h"
 #include "tests/support/random_cases.h"
 
@@ -111,13 +110,13 @@ TEST(ImageStudy, MeasuresInPicturesThroughADistortedLensAndItsNoise) {
     camera.sensor.psf = 0.7, camera.sensor.read_noise = noise;
     StudyTask task;
     task.vary.orbit = {{-50 * degree, 50 * degree}};
-    task.points = 7, task.measure = true;
+    task.points = 4, task.measure = true;
     task.target.radius = circle_radius;
     const ImageStudy study = study_images(task, {camera}, 1);
     ASSERT_EQ(study.columns.size(), 3U);
     EXPECT_EQ(study.columns[2].source, "measured");
     const auto [count, rms] = study.measured_difference();
-    EXPECT_EQ(count, 7 * length_features);
+    EXPECT_EQ(count, 4 * length_features);
     EXPECT_LT(rms, 0.1);
     EXPECT_GT(rms, 1e-4);
   }
@@ -244,42 +243,6 @@ TEST(StudyTarget, ItsSquareIsLevelAndUprightAsTheCameraSeesIt) {
       EXPECT_NEAR(target.point(i).dot(Eigen::Vector3d(normal.data())), 0, 1e-15);
     EXPECT_GE(target.point(circle_top).y(), 0);
   }
-}
-
-TEST(StudyTarget, IsFoundInAPictureOfItsSquare) {
-  // The square as a screen: the area and the centroid that a picture of it shows are those of the corners
-  // that the traced rays find.
-  const StudyTarget target({});
-  CameraConfig config = front_camera();
-  config.sensor.width = 320, config.sensor.height = 240, config.lens.fx = 200;
-  const View view = view_with(Camera(config), &VaryConfig::orbit, 30 * degree, target);
-  Renderer renderer;
-  const TargetImage found = target.rendered(view, renderer);
-  std::array<Eigen::Vector2d, 4> corners{*found.circle[top_left], *found.circle[top_right],
-                                         *found.circle[bottom_right], *found.circle[bottom_left]};
-  double area = 0;
-  Eigen::Vector2d moment = {0, 0};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % 4];
-    const double cross = a.x() * b.y() - a.y() * b.x();
-    area += cross / 2;
-    moment += (a + b) * (cross / 6);
-  }
-  Scene scene;
-  Screen& square = scene.screens.emplace_back();
-  square.size = {2 * half_side, 2 * half_side};
-  renderer.prepare(scene, view);
-  const Image<float> shares = coverage(renderer, SurfaceKind::screen);
-  double seen = 0;
-  Eigen::Vector2d seen_moment = {0, 0};
-  for (int v = 0; v < view.height; ++v) {
-    for (int u = 0; u < view.width; ++u) {
-      seen += shares.at(u, v);
-      seen_moment += shares.at(u, v) * Eigen::Vector2d(u, v);
-    }
-  }
-  EXPECT_NEAR(seen, area, 1e-3 * area);
-  EXPECT_LE((seen_moment / seen - moment / area).norm(), 0.01);
 }
 
 TEST(ImageStudy, MeasuresTargetsSmallerThanAPixel) {

@@ -19,19 +19,30 @@ namespace {
 
 using testing::HasSubstr;
 
+// Every fifth picture is taken through a lens that distorts as many do, and more.
 TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
   ArmFinder finder;
   std::vector<double> errors;
   double squares = 0, samples = 0;
+  int count = 0;
   for_random_cases(24, [&](TestRandom& random) {
-    const SeenArm seen = random_seen_arm(random, {});
+    SeenArm seen = random_seen_arm(random, {});
+    if (++count % 5 == 0) {
+      Intrinsics lens = seen.view.lens.intrinsics();
+      lens.distortion = {random.uniform(-0.25, 0.15), random.uniform(-0.05, 0.05),
+                         random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), 0};
+      seen.view.lens = Lens(lens);
+      seen.picture = photograph(seen.scene, seen.view, {}, 7);
+      seen.truth = true_axis(seen.scene, seen.view, 601);
+    }
     const ArmSighting& found = finder.find(seen.picture);
     ASSERT_TRUE(found.is_found()) << found.reason;
     auto axis = found.axis;
     to_backbone_image(seen.view.lens, axis);
     errors.push_back(rms_error(seen, axis));
-    const auto count = static_cast<double>(std::ranges::count_if(axis, &AxisSample::is_seen));
-    squares += count * errors.back() * errors.back(), samples += count;
+    EXPECT_LT(errors.back(), count % 5 == 0 ? 0.04 : 0.1);
+    const auto of_one = static_cast<double>(std::ranges::count_if(axis, &AxisSample::is_seen));
+    squares += of_one * errors.back() * errors.back(), samples += of_one;
   });
   // Of all samples together, the worst ones too.
   EXPECT_LT(std::sqrt(squares / samples), 0.02);
@@ -64,18 +75,6 @@ TEST(ArmFinder, SeesABrightArmBeforeADarkScreenAsWell) {
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_EQ(found.threshold.figure, Figure::bright);
   EXPECT_LT(rms_error(seen, found.axis), 0.1);
-}
-
-TEST(ArmFinder, FindsTheSameIn16Bits) {
-  const SeenArm seen = plain_arm(0.7);
-  ArmFinder finder;
-  const auto axis = finder.find(seen.picture).axis;
-  Image<std::uint16_t> words(seen.picture.width(), seen.picture.height());
-  for (std::size_t i = 0; i < words.values().size(); ++i)
-    words.values()[i] = static_cast<std::uint16_t>(seen.picture.values()[i] * 257);
-  const ArmSighting& found = finder.find(words);
-  ASSERT_EQ(found.axis.size(), axis.size());
-  for (std::size_t i = 0; i < axis.size(); ++i) EXPECT_LT((found.axis[i].pixel - axis[i].pixel).norm(), 1e-3);
 }
 
 TEST(ArmFinder, SaysThatTheBorderCutsTheArm) {

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -20,10 +18,6 @@ namespace flexura {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // OpenCV reads only.
 cv::Mat mat_of(const Image<std::uint8_t>& image) {
   return {image.height(), image.width(), CV_8U, const_cast<std::uint8_t*>(image.values().data())};
@@ -38,72 +32,25 @@ void check_pictures(const Image<std::uint8_t>& before, const Image<std::uint8_t>
   }
 }
 
-std::vector<std::optional<Vector2d>> sparse_flow(const cv::Mat& before, const cv::Mat& after,
-                                                 std::span<const Vector2d> places) {
+}  // namespace
+
+std::vector<std::optional<Vector2d>> flow_at(const Image<std::uint8_t>& before,
+                                             const Image<std::uint8_t>& after,
+                                             std::span<const Vector2d> places) {
+  check_pictures(before, after);
+  std::vector<std::optional<Vector2d>> flows(places.size());
+  if (places.empty() || before.values().empty()) return flows;
+  // The same bytes on every machine, whatever it has of processors.
+  cv::setNumThreads(1);
   std::vector<cv::Point2f> from, to;
   for (const Vector2d& place : places)
     from.emplace_back(static_cast<float>(place.x()), static_cast<float>(place.y()));
   std::vector<unsigned char> is_found;
   std::vector<float> error;
-  cv::calcOpticalFlowPyrLK(before, after, from, to, is_found, error);
-  std::vector<std::optional<Vector2d>> flows(places.size());
+  cv::calcOpticalFlowPyrLK(mat_of(before), mat_of(after), from, to, is_found, error);
   for (std::size_t i = 0; i < places.size(); ++i)
     if (is_found[i] != 0) flows[i] = Vector2d(to[i].x - from[i].x, to[i].y - from[i].y);
   return flows;
-}
-
-std::vector<std::optional<Vector2d>> dense_flow(const cv::Mat& before, const cv::Mat& after,
-                                                std::span<const Vector2d> places) {
-  cv::Mat flow;
-  cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_FAST)->calc(before, after, flow);
-  std::vector<std::optional<Vector2d>> flows(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double u = std::round(places[i].x()), v = std::round(places[i].y());
-    const bool is_inside = u >= 0 && v >= 0 && u < flow.cols && v < flow.rows;
-    if (!is_inside) continue;
-    const auto& value = flow.at<cv::Vec2f>(static_cast<int>(v), static_cast<int>(u));
-    flows[i] = Vector2d(value[0], value[1]);
-  }
-  return flows;
-}
-
-}  // namespace
-
-CurveFlow curve_flow(const std::vector<AxisSample>& before, const std::vector<AxisSample>& after) {
-  CurveFlow flow;
-  flow.normal.assign(before.size(), none), flow.turn.assign(before.size(), none);
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const AxisSample& sample = before[i];
-    if (!sample.is_seen) continue;
-    double best = sample.width;
-    for (std::size_t j = 0; j + 1 < after.size(); ++j) {
-      if (!after[j].is_seen || !after[j + 1].is_seen) continue;
-      // Where the later axis crosses the normal's line.
-      const Vector2d from = after[j].pixel - sample.pixel, way = after[j + 1].pixel - after[j].pixel;
-      const double across = cross(sample.normal, way);
-      if (across == 0) continue;
-      const double share = -cross(sample.normal, from) / across;
-      if (share < 0 || share > 1) continue;
-      const double distance = (from + share * way).dot(sample.normal);
-      if (std::abs(distance) >= best) continue;
-      best = std::abs(distance);
-      const Vector2d normal = (1 - share) * after[j].normal + share * after[j + 1].normal;
-      flow.normal[i] = distance;
-      flow.turn[i] = std::atan2(cross(sample.normal, normal), sample.normal.dot(normal));
-    }
-  }
-  return flow;
-}
-
-std::vector<std::optional<Vector2d>> flow_at(const Image<std::uint8_t>& before,
-                                             const Image<std::uint8_t>& after,
-                                             std::span<const Vector2d> places, FlowMethod method) {
-  check_pictures(before, after);
-  if (places.empty() || before.values().empty()) return std::vector<std::optional<Vector2d>>(places.size());
-  // The same bytes on every machine, whatever it has of processors.
-  cv::setNumThreads(1);
-  return method == FlowMethod::lucas_kanade ? sparse_flow(mat_of(before), mat_of(after), places)
-                                            : dense_flow(mat_of(before), mat_of(after), places);
 }
 
 void AngleIntegrator::add(std::span<const double> turns) {

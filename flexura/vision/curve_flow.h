@@ -7,33 +7,15 @@
 #include <vector>
 
 #include "flexura/base/image.h"
-#include "flexura/vision/arm_finder.h"
 
 namespace flexura {
 
-/// How a curve moves from one picture to the next, at each sample of the first one's axis.
-struct CurveFlow {
-  /// Along the sample's normal, px: all of the motion that an arm without texture shows. Not a number where
-  /// the normal does not meet the later axis within the arm's width, or one of the two is not seen there.
-  std::vector<double> normal;
-  /// By how much the axis turns there, rad, from u towards v: n . (dv/ds) / |dp/ds| for small motions.
-  std::vector<double> turn;
-};
-/// One entry of each a sample of `before`.
-[[nodiscard]] CurveFlow curve_flow(const std::vector<AxisSample>& before,
-                                   const std::vector<AxisSample>& after);
-
-/// How motion in pictures is found.
-enum class FlowMethod {
-  lucas_kanade,  ///< Pyramidal (J.-Y. Bouguet, 2001), at the places alone; OpenCV's.
-  dis,           ///< Dense inverse search (T. Kroeger et al., 2016), of the whole picture; OpenCV's.
-};
-
-/// How far what is seen at places moves from one gray picture to the next of the same size, px; none where it
-/// is not found again. std::invalid_argument: pictures of different sizes, or not gray.
-[[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(
-    const Image<std::uint8_t>& before, const Image<std::uint8_t>& after,
-    std::span<const Eigen::Vector2d> places, FlowMethod method = FlowMethod::lucas_kanade);
+/// How far what is seen at places moves from one gray picture to the next of the same size, px, by the
+/// pyramidal method of Lucas and Kanade (J.-Y. Bouguet, 2001; OpenCV's); none where it is not found again.
+/// std::invalid_argument: pictures of different sizes, or not gray.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(const Image<std::uint8_t>& before,
+                                                                  const Image<std::uint8_t>& after,
+                                                                  std::span<const Eigen::Vector2d> places);
 
 /// Angles of a curve's tangent, integrated from their turns from picture to picture and drawn back to
 /// measured angles, since what is integrated drifts.

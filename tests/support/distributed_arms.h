@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "flexura/control/distributed_arm.h"
+#include "flexura/control/lyapunov_monitor.h"
+#include "flexura/control/potential_run.h"
 #include "tests/support/random_cases.h"
 
 namespace flexura {
@@ -51,11 +53,16 @@ inline Eigen::VectorXd random_rates(TestRandom& random, const DistributedArm& ar
   return v;
 }
 
-/// No drives.
-inline double no_force(double, const DistributedArm&, const Eigen::VectorXd&, const Eigen::VectorXd&,
-                       Eigen::VectorXd& Q) {
-  Q.setZero();
-  return 0;
+/// What a run comes to that is looked at every `step` s until `until` s, or until it stops.
+inline LyapunovVerdict watched(PotentialRun& run, double until, double step = 0.02) {
+  LyapunovMonitor monitor;
+  monitor.add(run.sample());
+  for (int i = 1; i * step <= until * (1 + 1e-12) && run.stopped().empty(); ++i) {
+    const double before = run.motion().time();
+    (void)run.advance(i * step);
+    if (run.motion().time() > before) monitor.add(run.sample());
+  }
+  return monitor.verdict();
 }
 
 }  // namespace flexura

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -66,16 +67,24 @@ class EstimateBench : public testing::Test {
     const std::string file = read_text_file(name, most_picture_bytes);
     return decode_picture(bytes_of(file), name).bytes;
   }
-  /// A picture of what an experiment file shows.
+  /// A picture of what an experiment file shows; the same file is drawn once for all tests.
   std::string photographed(const std::string& experiment, const std::string& camera) {
+    static std::map<std::string, std::string> drawn;
     const auto file = [&](const std::string& name) { return (folder_.path() / name).string(); };
+    std::string& png = drawn[camera + read_text_file(file(experiment + ".toml"), most_picture_bytes)];
+    const std::string name = file(experiment + "_" + camera + ".png");
+    if (!png.empty()) {
+      replace_file(name, png);
+      return name;
+    }
     std::ostringstream out;
     RenderArguments render;
     render.experiment = file(experiment + ".toml");
     render.camera = camera;
-    render.out = file(experiment + "_" + camera + ".png");
+    render.out = name;
     EXPECT_EQ(render_command(render, out), exit_done);
-    return render.out;
+    png = read_text_file(name, most_picture_bytes);
+    return name;
   }
   /// The same arm with bands at these places, in colour.
   void write_banded(const std::string& name, const std::vector<std::string>& places) {

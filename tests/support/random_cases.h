@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <random>
 #include <string>
@@ -62,10 +64,11 @@ inline constexpr int one_case_of = 4;
 inline constexpr int one_case_of = 1;
 #endif
 
-/// Calls body(TestRandom&) for `count` cases (one of `one_case_of` in a sanitized build); stops at the first
-/// that fails, whose seed the failure shows.
+/// Calls body(TestRandom&) for `count` cases (one of `one_case_of` in a sanitized build; FLEXURA_CASES=N in
+/// the environment makes it N times as many); stops at the first that fails, whose seed the failure shows.
 template <typename Body>
 void for_random_cases(int count, Body&& body) {
+  if (const char* times = std::getenv("FLEXURA_CASES")) count *= std::max(1, std::atoi(times));
   for (int index = 0; index < count && !testing::Test::HasFailure(); index += one_case_of) {
     const std::uint64_t seed = case_seed(index);
     SCOPED_TRACE("random case " + std::to_string(index) + ", seed " + std::to_string(seed));

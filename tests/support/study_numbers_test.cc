@@ -25,19 +25,6 @@ TEST(StudyNumbers, AQuantileIsTheNearestRank) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
-TEST(StudyNumbers, SoManyValuesDoNotExceedAQuantileAndFewerWouldNotDo) {
-  for_random_cases(100, [](TestRandom& random) {
-    std::vector<double> values(static_cast<std::size_t>(random.integer(1, 2000)));
-    for (double& value : values) value = random.integer(0, 50);
-    const double share = random.uniform(0, 1), found = quantile(values, share);
-    double below = 0, within = 0;
-    for (const double value : values) below += value < found ? 1 : 0, within += value <= found ? 1 : 0;
-    const auto count = static_cast<double>(values.size());
-    EXPECT_GE(within, share * count);
-    EXPECT_LT(below, share * count);
-  });
-}
-
 TEST(StudyNumbers, AnAimIsMetUpToItselfAndOfNothingThereIsNoVerdict) {
   EXPECT_EQ(verdict(0.02, 0.02), "met");
   EXPECT_EQ(verdict(0.0201, 0.02), "missed");

@@ -1,7 +1,6 @@
 #include "tests/support/visp_peer.h"
 
 #include <visp3/core/vpColVector.h>
-#include <visp3/core/vpMatrix.h>
 #include <visp3/visual_features/vpFeaturePoint.h>
 #include <visp3/vs/vpServo.h>
 
@@ -15,13 +14,6 @@ vpFeaturePoint feature_of(const VispPoint& point) {
 }
 
 }  // namespace
-
-std::array<double, 12> visp_interaction(const VispPoint& point) {
-  const vpMatrix L = feature_of(point).interaction();
-  std::array<double, 12> numbers{};
-  for (unsigned int i = 0; i < 12; ++i) numbers[i] = L[i / 6][i % 6];
-  return numbers;
-}
 
 struct VispServo::Kept {
   std::vector<vpFeaturePoint> features, goals;
@@ -47,11 +39,6 @@ std::array<double, 6> VispServo::velocity(const std::vector<VispPoint>& now) {
   std::array<double, 6> numbers{};
   for (unsigned int i = 0; i < 6; ++i) numbers[i] = velocity[i];
   return numbers;
-}
-
-std::array<double, 6> visp_velocity(const std::vector<VispPoint>& now, const std::vector<VispPoint>& wanted,
-                                    double gain) {
-  return VispServo(wanted, gain).velocity(now);
 }
 
 }  // namespace flexura

@@ -1,120 +1,189 @@
 #include <benchmark/benchmark.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <kdl/chain.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include "bench/kdl_chain.h"
 #include "flexura/kinematics/curves.h"
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/kinematics/planar.h"
-#include "flexura/kinematics/sampling.h"
 #include "flexura/kinematics/spatial.h"
 
+// How long one arm a call takes, and the same curve in Orocos KDL. All go over the same thousand random
+// states, bends uniform in +-2 rad in each direction.
 namespace flexura {
 namespace {
 
-// The paper's arm in its final position.
-constexpr std::array<double, 8> paper_lengths = {2., 3., 1., 2., 4., 2., 1., 1.};
+constexpr std::size_t count = 1000;
 using std::numbers::pi;
-constexpr std::array<double, 8> paper_archings = {.05 * pi, .05 * pi, .1 * pi, .1 * pi,
-                                                  .05 * pi, -.3 * pi, .2 * pi, -.35 * pi};
+
+// SplitMix64, in [low, high).
+double random(std::uint64_t& state, double low, double high) {
+  std::uint64_t z = (state += 0x9E3779B97F4A7C15);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
+  return low + (high - low) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
 
 struct Case {
   Arm arm;
-  ArmState state;
+  std::vector<ArmState> states;
 };
 
-Case paper_arm() {
+Case make_case(ArmKind kind, const std::vector<double>& lengths, bool stretches) {
   Case result;
-  result.state = ArmState::straight(paper_lengths.size());
-  for (std::size_t i = 0; i < paper_lengths.size(); ++i) {
-    result.arm.sections.emplace_back().length = paper_lengths[i];
-    result.state.bends[i] = bend_from_arching(paper_archings[i]);
+  result.arm.kind = kind;
+  for (const double length : lengths) result.arm.sections.emplace_back().length = length;
+  std::uint64_t seed = 1;
+  result.states.assign(count, ArmState::straight(lengths.size()));
+  for (ArmState& state : result.states) {
+    for (Eigen::Vector2d& bend : state.bends)
+      bend = {random(seed, -2, 2), kind == ArmKind::spatial ? random(seed, -2, 2) : 0.0};
+    if (!stretches) continue;
+    for (double& stretch : state.stretches) stretch = random(seed, 0.8, 1.2);
   }
   return result;
 }
 
-Case spatial_arm() {
-  Case result;
-  result.arm.kind = ArmKind::spatial;
-  result.state = ArmState::straight(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    result.arm.sections.emplace_back().length = 0.3;
-    result.state.bends[i] = {0.4 + 0.3 * static_cast<double>(i), -0.7};
-  }
-  return result;
-}
+Case planar_case() { return make_case(ArmKind::planar, {2., 3., 1., 2., 4., 2., 1., 1.}, false); }
+Case spatial_case(bool stretches) { return make_case(ArmKind::spatial, {0.3, 0.25, 0.2}, stretches); }
 
-void planar_forward_8_sections(benchmark::State& state) {
+// Calls body(number of a state) over and over.
+template <typename Body>
+void one_by_one(benchmark::State& state, Body&& body) {
+  std::size_t next = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(base_points(paper_lengths, paper_archings, {0.0, 0.0}, pi / 2));
-  }
-}
-BENCHMARK(planar_forward_8_sections);
-
-void spatial_forward_3_sections(benchmark::State& state) {
-  const Case c = spatial_arm();
-  std::vector<Pose> frames(4);
-  for (auto _ : state) {
-    section_frames(c.arm, c.state, frames);
-    benchmark::DoNotOptimize(frames.data());
+    body(next);
     benchmark::ClobberMemory();
+    next = (next + 1) % count;
   }
 }
-BENCHMARK(spatial_forward_3_sections);
+
+void tip_of_3_sections(benchmark::State& state) {
+  const Case c = spatial_case(true);
+  one_by_one(state, [&](std::size_t i) { benchmark::DoNotOptimize(tip_pose(c.arm, c.states[i])); });
+}
+BENCHMARK(tip_of_3_sections);
+
+// The tip's pose and its Jacobian, 6 x 9.
+void jacobian_of_3_sections(benchmark::State& state) {
+  const Case c = spatial_case(true);
+  BackboneJacobian backbone;
+  Jacobian J(6, 9);
+  one_by_one(state, [&](std::size_t i) {
+    backbone.set(c.arm, c.states[i]);
+    backbone.tip(J);
+    benchmark::DoNotOptimize(J.data());
+  });
+}
+BENCHMARK(jacobian_of_3_sections);
+
+// The Jacobians of 100 points along the arm.
+void jacobians_along_3_sections(benchmark::State& state) {
+  const Case c = spatial_case(true);
+  std::vector<MaterialPoint> points;
+  for (int i = 0; i < 100; ++i) points.push_back(material_point(c.arm, c.arm.length() * i / 99));
+  BackboneJacobian backbone;
+  Jacobian J(6, 9);
+  one_by_one(state, [&](std::size_t i) {
+    backbone.set(c.arm, c.states[i]);
+    for (const MaterialPoint& point : points) {
+      backbone.at(point, J);
+      benchmark::DoNotOptimize(J.data());
+    }
+  });
+}
+BENCHMARK(jacobians_along_3_sections);
 
 void backbone_of_3_sections(benchmark::State& state) {
-  const Case c = spatial_arm();
-  for (auto _ : state) benchmark::DoNotOptimize(Backbone(c.arm, c.state).tip().position.x());
+  const Case c = spatial_case(true);
+  one_by_one(state, [&](std::size_t i) {
+    benchmark::DoNotOptimize(Backbone(c.arm, c.states[i]).tip().position.x());
+  });
 }
 BENCHMARK(backbone_of_3_sections);
 
-void tip_jacobian_3_sections(benchmark::State& state) {
-  const Case c = spatial_arm();
-  for (auto _ : state) benchmark::DoNotOptimize(tip_jacobian(c.arm, c.state));
-}
-BENCHMARK(tip_jacobian_3_sections);
-
-// 100 points along the arm.
-void backbone_jacobians_3_sections(benchmark::State& state) {
-  const Case c = spatial_arm();
-  std::vector<MaterialPoint> points;
-  points.reserve(100);
-  for (int i = 0; i < 100; ++i) points.push_back(material_point(c.arm, c.arm.length() * i / 99));
-  Jacobian J(6, 9);
-  for (auto _ : state) {
-    const BackboneJacobian jacobian(c.arm, c.state);
-    for (const MaterialPoint& point : points) {
-      jacobian.at(point, J);
-      benchmark::DoNotOptimize(J.data());
-    }
+void points_of_8_sections(benchmark::State& state) {
+  const Case c = planar_case();
+  std::vector<double> lengths, archings;
+  for (const Section& section : c.arm.sections) lengths.push_back(section.length);
+  for (const ArmState& s : c.states) {
+    for (const Eigen::Vector2d& bend : s.bends) archings.push_back(arching_from_bend(bend));
   }
+  one_by_one(state, [&](std::size_t i) {
+    const std::span<const double> own(archings.data() + 8 * i, 8);
+    benchmark::DoNotOptimize(base_points(lengths, own, {0.0, 0.0}, pi / 2));
+  });
 }
-BENCHMARK(backbone_jacobians_3_sections);
+BENCHMARK(points_of_8_sections);
 
-// Positions to a tolerance of 10^-n m.
-void sampling_8_sections(benchmark::State& state) {
-  const Case c = paper_arm();
-  const Backbone backbone(c.arm, c.state);
-  const double tolerance = std::pow(10.0, -static_cast<double>(state.range(0)));
-  std::size_t points = 0;
-  for (auto _ : state) {
-    const std::vector<double> s = sample_arc_lengths(backbone, tolerance);
-    benchmark::DoNotOptimize(poses_at(backbone, s));
-    points = s.size();
+void bezier_of_8_sections(benchmark::State& state) {
+  const Case c = planar_case();
+  one_by_one(state,
+             [&](std::size_t i) { benchmark::DoNotOptimize(tangent_bezier(Backbone(c.arm, c.states[i]))); });
+}
+BENCHMARK(bezier_of_8_sections);
+
+struct KdlCase {
+  KDL::Chain chain;
+  std::vector<KDL::JntArray> states;
+};
+
+KdlCase kdl_case(const Case& c) {
+  KdlCase result{.chain = kdl_chain(c.arm), .states = {}};
+  for (const ArmState& s : c.states) result.states.push_back(kdl_joints(c.arm, s));
+  return result;
+}
+
+// How far KDL's tips are from the arcs' ends, in parts of the arm's length: that it is the same curve.
+double largest_deviation(const Case& c, const KdlCase& kdl) {
+  KDL::ChainFkSolverPos_recursive solver(kdl.chain);
+  Arm arm = c.arm;
+  arm.X_WB = Pose{};
+  double largest = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    KDL::Frame tip;
+    solver.JntToCart(kdl.states[j], tip);
+    const Eigen::Vector3d p(tip.p.x(), tip.p.y(), tip.p.z());
+    largest = std::max(largest, (p - tip_pose(arm, c.states[j]).position).norm() / arm.length());
   }
-  state.counters["points"] = static_cast<double>(points);
+  return largest;
 }
-BENCHMARK(sampling_8_sections)->Arg(2)->Arg(4)->Arg(6);
 
-void tangent_bezier_8_sections(benchmark::State& state) {
-  const Case c = paper_arm();
-  const Backbone backbone(c.arm, c.state);
-  for (auto _ : state) benchmark::DoNotOptimize(tangent_bezier(backbone));
+void forward_kdl(benchmark::State& state, const Case& c) {
+  const KdlCase kdl = kdl_case(c);
+  KDL::ChainFkSolverPos_recursive solver(kdl.chain);
+  KDL::Frame tip;
+  one_by_one(state, [&](std::size_t i) { benchmark::DoNotOptimize(solver.JntToCart(kdl.states[i], tip)); });
+  state.counters["joints"] = kdl.chain.getNrOfJoints();
+  state.counters["deviation"] = largest_deviation(c, kdl);
 }
-BENCHMARK(tangent_bezier_8_sections);
+void tip_of_3_sections_kdl(benchmark::State& state) { forward_kdl(state, spatial_case(false)); }
+BENCHMARK(tip_of_3_sections_kdl);
+void points_of_8_sections_kdl(benchmark::State& state) { forward_kdl(state, planar_case()); }
+BENCHMARK(points_of_8_sections_kdl);
+
+// The tip's pose and its Jacobian, 6 x 72.
+void jacobian_of_3_sections_kdl(benchmark::State& state) {
+  const KdlCase kdl = kdl_case(spatial_case(false));
+  KDL::ChainFkSolverPos_recursive forward(kdl.chain);
+  KDL::ChainJntToJacSolver solver(kdl.chain);
+  KDL::Jacobian J(kdl.chain.getNrOfJoints());
+  KDL::Frame tip;
+  one_by_one(state, [&](std::size_t i) {
+    benchmark::DoNotOptimize(forward.JntToCart(kdl.states[i], tip));
+    benchmark::DoNotOptimize(solver.JntToJac(kdl.states[i], J));
+  });
+}
+BENCHMARK(jacobian_of_3_sections_kdl);
 
 }  // namespace
 }  // namespace flexura

@@ -36,12 +36,12 @@ def rate(per_second: float) -> float:
 
 ROWS = [
     Row(
-        "tip of three sections, one arm a call", "batch_bench",
-        "spatial_single_kinematics", None, "Orocos KDL", "spatial_kdl",
+        "tip of three sections, one arm a call", "kinematics_bench",
+        "tip_of_3_sections", 100e-9, "Orocos KDL", "tip_of_3_sections_kdl",
     ),
     Row(
-        "the same with its Jacobian", "batch_bench",
-        "jacobian_single_kinematics", 150e-9, "Orocos KDL", "jacobian_kdl",
+        "the same with its Jacobian", "kinematics_bench",
+        "jacobian_of_3_sections", 150e-9, "Orocos KDL", "jacobian_of_3_sections_kdl",
     ),
     Row(
         "state for a pose, from nothing", "inverse_bench",

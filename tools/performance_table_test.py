@@ -65,8 +65,8 @@ class PerformanceTable(unittest.TestCase):
         run = self.run_tool()
         self.assertNotEqual(run.returncode, 0)
         self.assertIn("servo_bench has no benchmark points_step/25", run.stderr)
-        (Path(self.folder.name) / "batch_bench").write_text("#!/bin/sh\necho out of memory >&2\nexit 3\n")
-        self.assertIn("batch_bench failed (status 3): out of memory", self.run_tool().stderr)
+        (Path(self.folder.name) / "kinematics_bench").write_text("#!/bin/sh\necho out of memory >&2\nexit 3\n")
+        self.assertIn("kinematics_bench failed (status 3): out of memory", self.run_tool().stderr)
 
 
 if __name__ == "__main__":

@@ -66,20 +66,6 @@ TEST(CordMotion, EveryCordFollowsItsOwnLaw) {
   });
 }
 
-TEST(CordMotion, OneLawForAllIsTheStraightLineOfTheBends) {
-  for_random_cases(50, [](TestRandom& random) {
-    const Arm arm = random_cord_arm(random);
-    const ArmState from = random_keyframe(random, arm);
-    const ArmState to = random_keyframe(random, arm);
-    const std::vector<Profile> profiles(arm.sections.size(), Profile::minimum_jerk(2.0));
-    const MotionPtr cords = cord_move(arm, from, to, profiles);
-    const MotionPtr bends = point_to_point_motion(from, to, profiles);
-    const double t = random.uniform(0, 2);
-    for (std::size_t i = 0; i < arm.sections.size(); ++i)
-      EXPECT_NEAR(cords->at(t).bends[i].x(), bends->at(t).bends[i].x(), 1e-12);
-  });
-}
-
 TEST(CordMotion, EveryCordSwingsWithItsOwnPhase) {
   for_random_cases(100, [](TestRandom& random) {
     const Arm arm = random_cord_arm(random);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 #include <vector>
 
 #include "flexura/kinematics/spatial.h"
@@ -52,17 +51,10 @@ class BackboneJacobian {
   // NOLINTEND(performance-unnecessary-value-param)
 
  private:
-  static Columns own_columns(const Part& part, double fraction);
-
-  std::vector<Pose> frames_;  // The sections' bases and the tip.
   std::vector<Part> parts_;
 };
 
 /// The tip's Jacobian, 6 x 3n. `state` must fit the arm, else std::invalid_argument.
 [[nodiscard]] Jacobian tip_jacobian(const Arm& arm, const ArmState& state);
-
-/// The whole backbone's: one Jacobian, 6 x 3n, a point, in the order given. The same error, and that of at().
-[[nodiscard]] std::vector<Jacobian> backbone_jacobians(const Arm& arm, const ArmState& state,
-                                                       std::span<const MaterialPoint> points);
 
 }  // namespace flexura

@@ -22,23 +22,15 @@ void require_one_an_axis(std::size_t axes, std::size_t given) {
 // Positive is pulling in; a reversed motor counts the other way.
 double sense(const Axis& axis) { return axis.reversed ? -1.0 : 1.0; }
 
-double pulled_microsteps(const Axis& axis, std::int64_t position) {
-  return sense(axis) * static_cast<double>(position);
-}
-
 }  // namespace
-
-double spool_turns(const Axis& axis, double pulled) {
-  return pulled / (2 * std::numbers::pi * axis.spool.radius);
-}
 
 std::vector<double> motor_positions(const Drive& drive, const TendonDisplacements& displacements) {
   require_one_an_axis(drive.axes.size(), displacements.pulled.size());
   std::vector<double> positions;
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     const Axis& axis = drive.axes[i];
-    const double motor_turns = spool_turns(axis, displacements.pulled[i]) * axis.spool.gear;
-    positions.push_back(sense(axis) * axis.motor.resolution() * motor_turns);
+    const double spool_turns = displacements.pulled[i] / (2 * std::numbers::pi * axis.spool.radius);
+    positions.push_back(sense(axis) * axis.motor.resolution() * (spool_turns * axis.spool.gear));
   }
   return positions;
 }
@@ -71,7 +63,7 @@ void MotorCommander::command(std::size_t axis, double target) {
   }
   targets_[axis] = sense(axes_[axis]) * target;
   // A target halfway between two microsteps stays at the one it was given first.
-  if (std::abs(target - pulled_microsteps(axes_[axis], positions_[axis])) <= 0.5 + rounding) return;
+  if (std::abs(target - sense(axes_[axis]) * static_cast<double>(positions_[axis])) <= 0.5 + rounding) return;
   positions_[axis] = static_cast<std::int64_t>(sense(axes_[axis]) * std::round(target));
 }
 
@@ -85,55 +77,6 @@ void MotorCommander::follow(const TendonDisplacements& wanted) {
     if (ahead > 0 || ahead < -rounding) side.farthest = target;
     command(i, side.letting_out ? target - axes_[i].play() : target);
   }
-}
-
-PlayModel::PlayModel(const Drive& drive, std::span<const std::int64_t> positions) : axes_(drive.axes) {
-  require_one_an_axis(axes_.size(), positions.size());
-  for (std::size_t i = 0; i < axes_.size(); ++i) spools_.push_back(pulled_microsteps(axes_[i], positions[i]));
-}
-
-TendonDisplacements PlayModel::displacements() const {
-  TendonDisplacements displacements;
-  for (std::size_t i = 0; i < axes_.size(); ++i)
-    displacements.pulled.push_back(spools_[i] / axes_[i].microsteps_a_metre());
-  return displacements;
-}
-
-void PlayModel::follow(std::span<const std::int64_t> positions) {
-  require_one_an_axis(axes_.size(), positions.size());
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double motor = pulled_microsteps(axes_[i], positions[i]);
-    spools_[i] = std::clamp(spools_[i], motor, motor + axes_[i].play());
-  }
-}
-
-MotorWatch::MotorWatch(const Drive& drive) : axes_(drive.axes), peaks_(drive.axes.size()) {}
-
-void MotorWatch::add(double time, std::span<const double> positions) {
-  require_one_an_axis(axes_.size(), positions.size());
-  if (last_positions_.empty()) {
-    last_positions_.assign(positions.begin(), positions.end());
-    last_rates_.assign(positions.size(), 0.0);
-    last_time_ = time;
-    return;
-  }
-  const double interval = time - last_time_;
-  if (!(interval > 0)) throw std::invalid_argument(fmt::format("time {} after {}", time, last_time_));
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double rate = (positions[i] - last_positions_[i]) / interval;
-    const double to_radians = 2 * std::numbers::pi / axes_[i].motor.resolution();
-    MotorPeaks& peaks = peaks_[i];
-    peaks.step_rate = std::max(peaks.step_rate, std::abs(rate));
-    peaks.speed = std::max(peaks.speed, std::abs(rate) * to_radians);
-    if (last_interval_ > 0) {
-      const double change = std::abs(rate - last_rates_[i]) * to_radians;
-      peaks.acceleration = std::max(peaks.acceleration, change / (0.5 * (interval + last_interval_)));
-    }
-    last_positions_[i] = positions[i];
-    last_rates_[i] = rate;
-  }
-  last_time_ = time;
-  last_interval_ = interval;
 }
 
 }  // namespace flexura

@@ -9,8 +9,6 @@
 
 namespace flexura {
 
-double cord_length(double arc_length, double arching) { return arc_length * sinc(arching); }
-
 std::vector<double> cord_angles_from_archings(std::span<const double> archings, double base_tangent) {
   std::vector<double> cord_angles;
   cord_angles.reserve(archings.size());
@@ -49,12 +47,15 @@ std::vector<Eigen::Vector2d> base_points(std::span<const double> lengths, std::s
     throw std::invalid_argument(std::to_string(lengths.size()) + " section lengths do not go with " +
                                 std::to_string(archings.size()) + " archings");
   }
-  const std::vector<double> cord_angles = cord_angles_from_archings(archings, base_tangent);
-  std::vector<Eigen::Vector2d> points{base_point};
+  std::vector<Eigen::Vector2d> points;
   points.reserve(lengths.size() + 1);
+  points.push_back(base_point);
+  double tangent = base_tangent;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
-    const Eigen::Vector2d along(std::cos(cord_angles[i]), std::sin(cord_angles[i]));
-    points.emplace_back(points.back() + cord_length(lengths[i], archings[i]) * along);
+    const double cord_angle = tangent + archings[i];
+    const double cord = lengths[i] * sinc(archings[i]);  // Eq. 6; negative beyond a full circle.
+    points.emplace_back(points.back() + cord * Eigen::Vector2d(std::cos(cord_angle), std::sin(cord_angle)));
+    tangent += 2.0 * archings[i];
   }
   return points;
 }

@@ -11,10 +11,6 @@
 // its cord; cord_angle_n is the cord's angle from +X.
 namespace flexura {
 
-/// Eq. 6: the cord of an arc of `arc_length` m with this arching, m; arc_length when straight.
-/// Negative where the arc overruns a full circle: it then points against the cord angle of eq. 5.
-[[nodiscard]] double cord_length(double arc_length, double arching);
-
 /// Eq. 5: cord_n = base_tangent (alpha_Ox^0, the tangent's angle at the base) + 2 (arching_0 + ... +
 /// arching_{n-1}) + arching_n.
 [[nodiscard]] std::vector<double> cord_angles_from_archings(std::span<const double> archings,

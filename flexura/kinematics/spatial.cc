@@ -10,14 +10,6 @@ Pose section_pose(const Arm& arm, const ArmState& state, std::size_t i) {
   return arc_pose(state.bends[i], arm.sections[i].length * state.stretches[i]);
 }
 
-void require_fit(const Arm& arm, const ArmState& state) {
-  const std::size_t count = arm.sections.size();
-  if (state.bends.size() == count && state.stretches.size() == count) return;
-  throw std::invalid_argument("an arm of " + std::to_string(count) + " sections cannot take " +
-                              std::to_string(state.bends.size()) + " bends and " +
-                              std::to_string(state.stretches.size()) + " stretches");
-}
-
 }  // namespace
 
 void section_frames(const Arm& arm, const ArmState& state, std::span<Pose> frames) {
@@ -31,24 +23,11 @@ void section_frames(const Arm& arm, const ArmState& state, std::span<Pose> frame
     frames[i + 1] = frames[i] * section_pose(arm, state, i);
 }
 
-std::vector<Pose> section_frames(const Arm& arm, const ArmState& state) {
-  std::vector<Pose> frames(arm.sections.size() + 1);
-  section_frames(arm, state, frames);
-  return frames;
-}
-
 Pose tip_pose(const Arm& arm, const ArmState& state) {
   require_fit(arm, state);
   Pose X_WT = arm.X_WB;
   for (std::size_t i = 0; i < arm.sections.size(); ++i) X_WT = X_WT * section_pose(arm, state, i);
   return X_WT;
-}
-
-std::vector<Pose> poses_at(const Backbone& backbone, std::span<const double> s) {
-  std::vector<Pose> poses;
-  poses.reserve(s.size());
-  for (const double at : s) poses.push_back(backbone.pose(at));
-  return poses;
 }
 
 MaterialPoint material_point(const Arm& arm, double s) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
@@ -15,14 +14,8 @@ namespace flexura {
 /// std::invalid_argument otherwise.
 void section_frames(const Arm& arm, const ArmState& state, std::span<Pose> frames);
 
-/// The same, in a new vector.
-[[nodiscard]] std::vector<Pose> section_frames(const Arm& arm, const ArmState& state);
-
 /// X_WT alone.
 [[nodiscard]] Pose tip_pose(const Arm& arm, const ArmState& state);
-
-/// X_WS at each arc length s, m, in [0, backbone.length()], in the order given; std::out_of_range outside.
-[[nodiscard]] std::vector<Pose> poses_at(const Backbone& backbone, std::span<const double> s);
 
 /// A point that stays with the arm's material however it stretches.
 struct MaterialPoint {

@@ -126,18 +126,6 @@ bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
 
 }  // namespace
 
-std::vector<double> tendon_lengths(const Arm& arm, const Drive& drive, const ArmState& state) {
-  require_fit(arm, drive, state.bends.size(), state.stretches.size());
-  const std::vector<Passage> sums = passages(arm, drive, state);
-  std::vector<double> lengths;
-  lengths.reserve(drive.tendons.size());
-  for (const Tendon& tendon : drive.tendons) {
-    const Passage& sum = sums[tendon.section];
-    lengths.push_back(sum.centre - tendon.offset().dot(sum.turn));
-  }
-  return lengths;
-}
-
 TendonDisplacements tendon_displacements(const Arm& arm, const Drive& drive, const ArmState& state) {
   require_fit(arm, drive, state.bends.size(), state.stretches.size());
   const std::vector<Passage> sums = passages(arm, drive, state);

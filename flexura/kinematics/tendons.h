@@ -13,12 +13,9 @@
 // stretching, as long as no tendon lies beyond the centre of a bend (curvature times radius below 1).
 namespace flexura {
 
-/// Each tendon's length from the arm's base to its end, m. In a continuous channel a section adds
-/// length * stretch - offset . bend, exactly; between guide disks that cut it into n pieces, sinc(|bend| /
-/// 2n) times as much.
-[[nodiscard]] std::vector<double> tendon_lengths(const Arm& arm, const Drive& drive, const ArmState& state);
-
-/// How far each tendon is pulled in, m: its length on the straight, unstretched arm less that in `state`.
+/// How far each tendon is pulled in, m: its length from base to end on the straight, unstretched arm less
+/// that in `state`. In a continuous channel a section adds length * stretch - offset . bend to it, exactly;
+/// between guide disks that cut it into n pieces, sinc(|bend| / 2n) times as much.
 [[nodiscard]] TendonDisplacements tendon_displacements(const Arm& arm, const Drive& drive,
                                                        const ArmState& state);
 

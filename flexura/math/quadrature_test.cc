@@ -10,17 +10,6 @@
 namespace flexura {
 namespace {
 
-TEST(Quadrature, HasTheTabulatedThreePointRule) {
-  const Quadrature rule = gauss_legendre(3);
-  ASSERT_EQ(rule.nodes.size(), 3u);
-  EXPECT_DOUBLE_EQ(rule.nodes[0], -std::sqrt(0.6));
-  EXPECT_NEAR(rule.nodes[1], 0.0, 1e-16);
-  EXPECT_DOUBLE_EQ(rule.nodes[2], std::sqrt(0.6));
-  EXPECT_DOUBLE_EQ(rule.weights[0], 5.0 / 9.0);
-  EXPECT_DOUBLE_EQ(rule.weights[1], 8.0 / 9.0);
-  EXPECT_DOUBLE_EQ(rule.weights[2], 5.0 / 9.0);
-}
-
 TEST(Quadrature, IsExactForPolynomialsUpToItsDegreeAndNotBeyond) {
   for (const int points : {1, 2, 5, 10, 20}) {
     const Quadrature rule = gauss_legendre(points);

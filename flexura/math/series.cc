@@ -39,6 +39,14 @@ double even_series(const Coefficients& c, double t) {
   return sum;
 }
 
+// These take sinc(t), which their callers have.
+double deficit(double t, double sinc_t) {
+  return std::abs(t) < series_limit ? even_series(sinc_deficit_series, t) : (1.0 - sinc_t) / (t * t);
+}
+double slope(double t, double sinc_t) {
+  return std::abs(t) < series_limit ? even_series(sinc_slope_series, t) : (std::cos(t) - sinc_t) / (t * t);
+}
+
 }  // namespace
 
 double sinc(double t) { return t == 0.0 ? 1.0 : std::sin(t) / t; }
@@ -48,16 +56,13 @@ double cosc(double t) {
   return 0.5 * half * half;
 }
 
-double sinc_deficit(double t) {
-  if (std::abs(t) < series_limit) return even_series(sinc_deficit_series, t);
-  return (1.0 - sinc(t)) / (t * t);
-}
+double sinc_deficit(double t) { return deficit(t, sinc(t)); }
 
-double sinc_slope(double t) {
-  if (std::abs(t) < series_limit) return even_series(sinc_slope_series, t);
-  return (std::cos(t) - sinc(t)) / (t * t);
-}
+double sinc_slope(double t) { return slope(t, sinc(t)); }
 
-double cosc_slope(double t) { return 0.25 * sinc(0.5 * t) * sinc_slope(0.5 * t); }
+BendFunctions bend_functions(double t) {
+  const double whole = sinc(t), half = sinc(0.5 * t);
+  return {whole, 0.5 * half * half, deficit(t, whole), slope(t, whole), 0.25 * half * slope(0.5 * t, half)};
+}
 
 }  // namespace flexura

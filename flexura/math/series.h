@@ -14,7 +14,13 @@ namespace flexura {
 [[nodiscard]] double sinc_deficit(double t);
 /// sinc'(t) / t = (t cos t - sin t) / t^3; -1/3 at 0.
 [[nodiscard]] double sinc_slope(double t);
-/// cosc'(t) / t = (t sin t - 2 (1 - cos t)) / t^4; -1/12 at 0.
-[[nodiscard]] double cosc_slope(double t);
+
+/// All at one angle, with the sines and cosines that they share.
+struct BendFunctions {
+  double sinc, cosc, sinc_deficit, sinc_slope;
+  double cosc_slope;  ///< cosc'(t) / t = (t sin t - 2 (1 - cos t)) / t^4; -1/12 at 0.
+};
+/// Those at t, to the same bits.
+[[nodiscard]] BendFunctions bend_functions(double t);
 
 }  // namespace flexura

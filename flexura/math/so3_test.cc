@@ -17,20 +17,6 @@ Eigen::Vector3d random_rotation_vector(TestRandom& random, double largest) {
   return random.uniform(0.0, largest) * random.vector<3>(-1.0, 1.0).normalized();
 }
 
-TEST(So3, SkewIsTheCrossProduct) {
-  const Eigen::Vector3d w(1.0, -2.0, 3.0);
-  const Eigen::Vector3d v(0.5, 4.0, -1.0);
-  EXPECT_EQ(skew(w) * v, w.cross(v));
-}
-
-TEST(So3, ExpGivesRotations) {
-  for_random_cases(500, [](TestRandom& random) {
-    const Eigen::Matrix3d R = so3_exp(random_rotation_vector(random, 20.0));
-    EXPECT_LE((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 2e-14);
-    EXPECT_NEAR(R.determinant(), 1.0, 2e-14);
-  });
-}
-
 TEST(So3, ExpAgreesWithAngleAndAxis) {
   for_random_cases(500, [](TestRandom& random) {
     const Eigen::Vector3d w = random_rotation_vector(random, 15.0);

@@ -1,5 +1,9 @@
 #include "flexura/model/arm.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace flexura {
 
 Pose default_base_pose() {
@@ -14,6 +18,13 @@ double Arm::length() const {
   double sum = 0.0;
   for (const Section& section : sections) sum += section.length;
   return sum;
+}
+
+void require_fit(const Arm& arm, const ArmState& state) {
+  const std::size_t count = arm.sections.size();
+  if (state.bends.size() == count && state.stretches.size() == count) return;
+  throw std::invalid_argument(fmt::format("an arm of {} sections cannot take {} bends and {} stretches",
+                                          count, state.bends.size(), state.stretches.size()));
 }
 
 }  // namespace flexura

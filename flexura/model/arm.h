@@ -61,4 +61,7 @@ struct Arm {
   [[nodiscard]] double length() const;
 };
 
+/// std::invalid_argument unless `state` has one bend and one stretch for each section of `arm`.
+void require_fit(const Arm& arm, const ArmState& state);
+
 }  // namespace flexura

@@ -7,18 +7,9 @@
 #include <stdexcept>
 
 #include "flexura/math/series.h"
-#include "flexura/math/so3.h"
 
 namespace flexura {
 namespace {
-
-void require_one_entry_a_section(const Arm& arm, const ArmState& state) {
-  const std::size_t count = arm.sections.size();
-  if (count == 0) throw std::invalid_argument("an arm needs at least one section");
-  if (state.bends.size() == count && state.stretches.size() == count) return;
-  throw std::invalid_argument(fmt::format("an arm of {} sections cannot take {} bends and {} stretches",
-                                          count, state.bends.size(), state.stretches.size()));
-}
 
 void require_usable(const Arc& arc, std::size_t index) {
   if (!arc.bend.allFinite()) {
@@ -35,14 +26,25 @@ void require_usable(const Arc& arc, std::size_t index) {
 
 Pose arc_pose(const Eigen::Vector2d& bend, double length) {
   const double t = bend.norm();
-  const double across = length * cosc(t);
-  return {so3_exp({-bend.y(), bend.x(), 0.0}), {across * bend.x(), across * bend.y(), length * sinc(t)}};
+  return arc_pose(bend, length, sinc(t), cosc(t));
+}
+
+// so3_exp((-y, x, 0)) without its zeros. Sums that begin with 0 are never -0.
+Pose arc_pose(const Eigen::Vector2d& bend, double length, double sinc_t, double cosc_t) {
+  const double x = bend.x(), y = bend.y(), S = sinc_t, A = cosc_t;
+  Pose end;
+  end.rotation << 1 - A * x * x, 0 - A * x * y, 0 + S * x,  //
+      0 - A * y * x, 1 - A * y * y, 0 + S * y,              //
+      0 - S * x, 0 - S * y, 1 - (A * x * x + A * y * y);
+  end.position << length * A * x, length * A * y, length * S;
+  return end;
 }
 
 Pose Arc::pose(double distance) const { return X_WS * arc_pose(bend * (distance / length), distance); }
 
 Backbone::Backbone(const Arm& arm, const ArmState& state) : X_WT_(arm.X_WB) {
-  require_one_entry_a_section(arm, state);
+  if (arm.sections.empty()) throw std::invalid_argument("an arm needs at least one section");
+  require_fit(arm, state);
   arcs_.reserve(arm.sections.size());
   double s = 0.0;
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {

@@ -13,6 +13,8 @@ namespace flexura {
 /// `length` m bent by `bend` rad, smooth through bend = 0. With t = |bend| its end lies at length (bend_x (1
 /// - cos t)/t^2, bend_y (1 - cos t)/t^2, sin t/t), turned by the rotation vector (-bend_y, bend_x, 0).
 [[nodiscard]] Pose arc_pose(const Eigen::Vector2d& bend, double length);
+/// The same for who knows sinc(t) and cosc(t) (math/series.h).
+[[nodiscard]] Pose arc_pose(const Eigen::Vector2d& bend, double length, double sinc_t, double cosc_t);
 
 /// One circular arc of a backbone: a section as it stands.
 struct Arc {

@@ -28,12 +28,6 @@ TEST(Arc, IsStraightWithoutBend) {
   EXPECT_EQ(end.rotation, Eigen::Matrix3d::Identity());
 }
 
-TEST(Arc, ClosesAfterAFullTurn) {
-  const Pose end = arc_pose({0.0, 2 * std::numbers::pi}, 1.0);
-  EXPECT_LE(end.position.norm(), 1e-15);
-  EXPECT_LE((end.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-15);
-}
-
 TEST(Arc, IsContinuousThroughStraight) {
   for (const double bend : {1e-300, 1e-100, 1e-12, 1e-9}) {
     const Pose end = arc_pose({bend, -2 * bend}, 1.0);

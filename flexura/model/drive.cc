@@ -22,8 +22,6 @@ double Axis::max_cable_speed() const {
   return std::min(motor.max_step_rate / microsteps_a_metre(), motor.max_speed / spool.gear * spool.radius);
 }
 
-double Axis::max_cable_acceleration() const { return motor.max_acceleration / spool.gear * spool.radius; }
-
 std::string Drive::axis_name(std::size_t axis) const {
   return fmt::format("{}.{}", axis / axes_per_controller + 1, axis % axes_per_controller + 1);
 }

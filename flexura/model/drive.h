@@ -60,8 +60,6 @@ struct Axis {
   [[nodiscard]] double play() const;
   /// The fastest that the motor and its controller wind cable, m/s.
   [[nodiscard]] double max_cable_speed() const;
-  /// The largest acceleration that the motor gives the cable, m/s^2.
-  [[nodiscard]] double max_cable_acceleration() const;
 };
 
 /// What moves an arm: tendons, and for each the axis of the same index that pulls it.

@@ -99,14 +99,6 @@ TEST(Hazard, Folding) {
   });
 }
 
-TEST(Hazard, JumpOfAFormula) {
-  expect_just(Hazard::jump, [&](double part) {
-    return check_among(thin_section(), function_motion(1, [part](double t) {
-                         return state(1e-3 * t + (t > 0.371 ? std::max(0.0, part - 1) : 0));
-                       }));
-  });
-}
-
 TEST(Hazard, FormulaWithoutAValue) {
   expect_just(Hazard::not_finite, [&](double part) {
     return check_among(thin_section(),

@@ -4,21 +4,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
+#include "flexura/kinematics/jacobian.h"
+#include "flexura/math/dense.h"
 #include "flexura/safety/checked_motion.h"
 #include "flexura/safety/contact_watch.h"
 #include "flexura/safety/jumps.h"
-#include "flexura/safety/singular.h"
 
 namespace flexura {
 namespace {
 
+// Where the tip's position can set out in fewer dimensions than in almost every other state of the arm.
 void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
   if (!is_possible(state)) return;
-  const TipFreedom freedom = tip_freedom(arm, state);
-  if (freedom.now == freedom.usual) return;
-  report.notes.push_back(fmt::format("{:.6g} s: singular pose: the tip can set out in {} of {} dimensions",
-                                     time, freedom.now, freedom.usual));
+  std::vector<Eigen::Index> free;  // columns of the Jacobian
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const auto first = static_cast<Eigen::Index>(3 * i);
+    free.push_back(first);
+    if (arm.kind == ArmKind::spatial) free.push_back(first + 1);
+    if (arm.sections[i].can_stretch()) free.push_back(first + 2);
+  }
+  const Eigen::MatrixXd velocities = tip_jacobian(arm, state).topRows<3>()(Eigen::all, free);
+  const Eigen::VectorXd speeds = singular_values(velocities);
+  const auto now = static_cast<std::size_t>((speeds.array() > 1e-9 * speeds.maxCoeff()).count());
+  // One spatial section without stretch reaches a surface only.
+  const std::size_t usual = std::min<std::size_t>(arm.kind == ArmKind::planar ? 2 : 3, free.size());
+  if (now == usual) return;
+  report.notes.push_back(
+      fmt::format("{:.6g} s: singular pose: the tip can set out in {} of {} dimensions", time, now, usual));
 }
 
 // `before` is the state in which the motion finds the arm.

@@ -8,13 +8,35 @@
 
 #include "flexura/safety/checked_motion.h"
 #include "flexura/safety/jumps.h"
-#include "flexura/safety/sampled_spans.h"
 
 namespace flexura {
 namespace {
 
 // Which share of a check the search for jumps leaves to the samples.
 constexpr double samples_share = 0.9;
+
+// Spans that grow with samples: those of steps that follow each other are one.
+class SampledSpans {
+ public:
+  struct Found {
+    Span span;
+    WorstValue worst;
+  };
+
+  // Takes what is too much at a step, after all earlier steps: the value for the time `span`, as of its end.
+  void add(std::size_t step, const Span& span, double value) {
+    if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({span, {span.end, value}});
+    last_step_ = step;
+    Found& found = spans_.back();
+    found.span.end = span.end;
+    if (value > found.worst.value) found.worst = {span.end, value};
+  }
+  [[nodiscard]] const std::vector<Found>& spans() const { return spans_; }
+
+ private:
+  std::vector<Found> spans_;
+  std::size_t last_step_ = 0;
+};
 
 class SampledCheck {
  public:

@@ -94,21 +94,6 @@ TEST(TubeDistance, IsThatOfBruteForce) {
   });
 }
 
-TEST(TubeDistance, OccursBetweenTwoPointsAndNoneIsLess) {
-  for_random_cases(60, [](TestRandom& random) {
-    const SectionTube a =
-        tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.01);
-    const SectionTube b =
-        tube_at(random.vector<3>(-1, 1), random.vector<2>(-7, 7), random.uniform(0.2, 2), 0.02);
-    const double found = tube_distance(a, b, {-100});
-    for (int k = 0; k < 2000; ++k) {
-      const Eigen::Vector3d p = a.point(random.uniform(0, 1));
-      ASSERT_GE((p - b.point(random.uniform(0, 1))).norm() - 0.03, found - 1e-6);
-    }
-    EXPECT_NEAR(found, brute_force(a, b, -100), 1e-5);
-  });
-}
-
 // Of a grid of pairs that the rule counts.
 double least_of_grid(const SectionTube& a, const SectionTube& b, const PairRule& rule, int n) {
   double least = no_distance;

@@ -32,7 +32,7 @@ std::vector<AxisMotion> motions(const Drive& drive, const Drive& real,
   std::vector<AxisMotion> result;
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     const Axis& axis = drive.axes[i];
-    // Play is taken up for pulling in at the start, as PlayModel has it.
+    // Play is taken up for pulling in at the start.
     result.emplace_back(axis_config(real.axes[i].motor), AxisMotion::Play{0, axis.play()},
                         sense(axis) * static_cast<double>(positions[i]), 0.0, horizon);
   }

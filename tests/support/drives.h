@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "flexura/model/drive.h"
 #include "tests/support/random_cases.h"
@@ -41,5 +43,32 @@ inline Drive random_scanty_drive(TestRandom& random, const Arm& arm) {
   }
   return scanty;
 }
+
+/// What the mechanism makes of commands: each spool follows its motor within the play, and stays where it is
+/// while the motor turns through it. At first the play is taken up for pulling in.
+class PlayModel {
+ public:
+  PlayModel(const Drive& drive, const std::vector<std::int64_t>& positions) : axes_(drive.axes) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) spools_.push_back(motor(i, positions));
+  }
+  void follow(const std::vector<std::int64_t>& positions) {
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      spools_[i] = std::clamp(spools_[i], motor(i, positions), motor(i, positions) + axes_[i].play());
+  }
+  [[nodiscard]] TendonDisplacements displacements() const {
+    TendonDisplacements made;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      made.pulled.push_back(spools_[i] / axes_[i].microsteps_a_metre());
+    return made;
+  }
+
+ private:
+  [[nodiscard]] double motor(std::size_t i, const std::vector<std::int64_t>& positions) const {
+    return (axes_[i].reversed ? -1.0 : 1.0) * static_cast<double>(positions[i]);
+  }
+
+  std::vector<Axis> axes_;
+  std::vector<double> spools_;  // microsteps pulled in
+};
 
 }  // namespace flexura

@@ -79,7 +79,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
   const double tolerance = config.position_tolerance.value_or(allowance);
   CurveProblem problem(variables, points, length);
-  DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
+  DescentMemory memory(problem, variables.size(), variables.bounds().size());
   std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
   if (config.start) first = variables.pack(*config.start);
   InverseStarts starts(variables, problem.end(), first, config.seed);
@@ -97,7 +97,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     const DescentLimits limits{.iterations = std::min(most_iterations, affordable - memory.iterations),
                                .slope = 1e-7};
     const Descent ended = descend(problem, variables.bounds(), limits, x, memory);
-    found.keep_better(x, memory.r.squaredNorm(), ended);
+    found.keep_better(x, memory.square, ended);
     ++found.starts;
     error = problem.largest_distance(found.x);
     if (error <= tolerance) break;

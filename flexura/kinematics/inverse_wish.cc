@@ -1,6 +1,7 @@
 #include "flexura/kinematics/inverse_wish.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace flexura {
 
@@ -25,6 +26,36 @@ Bounds WishScale::relative(Bounds bounds) const {
     bound.high = (bound.high - middle[bound.at]) / range[bound.at];
   }
   return bounds;
+}
+
+void follow_wish(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale, Eigen::VectorXd& x,
+                 DescentMemory& memory) {
+  constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
+  constexpr double least_gain = 1e-10;
+  const Bounds relative_bounds = scale.relative(bounds);
+  const Eigen::VectorXd ideal = Eigen::VectorXd::Zero(x.size());
+  double wish = scale.relative(x).squaredNorm();
+  Eigen::VectorXd candidate(x.size());
+  for (int i = 0; i < 100; ++i) {
+    problem.linearise(x, memory.r, memory.J);
+    // In relative values: from the ideal, 0, the shortest step onto the linear problem's solutions.
+    memory.J *= scale.range.asDiagonal();
+    memory.r -= memory.J.lazyProduct(scale.relative(x));
+    bounded_step(relative_bounds, ideal, 1e-12, memory);
+    const Eigen::VectorXd direction = scale.absolute(memory.trial) - x;
+    double gained = 0.0;
+    for (double part = 1.0; part > 1e-2 && gained == 0.0; part *= 0.5) {
+      candidate = x + part * direction;
+      project(bounds, candidate);
+      if (descend(problem, bounds, back, candidate, memory) != Descent::met) continue;
+      const double new_wish = scale.relative(candidate).squaredNorm();
+      if (!(new_wish < wish)) continue;
+      gained = wish - new_wish;
+      wish = new_wish;
+      x = candidate;
+    }
+    if (gained <= least_gain * wish) return;
+  }
 }
 
 }  // namespace flexura

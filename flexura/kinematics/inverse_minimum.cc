@@ -1,32 +1,43 @@
-#pragma once
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "flexura/kinematics/bounded_least_squares.h"
 #include "flexura/kinematics/inverse_wish.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {
+namespace {
 
-/// Brings a solution that follow_wish has led near a minimum of the wish to the minimum itself, by Newton's
-/// steps on the surface of solutions. follow_wish knows that surface's tangents but not how it bends, and
-/// comes nearer by a factor an iteration: it ends some 1e-5 away, each time elsewhere.
-template <class Problem>
 class WishMinimum {
  public:
-  WishMinimum(Problem& problem, const Bounds& bounds, const WishScale& scale, DescentMemory<Problem>& memory)
+  WishMinimum(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale, DescentMemory& memory)
       : problem_(problem), bounds_(bounds), scale_(scale), memory_(memory) {}
 
-  /// x, a solution, is one afterwards too, and no worse.
-  void run_down(Eigen::VectorXd& x) {
-    // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
-    constexpr int most_steps = 200;
-    for (int i = 0; i < most_steps; ++i) {
-      if (!step(x)) return;
+  // Newton's step, made downhill where the surface of the wish is bent downwards (a saddle is left to either
+  // side); whether x is not at the minimum yet.
+  bool step(Eigen::VectorXd& x) {
+    constexpr double level = 1e-5;  // A curvature below this is not told from none.
+    constexpr double still = 1e-9;
+    const Slope here = slope(x);
+    if (here.tangents.cols() == 0) return false;
+    const auto second = curvature(x, here.tangents);
+    if (!second) return false;
+    const auto [values, vectors] = symmetric_eigen(*second);
+    const Eigen::MatrixXd axes = here.tangents * vectors;
+    const Eigen::VectorXd slopes = axes.transpose() * here.gradient;
+    Eigen::VectorXd way = Eigen::VectorXd::Zero(x.size());
+    for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+      way -= slopes[k] / std::max(std::abs(values[k]), level) * axes.col(k);
     }
+    constexpr double nudge = 0.02;
+    const bool is_ridge = values[0] < -level && way.norm() < nudge;
+    if (is_ridge) way += nudge * (slopes[0] > 0.0 ? -1.0 : 1.0) * axes.col(0);
+    const double length = way.norm();
+    if (length < still) return false;
+    constexpr double longest = 0.5;
+    if (length > longest) way *= longest / length;
+    return go(x, way);
   }
 
  private:
@@ -81,32 +92,6 @@ class WishMinimum {
     return 0.5 * (result + result.transpose());
   }
 
-  // Newton's step, made downhill where the surface of the wish is bent downwards (a saddle is left to either
-  // side); whether x is not at the minimum yet.
-  bool step(Eigen::VectorXd& x) {
-    constexpr double level = 1e-5;  // A curvature below this is not told from none.
-    constexpr double still = 1e-9;
-    const Slope here = slope(x);
-    if (here.tangents.cols() == 0) return false;
-    const auto second = curvature(x, here.tangents);
-    if (!second) return false;
-    const auto [values, vectors] = symmetric_eigen(*second);
-    const Eigen::MatrixXd axes = here.tangents * vectors;
-    const Eigen::VectorXd slopes = axes.transpose() * here.gradient;
-    Eigen::VectorXd way = Eigen::VectorXd::Zero(x.size());
-    for (Eigen::Index k = 0; k < slopes.size(); ++k) {
-      way -= slopes[k] / std::max(std::abs(values[k]), level) * axes.col(k);
-    }
-    constexpr double nudge = 0.02;
-    const bool is_ridge = values[0] < -level && way.norm() < nudge;
-    if (is_ridge) way += nudge * (slopes[0] > 0.0 ? -1.0 : 1.0) * axes.col(0);
-    const double length = way.norm();
-    if (length < still) return false;
-    constexpr double longest = 0.5;
-    if (length > longest) way *= longest / length;
-    return go(x, way);
-  }
-
   // Along `way` as far as it leads down; false where it does not.
   bool go(Eigen::VectorXd& x, const Eigen::VectorXd& way) {
     constexpr double least_gain = 1e-14;
@@ -120,10 +105,21 @@ class WishMinimum {
     return false;
   }
 
-  Problem& problem_;
+  BoundedProblem& problem_;
   const Bounds& bounds_;
   const WishScale& scale_;
-  DescentMemory<Problem>& memory_;
+  DescentMemory& memory_;
 };
+
+}  // namespace
+
+void run_down_to_minimum(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale,
+                         Eigen::VectorXd& x, DescentMemory& memory) {
+  // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
+  constexpr int most_steps = 200;
+  WishMinimum minimum(problem, bounds, scale, memory);
+  for (int i = 0; i < most_steps && minimum.step(x); ++i) {
+  }
+}
 
 }  // namespace flexura

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "flexura/math/dense.h"
 #include "flexura/math/levenberg_marquardt.h"
@@ -98,6 +97,12 @@ bool hold_broken(const Bounds& bounds, const VectorXd& x, const VectorXd& step, 
   return any;
 }
 
+void find_gradient(const MatrixXd& J, const VectorXd& r, VectorXd& gradient) {
+  by_rows(J, r, [&]<int rows>(const Rows<rows>& slope, const Column<rows>& here) {
+    gradient.noalias() = slope.transpose() * here;
+  });
+}
+
 // H. B. Nielsen (1999): the better the model foresees, the less.
 double eased(double damping, double ratio) {
   const double off = 2.0 * ratio - 1.0;
@@ -106,125 +111,118 @@ double eased(double damping, double ratio) {
 
 }  // namespace
 
-DescentMemory::DescentMemory(const BoundedProblem& problem, Index variables, std::size_t bound_count)
-    : r(problem.row_count()),
-      trial_r(problem.row_count()),
-      J(problem.row_count(), variables),
-      trial_J(problem.row_count(), variables),
-      held_J(problem.row_count(), variables),
+BoundedDescent::BoundedDescent(BoundedProblem& of, const Bounds& within, Index variables)
+    : problem(of),
+      bounds(within),
+      r(of.row_count()),
+      trial_r(of.row_count()),
+      J(of.row_count(), variables),
+      trial_J(of.row_count(), variables),
+      held_J(of.row_count(), variables),
       step(variables),
       offset(variables),
       trial(variables),
       gradient(variables),
-      is_held(bound_count) {}
+      is_held(within.size()) {}
 
-void DescentMemory::linearise(BoundedProblem& problem, const VectorXd& x) {
+void BoundedDescent::linearise(const VectorXd& x) {
   problem.linearise(x, r, J);
   ++iterations;
   square = square_of(J, r);
+  find_gradient(J, r, gradient);
 }
 
-void DescentMemory::find_gradient() {
-  by_rows(J, r, [this]<int rows>(const Rows<rows>& slope, const Column<rows>& here) {
-    gradient.noalias() = slope.transpose() * here;
-  });
-}
-
-void bounded_step(const Bounds& bounds, const VectorXd& x, double damping, DescentMemory& memory) {
+void BoundedDescent::try_step(const Bounds& within, const VectorXd& x, double damping) {
   constexpr int max_passes = 6;
-  damped_step(memory.J, memory.r, damping, memory.step);
-  if (!bounds.empty()) {
-    std::ranges::fill(memory.is_held, 0);
-    memory.offset.setZero();
+  damped_step(J, r, damping, step);
+  if (!within.empty()) {
+    std::ranges::fill(is_held, 0);
+    offset.setZero();
     for (int pass = 0; pass < max_passes; ++pass) {
-      if (pass == 0) memory.held_J = memory.J;
-      if (!hold_broken(bounds, x, memory.step, memory.is_held, memory.offset, memory.held_J)) break;
-      foreseen(memory.J, memory.r, memory.offset, memory.trial_r);
-      damped_step(memory.held_J, memory.trial_r, damping, memory.step);
-      memory.step += memory.offset;
+      if (pass == 0) held_J = J;
+      if (!hold_broken(within, x, step, is_held, offset, held_J)) break;
+      foreseen(J, r, offset, trial_r);
+      damped_step(held_J, trial_r, damping, step);
+      step += offset;
     }
   }
-  memory.trial = x + memory.step;
-  project(bounds, memory.trial);
+  trial = x + step;
+  project(within, trial);
 }
 
-Descent descend(BoundedProblem& problem, const Bounds& bounds, const DescentLimits& limits, VectorXd& x,
-                DescentMemory& memory) {
-  memory.linearise(problem, x);
-  if (problem.is_met(memory.r)) return Descent::met;
-  const auto try_step = [&](double damping) -> TriedStep {
+Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
+  problem.linearise(x, r, J);
+  ++iterations;
+  square = square_of(J, r);
+  if (problem.is_met(r)) return Descent::met;
+  const auto tried = [&](double damping) -> TriedStep {
     constexpr double least_damping = 1e-14;  // Keeps the factorisation of a singular arm sound.
     // Of |r|^2: vanishes towards a solution, so that the last steps are Newton's.
-    bounded_step(bounds, x, damping * memory.square + least_damping, memory);
-    memory.step = memory.trial - x;
-    const double foreseen_square = foreseen(memory.J, memory.r, memory.step, memory.trial_r);
-    problem.linearise(memory.trial, memory.trial_r, memory.trial_J);
-    ++memory.iterations;
-    return {square_of(memory.trial_J, memory.trial_r), memory.square - foreseen_square};
+    try_step(bounds, x, damping * square + least_damping);
+    step = trial - x;
+    const double foreseen_square = foreseen(J, r, step, trial_r);
+    problem.linearise(trial, trial_r, trial_J);
+    ++iterations;
+    return {square_of(trial_J, trial_r), square - foreseen_square};
   };
   const auto is_level = [&] {
-    memory.find_gradient();
-    free_gradient(bounds, x, memory.gradient);
-    return memory.gradient.norm() <= limits.slope * std::sqrt(memory.square);
+    find_gradient(J, r, gradient);
+    free_gradient(bounds, x, gradient);
+    return gradient.norm() <= limits.slope * std::sqrt(square);
   };
-  const auto keep = [&](const TriedStep& step, double& cost) {
-    const bool is_slow = !(step.cost < 0.99 * cost);
-    x.swap(memory.trial);
-    memory.r.swap(memory.trial_r);
-    memory.J.swap(memory.trial_J);
-    cost = memory.square = step.cost;
-    return problem.is_met(memory.r) || (is_slow && is_level());
+  const auto keep = [&](const TriedStep& kept, double& cost) {
+    const bool is_slow = !(kept.cost < 0.99 * cost);
+    x.swap(trial), r.swap(trial_r), J.swap(trial_J);
+    cost = square = kept.cost;
+    return problem.is_met(r) || (is_slow && is_level());
   };
   const auto leave = [&](const TriedStep&, double) { return is_level(); };
   const Damping damping{.start = 1e-2, .most = 1e15, .rise = 2, .growth = 2, .eased = eased};
-  const DescentEnd end =
-      levenberg_marquardt(memory.square, damping, limits.iterations, try_step, keep, leave);
-  if (problem.is_met(memory.r)) return Descent::met;
+  const DescentEnd end = levenberg_marquardt(square, damping, limits.iterations, tried, keep, leave);
+  if (problem.is_met(r)) return Descent::met;
   return end == DescentEnd::exhausted ? Descent::exhausted : Descent::stationary;
 }
 
-Descent descend_gradient(BoundedProblem& problem, const Bounds& bounds, const DescentLimits& limits,
-                         VectorXd& x, DescentMemory& memory) {
+Descent BoundedDescent::descend_gradient(const DescentLimits& limits, VectorXd& x) {
   const auto evaluate = [&](const VectorXd& at) {
-    memory.linearise(problem, at);
-    memory.find_gradient();
-    return 0.5 * memory.square;
+    linearise(at);
+    return 0.5 * square;
   };
   std::array<double, 8> recent{};
   double value = evaluate(x);
   recent.fill(value);
   double best_value = value;
   VectorXd best = x;
-  double length = 1.0 / std::max(1.0, memory.gradient.norm());
+  double length = 1.0 / std::max(1.0, gradient.norm());
   Descent ended = Descent::exhausted;
   for (int i = 0; i < limits.iterations; ++i) {
-    if (problem.is_met(memory.r)) {
+    if (problem.is_met(r)) {
       ended = Descent::met;
       break;
     }
-    VectorXd& direction = memory.step;
-    direction = x - length * memory.gradient;
+    VectorXd& direction = step;
+    direction = x - length * gradient;
     project(bounds, direction);
     direction -= x;
     // The fixed points of the projected gradient step are the constrained minima.
-    if (direction.norm() <= limits.slope * length * std::sqrt(memory.square)) {
+    if (direction.norm() <= limits.slope * length * std::sqrt(square)) {
       ended = Descent::stationary;
       break;
     }
-    const double slope = memory.gradient.dot(direction);
+    const double slope = gradient.dot(direction);
     const double highest = *std::ranges::max_element(recent);
-    memory.offset = memory.gradient;
+    offset = gradient;
     double part = 1.0;
     for (int halving = 0; halving < 40; ++halving, part *= 0.5) {
-      memory.trial = x + part * direction;
-      project(bounds, memory.trial);
-      value = evaluate(memory.trial);
+      trial = x + part * direction;
+      project(bounds, trial);
+      value = evaluate(trial);
       if (value <= highest + 1e-4 * part * slope) break;
     }
-    const double square = (memory.trial - x).squaredNorm();
-    const double curvature = (memory.trial - x).dot(memory.gradient - memory.offset);
-    length = curvature > 1e-10 * square ? std::min(square / curvature, 1e6) : std::min(10 * length, 1e6);
-    x.swap(memory.trial);
+    const double moved = (trial - x).squaredNorm();
+    const double curvature = (trial - x).dot(gradient - offset);
+    length = curvature > 1e-10 * moved ? std::min(moved / curvature, 1e6) : std::min(10 * length, 1e6);
+    x.swap(trial);
     recent[static_cast<std::size_t>(i) % recent.size()] = value;
     if (value < best_value) {
       best_value = value;

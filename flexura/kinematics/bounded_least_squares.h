@@ -31,43 +31,39 @@ enum class Descent {
   exhausted,   ///< Out of iterations.
 };
 
-/// The memory of a descent, for one problem's size.
-struct DescentMemory {
-  DescentMemory(const BoundedProblem& problem, Eigen::Index variables, std::size_t bound_count);
-
-  Eigen::VectorXd r, trial_r;
-  Eigen::MatrixXd J, trial_J, held_J;
-  Eigen::VectorXd step, offset, trial, gradient;
-  std::vector<char> is_held;
-  double square = 0;   ///< |r|^2
-  int iterations = 0;  ///< Linearisations so far, over all descents.
-
-  /// r, J and `square` become those of x.
-  void linearise(BoundedProblem& problem, const Eigen::VectorXd& x);
-  /// gradient = J^T r
-  void find_gradient();
-};
-
-/// memory.trial = x plus the step of least |J step + r|^2 + damping |step|^2 that keeps to the bounds: what
-/// the bounds stop is stopped, and the other variables make up for it, until nothing more is stopped.
-void bounded_step(const Bounds& bounds, const Eigen::VectorXd& x, double damping, DescentMemory& memory);
-
 /// What ends a descent before the problem is met.
 struct DescentLimits {
   int iterations = 60;
   double slope = 1e-4;  ///< Stationary when |free gradient| <= slope |r|.
 };
 
-/// Descends from x, which is within `bounds` and stays there, by damped Gauss-Newton steps. memory.r and .J
-/// are those of x afterwards.
-Descent descend(BoundedProblem& problem, const Bounds& bounds, const DescentLimits& limits,
-                Eigen::VectorXd& x, DescentMemory& memory);
+/// Descents of one problem of so many variables, and their memory.
+struct BoundedDescent {
+  BoundedDescent(BoundedProblem& of, const Bounds& within, Eigen::Index variables);
 
-/// The same by spectral projected gradients (Birgin, Martinez, Raydan 2000: Barzilai-Borwein steps,
-/// projected, with a search that forgives the last few rises). For minima with a large residual, the nearest
-/// pose to a target out of reach: there Gauss-Newton's model of the curvature is wrong by the residual
-/// itself.
-Descent descend_gradient(BoundedProblem& problem, const Bounds& bounds, const DescentLimits& limits,
-                         Eigen::VectorXd& x, DescentMemory& memory);
+  /// Descends from x, which is within `bounds` and stays there, by damped Gauss-Newton steps. r and J are
+  /// those of x afterwards.
+  Descent descend(const DescentLimits& limits, Eigen::VectorXd& x);
+  /// The same by spectral projected gradients (Birgin, Martinez, Raydan 2000: Barzilai-Borwein steps,
+  /// projected, with a search that forgives the last few rises). For minima with a large residual, the
+  /// nearest pose to a target out of reach: there Gauss-Newton's model of the curvature is wrong by the
+  /// residual itself.
+  Descent descend_gradient(const DescentLimits& limits, Eigen::VectorXd& x);
+
+  /// `trial` becomes x plus the step of least |J step + r|^2 + damping |step|^2 that keeps to bounds: what
+  /// they stop is stopped, and the other variables make up for it, until nothing more is stopped.
+  void try_step(const Bounds& within, const Eigen::VectorXd& x, double damping);
+  /// r, J, `square` and `gradient` become those of x.
+  void linearise(const Eigen::VectorXd& x);
+
+  BoundedProblem& problem;
+  const Bounds& bounds;
+  Eigen::VectorXd r, trial_r;
+  Eigen::MatrixXd J, trial_J, held_J;
+  Eigen::VectorXd step, offset, trial, gradient;  ///< gradient = J^T r
+  std::vector<char> is_held;
+  double square = 0;   ///< |r|^2
+  int iterations = 0;  ///< Linearisations so far, over all descents.
+};
 
 }  // namespace flexura

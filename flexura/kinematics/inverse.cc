@@ -96,37 +96,35 @@ InverseResult describe(const Question& q, const Found& found) {
 
 InverseResult answer_out_of_reach(const Question& q, TipRows rows) {
   TipProblem problem = problem_of(q, rows);
-  DescentMemory memory(problem, q.variables.size(), q.variables.bounds().size());
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
-  const Found found =
-      nearest(problem, q.variables, starts, std::min(nearest_starts, q.config.max_starts), memory);
+  const Found found = nearest(descent, starts, std::min(nearest_starts, q.config.max_starts));
   InverseResult result = describe(q, found);
   result.outcome = InverseOutcome::not_reachable;
   result.is_proven = true;
-  result.iterations = memory.iterations;
+  result.iterations = descent.iterations;
   return result;
 }
 
 InverseResult answer(const Question& q) {
   const TipRows rows = rows_of(q.target);
   TipProblem problem = problem_of(q, rows);
-  DescentMemory memory(problem, q.variables.size(), q.variables.bounds().size());
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
   Found found;
-  search(problem, q.variables, starts, std::min(starts_before_proof, q.config.max_starts), memory, found);
+  search(descent, starts, std::min(starts_before_proof, q.config.max_starts), found);
   if (!found.is_met()) {
     if (q.is_position_out_of_reach()) return answer_out_of_reach(q, TipRows::position);
     if (q.is_orientation_out_of_reach()) return answer_out_of_reach(q, rows);
-    search(problem, q.variables, starts, q.config.max_starts, memory, found);
+    search(descent, starts, q.config.max_starts, found);
   }
-  if (!found.is_met()) settle(problem, q.variables, settling_iterations, found, memory);
+  if (!found.is_met()) settle(descent, settling_iterations, found);
   if (found.is_met() && q.config.wish != InverseWish::none) {
-    follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.config.wish), found.x, memory);
+    follow_wish(descent, WishScale(q.variables, q.config.wish), found.x);
   }
   InverseResult result = describe(q, found);
-  result.outcome =
-      found.is_met() ? InverseOutcome::converged : outcome_of_missed(problem, q.variables, found, memory);
-  result.iterations = memory.iterations;
+  result.iterations = descent.iterations;
+  result.outcome = found.is_met() ? InverseOutcome::converged : outcome_of_missed(descent, found);
   return result;
 }
 
@@ -149,18 +147,17 @@ struct Solution {
 // The solutions that are apart from each other, each the least of its wish nearby.
 class SolutionList {
  public:
-  SolutionList(const Question& q, TipProblem& problem, DescentMemory& memory)
+  SolutionList(const Question& q, BoundedDescent& descent)
       : q_(q),
-        problem_(problem),
-        memory_(memory),
+        descent_(descent),
         scale_(q.variables, q.config.wish == InverseWish::none ? InverseWish::least_bending : q.config.wish),
         is_round_(is_round(q)) {}
 
   void add(Found found) {
-    follow_wish(problem_, q_.variables.bounds(), scale_, found.x, memory_);
+    follow_wish(descent_, scale_, found.x);
     // Most starts come to the same few solutions: no need to run down to those again.
     if (is_known(solution(found))) return;
-    run_down_to_minimum(problem_, q_.variables.bounds(), scale_, found.x, memory_);
+    run_down_to_minimum(descent_, scale_, found.x);
     Solution lowest = solution(std::move(found));
     if (!is_known(lowest)) solutions_.push_back(std::move(lowest));
   }
@@ -187,8 +184,7 @@ class SolutionList {
   }
 
   const Question& q_;
-  TipProblem& problem_;
-  DescentMemory& memory_;
+  BoundedDescent& descent_;
   WishScale scale_;
   bool is_round_;
   std::vector<Solution> solutions_;
@@ -207,14 +203,14 @@ std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget
   const Question q(arm, target, config);
   if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
   TipProblem problem = problem_of(q, rows_of(target));
-  DescentMemory memory(problem, q.variables.size(), q.variables.bounds().size());
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
-  SolutionList list(q, problem, memory);
+  SolutionList list(q, descent);
   for (int i = 0; i < config.max_starts; ++i) {
     // As patient with the i-th start as a search for one answer is, which is then among all.
     Found found;
     found.starts = i;
-    search(problem, q.variables, starts, i + 1, memory, found);
+    search(descent, starts, i + 1, found);
     if (found.is_met()) list.add(std::move(found));
   }
   std::vector<InverseResult> results;

@@ -11,8 +11,7 @@ namespace {
 
 class WishMinimum {
  public:
-  WishMinimum(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale, DescentMemory& memory)
-      : problem_(problem), bounds_(bounds), scale_(scale), memory_(memory) {}
+  WishMinimum(BoundedDescent& descent, const WishScale& scale) : descent_(descent), scale_(scale) {}
 
   // Newton's step, made downhill where the surface of the wish is bent downwards (a saddle is left to either
   // side); whether x is not at the minimum yet.
@@ -51,12 +50,12 @@ class WishMinimum {
   // At the bounds that hold x, the surface goes along them.
   Slope slope(const Eigen::VectorXd& x) {
     constexpr double on_the_bound = 1e-9;
-    problem_.linearise(x, memory_.r, memory_.J);
-    const Eigen::Index rows = memory_.J.rows();
-    Eigen::MatrixXd normals(rows + static_cast<Eigen::Index>(bounds_.size()), x.size());
-    normals.topRows(rows) = memory_.J * scale_.range.asDiagonal();
+    descent_.problem.linearise(x, descent_.r, descent_.J);
+    const Eigen::Index rows = descent_.J.rows();
+    Eigen::MatrixXd normals(rows + static_cast<Eigen::Index>(descent_.bounds.size()), x.size());
+    normals.topRows(rows) = descent_.J * scale_.range.asDiagonal();
     Eigen::Index count = rows;
-    for (const Bound& bound : bounds_) {
+    for (const Bound& bound : descent_.bounds) {
       const double reach = on_the_bound * (bound.high - bound.low);
       const double value = bound.size == 1 ? x[bound.at] : x.segment<2>(bound.at).norm();
       const bool is_held = value >= bound.high - reach || (bound.size == 1 && value <= bound.low + reach);
@@ -74,8 +73,8 @@ class WishMinimum {
   std::optional<Eigen::VectorXd> moved(const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
     constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
     Eigen::VectorXd there = x + scale_.range.cwiseProduct(step);
-    project(bounds_, there);
-    if (descend(problem_, bounds_, back, there, memory_) != Descent::met) return std::nullopt;
+    project(descent_.bounds, there);
+    if (descent_.descend(back, there) != Descent::met) return std::nullopt;
     return there;
   }
 
@@ -105,19 +104,16 @@ class WishMinimum {
     return false;
   }
 
-  BoundedProblem& problem_;
-  const Bounds& bounds_;
+  BoundedDescent& descent_;
   const WishScale& scale_;
-  DescentMemory& memory_;
 };
 
 }  // namespace
 
-void run_down_to_minimum(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale,
-                         Eigen::VectorXd& x, DescentMemory& memory) {
+void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x) {
   // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
   constexpr int most_steps = 200;
-  WishMinimum minimum(problem, bounds, scale, memory);
+  WishMinimum minimum(descent, scale);
   for (int i = 0; i < most_steps && minimum.step(x); ++i) {
   }
 }

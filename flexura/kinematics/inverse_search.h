@@ -30,22 +30,18 @@ struct Found {
 
 /// Descends from one start after another until the problem is met or `max_starts` are made, those that
 /// `found` has already counted in.
-void search(BoundedProblem& problem, const ArmVariables& variables, InverseStarts& starts, int max_starts,
-            DescentMemory& memory, Found& found);
+void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
 /// Brings what was not met to the bottom of its valley, within some `iterations`. Gradients and
 /// Gauss-Newton's steps take turns: in a long valley the ones creep, in a valley whose bottom is far from the
 /// target the others.
-void settle(BoundedProblem& problem, const ArmVariables& variables, int iterations, Found& found,
-            DescentMemory& memory);
+void settle(BoundedDescent& descent, int iterations, Found& found);
 
 /// The nearest state to a problem known not to be met: the best of the valleys below a few starts.
-Found nearest(BoundedProblem& problem, const ArmVariables& variables, InverseStarts& starts, int max_starts,
-              DescentMemory& memory);
+Found nearest(BoundedDescent& descent, InverseStarts& starts, int max_starts);
 
 /// Why what was found misses its target: the descent did not come to an end, or limits keep it from going on,
 /// or nothing does and the target is out of reach.
-InverseOutcome outcome_of_missed(BoundedProblem& problem, const ArmVariables& variables, const Found& found,
-                                 DescentMemory& memory);
+InverseOutcome outcome_of_missed(BoundedDescent& descent, const Found& found);
 
 }  // namespace flexura

@@ -25,18 +25,16 @@ struct WishScale {
   [[nodiscard]] Bounds relative(Bounds bounds) const;
 };
 
-/// Moves the solution x of `problem` along its solutions to where the wish is smallest nearby. Each step
-/// takes the problem as linear, for which the wish has its minimum in closed form, goes there or part of the
-/// way, and comes back to the problem by a descent; it counts when the problem is met again and the wish is
+/// Moves the solution x along its problem's solutions to where the wish is smallest nearby. Each step takes
+/// the problem as linear, for which the wish has its minimum in closed form, goes there or part of the way,
+/// and comes back to the problem by a descent; it counts when the problem is met again and the wish is
 /// smaller. x stays a solution.
-void follow_wish(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale, Eigen::VectorXd& x,
-                 DescentMemory& memory);
+void follow_wish(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x);
 
 /// Brings a solution that follow_wish has led near a minimum of the wish to the minimum itself, by Newton's
 /// steps on the surface of solutions: x is one afterwards too, and no worse. follow_wish knows that surface's
 /// tangents but not how it bends, and comes nearer by a factor an iteration: it ends some 1e-5 away, each
 /// time elsewhere.
-void run_down_to_minimum(BoundedProblem& problem, const Bounds& bounds, const WishScale& scale,
-                         Eigen::VectorXd& x, DescentMemory& memory);
+void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

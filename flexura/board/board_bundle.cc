@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/levenberg_marquardt.h"
 #include "flexura/math/small_cholesky.h"
 #include "flexura/math/so3.h"
 
@@ -123,6 +125,21 @@ class NormalEquations {
     return cameras.allFinite();
   }
 
+  // Infinite where a point is shown nowhere.
+  [[nodiscard]] double square_sum(const BoardBundle& bundle) const {
+    constexpr double nowhere = std::numeric_limits<double>::infinity();
+    if (!lenses_of(bundle)) return nowhere;
+    double sum = 0;
+    for (std::size_t view = 0; view < views_.size(); ++view) {
+      for (std::size_t camera = 0; camera < bundle.lenses.size(); ++camera) {
+        const auto part = flexura::square_sum(points_, views_[view], bundle, camera, bundle.boards[view]);
+        if (!part) return nowhere;
+        sum += *part;
+      }
+    }
+    return std::isfinite(sum) ? sum : nowhere;
+  }
+
   // Of the last linearization, undamped.
   [[nodiscard]] MatrixXd information() const {
     MatrixXd result = A_;
@@ -202,21 +219,6 @@ BoardBundle moved(const BoardBundle& bundle, const NormalEquations& equations, c
   return result;
 }
 
-std::optional<double> total(std::span<const Vector2d> points, std::span<const BoardView> views,
-                            const BoardBundle& bundle) {
-  const auto lenses = lenses_of(bundle);
-  if (!lenses) return std::nullopt;
-  double sum = 0;
-  for (std::size_t view = 0; view < views.size(); ++view) {
-    for (std::size_t camera = 0; camera < lenses->size(); ++camera) {
-      const auto part = square_sum(points, views[view], bundle, camera, bundle.boards[view]);
-      if (!part) return std::nullopt;
-      sum += *part;
-    }
-  }
-  return std::isfinite(sum) ? std::optional(sum) : std::nullopt;
-}
-
 }  // namespace
 
 std::optional<double> square_sum(std::span<const Vector2d> points, const BoardView& view,
@@ -238,36 +240,36 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
   BundleFit fit;
   fit.bundle = start;
   NormalEquations equations(points, views, config, start.lenses.size());
-  const auto first = total(points, views, start);
-  if (!first || !equations.linearize(start)) return fit;
-  fit.square_sum = *first;
+  const double first = equations.square_sum(start);
+  if (!std::isfinite(first) || !equations.linearize(start)) return fit;
+  fit.square_sum = first, fit.steps = 1;
   for (const BoardView& view : views)
     for (const auto& pixels : view.pixels) fit.points += pixels.size();
-  constexpr double most_damping = 1e12;
+  BoardBundle tried;
   VectorXd cameras;
   std::vector<Vector6> boards;
-  double damping = 1e-4;
-  for (fit.steps = 1; fit.steps < config.most_steps && !fit.is_converged && damping < most_damping;
-       ++fit.steps) {
-    std::optional<double> sum;
-    BoardBundle tried;
-    if (equations.solve(damping, cameras, boards)) {
-      tried = moved(fit.bundle, equations, cameras, boards);
-      sum = total(points, views, tried);
-    }
-    if (!sum || *sum > fit.square_sum) {
-      // Where rounding alone is left, no step is better.
-      fit.is_converged = sum && *sum <= fit.square_sum * (1 + config.least_gain);
-      damping = std::max(damping, 1e-6) * 10;
-      continue;
-    }
+  const auto try_step = [&](double damping) -> TriedStep {
+    ++fit.steps;
+    if (!equations.solve(damping, cameras, boards)) return {};
+    tried = moved(fit.bundle, equations, cameras, boards);
+    return {.cost = equations.square_sum(tried)};
+  };
+  const auto keep = [&](const TriedStep& step, double& cost) {
     constexpr double exact = 1e-20;  // px^2 a point
-    fit.is_converged = fit.square_sum - *sum <= config.least_gain * fit.square_sum ||
-                       *sum < exact * static_cast<double>(fit.points);
-    fit.bundle = std::move(tried), fit.square_sum = *sum;
-    damping *= 0.01;
-    if (!equations.linearize(fit.bundle)) return fit;
-  }
+    const bool is_small =
+        cost - step.cost <= config.least_gain * cost || step.cost < exact * static_cast<double>(fit.points);
+    std::swap(fit.bundle, tried);
+    cost = fit.square_sum = step.cost;
+    const bool is_shown = equations.linearize(fit.bundle);
+    fit.is_converged = is_small && is_shown;
+    return is_small || !is_shown;
+  };
+  // Where rounding alone is left, no step is better.
+  const auto leave = [&](const TriedStep& step, double cost) {
+    return fit.is_converged = step.cost <= cost * (1 + config.least_gain);
+  };
+  const auto eased = [](double damping, double) { return std::max(0.01 * damping, 1e-9); };
+  levenberg_marquardt(first, {.eased = eased}, config.most_steps - 1, try_step, keep, leave);
   fit.information = equations.information();
   fit.unknowns = static_cast<std::size_t>(fit.information.rows()) + 6 * views.size();
   return fit;

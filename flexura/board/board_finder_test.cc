@@ -117,19 +117,6 @@ TEST(BoardFinder, IsNotContentWithAPartOfTheBoard) {
   EXPECT_FALSE(find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), larger).is_found());
 }
 
-TEST(BoardFinder, TakesNoPartOfALargerBoard) {
-  const BoardTarget board{.pattern = BoardPattern::circles, .columns = 7, .rows = 5},
-      part{.pattern = BoardPattern::circles, .columns = 6, .rows = 5};
-  TestRandom random(case_seed(0));
-  const Pose X_CB = random_board(random, board, 0.3, 0.3, 0.02);
-  const auto picture = board_picture(board, Lens(lens_numbers), X_CB, width, height);
-  EXPECT_FALSE(find_board(picture, board).is_larger);
-  const BoardSighting found = find_board(picture, part);
-  EXPECT_FALSE(found.is_found());
-  EXPECT_TRUE(found.is_larger);
-  EXPECT_NE(found.reason, "");
-}
-
 TEST(BoardTarget, CannotTellItsFirstPointWhereItLooksTheSameUpsideDown) {
   EXPECT_FALSE((BoardTarget{.columns = 9, .rows = 6}.is_ambiguous()));
   EXPECT_TRUE((BoardTarget{.columns = 8, .rows = 6}.is_ambiguous()));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/levenberg_marquardt.h"
 #include "flexura/math/median.h"
 
 namespace flexura {
@@ -29,53 +30,57 @@ void hold(const std::vector<bool>& is_free, Eigen::VectorXd& gradient, Eigen::Ma
   }
 }
 
-class Descent {
+class RigSteps {
  public:
-  Descent(RigProblem& problem, const RigDescentConfig& config) : problem_(problem), config_(config) {}
+  RigSteps(RigProblem& problem, const RigDescentConfig& config, const Eigen::VectorXd& start)
+      : problem_(problem),
+        config_(config),
+        result_{.x = start, .cost = std::numeric_limits<double>::infinity()} {}
 
-  RigDescent run(const Eigen::VectorXd& start) {
-    RigDescent result{.x = start, .cost = std::numeric_limits<double>::infinity()};
-    if (!problem_.linearise(start)) return result;
-    while (result.iterations < config_.most_iterations && !result.is_settled) {
-      ++result.iterations;
-      result.is_settled = step(result.x);
-    }
-    (void)problem_.linearise(result.x);
-    result.is_settled = result.is_settled || is_at_the_bottom();
-    result.cost = problem_.cost(config_.bound);
-    return result;
+  RigDescent run() {
+    if (!problem_.linearise(result_.x)) return result_;
+    const auto eased = [](double damping, double) { return std::max(damping / 10, 1e-12); };
+    const auto try_step = [this](double damping) { return tried(damping); };
+    const auto keep = [this](const TriedStep&, double& cost) {
+      result_.x.swap(there_);
+      cost = prepare();
+      return ++result_.iterations >= config_.most_iterations;
+    };
+    const auto leave = [this](const TriedStep& step, double) { return !is_worth_it(step.promised); };
+    levenberg_marquardt(prepare(), {.rise = 5, .eased = eased}, std::numeric_limits<int>::max(), try_step,
+                        keep, leave);
+    (void)problem_.linearise(result_.x);
+    // What has steps left made a last one, which led nowhere.
+    result_.is_settled = result_.iterations < config_.most_iterations || is_at_the_bottom();
+    result_.iterations = std::min(result_.iterations + 1, config_.most_iterations);
+    result_.cost = problem_.cost(config_.bound);
+    return result_;
   }
 
  private:
-  // Moves x down, if it can. Whether there is nowhere left to go.
-  bool step(Eigen::VectorXd& x) {
-    constexpr double small = 1e-14, most_damping = 1e12, least_damping = 1e-12;
-    const double bound = bound_of(problem_, config_), before = problem_.cost(bound);
-    problem_.normal(bound, gradient_, normal_);
-    hold(config_.is_free, gradient_, normal_);
-    for (; damping_ < most_damping; damping_ *= 5) {
-      damped_ = normal_;
-      damped_.diagonal() += damping_ * normal_.diagonal().cwiseMax(std::numeric_limits<double>::min());
-      if (!factors_.compute(damped_)) continue;
-      move_ = -gradient_;
-      factors_.solve_in_place(move_);
-      const double promised = -0.5 * gradient_.dot(move_);
-      if (!(promised > small * before)) return true;
-      there_ = x + move_;
-      if (!problem_.linearise(there_) || !(problem_.cost(bound) < before)) continue;
-      x = there_;
-      damping_ = std::max(damping_ / 10, least_damping);
-      return false;
-    }
-    return true;
+  TriedStep tried(double damping) {
+    damped_ = normal_;
+    damped_.diagonal() += damping * normal_.diagonal().cwiseMax(std::numeric_limits<double>::min());
+    if (!factors_.compute(damped_)) return {};
+    move_ = -gradient_;
+    factors_.solve_in_place(move_);
+    const double promised = -0.5 * gradient_.dot(move_);
+    there_ = result_.x + move_;
+    if (!is_worth_it(promised) || !problem_.linearise(there_)) return {.promised = promised};
+    return {problem_.cost(bound_), promised};
   }
-
+  // The normal equations where it stands; the cost there.
+  double prepare() {
+    bound_ = bound_of(problem_, config_);
+    problem_.normal(bound_, gradient_, normal_);
+    hold(config_.is_free, gradient_, normal_);
+    return cost_ = problem_.cost(bound_);
+  }
+  [[nodiscard]] bool is_worth_it(double promised) const { return promised > 1e-14 * cost_; }
   // Whether a whole step would lower the cost by less than a thousandth of a standard deviation of anything
   // does.
   bool is_at_the_bottom() {
     constexpr double nothing = 1e-6;
-    problem_.normal(bound_of(problem_, config_), gradient_, normal_);
-    hold(config_.is_free, gradient_, normal_);
     if (!factors_.compute(normal_)) return false;
     move_ = gradient_;
     factors_.solve_in_place(move_);
@@ -84,7 +89,8 @@ class Descent {
 
   RigProblem& problem_;
   const RigDescentConfig& config_;
-  double damping_ = 1e-4;
+  RigDescent result_;
+  double bound_ = 0, cost_ = 0;
   Eigen::VectorXd gradient_, move_, there_;
   Eigen::MatrixXd normal_, damped_;
   Cholesky factors_;
@@ -102,7 +108,7 @@ RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start, const RigD
   for (int round = 0; round < most_rounds; ++round) {
     const bool is_changed = problem.choose_rims(result.x);
     if (round > 0 && !is_changed) break;
-    result = Descent(problem, config).run(result.x);
+    result = RigSteps(problem, config, result.x).run();
     iterations += result.iterations;
   }
   result.iterations = iterations;

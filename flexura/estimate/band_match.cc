@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "flexura/estimate/curve_image.h"
+#include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/space_curve.h"
 #include "flexura/math/median.h"
 
@@ -27,8 +28,7 @@ void sort(Places& places) { std::ranges::stable_sort(places, {}, &Place::s); }
 Places places_of(const Sighting& seen, const SpaceCurve& curve, const Shape& shape, std::size_t number) {
   CurveImage image;
   Places places;
-  const ViewError error = number < shape.views.size() ? shape.views[number] : ViewError{};
-  if (!image.set(corrected(seen.view, error), curve)) return places;
+  if (!image.set(corrected(seen.view, error_of(shape, number)), curve)) return places;
   for (std::size_t i = 0; i < seen.bands.size(); ++i) {
     const SeenBand& band = seen.bands[i];
     const CurveImage::Point near = image.nearest(band.pixel, band.heading, image.everywhere());

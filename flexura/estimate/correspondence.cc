@@ -15,8 +15,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct SeenRay {
-  SpaceRay ray;
-  std::size_t point = 0;  // Of the sighting's.
+  Eigen::Vector3d eye, direction;  // W; of any length.
+  std::size_t point = 0;           // Of the sighting's.
 };
 
 std::vector<SeenRay> rays_of(const Sighting& seen) {
@@ -25,7 +25,7 @@ std::vector<SeenRay> rays_of(const Sighting& seen) {
     const auto ab = seen.view.lens.unproject(seen.points[i].pixel);
     if (!ab) continue;
     rays.push_back(
-        {{seen.view.X_WC.position, seen.view.X_WC.rotation * Eigen::Vector3d(ab->x(), ab->y(), 1)}, i});
+        {seen.view.X_WC.position, seen.view.X_WC.rotation * Eigen::Vector3d(ab->x(), ab->y(), 1), i});
   }
   return rays;
 }
@@ -95,9 +95,8 @@ class Alignment {
   std::vector<std::uint8_t> from_;
 };
 
-}  // namespace
-
-std::optional<SpacePoint> meeting(const SpaceRay& a, const SpaceRay& b) {
+// The middle of where two rays come nearest; none of parallel ones.
+std::optional<Eigen::Vector3d> meeting_of(const SeenRay& a, const SeenRay& b) {
   const double aa = a.direction.squaredNorm(), bb = b.direction.squaredNorm(),
                ab = a.direction.dot(b.direction);
   const double determinant = aa * bb - ab * ab;
@@ -107,35 +106,33 @@ std::optional<SpacePoint> meeting(const SpaceRay& a, const SpaceRay& b) {
   const double da = between.dot(a.direction), db = between.dot(b.direction);
   const Eigen::Vector3d on_a = a.eye + (bb * da - ab * db) / determinant * a.direction;
   const Eigen::Vector3d on_b = b.eye + (ab * da - aa * db) / determinant * b.direction;
-  return SpacePoint{0.5 * (on_a + on_b), (on_a - on_b).norm(), {0, 0}};
+  return 0.5 * (on_a + on_b);
 }
 
-Correspondence correspondence(const Sighting& a, const Sighting& b) {
+}  // namespace
+
+std::vector<SpacePoint> correspondence(const Sighting& a, const Sighting& b) {
   const std::vector<SeenRay> left = rays_of(a), right = rays_of(b);
-  Correspondence result;
-  if (left.empty() || right.empty()) return result;
+  if (left.empty() || right.empty()) return {};
   const Eigen::Vector3d baseline = b.view.X_WC.position - a.view.X_WC.position;
   const double scale = 0.5 * (focal_length(a) + focal_length(b));
   Alignment alignment(left.size(), right.size());
   for (std::size_t i = 0; i < left.size(); ++i) {
     // The epipolar plane of the left ray; the sine of the right ray's angle with it.
-    const Eigen::Vector3d normal = baseline.cross(left[i].ray.direction).normalized();
+    const Eigen::Vector3d normal = baseline.cross(left[i].direction).normalized();
     for (std::size_t j = 0; j < right.size(); ++j) {
-      const double off = scale * normal.dot(right[j].ray.direction) / right[j].ray.direction.norm();
+      const double off = scale * normal.dot(right[j].direction) / right[j].direction.norm();
       alignment.cost(i, j) = off * off;
     }
   }
   const auto is_cut = [&](std::size_t end) { return !a.ends[end] || !b.ends[end]; };
   std::vector<std::array<std::size_t, 2>> pairs;
   alignment.solve({is_cut(0), is_cut(1)}, pairs);
-  for (const auto& [i, j] : pairs) {
-    result.cost += alignment.cost(i, j) / static_cast<double>(pairs.size());
-    auto point = meeting(left[i].ray, right[j].ray);
-    if (!point) continue;
-    point->seen = {left[i].point, right[j].point};
-    result.points.push_back(*point);
-  }
-  return result;
+  std::vector<SpacePoint> points;
+  for (const auto& [i, j] : pairs)
+    if (const auto point = meeting_of(left[i], right[j]))
+      points.push_back({*point, {left[i].point, right[j].point}});
+  return points;
 }
 
 }  // namespace flexura

@@ -41,13 +41,13 @@ DirectionAngles angles_of_planes(double alpha_1, double alpha_2) {
 
 std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting& side, std::size_t count) {
   constexpr std::size_t fewest = 8;
-  const Correspondence common = correspondence(front, side);
-  if (common.points.size() < fewest) return {};
-  std::vector<double> way(common.points.size(), 0);
-  std::vector<DirectionAngles> seen(common.points.size());
-  for (std::size_t i = 0; i < common.points.size(); ++i) {
-    const SpacePoint& point = common.points[i];
-    if (i > 0) way[i] = way[i - 1] + (point.position - common.points[i - 1].position).norm();
+  const std::vector<SpacePoint> common = correspondence(front, side);
+  if (common.size() < fewest) return {};
+  std::vector<double> way(common.size(), 0);
+  std::vector<DirectionAngles> seen(common.size());
+  for (std::size_t i = 0; i < common.size(); ++i) {
+    const SpacePoint& point = common[i];
+    if (i > 0) way[i] = way[i - 1] + (point.position - common[i - 1].position).norm();
     const Eigen::Vector3d d1 = image_direction(front, point.seen[0]),
                           d2 = image_direction(side, point.seen[1]);
     seen[i] = angles_of_planes(std::atan2(d1.x(), d1.y()), std::atan2(d2.z(), d2.y()));

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -37,22 +36,6 @@ TEST(ShapeWithDoubtfulViews, IsFoundWithTheErrorsOfTheViews) {
       EXPECT_NEAR(found.shape.views[i].focal, cameras.errors[i].focal, 2e-3);
     }
   });
-}
-
-TEST(ShapeWithDoubtfulViews, IsWrongWhereTheyAreBelieved) {
-  std::vector<double> off;
-  for_random_cases(20, [&](TestRandom& random) {
-    const ShapePrior prior{.arm = three_section_arm()};
-    const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.5));
-    WrongCameras cameras = wrong_cameras(truth, random, 0);
-    for (Sighting& one : cameras.seen) one.doubt = {};
-    EstimatorConfig patient;
-    patient.most_rms = 20;
-    ShapeEstimator estimator(prior, patient);
-    off.push_back(shape_error(estimator.estimate(cameras.seen).shape, truth));
-  });
-  std::ranges::sort(off);
-  EXPECT_GT(off[off.size() / 2], 5e-3);
 }
 
 // Pictures of two shapes: what explains little of them tells nothing of where cameras stand.

@@ -276,7 +276,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   const double length = add_sigmas(problem, fit.covariance, result);
   const double sigma = result.rms_sigma();
-  if (!(sigma < config_.hopeless * length)) {
+  constexpr double hopeless = 0.05;
+  if (!(sigma < hopeless * length)) {
     result.reason = "the images do not tell the shape";
     return result;
   }

@@ -20,8 +20,6 @@ struct EstimatorConfig {
   /// Estimates whose standard deviation, root mean square along the arm, is larger are marked; share of its
   /// length.
   double uncertain = 1.1e-4;
-  /// Beyond this share the sightings tell no shape.
-  double hopeless = 0.05;
   /// Shapes whose images lie farther from the points are none, unless their noise explains it; px, root mean
   /// square. Cameras that are known badly need more.
   double most_rms = 1;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
+#include "flexura/math/levenberg_marquardt.h"
 #include "flexura/math/median.h"
 
 namespace flexura {
@@ -42,6 +44,20 @@ double correlation_factor(std::span<const double> series) {
   return factor;
 }
 
+double cost_of(const ShapeProblem& problem, double cutoff) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
+    const double r = problem.residuals()[i];
+    sum += problem.is_seen(i) ? bounded_square(r, cutoff) : r * r;
+  }
+  return sum;
+}
+
+double eased(double damping, double ratio) {
+  if (ratio > 0.75) return std::max(1e-9, 0.05 * damping);
+  return ratio < 0.25 ? 8 * damping : damping;
+}
+
 // Pivots below this of the greatest are those of a singular matrix.
 constexpr double rounding = 1e-15;
 
@@ -56,15 +72,6 @@ double ShapeDescent::cutoff(const ShapeProblem& problem) {
   return doubtful * std::max(1.0, median(std::span(sizes_)) / median_size);
 }
 
-double ShapeDescent::cost(const ShapeProblem& problem, double cutoff) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) {
-    const double r = problem.residuals()[i];
-    sum += problem.is_seen(i) ? bounded_square(r, cutoff) : r * r;
-  }
-  return sum;
-}
-
 void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
   weights_.resize(problem.rows());
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
@@ -77,30 +84,14 @@ void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
   gradient_.noalias() = weighted_ * weights_.cwiseSqrt().cwiseProduct(problem.residuals());
 }
 
-// Moves the shape one step down, or leaves it; what that gained.
-double ShapeDescent::step(ShapeProblem& problem, double cutoff, double before, double& damping,
-                          Shape& shape) {
-  constexpr double hopeless = 1e12, least = 1e-9;
-  for (; damping < hopeless; damping *= 8) {
-    damped_ = normal_;
-    damped_.diagonal() += damping * (normal_.diagonal().array() + 1e-12).matrix();
-    solver_.compute(damped_);
-    step_ = -gradient_;
-    solver_.solve_in_place(step_);
-    const Shape there = problem.variables().moved(shape, step_);
-    if (!step_.allFinite() || !problem.linearise(there)) continue;
-    const double gain = before - cost(problem, cutoff);
-    if (gain < 0) continue;
-    // What the linear model promised.
-    const double promised = -step_.dot(2 * gradient_ + normal_.selfadjointView<Eigen::Lower>() * step_);
-    shape = there;
-    if (gain > 0.75 * promised) damping = std::max(least, 0.05 * damping);
-    if (gain < 0.25 * promised) damping *= 8;
-    return gain;
-  }
-  damping = 1;
-  (void)problem.linearise(shape);
-  return 0;
+// Whether there is one.
+bool ShapeDescent::find_step(double damping) {
+  damped_ = normal_;
+  damped_.diagonal() += damping * (normal_.diagonal().array() + 1e-12).matrix();
+  solver_.compute(damped_);
+  step_ = -gradient_;
+  solver_.solve_in_place(step_);
+  return step_.allFinite();
 }
 
 ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int most_iterations,
@@ -110,23 +101,44 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
   fit.shape = start;
   fit.cost = std::numeric_limits<double>::infinity();
   if (!problem.linearise(fit.shape)) return fit;
-  double limit = cutoff(problem), damping = is_near ? 1e-6 : 1e-3;
+  double limit = cutoff(problem);
   // At first all points are believed, however far off the start is; then fewer and fewer that are far.
   if (!is_near) limit = std::max(limit, 2 * problem.residuals().lpNorm<Eigen::Infinity>());
-  for (; fit.iterations < most_iterations && !fit.is_settled; ++fit.iterations) {
-    const double before = cost(problem, limit);
-    weigh(problem, limit);
-    const double gain = step(problem, limit, before, damping, fit.shape);
-    constexpr double slow = 0.3, narrowing = 0.25;
-    const double least = cutoff(problem);
-    double next = is_near ? least : std::max(narrowing * limit, least);
-    if (!is_near && gain > slow * before) next = limit;
-    // The step just made was a tenth of a standard deviation: the next one would be a thirtieth.
-    const double scale = limit / doubtful;
-    fit.is_settled = gain <= 1e-2 * scale * scale && least >= 0.99 * limit;
-    limit = std::min(limit, next);
-  }
   weigh(problem, limit);
+  // After a step that gained so much of the cost; whether it was the last.
+  const auto narrow = [&](double gain, double cost) {
+    constexpr double slow = 0.3, narrowing = 0.25;
+    const double least = cutoff(problem), scale = limit / doubtful;
+    // The step just made was a tenth of a standard deviation: the next one would be a thirtieth.
+    fit.is_settled = gain <= 1e-2 * scale * scale && least >= 0.99 * limit;
+    if (is_near || gain <= slow * cost)
+      limit = std::min(limit, is_near ? least : std::max(narrowing * limit, least));
+    weigh(problem, limit);
+    return ++fit.iterations >= most_iterations || fit.is_settled;
+  };
+  Shape there;
+  const auto try_step = [&](double damping) -> TriedStep {
+    const bool is_step = find_step(damping);
+    there = problem.variables().moved(fit.shape, step_);
+    if (!is_step || !problem.linearise(there)) return {};
+    const auto normal = normal_.selfadjointView<Eigen::Lower>();
+    return {cost_of(problem, limit), -step_.dot(2 * gradient_ + normal * step_)};
+  };
+  const auto keep = [&](const TriedStep& step, double& cost) {
+    std::swap(fit.shape, there);
+    const bool is_last = narrow(cost - step.cost, cost);
+    cost = cost_of(problem, limit);
+    return is_last;
+  };
+  const auto leave = [](const TriedStep&, double) { return false; };
+  Damping damping{.start = is_near ? 1e-6 : 1e-3, .rise = 8, .eased = eased};
+  while (levenberg_marquardt(cost_of(problem, limit), damping, std::numeric_limits<int>::max(), try_step,
+                             keep, leave) == DescentEnd::stuck) {
+    (void)problem.linearise(fit.shape);
+    // With fewer points believed another step may lead down.
+    if (narrow(0, 0)) break;
+    damping.start = 1;
+  }
   finish(problem, limit, fit);
   return fit;
 }

@@ -42,9 +42,8 @@ class ShapeDescent {
 
  private:
   [[nodiscard]] double cutoff(const ShapeProblem& problem);
-  [[nodiscard]] static double cost(const ShapeProblem& problem, double cutoff);
   void weigh(const ShapeProblem& problem, double cutoff);
-  double step(ShapeProblem& problem, double cutoff, double before, double& damping, Shape& shape);
+  bool find_step(double damping);
   void finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit);
   // Of the unknowns; `square`: of the points' weighted residuals, `weight`: of the points.
   [[nodiscard]] Eigen::MatrixXd covariance(const ShapeProblem& problem, double square, double weight);

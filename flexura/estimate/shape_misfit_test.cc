@@ -171,23 +171,5 @@ TEST(ShapeMisfit, IsNotToldOfDisksOrOfWideLenses) {
   });
 }
 
-TEST(ShapeStart, BendsOneSectionAnyWay) {
-  TestRandom random(3);
-  const Seen seen = random_seen(random);
-  const std::vector<Shape> shapes = bent_otherwise(seen.truth, 1, 0.7, 8);
-  ASSERT_EQ(shapes.size(), 8U);
-  for (const Shape& shape : shapes) {
-    EXPECT_NEAR(shape.state.bends[1].norm(), 0.7, 1e-12);
-    EXPECT_EQ(shape.state.bends[0], seen.truth.state.bends[0]);
-    EXPECT_EQ(shape.state.bends[2], seen.truth.state.bends[2]);
-  }
-  EXPECT_NEAR((shapes[0].state.bends[1] + shapes[4].state.bends[1]).norm(), 0, 1e-12);
-  Shape planar = seen.truth;
-  planar.arm.kind = ArmKind::planar;
-  ASSERT_EQ(bent_otherwise(planar, 1, 0.7, 8).size(), 2U);
-  EXPECT_EQ(bent_otherwise(planar, 1, 0.7, 8)[1].state.bends[1].y(), 0);
-  EXPECT_EQ(bent_otherwise(planar, 1, 0, 1).size(), 1U);
-}
-
 }  // namespace
 }  // namespace flexura

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "flexura/estimate/shape_silhouette.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {
@@ -55,7 +56,7 @@ bool ShapeProblem::linearise(const Shape& shape) {
   for (FirstLook& look : first_looks_) look.is_there = false;
   for (std::size_t i = 0; i < sightings_.size(); ++i) {
     const Sighting& seen = sightings_[i];
-    const ViewError error = i < shape.views.size() ? shape.views[i] : ViewError{};
+    const ViewError error = error_of(shape, i);
     if (!image_.set(seen.view, error, curve_, variables_.of_view(i), variables_.count())) return false;
     const auto first = static_cast<std::ptrdiff_t>(count_);
     add_points(seen);

@@ -68,7 +68,7 @@ SightingPair best_pair(std::span<const Sighting> sightings) {
 
 std::vector<Eigen::Vector3d> places_seen(const Sighting& one, const Sighting& other) {
   std::vector<Eigen::Vector3d> places;
-  for (const SpacePoint& point : correspondence(one, other).points) places.push_back(point.position);
+  for (const SpacePoint& point : correspondence(one, other)) places.push_back(point.position);
   return places;
 }
 

@@ -91,7 +91,7 @@ void CurveProblem::place(const Eigen::VectorXd& x) {
   }
 }
 
-void CurveProblem::linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J) {
+void CurveProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
   place(x);
   const double total = placed_.back().s + placed_.back().length;
   std::size_t section = 0;
@@ -107,7 +107,7 @@ void CurveProblem::linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J)
 // A stretch moves the point at a fixed part of the arc length in two ways: it carries the material along, and
 // it moves the point through the material, along the tangent.
 void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index row,
-                              const Eigen::Vector3d& wanted, Residual& r, Jacobian& J) const {
+                              const Eigen::Vector3d& wanted, Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
   const Placed& own = placed_[section];
   const double total = placed_.back().s + placed_.back().length;
   const double own_part = std::clamp((fraction * total - own.s) / own.length, 0.0, 1.0);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
+#include "flexura/kinematics/bounded_least_squares.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
@@ -12,19 +13,17 @@ namespace flexura {
 /// spaced parts f of the backbone's arc length, the distance (x, y, z in the base's axes) of its point there
 /// from the polyline's point at the same part of its own length, over the arm's greatest length and over the
 /// root of the number of points: |r|^2 is the mean square.
-class CurveProblem {
+class CurveProblem final : public BoundedProblem {
  public:
-  static constexpr int rows = Eigen::Dynamic;
-  using Residual = Eigen::VectorXd;
-  using Jacobian = Eigen::MatrixXd;
-
   /// `points` in the base's frame, two or more with a length; `length` is the scale of distances, m.
   CurveProblem(const ArmVariables& variables, const std::vector<Eigen::Vector3d>& points, double length);
 
-  [[nodiscard]] Eigen::Index row_count() const { return 3 * static_cast<Eigen::Index>(wanted_.size()); }
-  void linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J);
+  [[nodiscard]] Eigen::Index row_count() const override {
+    return 3 * static_cast<Eigen::Index>(wanted_.size());
+  }
+  void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
   /// A curve is fitted as well as it can be: met only where nothing is left to gain.
-  [[nodiscard]] static bool is_met(const Residual& r) { return r.squaredNorm() < 1e-26; }
+  [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override { return r.squaredNorm() < 1e-26; }
   /// How far the backbone of state x is from the polyline, m: the largest distance of points at the same
   /// parts of either's length, at all of the polyline's own points and at many between them, where the
   /// residual looks at a few.
@@ -48,7 +47,7 @@ class CurveProblem {
   };
   void place(const Eigen::VectorXd& x);
   void point_rows(double fraction, std::size_t section, Eigen::Index row, const Eigen::Vector3d& wanted,
-                  Residual& r, Jacobian& J) const;
+                  Eigen::VectorXd& r, Eigen::MatrixXd& J) const;
   [[nodiscard]] Eigen::Vector3d at(double fraction) const;
   [[nodiscard]] Eigen::Vector3d tangent_at(double fraction) const;
 

@@ -8,7 +8,6 @@
 
 #include "flexura/kinematics/inverse_check.h"
 #include "flexura/kinematics/inverse_distinct.h"
-#include "flexura/kinematics/inverse_minimum.h"
 #include "flexura/kinematics/inverse_search.h"
 #include "flexura/kinematics/inverse_wish.h"
 #include "flexura/kinematics/reach.h"
@@ -68,9 +67,13 @@ struct Question {
   std::optional<Eigen::VectorXd> start;
 };
 
-template <int Rows>
-TipProblem<Rows> problem_of(const Question& q) {
-  return {q.variables, q.X_BT, q.length, q.position_tolerance, q.config.angle_tolerance};
+TipRows rows_of(const TipTarget& target) {
+  if (target.rotation) return TipRows::rotation;
+  return target.direction ? TipRows::direction : TipRows::position;
+}
+
+TipProblem problem_of(const Question& q, TipRows rows) {
+  return {rows, q.variables, q.X_BT, q.length, q.position_tolerance, q.config.angle_tolerance};
 }
 
 // What is said of a state, from the model's own forward kinematics.
@@ -91,40 +94,37 @@ InverseResult describe(const Question& q, const Found& found) {
   return result;
 }
 
-template <int Rows>
-InverseResult answer_out_of_reach(const Question& q) {
-  TipProblem<Rows> problem = problem_of<Rows>(q);
-  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+InverseResult answer_out_of_reach(const Question& q, TipRows rows) {
+  TipProblem problem = problem_of(q, rows);
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
-  const Found found =
-      nearest(problem, q.variables, starts, std::min(nearest_starts, q.config.max_starts), memory);
+  const Found found = nearest(descent, starts, std::min(nearest_starts, q.config.max_starts));
   InverseResult result = describe(q, found);
   result.outcome = InverseOutcome::not_reachable;
   result.is_proven = true;
-  result.iterations = memory.iterations;
+  result.iterations = descent.iterations;
   return result;
 }
 
-template <int Rows>
 InverseResult answer(const Question& q) {
-  TipProblem<Rows> problem = problem_of<Rows>(q);
-  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+  const TipRows rows = rows_of(q.target);
+  TipProblem problem = problem_of(q, rows);
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
   Found found;
-  search(problem, q.variables, starts, std::min(starts_before_proof, q.config.max_starts), memory, found);
+  search(descent, starts, std::min(starts_before_proof, q.config.max_starts), found);
   if (!found.is_met()) {
-    if (q.is_position_out_of_reach()) return answer_out_of_reach<3>(q);
-    if (q.is_orientation_out_of_reach()) return answer_out_of_reach<Rows>(q);
-    search(problem, q.variables, starts, q.config.max_starts, memory, found);
+    if (q.is_position_out_of_reach()) return answer_out_of_reach(q, TipRows::position);
+    if (q.is_orientation_out_of_reach()) return answer_out_of_reach(q, rows);
+    search(descent, starts, q.config.max_starts, found);
   }
-  if (!found.is_met()) settle(problem, q.variables, settling_iterations, found, memory);
+  if (!found.is_met()) settle(descent, settling_iterations, found);
   if (found.is_met() && q.config.wish != InverseWish::none) {
-    follow_wish(problem, q.variables.bounds(), WishScale(q.variables, q.config.wish), found.x, memory);
+    follow_wish(descent, WishScale(q.variables, q.config.wish), found.x);
   }
   InverseResult result = describe(q, found);
-  result.outcome =
-      found.is_met() ? InverseOutcome::converged : outcome_of_missed(problem, q.variables, found, memory);
-  result.iterations = memory.iterations;
+  result.iterations = descent.iterations;
+  result.outcome = found.is_met() ? InverseOutcome::converged : outcome_of_missed(descent, found);
   return result;
 }
 
@@ -145,21 +145,19 @@ struct Solution {
 };
 
 // The solutions that are apart from each other, each the least of its wish nearby.
-template <int Rows>
 class SolutionList {
  public:
-  SolutionList(const Question& q, TipProblem<Rows>& problem, DescentMemory<TipProblem<Rows>>& memory)
+  SolutionList(const Question& q, BoundedDescent& descent)
       : q_(q),
-        problem_(problem),
-        memory_(memory),
+        descent_(descent),
         scale_(q.variables, q.config.wish == InverseWish::none ? InverseWish::least_bending : q.config.wish),
         is_round_(is_round(q)) {}
 
   void add(Found found) {
-    follow_wish(problem_, q_.variables.bounds(), scale_, found.x, memory_);
+    follow_wish(descent_, scale_, found.x);
     // Most starts come to the same few solutions: no need to run down to those again.
     if (is_known(solution(found))) return;
-    WishMinimum<TipProblem<Rows>>(problem_, q_.variables.bounds(), scale_, memory_).run_down(found.x);
+    run_down_to_minimum(descent_, scale_, found.x);
     Solution lowest = solution(std::move(found));
     if (!is_known(lowest)) solutions_.push_back(std::move(lowest));
   }
@@ -186,25 +184,33 @@ class SolutionList {
   }
 
   const Question& q_;
-  TipProblem<Rows>& problem_;
-  DescentMemory<TipProblem<Rows>>& memory_;
+  BoundedDescent& descent_;
   WishScale scale_;
   bool is_round_;
   std::vector<Solution> solutions_;
 };
 
-template <int Rows>
-std::vector<InverseResult> all_answers(const Question& q) {
+}  // namespace
+
+InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseConfig& config) {
+  check_question(target, config);
+  return answer({arm, target, config});
+}
+
+std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
+                                                 const InverseConfig& config) {
+  check_question(target, config);
+  const Question q(arm, target, config);
   if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
-  TipProblem<Rows> problem = problem_of<Rows>(q);
-  DescentMemory<TipProblem<Rows>> memory(problem, q.variables.size(), q.variables.bounds().size());
+  TipProblem problem = problem_of(q, rows_of(target));
+  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
-  SolutionList<Rows> list(q, problem, memory);
-  for (int i = 0; i < q.config.max_starts; ++i) {
+  SolutionList list(q, descent);
+  for (int i = 0; i < config.max_starts; ++i) {
     // As patient with the i-th start as a search for one answer is, which is then among all.
     Found found;
     found.starts = i;
-    search(problem, q.variables, starts, i + 1, memory, found);
+    search(descent, starts, i + 1, found);
     if (found.is_met()) list.add(std::move(found));
   }
   std::vector<InverseResult> results;
@@ -213,25 +219,6 @@ std::vector<InverseResult> all_answers(const Question& q) {
     results.back().outcome = InverseOutcome::converged;
   }
   return results;
-}
-
-}  // namespace
-
-InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const InverseConfig& config) {
-  check_question(target, config);
-  const Question question(arm, target, config);
-  if (target.rotation) return answer<6>(question);
-  if (target.direction) return answer<5>(question);
-  return answer<3>(question);
-}
-
-std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                 const InverseConfig& config) {
-  check_question(target, config);
-  const Question question(arm, target, config);
-  if (target.rotation) return all_answers<6>(question);
-  if (target.direction) return all_answers<5>(question);
-  return all_answers<3>(question);
 }
 
 std::string_view name_of(InverseOutcome outcome) {

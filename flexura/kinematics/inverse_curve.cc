@@ -79,7 +79,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
   const double tolerance = config.position_tolerance.value_or(allowance);
   CurveProblem problem(variables, points, length);
-  DescentMemory<CurveProblem> memory(problem, variables.size(), variables.bounds().size());
+  BoundedDescent descent(problem, variables.bounds(), variables.size());
   std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
   if (config.start) first = variables.pack(*config.start);
   InverseStarts starts(variables, problem.end(), first, config.seed);
@@ -88,16 +88,16 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   Eigen::VectorXd x(variables.size());
   double error = 0.0;
   const int affordable = affordable_iterations(problem, variables, most_starts * most_iterations);
-  while (found.starts < std::min(config.max_starts, most_starts) && memory.iterations < affordable) {
+  while (found.starts < std::min(config.max_starts, most_starts) && descent.iterations < affordable) {
     if (config.start && found.starts == 1) {
       x = problem.start_along_tangents();
     } else {
       starts.next(x);
     }
-    const DescentLimits limits{.iterations = std::min(most_iterations, affordable - memory.iterations),
+    const DescentLimits limits{.iterations = std::min(most_iterations, affordable - descent.iterations),
                                .slope = 1e-7};
-    const Descent ended = descend(problem, variables.bounds(), limits, x, memory);
-    found.keep_better(x, memory.r.squaredNorm(), ended);
+    const Descent ended = descent.descend(limits, x);
+    found.keep_better(x, descent.square, ended);
     ++found.starts;
     error = problem.largest_distance(found.x);
     if (error <= tolerance) break;
@@ -105,7 +105,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
 
   if (error > tolerance && found.ended == Descent::exhausted) {
     const int settling = affordable_iterations(problem, variables, settling_iterations);
-    settle(problem, variables, settling, found, memory);
+    settle(descent, settling, found);
     error = problem.largest_distance(found.x);
   }
   InverseResult result;
@@ -113,7 +113,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
   result.tip = tip_pose(arm, result.state).position;
   result.position_error = error;
   result.position_tolerance = tolerance;
-  result.iterations = memory.iterations;
+  result.iterations = descent.iterations;
   result.starts = found.starts;
   if (error <= tolerance) {
     result.outcome = InverseOutcome::converged;
@@ -121,7 +121,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     result.outcome = InverseOutcome::not_reachable;
     result.is_proven = true;
   } else {
-    result.outcome = outcome_of_missed(problem, variables, found, memory);
+    result.outcome = outcome_of_missed(descent, found);
   }
   return result;
 }

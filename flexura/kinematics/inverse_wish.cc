@@ -1,6 +1,7 @@
 #include "flexura/kinematics/inverse_wish.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace flexura {
 
@@ -25,6 +26,35 @@ Bounds WishScale::relative(Bounds bounds) const {
     bound.high = (bound.high - middle[bound.at]) / range[bound.at];
   }
   return bounds;
+}
+
+void follow_wish(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x) {
+  constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
+  constexpr double least_gain = 1e-10;
+  const Bounds relative_bounds = scale.relative(descent.bounds);
+  const Eigen::VectorXd ideal = Eigen::VectorXd::Zero(x.size());
+  double wish = scale.relative(x).squaredNorm();
+  Eigen::VectorXd candidate(x.size());
+  for (int i = 0; i < 100; ++i) {
+    descent.problem.linearise(x, descent.r, descent.J);
+    // In relative values: from the ideal, 0, the shortest step onto the linear problem's solutions.
+    descent.J *= scale.range.asDiagonal();
+    descent.r -= descent.J.lazyProduct(scale.relative(x));
+    descent.try_step(relative_bounds, ideal, 1e-12);
+    const Eigen::VectorXd direction = scale.absolute(descent.trial) - x;
+    double gained = 0.0;
+    for (double part = 1.0; part > 1e-2 && gained == 0.0; part *= 0.5) {
+      candidate = x + part * direction;
+      project(descent.bounds, candidate);
+      if (descent.descend(back, candidate) != Descent::met) continue;
+      const double new_wish = scale.relative(candidate).squaredNorm();
+      if (!(new_wish < wish)) continue;
+      gained = wish - new_wish;
+      wish = new_wish;
+      x = candidate;
+    }
+    if (gained <= least_gain * wish) return;
+  }
 }
 
 }  // namespace flexura

@@ -19,10 +19,10 @@ Eigen::Vector2d turn_from(const Eigen::Vector3d& d) {
 
 }  // namespace
 
-template <int Rows>
-TipProblem<Rows>::TipProblem(const ArmVariables& variables, const Pose& X_BT, double length,
-                             double position_tolerance, double angle_tolerance)
-    : variables_(variables),
+TipProblem::TipProblem(TipRows rows, const ArmVariables& variables, const Pose& X_BT, double length,
+                       double position_tolerance, double angle_tolerance)
+    : rows_(rows),
+      variables_(variables),
       X_BT_(X_BT),
       scale_(1.0 / length),
       position_tolerance_(position_tolerance * scale_),
@@ -31,8 +31,7 @@ TipProblem<Rows>::TipProblem(const ArmVariables& variables, const Pose& X_BT, do
       angular_(3, variables.size()),
       ends_(3, static_cast<Eigen::Index>(variables.parts().size())) {}
 
-template <int Rows>
-void TipProblem<Rows>::chain(const Eigen::VectorXd& x) {
+void TipProblem::chain(const Eigen::VectorXd& x) {
   tip_ = Pose{};
   Eigen::Index section = 0;
   for (const ArmVariables::Part& part : variables_.parts()) {
@@ -53,39 +52,29 @@ void TipProblem<Rows>::chain(const Eigen::VectorXd& x) {
   }
 }
 
-template <int Rows>
-void TipProblem<Rows>::linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J) {
+void TipProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
   chain(x);
+  const Eigen::Index angles = row_count() - 3;
   Eigen::Index section = 0;
   for (const ArmVariables::Part& part : variables_.parts()) {
     const Eigen::Vector3d lever = tip_.position - ends_.col(section++);
     const Eigen::Index end = part.stretch_at() + (part.is_stretchable ? 1 : 0);
     for (Eigen::Index k = part.at; k < end; ++k) {
       const Eigen::Vector3d angular = angular_.col(k);
-      J.col(k).template head<3>() = scale_ * (linear_.col(k) + angular.cross(lever));
-      if constexpr (Rows > 3) {
-        J.col(k).template tail<Rows - 3>() =
-            tip_.rotation.template leftCols<Rows - 3>().transpose() * angular;
-      }
+      J.col(k).head<3>() = scale_ * (linear_.col(k) + angular.cross(lever));
+      for (Eigen::Index i = 0; i < angles; ++i) J(3 + i, k) = tip_.rotation.col(i).dot(angular);
     }
   }
-  r.template head<3>() = scale_ * (tip_.position - X_BT_.position);
-  if constexpr (Rows == 5) {
-    r.template tail<2>() = turn_from(tip_.rotation.transpose() * X_BT_.rotation.col(2));
-  } else if constexpr (Rows == 6) {
-    r.template tail<3>() = so3_log(X_BT_.rotation.transpose() * tip_.rotation);
-  }
+  r.head<3>() = scale_ * (tip_.position - X_BT_.position);
+  if (rows_ == TipRows::direction)
+    r.tail<2>() = turn_from(tip_.rotation.transpose() * X_BT_.rotation.col(2));
+  else if (rows_ == TipRows::rotation)
+    r.tail<3>() = so3_log(X_BT_.rotation.transpose() * tip_.rotation);
 }
 
-template <int Rows>
-bool TipProblem<Rows>::is_met(const Residual& r) const {
-  if (r.template head<3>().squaredNorm() > position_tolerance_ * position_tolerance_) return false;
-  if constexpr (Rows == 3) return true;
-  return r.template tail<Rows - 3>().squaredNorm() <= angle_tolerance_ * angle_tolerance_;
+bool TipProblem::is_met(const Eigen::VectorXd& r) const {
+  return r.head<3>().squaredNorm() <= position_tolerance_ * position_tolerance_ &&
+         r.tail(r.size() - 3).squaredNorm() <= angle_tolerance_ * angle_tolerance_;
 }
-
-template class TipProblem<3>;
-template class TipProblem<5>;
-template class TipProblem<6>;
 
 }  // namespace flexura

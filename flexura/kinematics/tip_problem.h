@@ -3,41 +3,38 @@
 #include <Eigen/Core>
 
 #include "flexura/kinematics/arm_variables.h"
+#include "flexura/kinematics/bounded_least_squares.h"
 #include "flexura/math/pose.h"
 
 namespace flexura {
 
+/// What of the tip's pose is wanted, by the number of residuals that it makes.
+enum class TipRows { position = 3, direction = 5, rotation = 6 };
+
 /// The residual of "the tip shall be there", as a function of ArmVariables' x: rows 0 to 2 the tip's distance
 /// from the target in base axes over the arm's greatest length; then, in the tip's own axes, the rotation
 /// vector from the wanted orientation to the tip's, rad: two rows (about x and y) when only the direction of
-/// the tip's z is wanted, three for a whole rotation. `Rows` is 3, 5 or 6.
+/// the tip's z is wanted, three for a whole rotation.
 ///
 /// linearise() gives as orientation rows the angular velocity, not the derivative of the rotation vector e.
 /// The two differ by a matrix that has e as an eigenvector with eigenvalue 1, so the gradient of |e|^2 and
 /// the undamped Gauss-Newton step are the same, and the angular velocity has no singular orientation.
-template <int Rows>
-class TipProblem {
+class TipProblem final : public BoundedProblem {
  public:
-  static constexpr int rows = Rows;
-  using Residual = Eigen::Vector<double, Rows>;
-  using Jacobian = Eigen::Matrix<double, Rows, Eigen::Dynamic>;
+  /// `X_BT` is the wanted pose of the tip in the base's frame; of a direction only its z axis counts, of a
+  /// position only that. `length` is the scale of distances, m; tolerances in m and rad.
+  TipProblem(TipRows rows, const ArmVariables& variables, const Pose& X_BT, double length,
+             double position_tolerance, double angle_tolerance);
 
-  /// `X_BT` is the wanted pose of the tip in the base's frame; with 5 rows only its z axis counts, with 3
-  /// only its position. `length` is the scale of distances, m; tolerances in m and rad.
-  TipProblem(const ArmVariables& variables, const Pose& X_BT, double length, double position_tolerance,
-             double angle_tolerance);
-
-  [[nodiscard]] Eigen::Index row_count() const { return Rows; }
-  /// The residual at x, and its derivatives (Rows x variables.size(), already of that size).
-  void linearise(const Eigen::VectorXd& x, Residual& r, Jacobian& J);
+  [[nodiscard]] Eigen::Index row_count() const override { return static_cast<Eigen::Index>(rows_); }
+  void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
   /// Whether a residual is within both tolerances.
-  [[nodiscard]] bool is_met(const Residual& r) const;
-  /// The tip's pose in the base's frame at the last x.
-  [[nodiscard]] const Pose& tip() const { return tip_; }
+  [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override;
 
  private:
   void chain(const Eigen::VectorXd& x);
 
+  TipRows rows_;
   const ArmVariables& variables_;
   Pose X_BT_;
   double scale_;
@@ -49,9 +46,5 @@ class TipProblem {
   Eigen::Matrix3Xd ends_;  // Of each section.
   Pose tip_;
 };
-
-extern template class TipProblem<3>;
-extern template class TipProblem<5>;
-extern template class TipProblem<6>;
 
 }  // namespace flexura

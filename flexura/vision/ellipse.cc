@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/levenberg_marquardt.h"
 #include "flexura/math/small_cholesky.h"
 #include "flexura/vision/conic.h"
 
@@ -111,17 +112,46 @@ void put_in_order(EllipseFit& fit) {
   fit.angle -= std::numbers::pi * std::ceil(fit.angle / std::numbers::pi - 0.5);
 }
 
-// The normal equations; returns the sum of squares.
-double linearize(const EllipseFit& fit, std::span<const Vector2d> points, Matrix5& normal,
-                 Vector5& gradient) {
-  normal.setZero(), gradient.setZero();
-  double squares = 0;
-  Vector5 row;
-  for (const Vector2d& point : points) {
-    const double miss = distance_row(fit, point, &row);
-    normal += row * row.transpose(), gradient += miss * row, squares += miss * miss;
+// An ellipse with its normal equations.
+struct Linearized {
+  Linearized(const EllipseFit& of, std::span<const Vector2d> points) : fit(of) {
+    Vector5 row;
+    for (const Vector2d& point : points) {
+      const double miss = distance_row(fit, point, &row);
+      normal += row * row.transpose(), gradient += miss * row, squares += miss * miss;
+    }
   }
-  return squares;
+
+  EllipseFit fit;
+  Matrix5 normal = Matrix5::Zero();
+  Vector5 gradient = Vector5::Zero();
+  double squares = 0;
+};
+
+// The least sum of squares near an ellipse through points of that size.
+EllipseFit nearest_to(std::span<const Vector2d> points, double size, const EllipseFit& start) {
+  Linearized here(start, points), there = here;
+  const auto try_step = [&](double damping) -> TriedStep {
+    Matrix5 damped = here.normal;
+    damped.diagonal() += damping * here.normal.diagonal() + Vector5::Constant(1e-12 * here.normal.trace());
+    const Vector5 step = -solve_definite(damped, here.gradient);
+    EllipseFit next = here.fit;
+    next.center += step.head<2>(), next.semi_axes += step.segment<2>(2), next.angle += step[4];
+    if (!step.allFinite() || !(next.semi_axes.minCoeff() > 1e-6 * size)) return {};
+    there = Linearized(next, points);
+    return {.cost = there.squares};
+  };
+  const auto keep = [&](const TriedStep&, double& cost) {
+    here = there;
+    const bool is_last = cost - here.squares < 1e-14 * cost;
+    cost = here.squares;
+    return is_last;
+  };
+  const auto leave = [](const TriedStep& step, double cost) { return step.cost <= cost; };
+  const auto eased = [](double damping, double) { return std::max(1e-12, damping / 8); };
+  levenberg_marquardt(here.squares, {.start = 1e-6, .most = 1e6, .rise = 8, .eased = eased}, 60, try_step,
+                      keep, leave);
+  return here.fit;
 }
 
 }  // namespace
@@ -141,40 +171,16 @@ std::optional<EllipseFit> fit_ellipse(std::span<const Vector2d> points) {
   auto fit = start ? from_algebraic(*start, mean, size) : std::nullopt;
   if (!fit || fit->semi_axes.maxCoeff() > 1e4 * size) return std::nullopt;
   put_in_order(*fit);
-  Matrix5 normal;
-  Vector5 gradient;
-  double squares = linearize(*fit, points, normal, gradient), damping = 1e-6;
-  for (int round = 0; round < 60; ++round) {
-    Matrix5 damped = normal;
-    damped.diagonal() += damping * normal.diagonal() + Vector5::Constant(1e-12 * normal.trace());
-    const Vector5 step = -solve_definite(damped, gradient);
-    EllipseFit next = *fit;
-    next.center += step.head<2>(), next.semi_axes += step.segment<2>(2), next.angle += step[4];
-    Matrix5 next_normal;
-    Vector5 next_gradient;
-    const bool is_ellipse = step.allFinite() && next.semi_axes.minCoeff() > 1e-6 * size;
-    const double next_squares =
-        is_ellipse ? linearize(next, points, next_normal, next_gradient) : 2 * squares + 1;
-    if (next_squares > squares) {
-      damping *= 8;
-      if (damping > 1e6) break;
-      continue;
-    }
-    *fit = next, normal = next_normal, gradient = next_gradient;
-    damping = std::max(1e-12, damping / 8);
-    const bool is_done = squares - next_squares < 1e-14 * squares;
-    squares = next_squares;
-    if (is_done) break;
-  }
+  fit = nearest_to(points, size, *fit);
   put_in_order(*fit);
   // A line is no ellipse, however thin.
   if (fit->semi_axes.y() < 1e-4 * fit->semi_axes.x()) return std::nullopt;
-  squares = linearize(*fit, points, normal, gradient);
+  Linearized last(*fit, points);
   const auto count = static_cast<double>(points.size());
-  fit->rms = std::sqrt(squares / count);
+  fit->rms = std::sqrt(last.squares / count);
   // The angle of a circle is not known: so little as rounding keeps the inverse finite.
-  normal.diagonal().array() += 1e-12 * normal.trace();
-  fit->covariance = squares / std::max(1.0, count - 5) * normal.inverse();
+  last.normal.diagonal().array() += 1e-12 * last.normal.trace();
+  fit->covariance = last.squares / std::max(1.0, count - 5) * last.normal.inverse();
   return fit;
 }
 

@@ -1,85 +1,17 @@
-#pragma once
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "flexura/kinematics/bounded_least_squares.h"
 #include "flexura/kinematics/inverse_wish.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {
+namespace {
 
-/// Brings a solution that follow_wish has led near a minimum of the wish to the minimum itself, by Newton's
-/// steps on the surface of solutions. follow_wish knows that surface's tangents but not how it bends, and
-/// comes nearer by a factor an iteration: it ends some 1e-5 away, each time elsewhere.
-template <class Problem>
 class WishMinimum {
  public:
-  WishMinimum(Problem& problem, const Bounds& bounds, const WishScale& scale, DescentMemory<Problem>& memory)
-      : problem_(problem), bounds_(bounds), scale_(scale), memory_(memory) {}
-
-  /// x, a solution, is one afterwards too, and no worse.
-  void run_down(Eigen::VectorXd& x) {
-    // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
-    constexpr int most_steps = 200;
-    for (int i = 0; i < most_steps; ++i) {
-      if (!step(x)) return;
-    }
-  }
-
- private:
-  struct Slope {
-    Eigen::MatrixXd tangents;  // Orthonormal columns: directions that stay on the surface of solutions.
-    Eigen::VectorXd gradient;  // Of half the wish, in relative values, along the surface.
-  };
-
-  [[nodiscard]] double wish(const Eigen::VectorXd& x) const { return scale_.relative(x).squaredNorm(); }
-
-  // At the bounds that hold x, the surface goes along them.
-  Slope slope(const Eigen::VectorXd& x) {
-    constexpr double on_the_bound = 1e-9;
-    problem_.linearise(x, memory_.r, memory_.J);
-    const Eigen::Index rows = memory_.J.rows();
-    Eigen::MatrixXd normals(rows + static_cast<Eigen::Index>(bounds_.size()), x.size());
-    normals.topRows(rows) = memory_.J * scale_.range.asDiagonal();
-    Eigen::Index count = rows;
-    for (const Bound& bound : bounds_) {
-      const double reach = on_the_bound * (bound.high - bound.low);
-      const double value = bound.size == 1 ? x[bound.at] : x.segment<2>(bound.at).norm();
-      const bool is_held = value >= bound.high - reach || (bound.size == 1 && value <= bound.low + reach);
-      if (!is_held) continue;
-      normals.row(count).setZero();
-      normals.row(count).segment(bound.at, bound.size) = x.segment(bound.at, bound.size) / value;
-      ++count;
-    }
-    Slope result{.tangents = orthogonal_complement(normals.topRows(count).transpose(), 1e-9), .gradient = {}};
-    result.gradient = result.tangents * (result.tangents.transpose() * scale_.relative(x));
-    return result;
-  }
-
-  // The solution where a step in relative values leads.
-  std::optional<Eigen::VectorXd> moved(const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
-    constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
-    Eigen::VectorXd there = x + scale_.range.cwiseProduct(step);
-    project(bounds_, there);
-    if (descend(problem_, bounds_, back, there, memory_) != Descent::met) return std::nullopt;
-    return there;
-  }
-
-  // Second derivatives of half the wish along the surface, by differences; empty where there are none.
-  std::optional<Eigen::MatrixXd> curvature(const Eigen::VectorXd& x, const Eigen::MatrixXd& tangents) {
-    constexpr double h = 1e-4;
-    Eigen::MatrixXd result(tangents.cols(), tangents.cols());
-    for (Eigen::Index k = 0; k < tangents.cols(); ++k) {
-      const auto after = moved(x, h * tangents.col(k));
-      const auto before = moved(x, -h * tangents.col(k));
-      if (!after || !before) return std::nullopt;
-      result.col(k) = tangents.transpose() * (slope(*after).gradient - slope(*before).gradient) / (2.0 * h);
-    }
-    return 0.5 * (result + result.transpose());
-  }
+  WishMinimum(BoundedDescent& descent, const WishScale& scale) : descent_(descent), scale_(scale) {}
 
   // Newton's step, made downhill where the surface of the wish is bent downwards (a saddle is left to either
   // side); whether x is not at the minimum yet.
@@ -107,6 +39,58 @@ class WishMinimum {
     return go(x, way);
   }
 
+ private:
+  struct Slope {
+    Eigen::MatrixXd tangents;  // Orthonormal columns: directions that stay on the surface of solutions.
+    Eigen::VectorXd gradient;  // Of half the wish, in relative values, along the surface.
+  };
+
+  [[nodiscard]] double wish(const Eigen::VectorXd& x) const { return scale_.relative(x).squaredNorm(); }
+
+  // At the bounds that hold x, the surface goes along them.
+  Slope slope(const Eigen::VectorXd& x) {
+    constexpr double on_the_bound = 1e-9;
+    descent_.problem.linearise(x, descent_.r, descent_.J);
+    const Eigen::Index rows = descent_.J.rows();
+    Eigen::MatrixXd normals(rows + static_cast<Eigen::Index>(descent_.bounds.size()), x.size());
+    normals.topRows(rows) = descent_.J * scale_.range.asDiagonal();
+    Eigen::Index count = rows;
+    for (const Bound& bound : descent_.bounds) {
+      const double reach = on_the_bound * (bound.high - bound.low);
+      const double value = bound.size == 1 ? x[bound.at] : x.segment<2>(bound.at).norm();
+      const bool is_held = value >= bound.high - reach || (bound.size == 1 && value <= bound.low + reach);
+      if (!is_held) continue;
+      normals.row(count).setZero();
+      normals.row(count).segment(bound.at, bound.size) = x.segment(bound.at, bound.size) / value;
+      ++count;
+    }
+    Slope result{.tangents = orthogonal_complement(normals.topRows(count).transpose(), 1e-9), .gradient = {}};
+    result.gradient = result.tangents * (result.tangents.transpose() * scale_.relative(x));
+    return result;
+  }
+
+  // The solution where a step in relative values leads.
+  std::optional<Eigen::VectorXd> moved(const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
+    constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
+    Eigen::VectorXd there = x + scale_.range.cwiseProduct(step);
+    project(descent_.bounds, there);
+    if (descent_.descend(back, there) != Descent::met) return std::nullopt;
+    return there;
+  }
+
+  // Second derivatives of half the wish along the surface, by differences; empty where there are none.
+  std::optional<Eigen::MatrixXd> curvature(const Eigen::VectorXd& x, const Eigen::MatrixXd& tangents) {
+    constexpr double h = 1e-4;
+    Eigen::MatrixXd result(tangents.cols(), tangents.cols());
+    for (Eigen::Index k = 0; k < tangents.cols(); ++k) {
+      const auto after = moved(x, h * tangents.col(k));
+      const auto before = moved(x, -h * tangents.col(k));
+      if (!after || !before) return std::nullopt;
+      result.col(k) = tangents.transpose() * (slope(*after).gradient - slope(*before).gradient) / (2.0 * h);
+    }
+    return 0.5 * (result + result.transpose());
+  }
+
   // Along `way` as far as it leads down; false where it does not.
   bool go(Eigen::VectorXd& x, const Eigen::VectorXd& way) {
     constexpr double least_gain = 1e-14;
@@ -120,10 +104,18 @@ class WishMinimum {
     return false;
   }
 
-  Problem& problem_;
-  const Bounds& bounds_;
+  BoundedDescent& descent_;
   const WishScale& scale_;
-  DescentMemory<Problem>& memory_;
 };
+
+}  // namespace
+
+void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x) {
+  // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
+  constexpr int most_steps = 200;
+  WishMinimum minimum(descent, scale);
+  for (int i = 0; i < most_steps && minimum.step(x); ++i) {
+  }
+}
 
 }  // namespace flexura

@@ -1,91 +1,23 @@
-// Depths and normals against Embree, which meets triangles, and seams of the exact surface.
-#include <embree3/rtcore.h>
+// Depths against thousands of cone frustums, and seams of the exact surface.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "flexura/render/prepared_scene.h"
 #include "flexura/render/renderer.h"
 #include "flexura/render/tracer.h"
+#include "tests/support/frustums.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/render_scenes.h"
 
 namespace flexura {
 namespace {
 
-// A tube's side in triangles, in the camera's frame; single precision, as Embree wants it.
-class TriangleTube {
- public:
-  TriangleTube(const std::vector<TubeArc>& tube, const Pose& X_CW, int along, int around) {
-    device_ = rtcNewDevice(nullptr);
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    for (const TubeArc& arc : tube) add(arc, X_CW, along, around);
-    rtcCommitScene(scene_);
-  }
-  TriangleTube(const TriangleTube&) = delete;
-  TriangleTube& operator=(const TriangleTube&) = delete;
-  ~TriangleTube() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-
-  /// Infinite when nothing is met.
-  [[nodiscard]] double depth(const Eigen::Vector3d& direction) const {
-    RTCIntersectContext context{};
-    rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray.dir_x = static_cast<float>(direction.x());
-    query.ray.dir_y = static_cast<float>(direction.y());
-    query.ray.dir_z = static_cast<float>(direction.z());
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0U;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &query);
-    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
-                                                       : query.ray.tfar;
-  }
-
- private:
-  void add(const TubeArc& arc, const Pose& X_CW, int along, int around) {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const auto columns = static_cast<std::size_t>(around), rows = static_cast<std::size_t>(along);
-    auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), (rows + 1) * columns));
-    auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 2 * rows * columns));
-    for (std::size_t row = 0; row <= rows; ++row) {
-      const double share = static_cast<double>(row) / along;
-      const Pose X_CS = X_CW * arc.arc.pose(arc.arc.length * share);
-      const double radius = arc.radius[0] + share * (arc.radius[1] - arc.radius[0]);
-      for (std::size_t column = 0; column < columns; ++column) {
-        const double angle = 2 * std::numbers::pi * static_cast<double>(column) / around;
-        const Eigen::Vector3d p =
-            X_CS * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0);
-        for (int axis = 0; axis < 3; ++axis) *corners++ = static_cast<float>(p[axis]);
-        if (row == rows) continue;
-        const auto a = static_cast<unsigned>(row * columns + column);
-        const auto b = static_cast<unsigned>(row * columns + (column + 1) % columns);
-        const auto up = static_cast<unsigned>(columns);
-        for (const unsigned corner : {a, b, a + up, b, b + up, a + up}) *triangles++ = corner;
-      }
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-  }
-
-  RTCDevice device_;
-  RTCScene scene_;
-};
-
-TEST(Depth, IsEmbreesWhereRaysDoNotGraze) {
+TEST(Depth, IsThatOfFrustumsWhereRaysDoNotGraze) {
   double largest = 0;
   int compared = 0;
   for_random_cases(6, [&](TestRandom& random) {
@@ -96,7 +28,7 @@ TEST(Depth, IsEmbreesWhereRaysDoNotGraze) {
     const View view = random_view_of(random, backbone);
     Renderer renderer;
     renderer.prepare(scene, view);
-    const TriangleTube triangles(scene.arm.tube, view.X_WC.inverse(), 600, 720);
+    const FrustumTube frustums(bent.arm, backbone, 600);
     const Tracer tracer(renderer.prepared().stage, renderer.prepared().tiles.all_parts());
     for (int v = 0; v < view.height; ++v) {
       for (int u = 0; u < view.width; ++u) {
@@ -104,9 +36,12 @@ TEST(Depth, IsEmbreesWhereRaysDoNotGraze) {
         const Hit hit = tracer.hit(ray);
         if (hit.label.kind != SurfaceKind::section) continue;
         if (std::abs(hit.normal.dot(ray.direction.normalized())) < 0.2) continue;
-        // Rays that pass a silhouette by less than a triangle's height are another matter.
+        // Rays that pass a silhouette by less than the frustums are off are another matter.
         if (tracer.trace(ray).nearest.distance < 0.2) continue;
-        const double expected = triangles.depth(ray.direction);
+        const Eigen::Vector3d direction = view.X_WC.rotation * ray.direction;
+        const auto near =
+            frustums.near(view.X_WC.position, direction, renderer.prepared().rays.largest_step());
+        const double expected = FrustumTube::meet(near, view.X_WC.position, direction).depth;
         largest = std::max(largest, std::abs(hit.depth - expected) / hit.depth);
         ++compared;
       }

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flexura/render/kernels.h"
+
 namespace flexura {
-namespace {
 
-const SpanKernels* kernels_of(SimdPath path) {
-  require_simd_path(path);
-  if (path == SimdPath::avx512) return avx512_span_kernels();
-  return path == SimdPath::avx2 ? avx2_span_kernels() : baseline_span_kernels();
-}
-
-}  // namespace
-
-QuickPicture::QuickPicture(SimdPath path) : kernels_(kernels_of(path)) {}
+QuickPicture::QuickPicture(SimdPath path) : kernels_(&kernels_of(path).span) {}
 
 void QuickPicture::leave(const ImageRegion& region) {
   for_pixels(region, [this](int u, int v) { leave(u, v); });
@@ -43,13 +36,9 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   if (!std::ranges::all_of(stage.faces, [&](const FacePart& face) { return leave_face(face); })) return false;
   for (const PlanePart& plane : stage.planes) leave_plane(plane);
   plan_screens(stage);
-  for (int v = 0; v < height_; ++v) {
-    SpanRow row = row_of(v);
-    draw_screens(row);
-    draw_pieces(row);
-    draw_discs(row);
-    if (row.has_exact) has_exact_[static_cast<std::size_t>(v)] = 1;
-  }
+  for (SpanRow& row : rows_) draw_screens(row);
+  for (std::size_t i = 0; i < skin_count_; ++i) draw(skins_[i]);
+  for (std::size_t i = 0; i < rim_count_; ++i) draw(rims_[i]);
   for (std::size_t i = 0; i < skin_count_; ++i) divide(skins_[i]);
   for (std::size_t i = 0; i < rim_count_; ++i) divide_rim(rims_[i]);
   find_left_out();
@@ -59,8 +48,16 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
 void QuickPicture::start(const Stage& stage) {
   const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
   states_.assign(width * height, state_behind);
-  has_exact_.assign(height, 0);
   borders_.resize(width);
+  rows_.clear();
+  for (int v = 0; v < height_; ++v)
+    rows_.push_back({.v = v,
+                     .width = width_,
+                     .depth = picture_->depth.row(v).data(),
+                     .light = picture_->light.row(v).data(),
+                     .state = &state(0, v),
+                     .lens = map_.row(v),
+                     .borders = borders_.data()});
   background_.resize(width * channels_);
   const Color& color = stage.scene->background;
   for (std::size_t i = 0; i < background_.size(); ++i)
@@ -68,23 +65,12 @@ void QuickPicture::start(const Stage& stage) {
         static_cast<float>(channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(i % 3)]);
 }
 
-SpanRow QuickPicture::row_of(int v) {
-  SpanRow row{};
-  row.v = v, row.width = width_;
-  row.depth = picture_->depth.row(v).data();
-  row.light = picture_->light.row(v).data();
-  row.state = &state(0, v);
-  row.lens = map_.row(v);
-  row.borders = borders_.data();
-  return row;
-}
-
 void QuickPicture::find_left_out() {
   left_out_.clear();
-  for (int v = 0; v < height_; ++v) {
-    if (has_exact_[static_cast<std::size_t>(v)] == 0) continue;
+  for (const SpanRow& row : rows_) {
+    if (!row.has_exact) continue;
     for (int u = 0; u < width_; ++u)
-      if ((state(u, v) & state_exact) != 0) left_out_.push_back({u, v});
+      if ((row.state[u] & state_exact) != 0) left_out_.push_back({u, row.v});
   }
 }
 

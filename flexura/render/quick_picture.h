@@ -86,18 +86,7 @@ class QuickPicture {
     }
   };
 
-  // A pixel of the current row that one edge of a screen divides, and its other part.
-  struct ScreenEdge {
-    int u = 0;
-    double nearness = 0;
-    PixelPart rest;
-    bool is_full = false;           // A screen is seen in that part.
-    bool is_before_screen = false;  // One that is drawn later than this one: `light` is what both make.
-    float light[3] = {0, 0, 0};
-  };
-
   void start(const Stage& stage);
-  [[nodiscard]] SpanRow row_of(int v);
   void find_left_out();
 
   // Whether a point of C is seen so near to the picture that pixels counted from there in single precision
@@ -107,6 +96,17 @@ class QuickPicture {
     return std::abs(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx) < most &&
            std::abs(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy) < most;
   }
+  // The pixel that shows a point of C, rounded.
+  [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const {
+    return {std::round(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx),
+            std::round(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy)};
+  }
+  // A function of rays: scale * by . direction, seen from `pixel`.
+  [[nodiscard]] Linear along_rays(const Eigen::Vector3d& by, const Eigen::Vector2d& pixel,
+                                  double scale = 1) const {
+    return {number(scale * by.dot(straight_ray(intrinsics_, pixel.x(), pixel.y()).direction)),
+            number(scale * by.x() / intrinsics_.fx), number(scale * by.y() / intrinsics_.fy)};
+  }
   bool plan_pieces(const Stage& stage);
   void find_meetings(const Stage& stage);
   bool plan_piece(const Stage& stage, const TubePiece& piece);
@@ -114,16 +114,15 @@ class QuickPicture {
   void fill_span_piece(const Stage& stage, const TubePiece& piece, Skin& skin) const;
   [[nodiscard]] bool add_edges(const Stage& stage, const TubePiece& piece, Skin& skin);
   [[nodiscard]] bool add_lines(const Stage& stage, const TubePiece& piece, Skin& skin);
-  [[nodiscard]] bool leave_lines(const Stage& stage);
   void set_channels(const Color& color, float (&channels)[3]) const;
-  void draw_pieces(SpanRow& row);
+  void draw(Skin& skin);
   bool leave_face(const FacePart& part);
   void leave_plane(const PlanePart& plane);
 
   bool plan_rims(const Stage& stage);
   void fill_rim(const Stage& stage, const DiscPart& disc, const TubePiece& piece, SpanRim& rim) const;
   void find_rim(Rim& rim);
-  void draw_discs(SpanRow& row);
+  void draw(const Rim& rim);
   bool takes_rim(const Rim& rim, Pixel pixel);
   void divide_rim(Rim& rim);
   void lay_rim(Pixel pixel, const RimPixels& seen, std::size_t i);
@@ -134,13 +133,10 @@ class QuickPicture {
   void clear(int begin, int end, SpanRow& row) const;
   void draw_panel(std::size_t index, SpanRow& row);
   void draw_around_crossing(const PixelRange& inner, SpanRow& row);
-  void lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
-                        const SpanRow& row);
-  [[nodiscard]] bool lay_behind(ScreenEdge& edge, const Panel& panel, bool is_within, const SpanRow& row);
   [[nodiscard]] static PixelPart part_above(const Eigen::Vector2d& slope, double value);
   void light_of(const Panel& panel, double x, double y, float (&light)[3]) const;
   void mix(const Panel& panel, int u, const PixelPart& part, const Panel* behind, SpanRow& row) const;
-  void draw_edge(std::size_t index, int u, SpanRow& row);
+  void draw_edge(const Panel& panel, int u, SpanRow& row);
 
   void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
   void divide(const Skin& skin);
@@ -153,7 +149,7 @@ class QuickPicture {
   }
   void leave(int u, int v) {
     state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact);
-    has_exact_[static_cast<std::size_t>(v)] = 1;
+    rows_[static_cast<std::size_t>(v)].has_exact = true;
   }
   void leave(const ImageRegion& region);
   // Calls visit(u, v) for the pixels that may see something of the region.
@@ -174,18 +170,16 @@ class QuickPicture {
   std::size_t channels_ = 1;
   double pixel_ = 0;  // The size of the largest at depth 1.
   LightImage* picture_ = nullptr;
-  std::vector<std::uint8_t> states_, has_exact_;  // Of pixels; of rows.
-  std::vector<float> background_;                 // A row of it.
+  std::vector<std::uint8_t> states_;  // Of pixels.
+  std::vector<SpanRow> rows_;
+  std::vector<float> background_;  // A row of it.
   std::vector<int> borders_;
-  std::vector<ScreenEdge> screen_edges_;  // Of the row.
   std::vector<Panel> panels_;
   std::size_t panel_count_ = 0;
   std::vector<Skin> skins_;
   std::size_t skin_count_ = 0;
   std::vector<Rim> rims_;
   std::size_t rim_count_ = 0;
-  std::vector<std::size_t> by_row_, active_;  // Skins by their first row; those of the current row.
-  std::size_t next_ = 0;                      // In by_row_.
   std::vector<std::uint8_t> meets_;  // Of the stage's pieces: whether another stretch of the arm cuts it.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;

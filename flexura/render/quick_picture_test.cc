@@ -59,32 +59,25 @@ View some_view(TestRandom& random, const Backbone& backbone) {
 }
 
 TEST(QuickPicture, AgreesWithTheExactWay) {
-  int count = 0, many = 0, bad_depths = 0;
-  for_random_cases(25, [&](TestRandom& random) {
+  const Difference all = compare_ways_of("busy scenes", 25, 0.015, [](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 1) == 0 ? 0.003 : 0);
     const View view = some_view(random, bent.backbone());
     const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
-    const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
-    const Difference off = compare_ways(scene, view, pixels);
-    EXPECT_LT(off.worst, 0.015);
-    EXPECT_LT(off.count, 1e-3 * off.many);  // Many rings make many bent edges.
-    count += off.count, many += off.many, bad_depths += off.bad_depths;
+    return Sight{scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray};
   });
   // Of a sanitized build's few cases the mean says nothing.
   if (one_case_of == 1) {
-    EXPECT_LT(count, 1e-4 * many);
+    EXPECT_LT(all.count, 1e-4 * all.many);
   }
-  std::printf("light differs by more than 0.002 in %.2g of the values\n", static_cast<double>(count) / many);
-  EXPECT_EQ(bad_depths, 0);
+  EXPECT_EQ(all.bad_depths, 0);
 }
 
 // Thick arms and thin ones, tapered or not, bent gently and sharply, of one section or four, near and seen
 // from afar through a long lens, with pixels that are no squares, with distortion, with bright rings on dark
 // skin.
 TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
-  int bad_depths = 0;
-  double worst = 0;
-  for_random_cases(300, [&](TestRandom& random) {
+  // Of light that differs by 0.8 from one side of an edge to the other.
+  const Difference all = compare_ways_of("all kinds of scenes", 150, 0.04, [](TestRandom& random) {
     BentArm bent;
     bent.arm.kind = ArmKind::spatial;
     const int count = random.integer(1, 4);
@@ -109,24 +102,9 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     view.lens = Lens(intrinsics);
     Scene scene = busy_scene(random, backbone, bent.arm, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};
-    const Difference off = compare_ways(scene, view);
-    // Of light that differs by 0.8 from one side of an edge to the other.
-    EXPECT_LT(off.worst, 0.04);
-    worst = std::max(worst, off.worst), bad_depths += off.bad_depths;
+    return Sight{scene, view};
   });
-  EXPECT_EQ(bad_depths, 0);
-  std::printf("all kinds of scenes: light differs by %.5f at worst\n", worst);
-}
-
-// How many pixels of a small picture it leaves to the exact way.
-std::size_t left_out_of(const Scene& scene, const View& view) {
-  Renderer renderer;
-  renderer.prepare(scene, view);
-  LightImage picture{Image<float>(view.width, view.height), Image<float>(view.width, view.height)};
-  QuickPicture quick;
-  EXPECT_TRUE(quick.draw(renderer.prepared().stage, renderer.prepared().rays, view.lens.intrinsics(),
-                         PixelKind::gray, picture));
-  return quick.left_out().size();
+  EXPECT_EQ(all.bad_depths, 0);
 }
 
 TEST(QuickPicture, DrawsTaperedArmsToo) {
@@ -169,14 +147,7 @@ TEST(QuickPicture, IsTheSameOnEveryPath) {
     view.width -= random.integer(0, 30);
     const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
-    LightImage expected;
-    Renderer(SimdPath::baseline).render(scene, view, pixels, expected);
-    for (const SimdPath path : available_simd_paths()) {
-      LightImage picture;
-      Renderer(path).render(scene, view, pixels, picture);
-      EXPECT_EQ(picture.light, expected.light) << name_of(path);
-      EXPECT_EQ(picture.depth, expected.depth) << name_of(path);
-    }
+    expect_same_on_every_path({scene, view, pixels});
   });
 }
 
@@ -190,11 +161,8 @@ TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
   Scene scene = plain_scene();
   scene.arm.tube = tube_of(bent.arm, bent.backbone());
   const auto is_drawn = [](const Scene& one, const View& seen) {
-    Renderer renderer;
-    renderer.prepare(one, seen);
-    LightImage picture{Image<float>(seen.width, seen.height), Image<float>(seen.width, seen.height)};
-    return QuickPicture().draw(renderer.prepared().stage, renderer.prepared().rays, seen.lens.intrinsics(),
-                               PixelKind::gray, picture);
+    return left_out_of(one, seen) <
+           static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height);
   };
   EXPECT_TRUE(is_drawn(scene, view));
   View near = view;

@@ -106,14 +106,7 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   find_meetings(stage);
   if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
     return false;
-  by_row_.clear();
-  active_.clear();
-  next_ = 0;
-  for (std::size_t i = 0; i < skin_count_; ++i) {
-    skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
-    by_row_.push_back(i);
-  }
-  std::ranges::sort(by_row_, {}, [this](std::size_t i) { return std::pair(skins_[i].rows.begin, i); });
+  for (std::size_t i = 0; i < skin_count_; ++i) skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
   return true;
 }
 
@@ -194,8 +187,8 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Matrix3d R_PC = piece.R_CP.transpose();
   SpanPiece& span = skin.piece;
-  const double u0 = std::round(intrinsics_.fx * center.x() / center.z() + intrinsics_.cx);
-  const double v0 = std::round(intrinsics_.fy * center.y() / center.z() + intrinsics_.cy);
+  const Eigen::Vector2d pixel = pixel_of(center);
+  const double u0 = pixel.x(), v0 = pixel.y();
   span.u0 = number(u0), span.v0 = number(v0);
   span.depth0 = number(center.z());
   const auto depth0 = static_cast<double>(span.depth0);
@@ -220,31 +213,27 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   span.widening = number(piece.widening), span.widest = number(piece.widest());
   span.end_sine = number(piece.end_tangent.x()), span.end_cosine = number(piece.end_tangent.z());
   span.end_offset = number(piece.end_offset);
-  const double pixel = (center.z() + piece.bound_radius) * pixel_;
-  span.reach = span.bent_reach = number(0.9 * pixel);
-  span.kink_before = number(kink_of(stage, piece, piece.before, pixel));
-  span.kink_after = number(kink_of(stage, piece, piece.after, pixel));
+  const double size = (center.z() + piece.bound_radius) * pixel_;
+  span.reach = span.bent_reach = number(0.9 * size);
+  span.kink_before = number(kink_of(stage, piece, piece.before, size));
+  span.kink_after = number(kink_of(stage, piece, piece.after, size));
   // The rays' rise over that plane changes across the image.
   const double bend = piece.curvature * piece.widest(), slant = std::abs(d.dot(chord)) / rise;
   const double width = piece.bound_radius * piece.bound_radius / center.z();
   const double start_error = half_sagitta + slant * slant * width;
-  plan_steps(bend, 0.05 + bend + start_error / piece.narrowest(), piece.widest() / pixel, span);
+  plan_steps(bend, 0.05 + bend + start_error / piece.narrowest(), piece.widest() / size, span);
   span.ambient = number(light.ambient);
   span.channels = channels_;
 }
 
-// Skins that have begun by this row and not yet ended.
-void QuickPicture::draw_pieces(SpanRow& row) {
-  for (; next_ < by_row_.size() && skins_[by_row_[next_]].rows.begin <= row.v; ++next_)
-    active_.push_back(by_row_[next_]);
-  std::erase_if(active_, [&](std::size_t i) { return skins_[i].rows.end <= row.v; });
-  for (const std::size_t i : active_) {
-    Skin& skin = skins_[i];
-    const PixelRange columns = map_.columns(skin.region, row.v);
+void QuickPicture::draw(Skin& skin) {
+  for (int v = skin.rows.begin; v < skin.rows.end; ++v) {
+    const PixelRange columns = map_.columns(skin.region, v);
     if (columns.begin == columns.end) continue;
+    SpanRow& row = rows_[static_cast<std::size_t>(v)];
     row.border_count = 0;
     kernels_->draw(skin.piece, columns.begin, columns.end, row);
-    for (std::size_t j = 0; j < row.border_count; ++j) skin.contour.push_back({row.borders[j], row.v});
+    for (std::size_t j = 0; j < row.border_count; ++j) skin.contour.push_back({row.borders[j], v});
   }
 }
 

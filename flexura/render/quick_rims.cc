@@ -72,18 +72,12 @@ bool QuickPicture::plan_rims(const Stage& stage) {
 void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const TubePiece& piece,
                             SpanRim& rim) const {
   const Circle& circle = disc.circle;
-  const double u0 = std::round(intrinsics_.fx * circle.center.x() / circle.center.z() + intrinsics_.cx);
-  const double v0 = std::round(intrinsics_.fy * circle.center.y() / circle.center.z() + intrinsics_.cy);
-  rim.u0 = number(u0), rim.v0 = number(v0);
-  const Eigen::Vector3d middle = straight_ray(intrinsics_, u0, v0).direction;
-  const auto linear = [&](const Eigen::Vector3d& by, double scale) -> Linear {
-    return {number(scale * by.dot(middle)), number(scale * by.x() / intrinsics_.fx),
-            number(scale * by.y() / intrinsics_.fy)};
-  };
+  const Eigen::Vector2d pixel = pixel_of(circle.center);
+  rim.u0 = number(pixel.x()), rim.v0 = number(pixel.y());
   const double scale = 1 / (circle.radius * circle.center.norm());
-  rim.x = linear(circle.by_x, scale), rim.y = linear(circle.by_y, scale);
-  rim.z = linear(circle.by_z, scale * circle.radius);
-  rim.nearness = linear(circle.normal, 1 / circle.normal.dot(circle.center));
+  rim.x = along_rays(circle.by_x, pixel, scale), rim.y = along_rays(circle.by_y, pixel, scale);
+  rim.z = along_rays(circle.by_z, pixel, scale * circle.radius);
+  rim.nearness = along_rays(circle.normal, pixel, 1 / circle.normal.dot(circle.center));
   rim.is_front = circle.normal.dot(circle.center) < 0;
   // The skin at the rim in direction (x, y) is seen where it faces the camera. A pixel of the other half has
   // to be looked at where its half is near: beside the contour, and everywhere if the image is flat.
@@ -111,7 +105,8 @@ void QuickPicture::find_rim(Rim& rim) {
   for (int v = rim.rows.begin; v < rim.rows.end; ++v) {
     const PixelRange columns = map_.columns(rim.region, v);
     if (columns.begin == columns.end) continue;
-    SpanRow row = row_of(v);
+    SpanRow& row = rows_[static_cast<std::size_t>(v)];
+    row.border_count = 0;
     kernels_->find_rim(rim.rim, columns.begin, columns.end, row);
     for (std::size_t i = 0; i < row.border_count; ++i) {
       rim.pixels.push_back({row.borders[i], v});
@@ -120,12 +115,11 @@ void QuickPicture::find_rim(Rim& rim) {
   }
 }
 
-void QuickPicture::draw_discs(SpanRow& row) {
-  for (std::size_t i = 0; i < rim_count_; ++i) {
-    const Rim& rim = rims_[i];
-    if (!rim.rim.is_front || row.v < rim.rows.begin || row.v >= rim.rows.end) continue;
-    const PixelRange columns = map_.columns(rim.region, row.v);
-    kernels_->disc(rim.rim, channels_, columns.begin, columns.end, row);
+void QuickPicture::draw(const Rim& rim) {
+  if (!rim.rim.is_front) return;
+  for (int v = rim.rows.begin; v < rim.rows.end; ++v) {
+    const PixelRange columns = map_.columns(rim.region, v);
+    kernels_->disc(rim.rim, channels_, columns.begin, columns.end, rows_[static_cast<std::size_t>(v)]);
   }
 }
 

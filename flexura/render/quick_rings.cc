@@ -107,7 +107,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
 }
 
 // The planes of the edges of the etalon's lines, and what they do to its colour: lines opposite each other
-// lie between the same two. False when the camera is too near.
+// lie between the same two. False for lines that are too fine or too wide.
 bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& skin) {
   const Etalon& etalon = *stage.scene->etalon;
   skin.piece.edge_count = 0;
@@ -117,7 +117,7 @@ bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& s
   const double half_angle = 0.5 * etalon.line_width / etalon.radius;
   // Points within a pixel do not tell lines finer than pixels apart; wide ones run into each other.
   constexpr double finest = 1.5, widest = 0.7;  // px, rad
-  if (etalon.line_width < finest * pixel || half_angle > widest) return leave_lines(stage);
+  if (etalon.line_width < finest * pixel || half_angle > widest) return false;
   // d px within the contour an edge runs off by x^2 / (4 d) in x px.
   constexpr double bent = 6;  // px
   skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.widest(), bent * pixel)));
@@ -138,23 +138,6 @@ bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& s
 void QuickPicture::set_channels(const Color& color, float (&channels)[3]) const {
   for (std::size_t c = 0; c < channels_; ++c)
     channels[c] = number(channels_ == 1 ? gray_of(color) : color[static_cast<Eigen::Index>(c)]);
-}
-
-// The etalon's red lines, of which each has two edges; false when the camera is too near.
-bool QuickPicture::leave_lines(const Stage& stage) {
-  const Eigen::Vector3d& axis_at = stage.X_CE.position;
-  const auto faces_away = [&](const LineEdge& edge) {
-    return (0.5 * (edge.from + edge.to) - axis_at).dot(edge.from) > 0;
-  };
-  for (std::size_t i = 0; i + 1 < stage.line_edges.size(); i += 2) {
-    const LineEdge &left = stage.line_edges[i], &right = stage.line_edges[i + 1];
-    if (faces_away(left) && faces_away(right)) continue;
-    const auto region = ImageRegion::of(intrinsics_, 0.5 * (left.from + right.from),
-                                        0.5 * (left.to + right.to), 0.5 * (left.from - right.from).norm());
-    if (!region) return false;
-    leave(*region);
-  }
-  return true;
 }
 
 }  // namespace flexura

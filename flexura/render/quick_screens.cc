@@ -44,22 +44,17 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
   const Screen& look = stage.scene->screens[static_cast<std::size_t>(part.screen)];
   const Face& face = part.face;
   SpanScreen& screen = panel.screen;
-  const int u0 = width_ / 2, v0 = height_ / 2;
-  screen.u0 = static_cast<float>(u0), screen.v0 = static_cast<float>(v0);
-  // A function of the ray's direction.
-  const auto linear = [&](const Eigen::Vector3d& by) -> Linear {
-    return {static_cast<float>(by.dot(straight_ray(intrinsics_, u0, v0).direction)),
-            static_cast<float>(by.x() / intrinsics_.fx), static_cast<float>(by.y() / intrinsics_.fy)};
-  };
+  const Eigen::Vector2d middle_pixel(width_ / 2, height_ / 2);
+  screen.u0 = number(middle_pixel.x()), screen.v0 = number(middle_pixel.y());
   const Eigen::Vector3d by = face.normal / face.normal.dot(face.corners[0]);
-  screen.nearness = linear(by);
-  panel.nearness = {by.dot(straight_ray(intrinsics_, u0, v0).direction), by.x() / intrinsics_.fx,
-                    by.y() / intrinsics_.fy};
+  screen.nearness = along_rays(by, middle_pixel);
+  panel.nearness = {by.dot(straight_ray(intrinsics_, middle_pixel.x(), middle_pixel.y()).direction),
+                    by.x() / intrinsics_.fx, by.y() / intrinsics_.fy};
   const Eigen::Vector3d middle = 0.5 * (face.corners[0] + face.corners[2]);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Eigen::Vector3d way = 0.5 * (face.corners[axis == 0 ? 1 : 3] - face.corners[0]);
     const Eigen::Vector3d along = way / way.squaredNorm();
-    screen.place[axis] = linear(along);
+    screen.place[axis] = along_rays(along, middle_pixel);
     screen.middle[axis] = static_cast<float>(along.dot(middle));
     screen.gradient[axis] = static_cast<float>(look.gradient[axis]);
   }
@@ -76,7 +71,7 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
     const double largest = pixel_ * std::max(intrinsics_.fx, intrinsics_.fy);
     const double margin = 1.2 * largest * std::hypot(by_u, by_v);
     panel.edges[i] = {edge.dot(straight_ray(intrinsics_, 0, 0).direction), by_u, by_v, margin};
-    screen.edges[i] = linear(edge / margin);
+    screen.edges[i] = along_rays(edge / margin, middle_pixel);
   }
 }
 
@@ -117,13 +112,14 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
   inner.begin = std::clamp(inner.begin, outer.begin, outer.end);
   inner.end = std::clamp(inner.end, inner.begin, outer.end);
   if (is_first) {
-    screen_edges_.clear();
     clear(0, inner.begin, row);
     clear(inner.end, width_, row);
   }
-  lay_behind_edges(panel, outer, inner, row);
-  for (int u = outer.begin; u < inner.begin; ++u) draw_edge(index, u, row);
-  for (int u = inner.end; u < outer.end; ++u) draw_edge(index, u, row);
+  // Edges of other screens before or behind this one.
+  for (int u = outer.begin; u < outer.end && row.has_edge; ++u)
+    if ((row.state[u] & state_edge) != 0) leave(u, row.v);
+  for (int u = outer.begin; u < inner.begin; ++u) draw_edge(panel, u, row);
+  for (int u = inner.end; u < outer.end; ++u) draw_edge(panel, u, row);
   if (inner.begin == inner.end) return;
   const Linear& nearness = panel.screen.nearness;
   const float here = nearness.value + nearness.by_v * (static_cast<float>(row.v) - panel.screen.v0);
@@ -145,8 +141,6 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
     draw_around_crossing(inner, row);
   else
     kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
-  for (const ScreenEdge& edge : screen_edges_)
-    if (edge.is_before_screen) std::copy_n(edge.light, channels_, &picture_->light.at(edge.u, row.v));
 }
 
 // The second panel. Where it meets the first one nearness is as large: a straight line.
@@ -214,42 +208,6 @@ void QuickPicture::mix(const Panel& panel, int u, const PixelPart& part, const P
     light[c] = left[c] + static_cast<float>(part.area) * (seen[c] - left[c]);
 }
 
-// What of the panel is seen beside the edges of those before it.
-void QuickPicture::lay_behind_edges(const Panel& panel, const PixelRange& outer, const PixelRange& inner,
-                                    const SpanRow& row) {
-  std::size_t kept = 0;
-  for (ScreenEdge& edge : screen_edges_) {
-    const bool is_within = edge.u >= inner.begin && edge.u < inner.end;
-    if (edge.u < outer.begin || edge.u >= outer.end || lay_behind(edge, panel, is_within, row))
-      screen_edges_[kept++] = edge;
-  }
-  screen_edges_.resize(kept);
-}
-
-// Beside one edge, of a panel that is seen in all of its pixel or not at all; other pixels are left. Whether
-// the edge is still seen.
-bool QuickPicture::lay_behind(ScreenEdge& edge, const Panel& panel, bool is_within, const SpanRow& row) {
-  const double x = edge.u - static_cast<double>(panel.screen.u0),
-               y = row.v - static_cast<double>(panel.screen.v0);
-  const double before = edge.nearness - panel.nearness.at(x, y);
-  if (!is_within || edge.is_full || !(std::abs(before) >= static_cast<double>(panel.screen.least_distance))) {
-    leave(edge.u, row.v);
-    return false;
-  }
-  if (before < 0) {
-    std::uint8_t& what = state(edge.u, row.v);
-    what = static_cast<std::uint8_t>(what & ~state_edge);
-    return false;
-  }
-  float light[3];
-  light_of(panel, x + edge.rest.centroid.x(), y + edge.rest.centroid.y(), light);
-  const float* const here = &picture_->light.at(edge.u, row.v);
-  for (std::size_t c = 0; c < channels_; ++c)
-    edge.light[c] = here[c] + static_cast<float>(edge.rest.area) * (light[c] - background_[c]);
-  edge.is_before_screen = edge.is_full = true;
-  return true;
-}
-
 // The panel's light x and y px from its (u0, v0).
 void QuickPicture::light_of(const Panel& panel, double x, double y, float (&light)[3]) const {
   const SpanScreen& screen = panel.screen;
@@ -265,9 +223,8 @@ void QuickPicture::light_of(const Panel& panel, double x, double y, float (&ligh
   for (std::size_t c = 0; c < channels_; ++c) light[c] = screen.brightness[c] * static_cast<float>(factor);
 }
 
-// A pixel that one edge divides, before nothing or, of the second panel, before the first; any other is left.
-void QuickPicture::draw_edge(std::size_t index, int u, SpanRow& row) {
-  const Panel& panel = panels_[index];
+// A pixel that one edge divides before nothing; any other in which it is seen is left.
+void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   const Panel::Edge* here = nullptr;
   double value_here = 0;
   bool is_one = (state(u, row.v) & (state_exact | state_edge)) == 0;
@@ -283,25 +240,20 @@ void QuickPicture::draw_edge(std::size_t index, int u, SpanRow& row) {
   const double nearness = panel.nearness.at(x, y);
   const bool is_before_nothing = std::isinf(row.depth[u]);
   const double before = nearness - 1 / static_cast<double>(row.depth[u]);
-  const bool is_clear = is_before_nothing || std::abs(before) > static_cast<double>(screen.least_distance);
-  if (!is_one || here == nullptr || !(nearness > 0) || !std::isfinite(nearness) || !is_clear) {
-    leave(u, row.v);
-    return;
+  const bool is_hidden = !is_before_nothing && before < -static_cast<double>(screen.least_distance);
+  if (is_one && here != nullptr && nearness > 0 && std::isfinite(nearness)) {
+    if (is_hidden) return;
+    const PixelPart part = part_above({here->by_u, here->by_v}, value_here);
+    const double there = panel.nearness.at(x + part.centroid.x(), y + part.centroid.y());
+    if (is_before_nothing && there > 0 && std::isfinite(1 / there)) {
+      row.state[u] = static_cast<std::uint8_t>(row.state[u] | state_edge);
+      row.has_edge = true;
+      if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
+      if (part.area > 0) mix(panel, u, part, nullptr, row);
+      return;
+    }
   }
-  if (!is_before_nothing && before < 0) return;
-  const PixelPart part = part_above({here->by_u, here->by_v}, value_here);
-  const double there = panel.nearness.at(x + part.centroid.x(), y + part.centroid.y());
-  if (!(there > 0) || !std::isfinite(1 / there) || (!is_before_nothing && index > 1)) {
-    leave(u, row.v);
-    return;
-  }
-  std::uint8_t& what = state(u, row.v);
-  what = static_cast<std::uint8_t>(what | state_edge);
-  row.has_edge = true;
-  ScreenEdge& edge = screen_edges_.emplace_back();
-  edge.u = u, edge.nearness = nearness, edge.is_full = !is_before_nothing, edge.rest = part.rest();
-  if (value_here > 0) row.depth[u] = static_cast<float>(1 / nearness);
-  if (part.area > 0) mix(panel, u, part, is_before_nothing ? nullptr : panels_.data(), row);
+  leave(u, row.v);
 }
 
 }  // namespace flexura

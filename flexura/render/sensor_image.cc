@@ -9,18 +9,11 @@
 #include <type_traits>
 
 #include "flexura/math/hash.h"
+#include "flexura/render/kernels.h"
 #include "flexura/render/psf.h"
 
 namespace flexura {
 namespace {
-
-const SensorKernels& kernels_of(SimdPath path, PixelKind pixels) {
-  require_simd_path(path);
-  const SensorKernelPair* pair = baseline_sensor_kernels();
-  if (path == SimdPath::avx2) pair = avx2_sensor_kernels();
-  if (path == SimdPath::avx512) pair = avx512_sensor_kernels();
-  return pixels == PixelKind::color ? pair->color : pair->gray;
-}
 
 SensorConfig checked(SensorConfig config) {
   const auto require = [](bool holds, const char* message) {
@@ -75,7 +68,7 @@ double square_from_middle(int x, int n) {
 
 Sensor::Sensor(const SensorConfig& config, SimdPath path)
     : config_(checked(config)),
-      kernels_(&kernels_of(path, config.pixels)),
+      kernels_(&kernels_of(path).sensor),
       width_(static_cast<int>(config.width)),
       height_(static_cast<int>(config.height)),
       weights_(psf_weights(config.psf)),
@@ -131,8 +124,9 @@ void Sensor::take(const Image<float>& light, int v, bool is_first, SensorRows& r
   std::size_t begin = 0;
   const auto condition = [&](const float* part, std::size_t blocks) {
     const std::size_t at = begin * values_;
-    kernels_->condition({blocks, nullptr, 0}, part, lost_across_.empty() ? nullptr : lost_across_.data() + at,
-                        lost(v, height_), above + at, begin > 0, to + at, same + begin);
+    kernels_->condition({blocks, nullptr, 0, channels_}, part,
+                        lost_across_.empty() ? nullptr : lost_across_.data() + at, lost(v, height_),
+                        above + at, begin > 0, to + at, same + begin);
     begin += blocks;
   };
   condition(rows.left.data(), margin_);
@@ -214,11 +208,11 @@ void Sensor::deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* 
 
 // As the kernels see it.
 SensorRow Sensor::row(std::size_t blocks) const {
-  return {blocks, weights_.data() + 1, static_cast<std::size_t>(radius_)};
+  return {blocks, weights_.data() + 1, static_cast<std::size_t>(radius_), channels_};
 }
 
 template <typename Value>
-void Sensor::read_band(const Image<float>& light, const NoiseStream& stream, int first, int last,
+void Sensor::read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last,
                        SensorRows& rows, Image<Value>& image) const {
   require_fit(light, image);
   if (first < 0 || first > last || last > height_) throw std::invalid_argument("no such rows in the image");
@@ -247,29 +241,19 @@ void Sensor::require_fit(const Image<float>& light, const Image<Value>& image) c
 }
 
 template <typename Value>
-void Sensor::read_all(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-                      Image<Value>& image) const {
+void Sensor::read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
+                  Image<Value>& image) const {
   const int channels = config_.channels();
   if (image.width() != width_ || image.height() != height_ || image.channels() != channels)
     image = Image<Value>(width_, height_, channels);
-  read_band(light, stream, 0, height_, rows, image);
+  read_rows(light, stream, 0, height_, rows, image);
 }
 
-void Sensor::read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-                  Image<std::uint8_t>& image) const {
-  read_all(light, stream, rows, image);
-}
-void Sensor::read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-                  Image<std::uint16_t>& image) const {
-  read_all(light, stream, rows, image);
-}
-void Sensor::read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last,
-                       SensorRows& rows, Image<std::uint8_t>& image) const {
-  read_band(light, stream, first, last, rows, image);
-}
-void Sensor::read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last,
-                       SensorRows& rows, Image<std::uint16_t>& image) const {
-  read_band(light, stream, first, last, rows, image);
-}
+template void Sensor::read(const Image<float>&, const NoiseStream&, SensorRows&, Image<std::uint8_t>&) const;
+template void Sensor::read(const Image<float>&, const NoiseStream&, SensorRows&, Image<std::uint16_t>&) const;
+template void Sensor::read_rows(const Image<float>&, const NoiseStream&, int, int, SensorRows&,
+                                Image<std::uint8_t>&) const;
+template void Sensor::read_rows(const Image<float>&, const NoiseStream&, int, int, SensorRows&,
+                                Image<std::uint16_t>&) const;
 
 }  // namespace flexura

@@ -54,20 +54,17 @@ class Sensor {
   [[nodiscard]] const SensorConfig& config() const { return config_; }
 
   /// The image of `light`, which is in units of full scale and of the sensor's size and channels. Bytes come
-  /// from sensors of up to 8 bits, words from those of more. std::invalid_argument: another size or type.
+  /// from sensors of up to 8 bits, 16-bit words from those of more. std::invalid_argument: another size or
+  /// type.
+  template <typename Value>
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-            Image<std::uint8_t>& image) const;
-  /// The same for words.
-  void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-            Image<std::uint16_t>& image) const;
+            Image<Value>& image) const;
 
   /// Rows [first, last) of it alone, into an image of the right size: one thread's part. The
   /// same errors; and std::invalid_argument for rows that are not there.
+  template <typename Value>
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
-                 Image<std::uint8_t>& image) const;
-  /// The same for words.
-  void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
-                 Image<std::uint16_t>& image) const;
+                 Image<Value>& image) const;
 
  private:
   void reserve(SensorRows& rows) const;
@@ -79,12 +76,6 @@ class Sensor {
   const float* blur_down(int v, SensorRows& rows) const;
   template <typename Value>
   void deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* to) const;
-  template <typename Value>
-  void read_all(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
-                Image<Value>& image) const;
-  template <typename Value>
-  void read_band(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
-                 Image<Value>& image) const;
   template <typename Value>
   void require_fit(const Image<float>& light, const Image<Value>& image) const;
 

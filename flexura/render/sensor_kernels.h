@@ -3,9 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// What the sources compiled for one instruction set each (sensor_*.cc) offer to sensor_image.cc. They include
-// nothing of the project but this and sensor_lanes.h: an inline function of a header that others include too
-// could be compiled for AVX there, and the linker could pick that copy for everybody.
+// What is worked out for the sensor in each instruction set (kernels.h).
 namespace flexura {
 
 /// Pixels that the kernels take at a time: a block. Rows are padded to whole ones.
@@ -28,6 +26,7 @@ struct SensorRow {
   std::size_t blocks = 0;
   const float* weights = nullptr;  ///< Of the PSF: the nearest pixel's first, without the middle one.
   std::size_t radius = 0;          ///< Their number.
+  std::size_t channels = 1;
 };
 
 /// What a block is equal to, bit for bit.
@@ -57,15 +56,5 @@ struct SensorKernels {
   void (*to_bytes)(const SensorRow& row, const float* light, const unsigned char* is_known,
                    const SensorLevels& levels, NoiseRow noise, std::uint8_t* to);
 };
-
-/// Those for gray pixels and for coloured ones.
-struct SensorKernelPair {
-  SensorKernels gray, color;
-};
-
-const SensorKernelPair* baseline_sensor_kernels();
-// None where the compiler did not build for the set.
-const SensorKernelPair* avx2_sensor_kernels();
-const SensorKernelPair* avx512_sensor_kernels();
 
 }  // namespace flexura

@@ -6,8 +6,7 @@
 #include "flexura/render/sensor_kernels.h"
 #include "flexura/render/vectors.h"
 
-// The sensor's arithmetic, for sensor_*.cc alone. Every operation works on each value by itself and rounds
-// once, so that the width of the vectors changes no bit.
+// The sensor's arithmetic, for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -16,12 +15,8 @@ namespace {
 constexpr float largest_light = 1048576, largest_level = 16777216, largest_deviation = 1048576;
 
 // Vectors in step: what is computed waits for what was computed just before; the others' work fills the time.
-constexpr std::size_t in_step = vector_bytes == 64 ? 2 : 4, step = in_step * lanes;
-static_assert(sensor_block % step == 0);
-
-// In a block.
-template <std::size_t channels>
-constexpr std::size_t values_of = sensor_block * channels;
+constexpr std::size_t in_step = vector_bytes == 64 ? 2 : 4, step_values = in_step * lanes;
+static_assert(sensor_block % step_values == 0);
 
 struct Step {
   Floats v[in_step] = {};
@@ -36,37 +31,32 @@ template <typename Body>
   return reinterpret_cast<Words>(a) ^ reinterpret_cast<Words>(b);
 }
 
-template <std::size_t channels, bool is_vignetted>
-void condition_rows(const SensorRow& row, const float* from, const float* across, float down,
-                    const float* above, bool has_left, float* to, unsigned char* same) {
-  constexpr std::size_t values = values_of<channels>;
+void condition(const SensorRow& row, const float* from, const float* across, float down, const float* above,
+               bool has_left, float* to, unsigned char* same) {
+  const std::size_t values = sensor_block * row.channels;
   for (std::size_t block = 0; block < row.blocks; ++block) {
     const bool is_first = block == 0 && !has_left;
     const float* const left = is_first ? to : to - values;
     Words from_left = {}, from_above = {};
-    for (std::size_t i = 0; i < values; i += lanes) {
-      Floats light = at_most(largest_light, at_least(0, load(from + i)));
-      if constexpr (is_vignetted) light *= 1 - (load(across + i) + down);
-      from_left |= difference(light, load(left + i));
-      from_above |= difference(light, load(above + i));
-      store(to + i, light);
+    for (std::size_t c = 0; c < row.channels; ++c) {
+      for (std::size_t j = 0; j < sensor_block; j += lanes) {
+        const std::size_t i = c * sensor_block + j;
+        Floats light = at_most(largest_light, at_least(0, load(from + i)));
+        if (across != nullptr) light *= 1 - (load(across + i) + down);
+        from_left |= difference(light, load(left + i));
+        from_above |= difference(light, load(above + i));
+        store(to + i, light);
+      }
     }
-    same[block] = static_cast<unsigned char>((!is_first && is_zero(from_left) ? same_as_left : 0) |
-                                             (is_zero(from_above) ? same_as_above : 0));
+    same[block] = static_cast<unsigned char>((is_first || bits_of(from_left != 0) != 0 ? 0 : same_as_left) |
+                                             (bits_of(from_above != 0) != 0 ? 0 : same_as_above));
     from += values, above += values, to += values;
-    if constexpr (is_vignetted) across += values;
+    if (across != nullptr) across += values;
   }
 }
 
-template <std::size_t channels>
-void condition(const SensorRow& row, const float* from, const float* across, float down, const float* above,
-               bool has_left, float* to, unsigned char* same) {
-  const auto rows = across == nullptr ? condition_rows<channels, false> : condition_rows<channels, true>;
-  rows(row, from, across, down, above, has_left, to, same);
-}
-
-// The middle value plus the weighted differences from it, which are exactly 0 where all values_of<channels>
-// are equal: flat blocks may as well be left alone. `before` and `after` give the places of the taps at a
+// The middle value plus the weighted differences from it, which are exactly 0 where all values are
+// equal: flat blocks may as well be left alone. `before` and `after` give the places of the taps at a
 // distance.
 template <typename Before, typename After>
 [[gnu::always_inline]] inline Step blurred(const float* middle, const SensorRow& row, Before&& before,
@@ -83,14 +73,14 @@ template <typename Before, typename After>
   return sum;
 }
 
-template <std::size_t channels>
 void blur_down(const SensorRow& row, const float* const* rows, const BlockWork* work, float* to) {
+  const std::size_t values = sensor_block * row.channels;
   for (std::size_t block = 0; block < row.blocks; ++block) {
     if (work[block] == BlockWork::none) continue;
-    for (std::size_t i = block * values_of<channels>; i < (block + 1) * values_of<channels>; i += step) {
+    for (std::size_t i = block * values; i < (block + 1) * values; i += step_values) {
       const float* const middle = rows[row.radius] + i;
       if (work[block] == BlockWork::copy) {
-        __builtin_memcpy(to + i, middle, step * sizeof(float));
+        __builtin_memcpy(to + i, middle, step_values * sizeof(float));
         continue;
       }
       const Step sum = blurred(
@@ -118,14 +108,13 @@ struct Expectation {
 }
 
 // Of a block blurred along the row.
-template <std::size_t channels>
 void expect_block(const SensorRow& row, const float* light, const SensorLevels& levels,
                   Expectation& expected) {
-  for (std::size_t i = 0; i < values_of<channels>; i += step) {
+  for (std::size_t i = 0; i < sensor_block * row.channels; i += step_values) {
     const float* const middle = light + i;
     const Step sum = blurred(
-        middle, row, [&](std::size_t tap) { return middle - tap * channels; },
-        [&](std::size_t tap) { return middle + tap * channels; });
+        middle, row, [&](std::size_t tap) { return middle - tap * row.channels; },
+        [&](std::size_t tap) { return middle + tap * row.channels; });
     expect(sum, levels, i, expected);
   }
 }
@@ -139,7 +128,7 @@ constexpr float sum_centre = 8 + 4096702.5f / 1048576;
 constexpr float normal_terms[4] = {0.841045443f, 0.0172821804f, -0.00237808649f, 0.000207595845f};
 
 // A hash of a value's place in its row: C. Wellons' lowbias32, whose first step does nothing to a number
-// below 2^16, keyed before and within. `places` are the values_of<channels>' places times its first factor,
+// below 2^16, keyed before and within. `places` are the values' places times its first factor,
 // plus a key.
 constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
 
@@ -174,33 +163,28 @@ constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
   }
 }
 
-template <std::size_t channels, typename Value>
+template <typename Value>
 void deliver(const SensorRow& row, const float* light, const unsigned char* is_known,
              const SensorLevels& levels, NoiseRow noise, Value* to) {
+  const std::size_t values = sensor_block * row.channels;
   Expectation expected;
   Words places;
   for (std::size_t j = 0; j < lanes; ++j)
     places[j] = noise.start + static_cast<std::uint32_t>(j) * first_factor;
   for (std::size_t block = 0; block < row.blocks; ++block) {
-    if (is_known[block] == 0)
-      expect_block<channels>(row, light + block * values_of<channels>, levels, expected);
-    for (std::size_t i = 0; i < values_of<channels>; i += step) {
+    if (is_known[block] == 0) expect_block(row, light + block * values, levels, expected);
+    for (std::size_t i = 0; i < values; i += step_values) {
       Step level;
       each([&](std::size_t j) { level.v[j] = load(expected.means + i + j * lanes); });
       if (levels.is_noisy) {
         const Step deviate = noise_of(places, noise.mix);
         each([&](std::size_t j) { level.v[j] += deviate.v[j] * load(expected.deviations + i + j * lanes); });
-        places += static_cast<std::uint32_t>(step) * first_factor;
+        places += static_cast<std::uint32_t>(step_values) * first_factor;
       }
-      put(level, levels.top, to + block * values_of<channels> + i);
+      put(level, levels.top, to + block * values + i);
     }
   }
 }
-
-template <std::size_t channels>
-constexpr SensorKernels kernels_for = {condition<channels>, blur_down<channels>, deliver<channels, float>,
-                                       deliver<channels, std::uint8_t>};
-constexpr SensorKernelPair sensor_kernels = {kernels_for<1>, kernels_for<3>};
 
 }  // namespace
 }  // namespace flexura

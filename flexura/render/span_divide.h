@@ -2,7 +2,7 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Pixels that contours divide; for span_*.cc alone.
+// Pixels that contours divide; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -27,7 +27,7 @@ template <bool is_tapered>
   const Wide distance = square_root(at_least(least, lowest.value + radius * radius));
   const Wide gap = distance - radius;
   const Vector near = along(ray.point, ray.direction, lowest.t);
-  const Wide k = piece.curvature;
+  const float k = piece.curvature;
   Wide h = ray.h0 + lowest.t * (ray.h1 + lowest.t * ray.h2);
   if (is_tapered) h -= 0.5f * k * (radius * radius);
   Vector gradient{h * (k * near.x - 1), near.y * (1 + k * h), h * (k * near.z)};
@@ -46,7 +46,7 @@ template <bool is_tapered>
   // The contour bends as the centreline does, seen on the skin's normal: a parabola's mean height in the
   // pixel.
   const Wide bent = 1 + k * h,
-             along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
+               along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
   const Wide across = at_least(0.1f, 1 - along_ray * along_ray / dot(ray.direction, ray.direction));
   const Wide bending = -k * h / (radius * bent * steepness * across);
   const Wide normal_u = -by_u * steepness, normal_v = -by_v * steepness;
@@ -54,63 +54,60 @@ template <bool is_tapered>
                      gap * steepness - bending / (24 * larger_square(normal_u, normal_v)));
 }
 
-template <std::size_t channels, bool is_tapered>
+// The middle of a part of a pixel.
+[[gnu::always_inline]] inline Place moved(Place place, const Wide& x, const Wide& y) {
+  place.u += place.u_by_u * x + place.u_by_v * y;
+  place.v += place.v_by_u * x + place.v_by_v * y;
+  return place;
+}
+
+// Whether no edge of a ring divides what is there.
+[[gnu::always_inline]] inline WideMask is_far_from_edges(const SpanPiece& piece, const Vector& p) {
+  WideMask is_far = mask_of(true);
+  for (std::size_t j = 0; j < piece.edge_count; ++j)
+    is_far &= size_of(dot(p, piece.edges[j].normal) - piece.edges[j].offset) > piece.edges[j].far;
+  return is_far;
+}
+
+template <bool is_tapered>
 void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders) {
   for (std::size_t i = 0; i < span_step; i += wide_lanes) {
     const Place place = place_of(places, i, piece.u0, piece.v0);
-    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
-    const Lowest lowest = lowest_of(piece, ray, piece.centering + 2);
-    const SquarePart within = part_within(piece, ray, place, lowest);
+    const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 2);
+    const Lowest& lowest = sight.lowest;
+    const SquarePart within = part_within(piece, sight.ray, place, lowest);
     // In the middle of what is within.
-    const WideMask is_some = within.area > 0;
-    Place inner_place = place;
-    const Wide x = choose(is_some, within.x, Wide(0)), y = choose(is_some, within.y, Wide(0));
-    inner_place.u += place.u_by_u * x + place.u_by_v * y;
-    inner_place.v += place.v_by_u * x + place.v_by_v * y;
-    const RayLanes<is_tapered> inner = ray_of<is_tapered>(piece, inner_place);
-    const Lowest inner_lowest = lowest_of(piece, inner, piece.centering + 1);
-    const Entry inner_entry = entry_of(piece, inner, inner_lowest);
-    const Vector p = along(inner.point, inner.direction, inner_entry.t);
-    WideMask is_simple = lowest.is_sure;
-    for (std::size_t j = 0; j < piece.edge_count; ++j) {
-      const SpanEdge& edge = piece.edges[j];
-      is_simple &= size_of(dot(p, edge.normal) - edge.offset) > edge.far;
-    }
-    Wide light[channels];
-    skin_light<false>(piece, inner, inner_place, inner.depth + inner_entry.t, p,
-                      normal_of(piece, inner, p, inner_entry.t), light);
+    const WideMask is_some = within.area > 0, is_inside = lowest.value < 0;
+    const Place inner_place =
+        moved(place, choose(is_some, within.x, Wide(0)), choose(is_some, within.y, Wide(0)));
+    const Sight<is_tapered> inner = see<is_tapered>(piece, inner_place, piece.centering + 1);
+    Wide light[3];
+    skin_light(piece, inner_place, inner, light);
     store(borders.coverage + i, within.area);
-    for (std::size_t c = 0; c < channels; ++c) store(borders.light + c * span_step + i, light[c]);
-    const Entry entry = entry_of(piece, ray, lowest);
-    const WideMask is_inside = lowest.value < 0;
-    store(borders.depth + i, choose(is_inside, ray.depth + entry.t, __builtin_inff()));
-    store(borders.contour + i, ray.depth + lowest.t);
-    store_flags(is_simple, borders.is_simple + i);
-    const Wide move = choose(is_inside, size_of(entry.move), Wide(0));
-    const Wide inner_move = choose(is_some, size_of(inner_entry.move), Wide(0));
-    store_flags(lowest.is_sure & inner_lowest.is_sure & (larger(move, inner_move) < piece.settled),
+    for (std::size_t c = 0; c < 3; ++c) store(borders.light + c * span_step + i, light[c]);
+    store(borders.depth + i, choose(is_inside, sight.depth, Wide(__builtin_inff())));
+    store(borders.contour + i, sight.ray.depth + lowest.t);
+    store_flags(lowest.is_sure & is_far_from_edges(piece, inner.p), borders.is_simple + i);
+    store_flags(lowest.is_sure & inner.lowest.is_sure & (~is_inside | sight.is_settled) &
+                    (~is_some | inner.is_settled),
                 borders.is_sure + i);
   }
 }
 
 void divide(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders) {
-  if (piece.widening != 0)
-    piece.channels == 1 ? divide_pixels<1, true>(piece, places, borders)
-                        : divide_pixels<3, true>(piece, places, borders);
-  else
-    piece.channels == 1 ? divide_pixels<1, false>(piece, places, borders)
-                        : divide_pixels<3, false>(piece, places, borders);
+  piece.widening != 0 ? divide_pixels<true>(piece, places, borders)
+                      : divide_pixels<false>(piece, places, borders);
 }
 
 // Points evenly spread over the pixel, from its middle: a lattice of the golden ratio.
-template <std::size_t count>
+template <std::size_t n>
 struct Lattice {
-  float x[count], y[count];
+  float x[n], y[n];
 
   constexpr Lattice() : x(), y() {
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < n; ++i) {
       const double turns = static_cast<double>(i) * 0.6180339887498949;
-      x[i] = static_cast<float>((static_cast<double>(i) + 0.5) / count - 0.5);
+      x[i] = static_cast<float>((static_cast<double>(i) + 0.5) / n - 0.5);
       y[i] = static_cast<float>(turns - static_cast<double>(static_cast<int>(turns)) - 0.5);
     }
   }
@@ -118,57 +115,70 @@ struct Lattice {
 constexpr Lattice<64> few_points;
 constexpr Lattice<256> many_points;
 
-// The sums go by the points' numbers modulo span_step, so that the width does not change their order.
-template <std::size_t channels, bool is_tapered, std::size_t count>
-bool sample_at(const Lattice<count>& points, const SpanPiece& piece, const SpanPlaces& places,
-               std::size_t index, float* light) {
-  const float u_by_u = places.u_by_u[index], u_by_v = places.u_by_v[index];
-  const float v_by_u = places.v_by_u[index], v_by_v = places.v_by_v[index];
-  float sums[channels + 1][span_step] = {};
-  WideMask is_sure(true);
-  for (std::size_t i = 0; i < count; i += wide_lanes) {
-    const std::size_t slot = i % span_step;
-    const Wide x = wide_load(points.x + i), y = wide_load(points.y + i);
-    Place place{};
-    place.u = x * u_by_u + y * u_by_v + (places.u[index] - piece.u0);
-    place.v = x * v_by_u + y * v_by_v + (places.v[index] - piece.v0);
-    const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
-    const Lowest lowest = lowest_of(piece, ray, piece.centering + 1);
-    const WideMask is_inside = lowest.value < 0;
-    const Entry entry = entry_of(piece, ray, lowest);
-    const Wide& t = entry.t;
-    is_sure &= lowest.is_sure & (~is_inside | (size_of(entry.move) < piece.settled));
-    const Vector p = along(ray.point, ray.direction, t);
-    Wide here[channels];
-    skin_light<false>(piece, ray, place, ray.depth + t, p, normal_of(piece, ray, p, t), here);
-    for (std::size_t c = 0; c < channels; ++c)
-      store(sums[c] + slot, wide_load(sums[c] + slot) + choose(is_inside, here[c], Wide(0)));
-    store(sums[channels] + slot, wide_load(sums[channels] + slot) + choose(is_inside, 1, Wide(0)));
+// What rays see of something.
+struct Seen {
+  WideMask is_some, is_sure;
+  Wide depth, light[3];
+};
+
+// What the points of a pixel see, all together, by see(place); whether all is right. The sums go by the
+// points' numbers modulo span_step, so that the width does not change their order.
+template <std::size_t n, typename See>
+[[gnu::always_inline]] inline bool sample_points(const Lattice<n>& points, const Place& middle, See&& see,
+                                                 float (&light)[3], float& count) {
+  float sums[4][span_step] = {};
+  WideMask is_sure = mask_of(true);
+  for (std::size_t i = 0; i < n; i += wide_lanes) {
+    const Seen seen = see(moved(middle, wide_load(points.x + i), wide_load(points.y + i)));
+    const auto add = [&](float* sum, const Wide& value) {
+      store(sum + i % span_step, wide_load(sum + i % span_step) + choose(seen.is_some, value, Wide(0)));
+    };
+    for (std::size_t c = 0; c < 3; ++c) add(sums[c], seen.light[c]);
+    add(sums[3], Wide(1));
+    is_sure &= seen.is_sure;
   }
-  float totals[channels + 1] = {};
-  for (std::size_t c = 0; c <= channels; ++c)
-    for (const float sum : sums[c]) totals[c] += sum;
-  if (totals[channels] != 0)
-    for (std::size_t c = 0; c < channels; ++c) light[c] = totals[c] / totals[channels];
+  for (std::size_t c = 0; c < 4; ++c) {
+    float total = 0;
+    for (const float sum : sums[c]) total += sum;
+    (c < 3 ? light[c] : count) = total;
+  }
   return !any(~is_sure);
 }
+[[gnu::always_inline]] inline Place place_at(const SpanPlaces& places, std::size_t i, float u0, float v0) {
+  return {Wide(places.u[i] - u0), Wide(places.v[i] - v0), Wide(places.u_by_u[i]),
+          Wide(places.u_by_v[i]), Wide(places.v_by_u[i]), Wide(places.v_by_v[i])};
+}
 
-template <std::size_t channels, bool is_tapered>
-bool sample_pixel(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
+template <bool is_tapered, std::size_t n>
+bool sample_skin(const Lattice<n>& points, const SpanPiece& piece, const Place& middle, float* light) {
+  float sums[3], count = 0;
+  const bool is_sure = sample_points(
+      points, middle,
+      [&](const Place& place) __attribute__((always_inline)) {
+        const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 1);
+        Seen seen;
+        seen.is_some = sight.lowest.value < 0;
+        seen.is_sure = sight.lowest.is_sure & (~seen.is_some | sight.is_settled);
+        skin_light(piece, place, sight, seen.light);
+        return seen;
+      },
+      sums, count);
+  if (count != 0)
+    for (std::size_t c = 0; c < 3; ++c) light[c] = sums[c] / count;
+  return is_sure;
+}
+
+bool sample(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
   // Colours that differ little need few points.
   bool is_faint = true;
   for (std::size_t j = 0; j < piece.edge_count; ++j)
     for (const float change : piece.edges[j].change) is_faint &= change * change < 0.15f * 0.15f;
-  return is_faint ? sample_at<channels, is_tapered>(few_points, piece, places, index, light)
-                  : sample_at<channels, is_tapered>(many_points, piece, places, index, light);
-}
-
-bool sample(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
+  const Place middle = place_at(places, index, piece.u0, piece.v0);
   if (piece.widening != 0)
-    return piece.channels == 1 ? sample_pixel<1, true>(piece, places, index, light)
-                               : sample_pixel<3, true>(piece, places, index, light);
-  return piece.channels == 1 ? sample_pixel<1, false>(piece, places, index, light)
-                             : sample_pixel<3, false>(piece, places, index, light);
+    return is_faint ? sample_skin<true>(few_points, piece, middle, light)
+                    : sample_skin<true>(many_points, piece, middle, light);
+  return is_faint ? sample_skin<false>(few_points, piece, middle, light)
+                  : sample_skin<false>(many_points, piece, middle, light);
 }
 
 }  // namespace

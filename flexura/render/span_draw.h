@@ -2,22 +2,21 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Rows of pixels, as many at a time as a vector holds; for span_*.cc alone.
+// Rows of pixels, as many at a time as a vector holds; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
-template <std::size_t channels>
-[[gnu::always_inline]] inline void store_light(const Wide (&light)[channels], const WideMask& mask,
-                                               float* to) {
-  if constexpr (channels == 1) {
+[[gnu::always_inline]] inline void store_light(const Wide (&light)[3], const WideMask& mask,
+                                               std::size_t channels, float* to) {
+  if (channels == 1) {
     store(to, choose(mask, light[0], wide_load(to)));
-  } else {
-    float values[channels][wide_lanes];
-    for (std::size_t c = 0; c < channels; ++c) store(values[c], light[c]);
-    for (std::uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1) {
-      const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-      for (std::size_t c = 0; c < channels; ++c) to[channels * i + c] = values[c][i];
-    }
+    return;
+  }
+  float values[3][wide_lanes];
+  for (std::size_t c = 0; c < 3; ++c) store(values[c], light[c]);
+  for (std::uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1) {
+    const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
+    for (std::size_t c = 0; c < 3; ++c) to[3 * i + c] = values[c][i];
   }
 }
 
@@ -32,15 +31,18 @@ template <typename Visit>
   }
 }
 
+[[gnu::always_inline]] inline void leave(const WideMask& is_left, int u, SpanRow& row) {
+  if (!any(is_left)) return;
+  set_flag(is_left, state_exact, row.state + u);
+  row.has_exact = true;
+}
+
 // Pixels that the kernel cannot be sure of, where the piece may be: the ray's point is near the axis, and a
 // piece that leans towards the camera is met some radii along the ray from there.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const WideMask& is_unsure, int u, SpanRow& row) {
-  const WideMask is_lost = is_unsure & is_within(piece, ray.point, 8 * piece.widest);
-  if (!any(is_lost)) return;
-  set_flag(is_lost, state_exact, row.state + u);
-  row.has_exact = true;
+  leave(is_unsure & is_within(piece, ray.point, 8 * piece.widest), u, row);
 }
 
 [[gnu::always_inline]] inline void add_borders(const WideMask& is_border, int u, SpanRow& row) {
@@ -50,11 +52,7 @@ template <bool is_tapered>
 
 // What is in a pixel with a screen's edge may lie before the screen or behind it.
 [[gnu::always_inline]] inline void leave_edges(const WideMask& is_there, int u, SpanRow& row) {
-  if (!row.has_edge) return;
-  const WideMask is_edge = is_there & has_flag(row.state + u, state_edge);
-  if (!any(is_edge)) return;
-  set_flag(is_edge, state_exact, row.state + u);
-  row.has_exact = true;
+  if (row.has_edge) leave(is_there & wide_flag(row.state + u, state_edge), u, row);
 }
 
 // Whether the edge of a ring is so near to p that it may divide the pixel.
@@ -66,7 +64,7 @@ template <bool is_tapered>
 }
 
 // `piece` is a copy, which no store can change: what is the same in all the row is worked out once.
-template <std::size_t channels, bool is_straight, bool is_tapered>
+template <bool is_tapered>
 void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const float radius = piece.radius, reach = piece.reach;
   // What H is at gaps of +reach, -reach and -bent_reach.
@@ -75,7 +73,7 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const auto deep_of = [&](auto r) { return -piece.bent_reach * (2 * r - piece.bent_reach); };
   float *const depths = row.depth, *const lights = row.light;
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
-    const Place place = place_of<is_straight>(row, u, piece.u0, piece.v0);
+    const Place place = place_of(row, u, piece.u0, piece.v0);
     const RayLanes<is_tapered> ray = ray_of<is_tapered>(piece, place);
     const Lowest lowest = lowest_of(piece, ray, piece.centering);
     const auto here_radius = [&] {
@@ -101,18 +99,14 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
       const float slack = overlap * radius + 0.2f * reach;
       const Height there = height(piece, ray, lowest.t);
       const Vector passing = along(ray.point, ray.direction, lowest.t - there.slope / there.curving);
-      const WideMask is_passing =
-          is_within(piece, passing, slack + piece.kink_before, slack + piece.kink_after);
+      const WideMask is_passing = is_within(piece, passing, slack + piece.kink_before, slack + piece.kink_after);
       WideMask is_taken = is_border & is_asked & (is_passing | (is_here & (lowest.value < 0)));
       if (piece.kink_before + piece.kink_after > 0) {
         const auto inner = [=](float kink) { return kink > 0 ? -kink : slack; };
         const WideMask is_at_kink =
             is_taken & ~is_within(piece, passing, inner(piece.kink_before), inner(piece.kink_after));
-        if (any(is_at_kink)) {
-          set_flag(is_at_kink, state_exact, row.state + u);
-          row.has_exact = true;
-          is_taken &= ~is_at_kink;
-        }
+        leave(is_at_kink, u, row);
+        is_taken &= ~is_at_kink;
       }
       add_borders(is_taken, u, row);
     }
@@ -125,35 +119,25 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
       if (any(is_bent)) add_borders(is_bent, u, row);
       is_drawn &= ~is_bent;
     }
-    if (piece.rims != 0) is_drawn &= ~has_flag(row.state + u, piece.rims);
+    if (piece.rims != 0) is_drawn &= ~wide_flag(row.state + u, piece.rims);
     if (!any(is_drawn)) return;
-    Wide light[channels];
+    Wide light[3];
     skin_light<true>(piece, ray, place, depth, p, normal_of(piece, ray, p, entry.t), light);
     store(depths + u, choose(is_drawn, depth, before));
-    store_light(light, is_drawn, lights + static_cast<std::size_t>(u) * channels);
+    store_light(light, is_drawn, piece.channels, lights + static_cast<std::size_t>(u) * piece.channels);
     set_flag(is_drawn, state_arm, row.state + u);
   });
 }
 
-template <bool is_tapered>
-void draw_tube(const SpanPiece& piece, int begin, int end, SpanRow& row) {
-  const bool is_straight = row.lens.u == nullptr;
-  if (piece.channels == 1)
-    is_straight ? draw_skin<1, true, is_tapered>(piece, begin, end, row)
-                : draw_skin<1, false, is_tapered>(piece, begin, end, row);
-  else
-    is_straight ? draw_skin<3, true, is_tapered>(piece, begin, end, row)
-                : draw_skin<3, false, is_tapered>(piece, begin, end, row);
-}
-
 void draw(const SpanPiece& piece, int begin, int end, SpanRow& row) {
-  piece.widening != 0 ? draw_tube<true>(piece, begin, end, row) : draw_tube<false>(piece, begin, end, row);
+  piece.widening != 0 ? draw_skin<true>(piece, begin, end, row) : draw_skin<false>(piece, begin, end, row);
 }
 
-template <std::size_t channels, bool is_straight>
-void draw_screen(const SpanScreen screen, int begin, int end, bool is_first, SpanRow& row) {
+void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& row) {
+  const SpanScreen screen = of;
+  const bool is_straight = row.lens.u == nullptr;
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
-    const Place place = place_of<is_straight>(row, u, screen.u0, screen.v0);
+    const Place place = place_of(row, u, screen.u0, screen.v0);
     const Wide nearness = at(screen.nearness, place), depth = 1 / nearness, before = wide_load(row.depth + u);
     WideMask is_inside = (nearness > 0) & is_asked, is_edge{};
     if (!is_straight) {
@@ -169,31 +153,18 @@ void draw_screen(const SpanScreen screen, int begin, int end, bool is_first, Spa
     }
     // Where it meets what is there.
     if (!is_first) is_edge |= is_inside & (size_of(nearness - 1 / before) < screen.least_distance);
-    if (any(is_edge)) {
-      set_flag(is_edge, state_exact, row.state + u);
-      row.has_exact = true;
-    }
-    const WideMask is_drawn = is_inside & ((depth < before) | WideMask(is_straight && is_first));
+    leave(is_edge, u, row);
+    const WideMask is_drawn = is_inside & ((depth < before) | mask_of(is_straight && is_first));
     store(row.depth + u, choose(is_drawn, depth, before));
     if (is_straight && is_first && screen.is_plain) return;
     const Wide x = depth * at(screen.place[0], place) - screen.middle[0],
-               y = depth * at(screen.place[1], place) - screen.middle[1];
+                 y = depth * at(screen.place[1], place) - screen.middle[1];
     const Wide factor = at_least(0, (1 + screen.gradient[0] * x + screen.gradient[1] * y) *
-                                        (1 - 0.5f * screen.falloff * (x * x + y * y)));
-    Wide light[channels];
-    for (std::size_t c = 0; c < channels; ++c) light[c] = screen.brightness[c] * factor;
-    store_light(light, is_drawn, row.light + static_cast<std::size_t>(u) * channels);
+                                          (1 - 0.5f * screen.falloff * (x * x + y * y)));
+    Wide light[3];
+    for (std::size_t c = 0; c < 3; ++c) light[c] = screen.brightness[c] * factor;
+    store_light(light, is_drawn, screen.channels, row.light + static_cast<std::size_t>(u) * screen.channels);
   });
-}
-
-void screen(const SpanScreen& it, int begin, int end, bool is_first, SpanRow& row) {
-  const bool is_straight = row.lens.u == nullptr;
-  if (it.channels == 1)
-    is_straight ? draw_screen<1, true>(it, begin, end, is_first, row)
-                : draw_screen<1, false>(it, begin, end, is_first, row);
-  else
-    is_straight ? draw_screen<3, true>(it, begin, end, is_first, row)
-                : draw_screen<3, false>(it, begin, end, is_first, row);
 }
 
 }  // namespace

@@ -3,12 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// What the sources compiled for one instruction set each (span_*.cc) offer to quick_picture.cc. They include
-// nothing of the project but this, span_lanes.h and vectors.h: an inline function of a header that others
-// include too could be compiled for AVX there, and the linker could pick that copy for everybody.
+// What is worked out for quick pictures in each instruction set (kernels.h).
 namespace flexura {
-
-enum class SimdPath;
 
 /// Pixels that the kernels take at a time, whatever their width.
 constexpr std::size_t span_step = 32;
@@ -158,10 +154,5 @@ struct SpanKernels {
   /// points; left as it is when none is within. Whether it is right.
   bool (*sample)(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light);
 };
-
-const SpanKernels* baseline_span_kernels();
-// None where the compiler did not build for the set.
-const SpanKernels* avx2_span_kernels();
-const SpanKernels* avx512_span_kernels();
 
 }  // namespace flexura

@@ -4,10 +4,9 @@
 #include <cstdint>
 
 #include "flexura/render/span_kernels.h"
-#include "flexura/render/wide.h"
+#include "flexura/render/vectors.h"
 
-// Rays against tubes, for span_*.cc alone. Every operation works on each pixel by itself and rounds once, so
-// that the width of the vectors changes no bit.
+// Rays against tubes, for all_kernels.h alone.
 //
 // With the centreline's circle through the origin, tangent to z, its centre at x = 1/curvature, a point p is
 // on the tube of radius r where
@@ -17,8 +16,6 @@
 // speed.
 namespace flexura {
 namespace {
-
-static_assert(span_step % wide_lanes == 0);
 
 struct Vector {
   Wide x, y, z;
@@ -51,13 +48,15 @@ struct Slope {
 }
 
 // The places of the row's pixels from column u on, counted from (u0, v0).
-template <bool is_straight>
 [[gnu::always_inline]] inline Place place_of(const SpanRow& row, int u, float u0, float v0) {
-  if (is_straight) {
-    return {
-        counted() + (static_cast<float>(u) - u0), (static_cast<float>(row.v) - v0), 1, Wide(0), Wide(0), 1};
-  }
   const LensRow& lens = row.lens;
+  if (lens.u == nullptr)
+    return {counted() + (static_cast<float>(u) - u0),
+            Wide(static_cast<float>(row.v) - v0),
+            Wide(1),
+            Wide(0),
+            Wide(0),
+            Wide(1)};
   return {wide_load(lens.u + u) - u0, wide_load(lens.v + u) - v0, wide_load(lens.u_by_u + u),
           wide_load(lens.u_by_v + u), wide_load(lens.v_by_u + u), wide_load(lens.v_by_v + u)};
 }
@@ -109,7 +108,7 @@ struct Girth {
 };
 [[gnu::always_inline]] inline Girth girth_at(const SpanPiece& piece, const Vector& p) {
   const Wide opposite = piece.curvature * p.z, adjacent = at_least(0.1f, 1 - piece.curvature * p.x),
-             inverse = 1 / adjacent, ratio = opposite * inverse, square = ratio * ratio;
+               inverse = 1 / adjacent, ratio = opposite * inverse, square = ratio * ratio;
   const Wide slope = piece.widening * inverse * inverse / (1 + square);
   return {piece.radius + piece.widening * (p.z * inverse) * arc_by_tangent(square), slope * opposite,
           slope * adjacent};
@@ -125,7 +124,7 @@ struct Height {
   const Wide way = ray.h2 * t, h = ray.h0 + t * (ray.h1 + way), h_slope = ray.h1 + 2 * way;
   const Wide y = ray.point.y + t * ray.direction.y;
   return {h * h + y * y - square, h * h_slope + y * ray.direction.y,
-          h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y, piece.radius};
+          h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y, Wide(piece.radius)};
 }
 // Of the radius the first derivative: along a ray it hardly bends.
 [[gnu::always_inline]] inline Height height(const SpanPiece& piece, const RayLanes<true>& ray,
@@ -136,7 +135,7 @@ struct Height {
   const float k = piece.curvature;
   const Wide r = girth.radius, r_slope = girth.by_x * d.x + girth.by_z * d.z;
   const Wide way = ray.h2 * t, h = ray.h0 + t * (ray.h1 + way) - 0.5f * k * r * r,
-             h_slope = ray.h1 + 2 * way - k * r * r_slope, h_curving = 2 * ray.h2 - k * r_slope * r_slope;
+               h_slope = ray.h1 + 2 * way - k * r * r_slope, h_curving = 2 * ray.h2 - k * r_slope * r_slope;
   return {h * h + p.y * p.y - r * r, h * h_slope + p.y * d.y - r * r_slope,
           h_slope * h_slope + h * h_curving + d.y * d.y - r_slope * r_slope, r};
 }
@@ -149,7 +148,7 @@ struct Lowest {
 template <bool is_tapered>
 [[gnu::always_inline]] inline Lowest lowest_of(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                                int steps) {
-  Wide t = 0, at_start = {};
+  Wide t = Wide(0), at_start = Wide(0);
   for (int i = 1; i < steps; ++i) {
     const Height here = height(piece, ray, t);
     if (i == 1) at_start = here.value;
@@ -174,11 +173,11 @@ struct Entry {
 template <bool is_tapered>
 [[gnu::always_inline]] inline Entry entry_of(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                              const Lowest& lowest) {
-  Wide t = lowest.t - lowest.half_chord, move = {};
+  Wide t = lowest.t - lowest.half_chord, move = Wide(0);
   for (int i = 0; i < piece.refining; ++i) {
     const Height here = height(piece, ray, t);
     const WideMask is_falling = here.slope < 0;
-    const Wide step = choose(is_falling, 0.5f * here.value / here.slope, 0);
+    const Wide step = choose(is_falling, 0.5f * here.value / here.slope, Wide(0));
     t -= step;
     move = choose(is_falling, step, here.value / piece.radius);
   }
@@ -188,7 +187,7 @@ template <bool is_tapered>
 // Whether p is no farther than so much before the plane across the piece's start and beyond that across its
 // end.
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float before,
-                                                 float after) {
+                                             float after) {
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
   return (p.z >= -before) & (beyond <= after);
 }
@@ -217,6 +216,28 @@ constexpr float overlap = 1e-3f;
   return {size * out.x, size * out.y, size * out.z};
 }
 
+// What a ray sees of a piece of which no end is in its way, with so many steps to where it is deepest.
+template <bool is_tapered>
+struct Sight {
+  RayLanes<is_tapered> ray;
+  Lowest lowest;
+  Entry entry;
+  Vector p;
+  Wide depth;
+  WideMask is_settled;
+};
+template <bool is_tapered>
+[[gnu::always_inline]] inline Sight<is_tapered> see(const SpanPiece& piece, const Place& place, int steps) {
+  Sight<is_tapered> sight;
+  sight.ray = ray_of<is_tapered>(piece, place);
+  sight.lowest = lowest_of(piece, sight.ray, steps);
+  sight.entry = entry_of(piece, sight.ray, sight.lowest);
+  sight.p = along(sight.ray.point, sight.ray.direction, sight.entry.t);
+  sight.depth = sight.ray.depth + sight.entry.t;
+  sight.is_settled = size_of(sight.entry.move) < piece.settled;
+  return sight;
+}
+
 // The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length
 // (or none at all).
 struct SquarePart {
@@ -229,7 +250,7 @@ struct SquarePart {
   // Where nothing changes in the image there is no normal: then all lies on one side.
   constexpr float least = 1e-6f;
   const Wide a = at_least(least, choose(is_steep, size_y, size_x)),
-             b = at_least(least, choose(is_steep, size_x, size_y));
+               b = at_least(least, choose(is_steep, size_x, size_y));
   // The triangle at the nearer corner; then the band, when the line crosses opposite sides.
   const Wide far = size_of(offset);
   const Wide t = at_least(0, 0.5f * (a + b) - far);
@@ -252,15 +273,16 @@ struct SquarePart {
 
 // How large the larger part of a unit normal is, squared; of none, as if it were one.
 [[gnu::always_inline]] inline Wide larger_square(const Wide& normal_x, const Wide& normal_y) {
-  return at_least(0.5f, larger(normal_x * normal_x, normal_y * normal_y));
+  return at_least(0.5f,
+                  choose(size_of(normal_x) > size_of(normal_y), normal_x * normal_x, normal_y * normal_y));
 }
 
 // The share of the pixel beyond the edge, from the distance in space and how it changes in the image.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Wide share_beyond(const SpanPiece& piece, const SpanEdge& edge,
-                                                const RayLanes<is_tapered>& ray, const Place& place,
-                                                const Wide& depth, const Vector& normal,
-                                                const Wide& distance) {
+                                                  const RayLanes<is_tapered>& ray, const Place& place,
+                                                  const Wide& depth, const Vector& normal,
+                                                  const Wide& distance) {
   const Wide along_ray = dot(ray.direction, edge.normal);
   const Wide slant = along_ray / dot(normal, ray.direction);
   const auto slope = [&](float Linear::* by) {
@@ -274,23 +296,32 @@ template <bool is_tapered>
   return part_beyond(by_u * scale, by_v * scale, -distance * scale).area;
 }
 
-// The light of the skin at p, channel by channel; of its pixel, or of the point alone.
-template <bool is_pixel, std::size_t channels, bool is_tapered>
+// The light of the skin at p, channel by channel (all three, for they cost next to nothing); of its pixel, or
+// of the point alone.
+template <bool is_pixel, bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const Place& place, const Wide& depth, const Vector& p,
-                                              const Vector& normal, Wide (&light)[channels]) {
-  for (std::size_t c = 0; c < channels; ++c) light[c] = piece.albedo[c];
+                                              const Vector& normal, Wide (&light)[3]) {
+  for (std::size_t c = 0; c < 3; ++c) light[c] = Wide(piece.albedo[c]);
   for (std::size_t i = 0; i < piece.edge_count; ++i) {
     const SpanEdge& edge = piece.edges[i];
     const Wide distance = dot(p, edge.normal) - edge.offset;
-    Wide share = choose(distance > 0, 1, Wide(0));
+    Wide share = choose(distance > 0, Wide(1), Wide(0));
     const WideMask is_near = size_of(distance) < edge.far;
     if (is_pixel && any(is_near))
       share = choose(is_near, share_beyond(piece, edge, ray, place, depth, normal, distance), share);
-    for (std::size_t c = 0; c < channels; ++c) light[c] += share * edge.change[c];
+    for (std::size_t c = 0; c < 3; ++c) light[c] += share * edge.change[c];
   }
   const Wide factor = piece.ambient + at_least(0, dot(normal, piece.light));
-  for (std::size_t c = 0; c < channels; ++c) light[c] *= factor;
+  for (Wide& channel : light) channel *= factor;
+}
+
+// Of the point alone.
+template <bool is_tapered>
+[[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const Place& place,
+                                              const Sight<is_tapered>& sight, Wide (&light)[3]) {
+  skin_light<false>(piece, sight.ray, place, sight.depth, sight.p,
+                    normal_of(piece, sight.ray, sight.p, sight.entry.t), light);
 }
 
 }  // namespace

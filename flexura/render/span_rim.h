@@ -1,9 +1,8 @@
 #pragma once
 
-#include "flexura/render/span_divide.h"
 #include "flexura/render/span_draw.h"
 
-// Flat ends of tubes; for span_*.cc alone.
+// Flat ends of tubes; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -73,46 +72,32 @@ struct RimLine {
   const WideMask is_seen = facing(rim, at) < rim.margin * square_root(at.x * at.x + at.y * at.y);
   // Between two sides that are near, the gradient may point along them.
   const WideMask is_between = size_of(at.value) < reach * reach * line.curving;
-  return ((size_of(line.distance) < reach) | is_between) & (at.z > 0) & (is_seen | WideMask(rim.is_front));
+  return ((size_of(line.distance) < reach) | is_between) & (at.z > 0) & (is_seen | mask_of(rim.is_front));
 }
 
 // Appends the columns of the row's rim pixels to row.borders.
-template <bool is_straight>
-void find_rim_in(const SpanRim& rim, int begin, int end, SpanRow& row) {
+void find_rim(const SpanRim& rim, int begin, int end, SpanRow& row) {
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
-    add_borders(is_rim(rim, place_of<is_straight>(row, u, rim.u0, rim.v0)) & is_asked, u, row);
+    add_borders(is_rim(rim, place_of(row, u, rim.u0, rim.v0)) & is_asked, u, row);
   });
 }
 
-void find_rim(const SpanRim& rim, int begin, int end, SpanRow& row) {
-  row.lens.u == nullptr ? find_rim_in<true>(rim, begin, end, row) : find_rim_in<false>(rim, begin, end, row);
-}
-
-template <std::size_t channels, bool is_straight>
-void draw_disc(const SpanRim rim, int begin, int end, SpanRow& row) {
+void disc(const SpanRim& of, std::size_t channels, int begin, int end, SpanRow& row) {
+  const SpanRim rim = of;
   for_vectors(begin, end, row.width, [&](int u, const WideMask& is_asked) __attribute__((always_inline)) {
-    const Place place = place_of<is_straight>(row, u, rim.u0, rim.v0);
+    const Place place = place_of(row, u, rim.u0, rim.v0);
     const RimPoint at_rim = rim_point(rim, place);
     const Wide depth = 1 / at(rim.nearness, place), before = wide_load(row.depth + u);
     const WideMask is_there =
-        (at_rim.value < 0) & (at_rim.z > 0) & is_asked & ~has_flag(row.state + u, rim.state);
+        (at_rim.value < 0) & (at_rim.z > 0) & is_asked & ~wide_flag(row.state + u, rim.state);
     leave_edges(is_there, u, row);
     const WideMask is_drawn = is_there & (depth < before);
     if (!any(is_drawn)) return;
-    Wide light[channels];
-    for (std::size_t c = 0; c < channels; ++c) light[c] = rim.light[c];
+    const Wide light[3] = {Wide(rim.light[0]), Wide(rim.light[1]), Wide(rim.light[2])};
     store(row.depth + u, choose(is_drawn, depth, before));
-    store_light(light, is_drawn, row.light + static_cast<std::size_t>(u) * channels);
+    store_light(light, is_drawn, channels, row.light + static_cast<std::size_t>(u) * channels);
     set_flag(is_drawn, state_arm, row.state + u);
   });
-}
-
-void disc(const SpanRim& rim, std::size_t channels, int begin, int end, SpanRow& row) {
-  const bool is_straight = row.lens.u == nullptr;
-  if (channels == 1)
-    is_straight ? draw_disc<1, true>(rim, begin, end, row) : draw_disc<1, false>(rim, begin, end, row);
-  else
-    is_straight ? draw_disc<3, true>(rim, begin, end, row) : draw_disc<3, false>(rim, begin, end, row);
 }
 
 }  // namespace

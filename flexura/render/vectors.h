@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// The widest vectors of single numbers that a source is compiled for, and what the compiler's own operators
-// (GCC's vector extensions, which clang has too) lack. For sources compiled for one instruction set alone.
-//
-// All is in an unnamed namespace: each source has its own copy, compiled for its own instruction set.
+// Vectors of single numbers by the compiler's own operators (GCC's vector extensions, which clang has too),
+// and what these lack. Each lane is worked on by itself and rounded once, so that the width changes no bit.
+// For all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has its
+// own copy.
 namespace flexura {
 namespace {
 
@@ -24,73 +24,54 @@ constexpr std::size_t vector_bytes = 16;
 constexpr std::size_t lanes = vector_bytes / 4;
 using Floats = float __attribute__((vector_size(vector_bytes)));
 using Words = std::uint32_t __attribute__((vector_size(vector_bytes)));
+using Mask = decltype(Floats{} < Floats{});  // All ones or zeros.
 
-template <typename Vector = Floats>
-Vector load(const float* from) {
-  Vector v;
+#define FLEXURA_INLINE [[gnu::always_inline]] inline
+FLEXURA_INLINE Floats all(float value) { return value - Floats{}; }
+FLEXURA_INLINE Floats load(const float* from) {
+  Floats v;
   __builtin_memcpy(&v, from, sizeof v);
   return v;
 }
-inline void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
-
+FLEXURA_INLINE void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
 // max(low, v), and low where v is not a number.
-inline Floats at_least(float low, const Floats& v) {
+FLEXURA_INLINE Floats at_least(float low, const Floats& v) {
 #if defined(__AVX512BW__)
-  return _mm512_max_ps(v, _mm512_set1_ps(low));
+  return _mm512_max_ps(v, all(low));
 #elif defined(__AVX2__)
-  return _mm256_max_ps(v, _mm256_set1_ps(low));
+  return _mm256_max_ps(v, all(low));
 #elif defined(__SSE2__)
-  return _mm_max_ps(v, _mm_set1_ps(low));
+  return _mm_max_ps(v, all(low));
 #else
-  return v > low ? v : Floats{} + low;
+  return v > low ? v : all(low);
 #endif
 }
-inline Floats at_most(float high, const Floats& v) {
-#if defined(__AVX512BW__)
-  return _mm512_min_ps(v, _mm512_set1_ps(high));
-#elif defined(__AVX2__)
-  return _mm256_min_ps(v, _mm256_set1_ps(high));
-#elif defined(__SSE2__)
-  return _mm_min_ps(v, _mm_set1_ps(high));
-#else
-  return v < high ? v : Floats{} + high;
-#endif
-}
-
-inline Floats square_root(const Floats& v) {
-#if defined(__AVX512BW__)
-  return _mm512_sqrt_ps(v);
-#elif defined(__AVX2__)
-  return _mm256_sqrt_ps(v);
-#elif defined(__SSE2__)
-  return _mm_sqrt_ps(v);
-#else
+FLEXURA_INLINE Floats at_most(float high, const Floats& v) { return v < all(high) ? v : all(high); }
+FLEXURA_INLINE Floats square_root(const Floats& v) {
   Floats root;
   for (std::size_t i = 0; i < lanes; ++i) root[i] = __builtin_sqrtf(v[i]);
   return root;
-#endif
 }
 
-inline bool is_zero(const Words& v) {
+// One a lane, the first one lowest.
+FLEXURA_INLINE std::uint32_t bits_of(const Mask& mask) {
 #if defined(__AVX512BW__)
-  const auto w = reinterpret_cast<__m512i>(v);
-  return _mm512_test_epi32_mask(w, w) == 0;
+  const auto m = reinterpret_cast<__m512i>(mask);
+  return _mm512_test_epi32_mask(m, m);
 #elif defined(__AVX2__)
-  const auto w = reinterpret_cast<__m256i>(v);
-  return _mm256_testz_si256(w, w) != 0;
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
 #elif defined(__SSE2__)
-  const auto w = reinterpret_cast<__m128i>(v);
-  return _mm_movemask_epi8(_mm_cmpeq_epi8(w, _mm_setzero_si128())) == 0xffff;
+  return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
 #else
-  std::uint32_t all = 0;
-  for (std::size_t i = 0; i < lanes; ++i) all |= v[i];
-  return all == 0;
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < lanes; ++i) bits |= mask[i] != 0 ? 1u << i : 0u;
+  return bits;
 #endif
 }
 
-// Sets `flag` in the bytes whose words of the mask, all ones or zeros, are set.
-inline void set_flag(const Words& mask, std::uint8_t flag, std::uint8_t* bytes) {
-  const Words flags = mask & flag;
+// Sets `flag` in the bytes whose lanes are set.
+FLEXURA_INLINE void set_flag(const Mask& mask, std::uint8_t flag, std::uint8_t* bytes) {
+  const Words flags = reinterpret_cast<Words>(mask) & flag;
 #if defined(__AVX512BW__)
   const __m128i packed = _mm512_cvtepi32_epi8(reinterpret_cast<__m512i>(flags));
   auto* const to = reinterpret_cast<__m128i*>(bytes);
@@ -104,24 +85,23 @@ inline void set_flag(const Words& mask, std::uint8_t flag, std::uint8_t* bytes) 
   for (std::size_t i = 0; i < lanes; ++i) bytes[i] = static_cast<std::uint8_t>(bytes[i] | flags[i]);
 #endif
 }
-
-// Bytes, one a word.
-inline Words words_of(const std::uint8_t* bytes) {
+// Whether the bytes have the flag.
+FLEXURA_INLINE Mask has_flag(const std::uint8_t* bytes, std::uint8_t flag) {
 #if defined(__AVX512BW__)
-  return reinterpret_cast<Words>(
-      _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes))));
+  const auto words =
+      reinterpret_cast<Words>(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes))));
 #elif defined(__AVX2__)
-  return reinterpret_cast<Words>(
-      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes))));
+  const auto words =
+      reinterpret_cast<Words>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes))));
 #else
   Words words;
   for (std::size_t i = 0; i < lanes; ++i) words[i] = bytes[i];
-  return words;
 #endif
+  return (words & flag) != 0;
 }
 
 // The sum of a word's four bytes, weighted with 64 * 128, 63 * 128, 64 * 125 and 63 * 125 from the lowest on.
-inline Words weighted_bytes(const Words& x) {
+FLEXURA_INLINE Words weighted_bytes(const Words& x) {
 #if defined(__AVX512BW__)
   const auto pairs = _mm512_maddubs_epi16(reinterpret_cast<__m512i>(x), _mm512_set1_epi16(64 | 63 << 8));
   return reinterpret_cast<Words>(_mm512_madd_epi16(pairs, _mm512_set1_epi32(128 | 125 << 16)));
@@ -142,7 +122,7 @@ inline Words weighted_bytes(const Words& x) {
 
 // Stores the numbers of `n` vectors, of a size below 2^31, cut to whole ones from 0 to 255.
 template <std::size_t n>
-void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
+FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
 #if defined(__AVX512BW__)
   for (std::size_t j = 0; j < n; ++j) {
     const __m512i whole = _mm512_max_epi32(_mm512_cvttps_epi32(v[j]), _mm512_setzero_si512());
@@ -171,6 +151,71 @@ void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
   }
 #endif
 }
+
+// Two vectors as one: what is computed in one waits for what was computed just before, and the other fills the
+// time.
+constexpr std::size_t wide_lanes = 2 * lanes;
+template <typename V, typename Number>
+struct Pair {
+  V low = {}, high = {};
+
+  Pair() = default;
+  FLEXURA_INLINE Pair(const V& l, const V& h) : low(l), high(h) {}
+  FLEXURA_INLINE Pair(Number value) : low(value - V{}), high(low) {}  // NOLINT: as numbers do
+
+#define FLEXURA_OPERATOR(Result, op)                                           \
+  FLEXURA_INLINE friend Result operator op(const Pair& a, const Pair& b) {     \
+    return {a.low op b.low, a.high op b.high};                                 \
+  }
+#define FLEXURA_OPERATORS(op)                                                  \
+  FLEXURA_OPERATOR(Pair, op)                                                   \
+  FLEXURA_INLINE friend Pair& operator op##=(Pair& a, const Pair& b) { return a = a op b; }
+  FLEXURA_OPERATORS(+)
+  FLEXURA_OPERATORS(-)
+  FLEXURA_OPERATORS(*)
+  FLEXURA_OPERATORS(/)
+  FLEXURA_OPERATORS(&)
+  FLEXURA_OPERATORS(|)
+  using Truth = Pair<Mask, std::int32_t>;
+  FLEXURA_OPERATOR(Truth, <)
+  FLEXURA_OPERATOR(Truth, >)
+  FLEXURA_OPERATOR(Truth, <=)
+  FLEXURA_OPERATOR(Truth, >=)
+#undef FLEXURA_OPERATORS
+#undef FLEXURA_OPERATOR
+  FLEXURA_INLINE friend Pair operator-(const Pair& a) { return {-a.low, -a.high}; }
+  FLEXURA_INLINE friend Pair operator~(const Pair& a) { return {~a.low, ~a.high}; }
+};
+using Wide = Pair<Floats, float>;
+using WideMask = Pair<Mask, std::int32_t>;
+
+FLEXURA_INLINE WideMask mask_of(bool is_set) { return is_set ? -1 : 0; }
+FLEXURA_INLINE Wide choose(const WideMask& mask, const Wide& a, const Wide& b) {
+  return {mask.low ? a.low : b.low, mask.high ? a.high : b.high};
+}
+FLEXURA_INLINE Wide size_of(const Wide& a) { return choose(a < 0, -a, a); }
+FLEXURA_INLINE Wide at_least(float low, const Wide& v) { return {at_least(low, v.low), at_least(low, v.high)}; }
+FLEXURA_INLINE Wide square_root(const Wide& v) { return {square_root(v.low), square_root(v.high)}; }
+FLEXURA_INLINE Wide wide_load(const float* from) { return {load(from), load(from + lanes)}; }
+FLEXURA_INLINE void store(float* to, const Wide& v) { store(to, v.low), store(to + lanes, v.high); }
+// 0, 1, 2, ...
+FLEXURA_INLINE Wide counted() {
+  Wide count;
+  for (std::size_t i = 0; i < lanes; ++i) count.low[i] = static_cast<float>(i);
+  count.high = count.low + static_cast<float>(lanes);
+  return count;
+}
+FLEXURA_INLINE std::uint32_t bits_of(const WideMask& mask) {
+  return bits_of(mask.low) | bits_of(mask.high) << lanes;
+}
+FLEXURA_INLINE bool any(const WideMask& mask) { return bits_of(mask.low | mask.high) != 0; }
+FLEXURA_INLINE void set_flag(const WideMask& mask, std::uint8_t flag, std::uint8_t* bytes) {
+  set_flag(mask.low, flag, bytes), set_flag(mask.high, flag, bytes + lanes);
+}
+FLEXURA_INLINE WideMask wide_flag(const std::uint8_t* bytes, std::uint8_t flag) {
+  return {has_flag(bytes, flag), has_flag(bytes + lanes, flag)};
+}
+#undef FLEXURA_INLINE
 
 }  // namespace
 }  // namespace flexura

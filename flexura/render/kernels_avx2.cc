@@ -1,0 +1,6 @@
+// Compiled for AVX2 where the compiler can (cmake/Simd.cmake); elsewhere it holds nothing.
+#ifdef __AVX2__
+#include "flexura/render/all_kernels.h"
+
+const flexura::Kernels* flexura::avx2_kernels() { return &all_kernels; }
+#endif

@@ -1,3 +1,0 @@
-#include "flexura/render/span_set.h"
-
-const flexura::SpanKernels* flexura::baseline_span_kernels() { return &span_kernels; }

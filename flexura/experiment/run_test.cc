@@ -225,7 +225,7 @@ TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
   EXPECT_EQ(*violations[0].find("obstacle")->as<std::string>(), "ball");
   const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
   EXPECT_THAT(report, HasSubstr("section 1: contact with ball, "));
-  EXPECT_THAT(report, HasSubstr("class=\"warning-tube\""));
+  EXPECT_THAT(report, HasSubstr("class=\"warning\""));
 }
 
 TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
@@ -241,7 +241,7 @@ TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
   EXPECT_THAT(report, HasSubstr("\"times\":[0,0.2,0.3,0.4,0.6]"));
   const std::string figure =
       read_text_file(result.folder / figures_folder_name / "arm-unsafe-1.svg", 1 << 24);
-  EXPECT_THAT(figure, HasSubstr("class=\"warning-tube\""));
+  EXPECT_THAT(figure, HasSubstr("class=\"warning\""));
 }
 
 TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {

@@ -161,19 +161,6 @@ TEST(BundleEtalon, KeepsToWhatTheScreensFill) {
   EXPECT_TRUE(result.is_done) << result.reason;
 }
 
-TEST(BundleEtalon, StopsWhereNoFrameComes) {
-  CalibrationBench bench(StoppedBundle::rig({}, "frame_timeout = 1\n", ", drop = 1"));
-  StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("camera front gave no frame for 1 s"));
-}
-
-TEST(BundleEtalon, StopsWhereAHeadDoesNotTurn) {
-  CalibrationBench bench(StoppedBundle::rig({}));
-  RigPorts ports = bench.ports();
-  StuckPan stuck(*ports.cameras[0].head);
-  ports.cameras[0].head = &stuck;
-  StoppedBundle::expect_stop(bench, ports, HasSubstr("the head of camera front does not follow"));
-}
-
 TEST(BundleEtalon, StopsWhereBothCamerasLookFromOneSide) {
   LoopRig rig;
   rig.size = 0.5, rig.travel = 0.2;

@@ -178,15 +178,22 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
 
 // For a moment: what comes after it is as good as before.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
-  ServoBench bench(servo_file(servo_target));
-  RigPorts ports = bench.ports();
-  OddClockCamera camera(*ports.cameras[1].camera, [](double now) { return now < 0.7 ? now + 1000 : now; });
-  ports.cameras[1].camera = &camera;
-  ServoNotes notes;
-  const ServoResult result = bench.servo(ports, notes);
-  EXPECT_TRUE(result.is_done) << result.reason;
-  EXPECT_TRUE(notes.has("camera side: its picture tells of a time that is "));
-  EXPECT_TRUE(notes.has("the arm is seen again"));
+  for (const auto& [off, said] : {std::pair{1000.0, " a time that is "},
+                                  std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {
+    ServoBench bench(servo_file(servo_target));
+    RigPorts ports = bench.ports();
+    OddClockCamera camera(*ports.cameras[1].camera,
+                          [off = off](double now) { return now < 0.7 ? now + off : now; });
+    ports.cameras[1].camera = &camera;
+    ServoNotes notes;
+    const ServoResult result = bench.servo(ports, notes);
+    EXPECT_TRUE(result.is_done) << result.reason;
+    EXPECT_TRUE(notes.has(std::string("camera side: its picture tells of") + said));
+    EXPECT_TRUE(notes.has("the arm is seen again"));
+    EXPECT_EQ(result.missed_steps, 0);
+    for (const ServoStep& step : result.steps)
+      EXPECT_TRUE(!step.seen_at || (std::isfinite(*step.seen_at) && std::isfinite(step.error->rms)));
+  }
 }
 
 }  // namespace

@@ -64,21 +64,18 @@ class LazySection : public ArmPort {
 TEST(StretchingArm, SaysWhichSectionIsStretchedAsFarAsItGoes) {
   ServoSetup rig;
   rig.arm += "\nstretch_limits = [0.8, 1.3]\nmax_stretch_rate = 0.5";
-  for (const double end : {0.85, 1.25}) {
-    ServoBench bench(servo_file(fmt::format("timeout = 3\n[[task.target]]\nbends = [[0.8, 0.3], [-0.7, 0.9], "
-                                            "[1.0, -0.6]]\nstretches = [1, {}, 1]\n",
-                                            end),
-                                rig));
-    RigPorts ports = bench.ports();
-    LazySection lazy(*ports.arm);
-    ports.arm = &lazy;
-    const ServoResult result = bench.servo(ports);
-    EXPECT_FALSE(result.is_done);
-    const auto is_said = [](const ServoStep& step) {
-      return step.limited == "section 2 is stretched as far as it goes";
-    };
-    EXPECT_TRUE(std::ranges::any_of(result.steps, is_said)) << end;
-  }
+  ServoBench bench(
+      servo_file("timeout = 2\n[[task.target]]\nbends = [[0.8, 0.3], [-0.7, 0.9], "
+                 "[1.0, -0.6]]\nstretches = [1, 1.25, 1]\n",
+                 rig));
+  RigPorts ports = bench.ports();
+  LazySection lazy(*ports.arm);
+  ports.arm = &lazy;
+  const ServoResult result = bench.servo(ports);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_TRUE(std::ranges::any_of(result.steps, [](const ServoStep& step) {
+    return step.limited == "section 2 is stretched as far as it goes";
+  }));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ void add_line(LineChart& chart, const CalibrationRun& run, const std::string& na
     series.values.push_back(step.is_found ? power_of_ten(value(step)) : nothing);
 }
 
-Figure offsets(const CalibrationRun& run, std::size_t number) {
+ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
   LineChart chart = step_chart(run, "what would have remained, if sent then");
   const auto add = [&](const char* name, const auto& value) {
     const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
@@ -56,7 +56,7 @@ Figure offsets(const CalibrationRun& run, std::size_t number) {
   return {fmt::format("calibration-{}-offsets", number + 1), std::move(chart)};
 }
 
-Figure sigmas(const CalibrationRun& run, std::size_t number) {
+ReportFigure sigmas(const CalibrationRun& run, std::size_t number) {
   LineChart chart = step_chart(run, "how well it was known: standard deviations");
   const auto add = [&](const std::string& name, const auto& value) {
     add_line(chart, run, name, nothing, [&](const RigStep& step) { return value(step.sigmas); });
@@ -69,8 +69,8 @@ Figure sigmas(const CalibrationRun& run, std::size_t number) {
 }
 
 // With the optical axis as it was found.
-Figure calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
-                              std::size_t number) {
+ReportFigure calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
+                                    std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
   const char* when = is_after ? "after" : "before";
   ImagePlot plot = sight_picture(run, sight, fmt::format("camera {}, {}", run.cameras[camera], when));

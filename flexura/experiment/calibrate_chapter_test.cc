@@ -20,7 +20,7 @@ namespace {
 
 template <class Content>
 const Content& content_of(const Chapter& chapter, const std::string& name) {
-  const auto found = std::ranges::find(chapter.figures, name, &Figure::name);
+  const auto found = std::ranges::find(chapter.figures, name, &ReportFigure::name);
   if (found == chapter.figures.end()) throw std::runtime_error("no figure " + name);
   return std::get<Content>(found->content);
 }

@@ -46,9 +46,9 @@ std::vector<DynamicsSampleMessage> shown_samples(const DynamicsRun& run) {
 
 using Value = std::function<double(const DynamicsSampleMessage&)>;
 
-std::vector<Figure> figures_of(const DynamicsRun& run, std::size_t number) {
+std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number) {
   const std::vector<DynamicsSampleMessage> samples = shown_samples(run);
-  std::vector<Figure> figures;
+  std::vector<ReportFigure> figures;
   const auto draw = [&](const char* name, const char* heading, const char* label, double least,
                         const std::vector<std::pair<std::string, Value>>& lines) {
     LineChart chart{

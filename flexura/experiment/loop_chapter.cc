@@ -20,7 +20,7 @@ namespace flexura {
 namespace {
 
 // The offsets of one camera over its loop's pictures, each as long as it is worked on.
-Figure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
+ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
   LineChart chart{.heading = fmt::format("offsets of camera {}", run.cameras[i]),
                   .x_label = "pictures of both cameras",
                   .value_label = "size, power of ten"};
@@ -52,15 +52,15 @@ Figure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t num
   return {fmt::format("calibration-{}-offsets-{}", number + 1, run.cameras[i]), std::move(chart)};
 }
 
-Figure loop_drawing(const CalibrationRun& run, std::size_t i, const char* what, std::size_t number,
-                    ImagePlot plot) {
+ReportFigure loop_drawing(const CalibrationRun& run, std::size_t i, const char* what, std::size_t number,
+                          ImagePlot plot) {
   plot.outlines.push_back({"picture's middle",
                            "s5",
                            {cross({0.5 * (plot.width - 1), 0.5 * (plot.height - 1)}, 0.03 * plot.width)}});
   return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], what), image_picture(plot)};
 }
 
-Figure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
+ReportFigure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
   const char* when = is_after ? "after" : "before";
   return loop_drawing(run, i, when, number,
                       sight_picture(run, is_after ? *run.loop->after[i] : *run.loop->before[i],
@@ -68,7 +68,7 @@ Figure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, 
 }
 
 // What the simulator has of a camera's arc.
-Figure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
+ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
   const IdealArc& ideal = run.arcs[i].ideal;
   constexpr int count = 40;
   ImagePlot plot = photograph(ideal.picture, {},

@@ -48,7 +48,7 @@ Node fault_node(const LimiterFault& fault, double start) {
 }
 
 // The errors falling, and the law's potential: as powers of ten, over the time in the task.
-std::array<Figure, 2> falling_errors(const ServoRun& run, std::size_t number) {
+std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t number) {
   const auto power = [](double value, double least) { return std::log10(std::max(value, least)); };
   constexpr double least_share = 1e-7, least_potential = 1e-12;
   LineChart errors{.heading = "distance from the wanted shape",
@@ -70,12 +70,12 @@ std::array<Figure, 2> falling_errors(const ServoRun& run, std::size_t number) {
     potential.series[0].values.push_back(power(step.potential, least_potential));
   }
   potential.x = errors.x;
-  return {Figure{fmt::format("servo-{}-errors", number + 1), std::move(errors)},
-          Figure{fmt::format("servo-{}-potential", number + 1), std::move(potential)}};
+  return {ReportFigure{fmt::format("servo-{}-errors", number + 1), std::move(errors)},
+          ReportFigure{fmt::format("servo-{}-potential", number + 1), std::move(potential)}};
 }
 
 // A picture with the axis as measured in it, and the wanted shape as it would be seen.
-Figure servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
+ReportFigure servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
   const ServoSight& sight = is_last ? *run.result.last : *run.result.first;
   const char* when = is_last ? "last" : "first";
   const auto found = std::ranges::find_if(
@@ -158,7 +158,7 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
   const bool has_errors =
       std::ranges::any_of(result.steps, [](const ServoStep& step) { return step.error && step.is_fresh; });
   if (has_errors)
-    for (Figure& figure : falling_errors(run, number)) chapter.figures.push_back(std::move(figure));
+    for (ReportFigure& figure : falling_errors(run, number)) chapter.figures.push_back(std::move(figure));
   return chapter;
 }
 

@@ -36,8 +36,8 @@ double number(const std::optional<double>& value) {
 
 // A chart of some features; lines by the first source, some dots by the second, rings by the third if there
 // is one.
-Figure chart_of(const ImageStudy& study, const char* chart_name, LineChart chart,
-                std::span<const std::size_t> features) {
+ReportFigure chart_of(const ImageStudy& study, const char* chart_name, LineChart chart,
+                      std::span<const std::size_t> features) {
   constexpr std::size_t most_dots = 24;
   const UnitSpelling unit = shown_unit(study.variation);
   const std::string name = plain_name(study.variation.name);
@@ -88,7 +88,7 @@ std::vector<ImageOutline::Line> lines_of(const TargetImage& image) {
   return lines;
 }
 
-Figure target_picture(const ImageStudy& study) {
+ReportFigure target_picture(const ImageStudy& study) {
   constexpr std::size_t shown = 5;
   ImagePlot plot{.heading = "the target in the image",
                  .legend = plain_name(study.variation.name),

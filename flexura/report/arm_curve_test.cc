@@ -19,7 +19,7 @@ TEST(ArcPoints, FollowTheArcAndStandAside) {
     const Arc& arc = backbone.arcs()[0];
     for (const double aside : {0.0, 6.0}) {
       const auto points = arc_points(arc, PlotView::xoy, frame, {aside, aside});
-      if (bend == 0.0) EXPECT_EQ(points.size(), 2U);
+      EXPECT_TRUE(bend != 0.0 || points.size() == 2);
       for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const Eigen::Vector2d middle = (points[i] + points[i + 1]) / 2;
         double nearest = 1e9;

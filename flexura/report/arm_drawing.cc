@@ -96,17 +96,20 @@ std::string backbone_path(const PlotScene& scene, std::size_t v, const ReportMot
   return path;
 }
 
-// Names for the start, the middle and the end of the tip's path; one name where they fall together.
-std::vector<std::pair<std::size_t, std::string>> named_tips(const ReportMotion& motion) {
-  std::vector<std::pair<std::size_t, std::string>> names;
+// Names for the start, the middle and the end of the tip's path; one name where they fall together on the
+// page.
+std::vector<std::pair<Eigen::Vector2d, std::string>> named_tips(const ReportMotion& motion,
+                                                                const PlotFrame& frame, PlotView view) {
+  constexpr double together = 20.0;
+  std::vector<std::pair<Eigen::Vector2d, std::string>> names;
   const std::pair<std::size_t, const char*> all[] = {
       {0, "start"}, {motion.middle, "middle"}, {motion.end(), "end"}};
   for (const auto& [i, name] : all) {
-    const auto same = std::ranges::find_if(names, [&, at = i](const auto& other) {
-      return (motion.tip(other.first) - motion.tip(at)).norm() < 1e-3 * motion.arm.length();
-    });
+    const Eigen::Vector2d at = frame.page(seen(view, motion.tip(i)));
+    const auto same =
+        std::ranges::find_if(names, [&](const auto& other) { return (other.first - at).norm() < together; });
     if (same == names.end()) {
-      names.emplace_back(i, name);
+      names.emplace_back(at, name);
     } else {
       same->second += std::string(", ") + name;
     }
@@ -219,8 +222,7 @@ Drawing tip_path_picture(const ReportMotion& motion) {
     const std::vector<Eigen::Vector2d> path =
         simplified(tip_points(motion, scene.frames[v], scene.views[v]), 0.05);
     svg.leaf("path", {{"class", "path"}, {"d", polyline_path(path)}});
-    for (const auto& [i, name] : named_tips(motion)) {
-      const Eigen::Vector2d at = scene.frames[v].page(seen(scene.views[v], motion.tip(i)));
+    for (const auto& [at, name] : named_tips(motion, scene.frames[v], scene.views[v])) {
       svg.circle(at, "tip", 5);
       label_beside(svg, scene.frames[v], at, name);
     }

@@ -130,7 +130,9 @@ void open_inside(XmlWriter& svg, const PlotFrame& frame) {
 }
 
 std::string line_class(std::size_t index) {
-  return fmt::format("s{} dash{}", index % 8, (index + index / 8) % 4);
+  // One solid line at the bottom, and gaps in all others: lines on top of each other show.
+  const std::size_t color = index % 8, dash = color == 0 ? 0 : 1 + (color - 1) % 3;
+  return fmt::format("s{} dash{}", color, (dash + index / 8) % 4);
 }
 
 double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,

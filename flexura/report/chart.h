@@ -34,7 +34,7 @@ struct LineChart {
 };
 
 /// A part of a report that is a file of its own, too: "tip-path".
-struct Figure {
+struct ReportFigure {
   std::string name;
   std::variant<Drawing, LineChart> content;
 };

@@ -44,7 +44,7 @@ class MotionCharts {
     }
   }
 
-  std::vector<Figure> charts;
+  std::vector<ReportFigure> charts;
 
  private:
   LineChart& add(const std::string& name, std::string heading, const std::string& label, double least) {
@@ -68,7 +68,7 @@ std::vector<double> degrees(std::vector<double> angles) {
 
 }  // namespace
 
-std::vector<Figure> charts_of(const ReportMotion& motion) {
+std::vector<ReportFigure> charts_of(const ReportMotion& motion) {
   const bool is_planar = motion.arm.kind == ArmKind::planar;
   MotionCharts all(motion);
   for (int axis = 0; axis < (is_planar ? 1 : 2); ++axis) {

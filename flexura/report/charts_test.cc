@@ -16,8 +16,8 @@ namespace {
 
 using testing::ElementsAre;
 
-const LineChart& chart_of(const std::vector<Figure>& charts, const std::string& name) {
-  for (const Figure& chart : charts)
+const LineChart& chart_of(const std::vector<ReportFigure>& charts, const std::string& name) {
+  for (const ReportFigure& chart : charts)
     if (chart.name == name) return std::get<LineChart>(chart.content);
   throw std::invalid_argument("no chart " + name);
 }

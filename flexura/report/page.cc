@@ -87,7 +87,7 @@ std::string csp_hash(std::string_view hex) {
   return "'sha256-" + base64 + "'";
 }
 
-std::string figure_html(const Figure& figure) {
+std::string figure_html(const ReportFigure& figure) {
   const auto* drawing = std::get_if<Drawing>(&figure.content);
   return fmt::format(
       "<figure id=\"picture-{}\">\n{}</figure>\n", figure.name,

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t max_listed_events = 1000;
 
-std::vector<Figure> arm_figures(const ReportMotion& motion, const PlotScene& scene) {
+std::vector<ReportFigure> arm_figures(const ReportMotion& motion, const PlotScene& scene) {
   return {{"arm-start", arm_picture(motion, scene, 0, "start")},
           {"arm-middle", arm_picture(motion, scene, motion.middle, "middle")},
           {"arm-end", arm_picture(motion, scene, motion.end(), "end")}};
@@ -34,9 +34,9 @@ PlotScene motion_scene(const ReportMotion& motion) {
                   0.1 * motion.arm.length());
 }
 
-std::string figures_html(const std::vector<Figure>& figures) {
+std::string figures_html(const std::vector<ReportFigure>& figures) {
   std::string html;
-  for (const Figure& figure : figures) html += figure_html(figure);
+  for (const ReportFigure& figure : figures) html += figure_html(figure);
   return html;
 }
 
@@ -171,7 +171,7 @@ std::vector<FigureFile> report_figures(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
   const PlotScene scene = motion_scene(motion);
   std::vector<FigureFile> files;
-  const auto add = [&](const std::vector<Figure>& figures) {
+  const auto add = [&](const std::vector<ReportFigure>& figures) {
     for (const auto& [name, content] : figures) {
       const auto* drawing = std::get_if<Drawing>(&content);
       files.push_back(
@@ -194,9 +194,9 @@ std::string report_html(const ReportData& data) {
   // An arm in XOY has three narrow pictures to a row, and its tip's path, as high as two charts, stands
   // beside the last two. The wide pictures of a spatial arm come two to a row, and the path fills the fourth
   // place.
-  std::vector<Figure> arms = arm_figures(motion, scene);
-  std::vector<Figure> charts = charts_of(motion);
-  Figure path = {"tip-path", tip_path_picture(motion)};
+  std::vector<ReportFigure> arms = arm_figures(motion, scene);
+  std::vector<ReportFigure> charts = charts_of(motion);
+  ReportFigure path = {"tip-path", tip_path_picture(motion)};
   if (motion.in_plane) {
     charts.insert(charts.end() - 1, std::move(path));
   } else {

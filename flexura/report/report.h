@@ -17,7 +17,7 @@ namespace flexura {
 struct Chapter {
   std::string heading;                   ///< Any text.
   std::string text;                      ///< Likewise: a paragraph.
-  std::vector<Figure> figures;           ///< Names that make file names, each once in the report.
+  std::vector<ReportFigure> figures;     ///< Names that make file names, each once in the report.
   std::vector<std::string> points = {};  ///< Any text: a list below the paragraph.
   bool is_first_tall = true;             ///< The first figure is as high as two.
 };

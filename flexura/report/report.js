@@ -166,7 +166,6 @@
       if (dots.length > 0) series.push(points("dots", { size: 6, fill: line.stroke }));
       if (rings.length > 0) series.push(points("rings", { size: 10, fill: "transparent" }));
     });
-    host.querySelector("ul").remove();
     const axis = { stroke: color("--soft"), grid: { stroke: color("--edge"), width: 1 }, ticks: { show: false },
       values: (_, all) => all.map((value) => String(Number(value.toPrecision(6)))) };
     const roomy = (_, low, high) => {
@@ -176,8 +175,9 @@
     const chart = new uPlot({
       width: host.clientWidth, height: 280, series,
       scales: { x: { time: false }, y: { range: roomy } },
-      axes: [{ ...axis, label: host.dataset.x }, { ...axis, label: host.dataset.y, size: 60 }],
+      axes: [{ ...axis, label: host.dataset.x, size: 28, labelSize: 22 }, { ...axis, label: host.dataset.y, size: 58, labelSize: 22 }],
       cursor: { y: false },
+      legend: { markers: { dash: (_, i) => (series[i].dash?.length > 0 ? (series[i].dash[0] > 4 ? "dashed" : "dotted") : "solid") } },
       hooks: { drawAxes: [({ ctx, bbox, valToPos }) => {
         ctx.fillStyle = color("--soft")();
         for (const x of given.marks.map((mark) => valToPos(mark, "x", true)))

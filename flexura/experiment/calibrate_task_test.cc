@@ -142,31 +142,17 @@ TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
 }
 
-// A camera whose pictures are empty where it zooms in.
-class BlindZoom : public CameraPort {
- public:
-  BlindZoom(CameraPort& camera, HeadPort& head) : camera_(camera), head_(head) {}
-  Outcome<std::optional<Frame>> newest() override { return blinded(camera_.newest()); }
-  Outcome<std::optional<Frame>> wait(double timeout) override { return blinded(camera_.wait(timeout)); }
-
- private:
-  Outcome<std::optional<Frame>> blinded(Outcome<std::optional<Frame>> taken) {
-    constexpr double farthest = 1.5;
-    if (taken.fault() || !taken.value() || head_.read().value().state.zoom < farthest) return taken;
-    Frame frame = *taken.value();
-    const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
-    Image<std::uint8_t> empty(seen.width(), seen.height(), seen.channels(), 200);
-    frame.picture = std::make_shared<const Picture>(std::move(empty));
-    return std::optional<Frame>(std::move(frame));
-  }
-  CameraPort& camera_;
-  HeadPort& head_;
-};
-
+// The camera's pictures are empty where it zooms in.
 TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   CalibrationBench bench(small_calibration("images = 9\n" + three_poses, wrong_cameras));
   RigPorts ports = bench.ports();
-  BlindZoom blind(*ports.cameras[1].camera, *ports.cameras[1].head);
+  OddCamera blind(*ports.cameras[1].camera, [&head = *ports.cameras[1].head](Frame frame) {
+    if (head.read().value().state.zoom < 1.5) return frame;
+    const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
+    frame.picture = std::make_shared<const Picture>(
+        Image<std::uint8_t>(seen.width(), seen.height(), seen.channels(), 200));
+    return frame;
+  });
   ports.cameras[1].camera = &blind;
   SeenLooks looks;
   const RigSessionResult result = bench.calibrate_bundle(ports, looks);

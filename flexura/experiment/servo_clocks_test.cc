@@ -16,58 +16,13 @@ namespace {
 
 using Told = std::function<double(double now)>;
 
-// An arm whose clock says from 0.4 s on what `told` makes of the time.
-class OddClockArm : public ArmPort {
- public:
-  OddClockArm(ArmPort& arm, Told told) : arm_(arm), told_(std::move(told)) {}
-  CommandOutcome command(const ArmState& state, double duration) override {
-    return arm_.command(state, duration);
-  }
-  CommandOutcome halt() override { return arm_.halt(); }
-  Outcome<ArmReading> read() override {
-    ArmReading reading = arm_.read().value();
-    if (reading.time >= 0.4) reading.time = told_(reading.time);
-    return reading;
-  }
-
- private:
-  ArmPort& arm_;
-  Told told_;
-};
-
-class OddClockHead : public HeadPort {
- public:
-  OddClockHead(HeadPort& head, Told told) : head_(head), told_(std::move(told)) {}
-  CommandOutcome command(const HeadState& state) override { return head_.command(state); }
-  CommandOutcome halt() override { return head_.halt(); }
-  Outcome<HeadReading> read() override {
-    HeadReading reading = head_.read().value();
-    if (reading.time >= 0.4) reading.time = told_(reading.time);
-    return reading;
-  }
-
- private:
-  HeadPort& head_;
-  Told told_;
-};
-
-class OddClockCamera : public CameraPort {
- public:
-  OddClockCamera(CameraPort& camera, Told told) : camera_(camera), told_(std::move(told)) {}
-  Outcome<std::optional<Frame>> newest() override { return told(camera_.newest()); }
-  Outcome<std::optional<Frame>> wait(double timeout) override { return told(camera_.wait(timeout)); }
-
- private:
-  Outcome<std::optional<Frame>> told(Outcome<std::optional<Frame>> outcome) {
-    if (outcome.fault() || !outcome.value()) return outcome;
-    Frame frame = *outcome.value();
-    if (frame.time >= 0.4) frame.time = told_(frame.time);
-    return std::optional(frame);
-  }
-
-  CameraPort& camera_;
-  Told told_;
-};
+// What says from 0.4 s on what `told` makes of the time.
+auto odd_clock(const Told& told) {
+  return [told](auto said) {
+    if (said.time >= 0.4) said.time = told(said.time);
+    return said;
+  };
+}
 
 struct OddClock {
   Told told;
@@ -101,7 +56,7 @@ TEST(ServoClocks, AnArmWhoseClockIsOddIsStopped) {
   for (const OddClock& odd : odd_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddClockArm arm(*ports.arm, odd.told);
+    OddArm arm(*ports.arm, odd_clock(odd.told));
     ports.arm = &arm;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -113,7 +68,7 @@ TEST(ServoClocks, AHeadWhoseClockIsOddStopsTheArm) {
   for (const OddClock& odd : odd_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddClockHead head(*ports.cameras[1].head, odd.told);
+    OddHead head(*ports.cameras[1].head, odd_clock(odd.told));
     ports.cameras[1].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -129,7 +84,7 @@ TEST(ServoClocks, AnArmThatBeginsInAnotherTimeIsNotMoved) {
     ServoBench bench(servo_file(servo_target));
     bench.rig().clock().wait_until(1);
     RigPorts ports = bench.ports();
-    OddClockArm arm(*ports.arm, [off](double now) { return now + off; });
+    OddArm arm(*ports.arm, odd_clock([off](double now) { return now + off; }));
     ports.arm = &arm;
     ServoNotes notes;
     EXPECT_NE(bench.servo(ports, notes).reason.find("1000 s"), std::string::npos);
@@ -144,9 +99,9 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
   for (const Told& told : harmless) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddClockArm arm(*ports.arm, told);
+    OddArm arm(*ports.arm, odd_clock(told));
     ports.arm = &arm;
-    OddClockHead head(*ports.cameras[0].head, told);
+    OddHead head(*ports.cameras[0].head, odd_clock(told));
     ports.cameras[0].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -164,7 +119,7 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   for (const auto& [told, reason] : cases) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddClockCamera camera(*ports.cameras[1].camera, told);
+    OddCamera camera(*ports.cameras[1].camera, odd_clock(told));
     ports.cameras[1].camera = &camera;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -182,8 +137,8 @@ TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
                                   std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddClockCamera camera(*ports.cameras[1].camera,
-                          [off = off](double now) { return now < 0.7 ? now + off : now; });
+    OddCamera camera(*ports.cameras[1].camera,
+                     odd_clock([off = off](double now) { return now < 0.7 ? now + off : now; }));
     ports.cameras[1].camera = &camera;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);

@@ -22,23 +22,13 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 const ArmState servo_wish = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
-// A head that says from a time on that its tilt is no number.
-class LostHead : public HeadPort {
- public:
-  LostHead(HeadPort& head, ClockPort& clock, double from) : head_(head), clock_(clock), from_(from) {}
-  CommandOutcome command(const HeadState& state) override { return head_.command(state); }
-  CommandOutcome halt() override { return head_.halt(); }
-  Outcome<HeadReading> read() override {
-    HeadReading reading = head_.read().value();
-    if (clock_.now() >= from_) reading.state.tilt = none;
+// A head says from a time on that its tilt is no number.
+OddHead::Said lost_from(double from) {
+  return [from](HeadReading reading) {
+    if (reading.time >= from) reading.state.tilt = none;
     return reading;
-  }
-
- private:
-  HeadPort& head_;
-  ClockPort& clock_;
-  double from_;
-};
+  };
+}
 
 // A camera that takes its time to answer, now and then.
 class SlowCamera : public CameraPort {
@@ -61,7 +51,7 @@ class SlowCamera : public CameraPort {
 TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   ServoBench bench(servo_file(servo_target));
   RigPorts ports = bench.ports();
-  LostHead lost(*ports.cameras[1].head, *ports.clock, 0.4);
+  OddHead lost(*ports.cameras[1].head, lost_from(0.4));
   ports.cameras[1].head = &lost;
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
@@ -75,7 +65,7 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   for (const auto& [time, state] : notes.sent)
     for (const Eigen::Vector2d& bend : state.bends) EXPECT_TRUE(bend.allFinite()) << "at " << time;
   // From the start nothing is sent at all.
-  LostHead never(*bench.ports().cameras[0].head, *bench.ports().clock, 0);
+  OddHead never(*bench.ports().cameras[0].head, lost_from(0));
   ports = bench.ports();
   ports.cameras[0].head = &never;
   ServoNotes silent;

@@ -204,26 +204,8 @@ TEST(Servo, SaysThatItIsHeldBack) {
   ServoSetup rig;
   rig.arm = "max_bend_deg = 60";
   ServoBench bench(servo_file("timeout = 3\n[[task.target]]\nbends = [[1.0, 0], [0, 0], [0, 0]]\n", rig));
-  class HalfArm : public ArmPort {
-   public:
-    explicit HalfArm(ArmPort& arm) : arm_(arm) {}
-    CommandOutcome command(const ArmState& state, double duration) override {
-      ArmState half = state;
-      for (Eigen::Vector2d& bend : half.bends) bend *= 0.5;
-      return arm_.command(half, duration);
-    }
-    CommandOutcome halt() override { return arm_.halt(); }
-    Outcome<ArmReading> read() override {
-      ArmReading reading = arm_.read().value();
-      for (Eigen::Vector2d& bend : reading.state.bends) bend *= 2;
-      return reading;
-    }
-
-   private:
-    ArmPort& arm_;
-  };
   RigPorts ports = bench.ports();
-  HalfArm half(*ports.arm);
+  TurnedArm half(*ports.arm, 0, 0.5);
   ports.arm = &half;
   const ServoResult result = bench.servo(ports);
   EXPECT_FALSE(result.is_done);

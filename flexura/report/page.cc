@@ -47,9 +47,9 @@ std::string chart_html(const LineChart& chart) {
                           json_values(one.dots), json_values(one.rings));
   }
   return fmt::format(
-      "<figcaption>{}</figcaption>\n<div class=\"chart\" data-x=\"{}\" data-y=\"{}\" data-least=\"{}\" "
-      "data-legend=\"{}\">\n<ul>\n{}</ul>\n"
-      "<script type=\"application/json\">{{\"x\":{},\"marks\":{},\"series\":[{}]}}</script>\n</div>\n",
+      "<figcaption>{0}</figcaption>\n<div class=\"chart\" role=\"group\" aria-label=\"Chart: {0}\" "
+      "data-x=\"{1}\" data-y=\"{2}\" data-least=\"{3}\" data-legend=\"{4}\">\n<ul>\n{5}</ul>\n"
+      "<script type=\"application/json\">{{\"x\":{6},\"marks\":{7},\"series\":[{8}]}}</script>\n</div>\n",
       xml_escape(chart.heading), xml_escape(chart.x_label), xml_escape(chart.value_label), chart.least,
       xml_escape(chart.legend), names, chart.is_of_run ? "null" : json_values(chart.x),
       json_array(chart.marks), values);

@@ -14,18 +14,18 @@
 namespace flexura {
 namespace {
 
-using Told = std::function<double(double now)>;
+using Shown = std::function<double(double now)>;
 
-// What says from 0.4 s on what `told` makes of the time.
-auto odd_clock(const Told& told) {
-  return [told](auto said) {
-    if (said.time >= 0.4) said.time = told(said.time);
+// What says from 0.4 s on what `shown` makes of the time.
+auto odd_clock(const Shown& shown) {
+  return [shown](auto said) {
+    if (said.time >= 0.4) said.time = shown(said.time);
     return said;
   };
 }
 
 struct OddClock {
-  Told told;
+  Shown shown;
   const char* reason;  // Of the arm and of heads.
 };
 
@@ -56,7 +56,7 @@ TEST(ServoClocks, AnArmWhoseClockIsOddIsStopped) {
   for (const OddClock& odd : odd_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddArm arm(*ports.arm, odd_clock(odd.told));
+    OddArm arm(*ports.arm, odd_clock(odd.shown));
     ports.arm = &arm;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -68,7 +68,7 @@ TEST(ServoClocks, AHeadWhoseClockIsOddStopsTheArm) {
   for (const OddClock& odd : odd_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddHead head(*ports.cameras[1].head, odd_clock(odd.told));
+    OddHead head(*ports.cameras[1].head, odd_clock(odd.shown));
     ports.cameras[1].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -92,16 +92,16 @@ TEST(ServoClocks, AnArmThatBeginsInAnotherTimeIsNotMoved) {
   }
 }
 
-// A reading that is told twice, or a little late, does no harm.
+// A reading that is shown twice, or a little late, does no harm.
 TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
-  const std::vector<Told> harmless = {[](double now) { return 0.1 * std::floor(now / 0.1); },
-                                      [](double now) { return now - 0.01; }};
-  for (const Told& told : harmless) {
+  const std::vector<Shown> harmless = {[](double now) { return 0.1 * std::floor(now / 0.1); },
+                                       [](double now) { return now - 0.01; }};
+  for (const Shown& shown : harmless) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddArm arm(*ports.arm, odd_clock(told));
+    OddArm arm(*ports.arm, odd_clock(shown));
     ports.arm = &arm;
-    OddHead head(*ports.cameras[0].head, odd_clock(told));
+    OddHead head(*ports.cameras[0].head, odd_clock(shown));
     ports.cameras[0].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -112,14 +112,14 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
 
 // Of its pictures nothing is believed: the arm waits, and is given up.
 TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
-  const std::vector<std::pair<Told, std::string>> cases = {
+  const std::vector<std::pair<Shown, std::string>> cases = {
       {[](double now) { return now + 1000; }, "camera side: its picture tells of a time that is "},
       {[](double now) { return now - 1000; }, "s older than the one before"},
       {[](double) { return 0.4; }, "no pictures come"}};
-  for (const auto& [told, reason] : cases) {
+  for (const auto& [shown, reason] : cases) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddCamera camera(*ports.cameras[1].camera, odd_clock(told));
+    OddCamera camera(*ports.cameras[1].camera, odd_clock(shown));
     ports.cameras[1].camera = &camera;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);

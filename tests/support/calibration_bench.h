@@ -95,15 +95,15 @@ class CalibrationBench : public RigBench {
   }
 };
 
-/// An arm whose sections bend by other shares of what they are told, and do not know it.
+/// An arm whose sections bend by other shares of what they are sent, and do not know it.
 class WrongArm : public OddArm {
  public:
   WrongArm(ArmPort& arm, const std::vector<double>& gains)
       : OddArm(
             arm,
-            [=](ArmReading told) {
-              for (std::size_t i = 0; i < gains.size(); ++i) told.state.bends[i] /= gains[i];
-              return told;
+            [=](ArmReading reading) {
+              for (std::size_t i = 0; i < gains.size(); ++i) reading.state.bends[i] /= gains[i];
+              return reading;
             },
             [=](ArmState bent) {
               for (std::size_t i = 0; i < gains.size(); ++i) bent.bends[i] *= gains[i];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 #include "flexura/base/degree.h"
@@ -11,7 +12,6 @@
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/loop_chapter.h"
 #include "flexura/experiment/photograph.h"
-#include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
 namespace flexura {
@@ -25,66 +25,51 @@ double power_of_ten(double value) {
   return std::isfinite(value) ? std::log10(std::max(std::abs(value), least)) : nothing;
 }
 
-class StepChart {
- public:
-  StepChart(const CalibrationRun& run, LineChart chart) : run_(run), chart_(std::move(chart)) {
-    chart_.x_label = "looks of both cameras";
-  }
-
-  // `first`: at no looks, by the rig as believed.
-  template <class Value>
-  StepChart& add(const std::string& name, double first, const Value& value) {
-    ChartSeries& series = chart_.series.emplace_back(
-        ChartSeries{name, fmt::format("s{}", chart_.series.size()), {power_of_ten(first)}, {}});
-    for (const RigStep& step : run_.result.steps)
-      series.values.push_back(step.is_found ? power_of_ten(value(step)) : nothing);
-    return *this;
-  }
-  [[nodiscard]] NamedDrawing drawing(std::size_t number) const {
-    std::vector<double> looks = {0};
-    for (const RigStep& step : run_.result.steps) looks.push_back(static_cast<double>(step.looks));
-    // The last look is calibrated by itself, so that no number of looks comes twice.
-    return {fmt::format("calibration-{}-{}", number + 1, chart_.name), chart_picture(chart_, looks, {})};
-  }
-
- private:
-  const CalibrationRun& run_;
-  LineChart chart_;
-};
-
-NamedDrawing offsets(const CalibrationRun& run, std::size_t number) {
-  const RigRemainder first = run.result.believed_remainder.value_or(RigRemainder{});
-  const double unknown = run.result.believed_remainder ? 1 : nothing;
-  const auto of = [](const RigStep& step, const auto& value) {
-    return step.remainder ? value(*step.remainder) : nothing;
-  };
-  const auto angle = [](const RigRemainder& left) { return left.angle / degree; };
-  const auto aim = [](const RigRemainder& left) { return std::max(left.aim[0].norm(), left.aim[1].norm()); };
-  const auto zoom = [](const RigRemainder& left) { return 100 * (left.zoom_ratio - 1); };
-  return StepChart(run,
-                   {"offsets", "what would have remained, if sent then", "size, power of ten", "", 1, {}, {}})
-      .add("angle (deg)", unknown * angle(first), [&](const RigStep& step) { return of(step, angle); })
-      .add("aim (m)", unknown * aim(first), [&](const RigStep& step) { return of(step, aim); })
-      .add("zoom ratio (%)", unknown * zoom(first), [&](const RigStep& step) { return of(step, zoom); })
-      .drawing(number);
+// What falls from look to look. The last look is calibrated by itself, so that no number of looks comes
+// twice.
+LineChart step_chart(const CalibrationRun& run, const char* heading) {
+  LineChart chart{
+      .heading = heading, .x_label = "looks of both cameras", .value_label = "size, power of ten", .x = {0}};
+  for (const RigStep& step : run.result.steps) chart.x.push_back(static_cast<double>(step.looks));
+  return chart;
 }
 
-NamedDrawing sigmas(const CalibrationRun& run, std::size_t number) {
-  const auto share = [](double value) { return 100 * value; };
-  return StepChart(
-             run,
-             {"sigmas", "how well it was known: standard deviations", "size, power of ten", "", 1, {}, {}})
-      .add("angle (deg)", nothing, [](const RigStep& step) { return step.sigmas.angle / degree; })
-      .add(run.cameras[0] + " focal (%)", nothing,
-           [&](const RigStep& step) { return share(step.sigmas.focal[0]); })
-      .add(run.cameras[1] + " focal (%)", nothing,
-           [&](const RigStep& step) { return share(step.sigmas.focal[1]); })
-      .add("zoom ratio (%)", nothing, [&](const RigStep& step) { return share(step.sigmas.zoom_ratio); })
-      .drawing(number);
+// `first`: at no looks, by the rig as believed.
+template <class Value>
+void add_line(LineChart& chart, const CalibrationRun& run, const std::string& name, double first,
+              const Value& value) {
+  ChartSeries& series = chart.series.emplace_back(ChartSeries{name, {power_of_ten(first)}});
+  for (const RigStep& step : run.result.steps)
+    series.values.push_back(step.is_found ? power_of_ten(value(step)) : nothing);
+}
+
+ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
+  LineChart chart = step_chart(run, "what would have remained, if sent then");
+  const auto add = [&](const char* name, const auto& value) {
+    const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
+    add_line(chart, run, name, of(run.result.believed_remainder),
+             [&](const RigStep& step) { return of(step.remainder); });
+  };
+  add("angle (deg)", [](const RigRemainder& left) { return left.angle / degree; });
+  add("aim (m)", [](const RigRemainder& left) { return std::max(left.aim[0].norm(), left.aim[1].norm()); });
+  add("zoom ratio (%)", [](const RigRemainder& left) { return 100 * (left.zoom_ratio - 1); });
+  return {fmt::format("calibration-{}-offsets", number + 1), std::move(chart)};
+}
+
+ReportFigure sigmas(const CalibrationRun& run, std::size_t number) {
+  LineChart chart = step_chart(run, "how well it was known: standard deviations");
+  const auto add = [&](const std::string& name, const auto& value) {
+    add_line(chart, run, name, nothing, [&](const RigStep& step) { return value(step.sigmas); });
+  };
+  add("angle (deg)", [](const RigSigmas& known) { return known.angle / degree; });
+  for (std::size_t i = 0; i < 2; ++i)
+    add(run.cameras[i] + " focal (%)", [i](const RigSigmas& known) { return 100 * known.focal[i]; });
+  add("zoom ratio (%)", [](const RigSigmas& known) { return 100 * known.zoom_ratio; });
+  return {fmt::format("calibration-{}-sigmas", number + 1), std::move(chart)};
 }
 
 // With the optical axis as it was found.
-NamedDrawing calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
+ReportFigure calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
                                     std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
   const char* when = is_after ? "after" : "before";
@@ -180,13 +165,13 @@ Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
   if (run.loop) return loop_chapter(run, number);
   Chapter chapter{"Calibration: " + run.name, text_of(run), {}, points_of(run), false};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (run.result.before[i]) chapter.drawings.push_back(calibration_photograph(run, i, false, number));
-    if (run.result.is_done) chapter.drawings.push_back(calibration_photograph(run, i, true, number));
+    if (run.result.before[i]) chapter.figures.push_back(calibration_photograph(run, i, false, number));
+    if (run.result.is_done) chapter.figures.push_back(calibration_photograph(run, i, true, number));
   }
   const bool is_known = std::ranges::any_of(run.result.steps, &RigStep::is_found);
   if (is_known) {
-    chapter.drawings.push_back(offsets(run, number));
-    chapter.drawings.push_back(sigmas(run, number));
+    chapter.figures.push_back(offsets(run, number));
+    chapter.figures.push_back(sigmas(run, number));
   }
   return chapter;
 }

@@ -60,7 +60,7 @@ TEST(CalibrateTaskFully, BringsTheExamplesWrongCamerasToOrthogonalAxesWithinThei
 // Rough guesses of which markers are easily taken for others: of where the arm leaves the pictures, or of the
 // first looks, all of one camera's shifted by one.
 TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
-  for (const std::uint64_t seed : {7000036U, 7000039U, 7000053U, 7000088U}) {
+  for (const std::uint64_t seed : {7000036U, 7000053U}) {
     const testing::ScopedTrace trace(__FILE__, __LINE__, seed);
     TestRandom random(seed);
     const WrongRig wrong = wrong_rig(random);
@@ -80,7 +80,7 @@ TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
 
 // From all that a guess may be off by together, focal lengths by a tenth among it.
 TEST(CalibrateTaskFully, FindsFocalLengthsThatAreATenthOff) {
-  for_random_cases(4, [](TestRandom& random) {
+  for_random_cases(2, [](TestRandom& random) {
     WrongRig wrong = wrong_rig(random);
     for (WrongStart* start : {&wrong.front, &wrong.side})
       start->focal = random.integer(0, 1) == 1 ? 1.1 : 1 / 1.1;
@@ -119,7 +119,7 @@ class StageMoves : public NobodyWatches {
 
 // By the cylinder, from starts as the study draws them: principal points and zeros of heads wrong as well.
 TEST(CalibrateTaskFully, FindsWrongCamerasBeforeTheCylinder) {
-  for (std::size_t start = 0; start < 4; ++start) {
+  for (std::size_t start = 0; start < 2; ++start) {
     const CalibrationTrial trial = run_trial("bundle-etalon", 1, start);
     ASSERT_TRUE(trial.is_done) << trial.reason;
     EXPECT_LE(trial.pictures, 14);
@@ -212,7 +212,7 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
 // What play leads to hangs on the sides that heads come from: pictures that it spoils are left out.
 TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
   int refused = 0;
-  for (const double backlash : {0.2, 0.5, 0.8, 1.0, 1.4, 2.0}) {
+  for (const double backlash : {0.2, 0.8, 2.0}) {
     std::string file = etalon_rig("method = \"bundle-etalon\"\n", {});
     const std::string exact = "pan = { zero = 0 }";
     for (std::size_t at = file.find(exact); at != std::string::npos; at = file.find(exact, at + 1))
@@ -228,7 +228,7 @@ TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
     for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.01) << backlash;
   }
   EXPECT_GT(refused, 0);
-  EXPECT_LT(refused, 6);
+  EXPECT_LT(refused, 3);
 }
 
 // Without stages too few places tell a focal length as well as is wanted; it says how well it is known.
@@ -384,7 +384,7 @@ TEST(EtalonPaperLoopFully, StopsWhereTheCylinderIsCutAboveAndBelow) {
 // Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw
 // nothing more of the arm.
 TEST(ArcsLoopFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
-  for (const std::size_t start : {0U, 5U, 20U, 665U, 850U, 981U}) {
+  for (const std::size_t start : {0U, 20U, 850U}) {
     const testing::ScopedTrace trace(__FILE__, __LINE__, start);
     const CalibrationTrial trial = run_trial("arcs", 1, start);
     ASSERT_TRUE(trial.is_done) << trial.reason;

@@ -7,10 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -21,23 +17,15 @@
 #include <vector>
 
 #include "flexura/base/image.h"
-#include "flexura/base/progress.h"
 #include "flexura/base/table.h"
 #include "flexura/calibrate/rig_session_plan.h"
 #include "flexura/experiment/calibrate_results.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/experiment/photographer.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
 #include "flexura/sim/simulated_rig.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/calibration_files.h"
 #include "tests/support/experiment_files.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -155,31 +143,17 @@ TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
 }
 
-// A camera whose pictures are empty where it zooms in.
-class BlindZoom : public CameraPort {
- public:
-  BlindZoom(CameraPort& camera, HeadPort& head) : camera_(camera), head_(head) {}
-  Outcome<std::optional<Frame>> newest() override { return blinded(camera_.newest()); }
-  Outcome<std::optional<Frame>> wait(double timeout) override { return blinded(camera_.wait(timeout)); }
-
- private:
-  Outcome<std::optional<Frame>> blinded(Outcome<std::optional<Frame>> taken) {
-    constexpr double farthest = 1.5;
-    if (taken.fault() || !taken.value() || head_.read().value().state.zoom < farthest) return taken;
-    Frame frame = *taken.value();
-    const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
-    Image<std::uint8_t> empty(seen.width(), seen.height(), seen.channels(), 200);
-    frame.picture = std::make_shared<const Picture>(std::move(empty));
-    return std::optional<Frame>(std::move(frame));
-  }
-  CameraPort& camera_;
-  HeadPort& head_;
-};
-
+// The camera's pictures are empty where it zooms in.
 TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   CalibrationBench bench(small_calibration("images = 9\n" + three_poses, wrong_cameras));
   RigPorts ports = bench.ports();
-  BlindZoom blind(*ports.cameras[1].camera, *ports.cameras[1].head);
+  OddCamera blind(*ports.cameras[1].camera, [&head = *ports.cameras[1].head](Frame frame) {
+    if (head.read().value().state.zoom < 1.5) return frame;
+    const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
+    frame.picture = std::make_shared<const Picture>(
+        Image<std::uint8_t>(seen.width(), seen.height(), seen.channels(), 200));
+    return frame;
+  });
   ports.cameras[1].camera = &blind;
   SeenLooks looks;
   const RigSessionResult result = bench.calibrate_bundle(ports, looks);
@@ -286,60 +260,46 @@ class LastCameras : public RunWatcher {
 };
 
 TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
-  const TemporaryFolder folder;
-  const Experiment experiment =
+  Runs runs;
+  LastCameras seen;
+  const RunResult result = runs.run(
       parse_experiment(small_calibration("name = \"look\"\nimages = 4\n" + three_poses, wrong_cameras) +
                            "\n[[task]]\nkind = \"hold\"\nduration = 0.5\n[record]\ncameras = true\n",
-                       "x.toml");
-  Quiet quiet;
-  LastCameras seen;
-  const RunResult result = run_experiment(experiment, folder.path(), quiet, &seen);
+                       "x.toml"),
+      &seen);
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
-  const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
+  const Node& calibration = entry_of(result, "calibrations");
   EXPECT_TRUE(*calibration.find("done")->as<bool>());
   EXPECT_LT(std::abs(*calibration.find("remainder")->find("angle_from_square")->as<double>()), 0.1);
   EXPECT_NE(calibration.find("remainder_in_truth"), nullptr);
 
-  McapReader log(folder.path() / log_file_name);
-  std::map<std::string, int> counts;
-  std::uint64_t last = 0;
-  HeadReadingMessage head;
-  StageReadingMessage stage;
-  std::set<std::uint64_t> times_of_heads;
-  for (const McapMessage& message : log.messages()) {
-    ++counts[message.channel->topic];
-    const auto node = [&] { return parse_json(message.text(), "log"); };
-    if (message.channel->topic == "/head/front") {
-      head = read_as<HeadReadingMessage>(node());
-      times_of_heads.insert(message.log_time);
-    }
-    if (message.channel->topic == "/stage/front") stage = read_as<StageReadingMessage>(node());
-    if (message.channel->topic == "/arm/state") {
-      EXPECT_GE(message.log_time, last);
-      last = message.log_time;
-    }
-  }
-  EXPECT_GT(counts["/calibration/moves"], 6);
-  EXPECT_EQ(counts["/calibration/sightings"], 8);
-  EXPECT_EQ(counts["/calibration/decisions"], 3);
-  EXPECT_GE(counts["/camera/front"], 4);
-  EXPECT_NEAR(static_cast<double>(last) * 1e-9, *result.summary.find("duration")->as<double>(), 1e-6);
+  auto counts = logged_counts(result);
+  const auto heads = logged<HeadReadingMessage>(result, "/head/front");
+  const auto stages = logged<StageReadingMessage>(result, "/stage/front");
+  const auto states = logged<ArmStateMessage>(result, arm_state_topic);
+  EXPECT_TRUE(std::ranges::is_sorted(states, {}, &ArmStateMessage::time));
+  EXPECT_GT(counts["/calibration/moves"], 6U);
+  EXPECT_EQ(counts["/calibration/sightings"], 8U);
+  EXPECT_EQ(counts["/calibration/decisions"], 3U);
+  EXPECT_GE(counts["/camera/front"], 4U);
+  EXPECT_NEAR(states.back().time, *result.summary.find("duration")->as<double>(), 1e-6);
 
   // Those who watch, and the log, have the cameras where they went.
   ASSERT_EQ(seen.cameras().size(), 2U);
   EXPECT_NE(seen.cameras()[0].head.pan, 0);
   EXPECT_GT(seen.pans().size(), 2U);
-  EXPECT_EQ(head.pan, seen.cameras()[0].head.pan);
-  EXPECT_EQ(Eigen::Vector3d(stage.offset.data()), seen.cameras()[0].stage.offset);
-  EXPECT_EQ(counts["/stage/front"], counts["/head/front"]);
-  EXPECT_EQ(static_cast<int>(times_of_heads.size()), counts["/head/front"]) << "once for each time";
+  EXPECT_EQ(heads.back().pan, seen.cameras()[0].head.pan);
+  EXPECT_EQ(Eigen::Vector3d(stages.back().offset.data()), seen.cameras()[0].stage.offset);
+  EXPECT_EQ(stages.size(), heads.size());
+  EXPECT_EQ(std::ranges::adjacent_find(heads, {}, &HeadReadingMessage::time), heads.end())
+      << "once for each time";
 
   // The rig as found is an experiment's arm and cameras, and starts where it was sent.
-  const Experiment found = load_experiment(folder.path() / rig_file_name);
+  const Experiment found = load_experiment(result.folder / rig_file_name);
   EXPECT_EQ(found.cameras().size(), 2U);
   EXPECT_NEAR(found.cameras()[0].lens.fx, 424, 12);
   EXPECT_NE(found.cameras()[0].initial.pan, 0);
-  EXPECT_THAT(read_text_file(folder.path() / report_file_name, 1 << 26), HasSubstr("Calibration: look"));
+  EXPECT_THAT(text_of(result, report_file_name), HasSubstr("Calibration: look"));
 }
 
 TEST(CalibrateTask, RefusesWhatItCannotDo) {

@@ -16,19 +16,12 @@
 #include "flexura/base/table.h"
 #include "flexura/calibrate/arcs_loop.h"
 #include "flexura/experiment/calibrate_config.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
 #include "flexura/math/arrays.h"
 #include "flexura/picture/image_file.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/loop_files.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -48,30 +41,15 @@ const char* const tendon_drive =
 TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
   const LoopRig rig =
       arcs_cameras({WrongStart{.pan = 0.03, .tilt = 0.02}, WrongStart{.shift = {0, 0, 0.05}}}, true);
-  const Experiment experiment =
-      parse_experiment(tendon_drive + arcs_rig("method = \"arcs-paper\"\n", rig), "x.toml");
-  const TemporaryFolder folder;
-  Quiet quiet;
-  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  Runs runs;
+  const RunResult result = runs.run(tendon_drive + arcs_rig("method = \"arcs-paper\"\n", rig));
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
-  McapReader log(folder.path() / log_file_name);
-  std::vector<CalibrationArcMessage> arcs;
+  const auto arcs = logged<CalibrationArcMessage>(result, calibration_arcs_topic);
+  const auto commands = logged<DriveCommandsMessage>(result, drive_commands_topic);
+  const auto last = logged<CalibrationDecisionMessage>(result, calibration_decisions_topic).back();
   std::map<std::string, CalibrationSightingMessage> first;  // by camera
-  std::map<std::string, Picture> ideal;                     // by topic
-  std::vector<DriveCommandsMessage> commands;
-  CalibrationDecisionMessage last;
-  for (const McapMessage& message : log.messages()) {
-    const std::string& topic = message.channel->topic;
-    const auto node = [&] { return parse_json(message.text(), "log"); };
-    if (topic == calibration_arcs_topic) arcs.push_back(read_as<CalibrationArcMessage>(node()));
-    if (topic == drive_commands_topic) commands.push_back(read_as<DriveCommandsMessage>(node()));
-    if (topic == calibration_decisions_topic) last = read_as<CalibrationDecisionMessage>(node());
-    if (topic.starts_with("/calibration/ideal/"))
-      ideal.emplace(topic, read_png(read_as<ImageMessage>(node()).data.data));
-    if (topic != calibration_sightings_topic) continue;
-    const auto sighting = read_as<CalibrationSightingMessage>(node());
+  for (const auto& sighting : logged<CalibrationSightingMessage>(result, calibration_sightings_topic))
     first.emplace(sighting.camera, sighting);
-  }
   ASSERT_EQ(arcs.size(), 2U);
   EXPECT_EQ(arcs[0].camera + " " + arcs[0].plane, "front XOY");
   EXPECT_EQ(arcs[1].camera + " " + arcs[1].plane, "side ZOY");
@@ -87,7 +65,9 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
     const auto after = std::ranges::upper_bound(commands, sighting.time, {}, &DriveCommandsMessage::time);
     EXPECT_EQ(arc.positions, std::prev(after)->positions) << arc.camera;
     // The ideal axis lies along the ideal picture's arm, and in the real picture a circle is fitted.
-    const auto& picture = std::get<Image<std::uint8_t>>(ideal.at(ideal_image_topic(arc.camera)));
+    const Picture ideal =
+        read_png(logged<ImageMessage>(result, ideal_image_topic(arc.camera)).front().data.data);
+    const auto& picture = std::get<Image<std::uint8_t>>(ideal);
     ASSERT_TRUE(sighting.ideal && sighting.circle);
     const auto& [u, v] = (*sighting.ideal)[sighting.ideal->size() / 2];
     EXPECT_LT(picture.at(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v))) + 50,
@@ -96,7 +76,7 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
   }
   EXPECT_TRUE(last.ended.value_or(false));
   EXPECT_EQ(last.next, "calibrated");
-  const std::string report = read_text_file(folder.path() / report_file_name, 1 << 26);
+  const std::string report = text_of(result, report_file_name);
   for (const char* part : {"The arc in XOY, for camera front: sections bend by 42.00, 42.00, 36.00 deg, "
                            "rotated by 0.00, 0.00, 0.00 deg",
                            "; motors at ", "camera side, ideal: the arc in ZOY"})

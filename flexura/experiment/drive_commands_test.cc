@@ -7,23 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
 #include <sstream>
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/kinematics/tendons.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/checkout.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -38,20 +30,8 @@ struct Row {
   std::vector<double> rates;
 };
 
-class LaboratoryArm : public ::testing::Test {
+class LaboratoryArm : public ::testing::Test, public Runs {
  protected:
-  RunResult run(const Experiment& experiment) {
-    Quiet progress;
-    return run_experiment(experiment, make_new_folder(folder_.path() / "results"), progress);
-  }
-  static std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-      if (entry.is_regular_file())
-        files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
-    }
-    return files;
-  }
   static std::vector<Row> rows_of(const std::filesystem::path& results, std::size_t axes) {
     std::istringstream table(read_text_file(results / commands_file_name, 1 << 26));
     std::string line;
@@ -68,16 +48,13 @@ class LaboratoryArm : public ::testing::Test {
     }
     return rows;
   }
-  TemporaryFolder folder_;
 };
 
-TEST_F(LaboratoryArm, RunsToTheSameBytesEachTimeAndFromItsOwnFile) {
-  const Experiment experiment = load_experiment(laboratory_arm);
-  const RunResult first = run(experiment);
+TEST_F(LaboratoryArm, RunsToTheSameBytesFromItsOwnFile) {
+  const RunResult first = run(load_experiment(laboratory_arm));
   EXPECT_EQ(first.outcome, RunOutcome::done) << (first.reasons.empty() ? "" : first.reasons[0]);
   const auto files = files_in(first.folder);
   EXPECT_TRUE(files.contains("commands.csv"));
-  EXPECT_EQ(files, files_in(run(experiment).folder));
   EXPECT_EQ(files, files_in(run(load_experiment(first.folder / experiment_file_name)).folder));
 }
 
@@ -172,11 +149,8 @@ TEST_F(LaboratoryArm, ASafeListKeepsToTheLimitsOfItsMotors) {
 TEST_F(LaboratoryArm, LogsTheCommandsOfItsTable) {
   const RunResult result = run(load_experiment(laboratory_arm));
   const std::vector<Row> rows = rows_of(result.folder, 9);
-  const McapReader log(result.folder / log_file_name);
   std::size_t count = 0;
-  for (const McapMessage& message : log.messages()) {
-    if (message.channel->topic != drive_commands_topic) continue;
-    const auto command = read_as<DriveCommandsMessage>(parse_json(message.text(), "log"));
+  for (const auto& command : logged<DriveCommandsMessage>(result, drive_commands_topic)) {
     ASSERT_LT(count, rows.size());
     EXPECT_EQ(command.time, rows[count].time);
     EXPECT_EQ(command.positions, rows[count].positions);
@@ -197,8 +171,7 @@ TEST_F(LaboratoryArm, WritesNoCommandsForAMotionThatIsUnsafeOrWithoutADrive) {
   const RunResult bare = run(experiment);
   EXPECT_EQ(bare.outcome, RunOutcome::done);
   EXPECT_FALSE(std::filesystem::exists(bare.folder / commands_file_name));
-  const McapReader log(bare.folder / log_file_name);
-  for (const McapMessage& message : log.messages()) ASSERT_NE(message.channel->topic, drive_commands_topic);
+  EXPECT_FALSE(logged_counts(bare).contains(std::string(drive_commands_topic)));
 }
 
 }  // namespace

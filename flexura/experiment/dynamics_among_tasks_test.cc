@@ -40,9 +40,7 @@ TEST_F(Dynamics, IsTheSameByteForByteOfOneSeed) {
   const auto files = files_in(first.folder);
   EXPECT_TRUE(files_in(run(text).folder) == files);
   EXPECT_TRUE(files.contains("figures/dynamics-1-lyapunov.svg"));
-  Quiet quiet;
-  const RunResult again = run_experiment(load_experiment(first.folder / experiment_file_name),
-                                         make_new_folder(folder_.path() / "again"), quiet);
+  const RunResult again = run(load_experiment(first.folder / experiment_file_name));
   EXPECT_TRUE(files_in(again.folder) == files);
   EXPECT_NE(samples(run(text, {"seed=2"})).back().lyapunov, samples(first).back().lyapunov);
 }
@@ -156,7 +154,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
   const SafetyReport report = safety_with_dynamics(experiment, quiet);
   is_told(report.caveats, report.notes);
   EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
-  const RunResult result = run_experiment(experiment, make_new_folder(folder_.path() / "results"), quiet);
+  const RunResult result = run(experiment);
   const auto lines = [&](const char* key) {
     std::vector<std::string> texts;
     for (const Node& line : *result.summary.find(key)->as<Node::Array>())

@@ -10,7 +10,6 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/base/node.h"
-#include "flexura/report/chart.h"
 
 namespace flexura {
 namespace {
@@ -46,61 +45,41 @@ std::vector<DynamicsSampleMessage> shown_samples(const DynamicsRun& run) {
   return shown;
 }
 
-using Shown = DynamicsSampleMessage;
-using Value = std::function<double(const Shown&)>;
+using Value = std::function<double(const DynamicsSampleMessage&)>;
 
-class SampleCharts {
- public:
-  SampleCharts(const DynamicsRun& run, std::size_t number) : samples_(shown_samples(run)), number_(number) {
-    for (const Shown& sample : samples_) times_.push_back(sample.time - run.start);
-  }
-
-  [[nodiscard]] NamedDrawing draw(const std::string& name, const std::string& heading,
-                                  const std::string& label, double least,
-                                  const std::vector<std::pair<std::string, Value>>& lines) const {
-    LineChart chart{.name = name,
-                    .heading = heading,
-                    .value_label = label,
-                    .legend = "",
-                    .least = least,
-                    .series = {},
-                    .x_label = "time in the task (s)"};
-    for (const auto& [line, value] : lines) {
-      ChartSeries& series =
-          chart.series.emplace_back(ChartSeries{line, fmt::format("s{}", chart.series.size()), {}});
-      for (const Shown& sample : samples_) series.values.push_back(value(sample));
+std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number) {
+  const std::vector<DynamicsSampleMessage> samples = shown_samples(run);
+  std::vector<ReportFigure> figures;
+  const auto draw = [&](const char* name, const char* heading, const char* label, double least,
+                        const std::vector<std::pair<std::string, Value>>& lines) {
+    LineChart chart{
+        .heading = heading, .x_label = "time in the task (s)", .value_label = label, .least = least};
+    for (const auto& [line, value] : lines) chart.series.push_back({line, {}});
+    for (const DynamicsSampleMessage& sample : samples) {
+      chart.x.push_back(sample.time - run.start);
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        chart.series[i].values.push_back(lines[i].second(sample));
     }
-    return {fmt::format("dynamics-{}-{}", number_ + 1, name), chart_picture(chart, times_, {})};
-  }
-
- private:
-  std::vector<Shown> samples_;
-  std::size_t number_;
-  std::vector<double> times_;
-};
-
-std::vector<NamedDrawing> drawings_of(const DynamicsRun& run, std::size_t number) {
-  const SampleCharts charts(run, number);
+    figures.push_back({fmt::format("dynamics-{}-{}", number + 1, name), std::move(chart)});
+  };
+  using Shown = DynamicsSampleMessage;
   constexpr double least_joule = 1e-9;
-  const auto power = [=](double value) { return std::log10(std::max(value, least_joule)); };
-  const Value W = [](const Shown& at) { return at.lyapunov; };
-  const Value T = [](const Shown& at) { return at.kinetic_energy; };
-  const Value pi = [](const Shown& at) { return at.potential; };
-  return {charts.draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule,
-                      {{"W", W}, {"T", T}, {"Pi", pi}}),
-          charts.draw("lyapunov-powers", "the same", "J, power of ten", 1,
-                      {{"W", [=](const Shown& at) { return power(W(at)); }},
-                       {"T", [=](const Shown& at) { return power(T(at)); }},
-                       {"Pi", [=](const Shown& at) { return power(pi(at)); }}}),
-          charts.draw("energies", "the arm's energies, and what damping took", "J", least_joule,
-                      {{"gravity", [](const Shown& at) { return at.gravity_energy; }},
-                       {"elastic", [](const Shown& at) { return at.elastic_energy; }},
-                       {"law's-damping", [](const Shown& at) { return at.taken_by_law; }},
-                       {"own-damping", [](const Shown& at) { return at.taken_by_medium; }}}),
-          charts.draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
-                      {{"spatial", [](const Shown& at) { return at.spatial_error / degree; }},
-                       {"theta", [](const Shown& at) { return at.azimuth_error / degree; }},
-                       {"q", [](const Shown& at) { return at.elevation_error / degree; }}})};
+  std::vector<std::pair<std::string, Value>> lines = {
+      {"W", &Shown::lyapunov}, {"T", &Shown::kinetic_energy}, {"Pi", &Shown::potential}};
+  draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule, lines);
+  for (auto& [line, value] : lines)
+    value = [=](const Shown& at) { return std::log10(std::max(value(at), least_joule)); };
+  draw("lyapunov-powers", "the same", "J, power of ten", 1, lines);
+  draw("energies", "the arm's energies, and what damping took", "J", least_joule,
+       {{"gravity", &Shown::gravity_energy},
+        {"elastic", &Shown::elastic_energy},
+        {"law's damping", &Shown::taken_by_law},
+        {"own damping", &Shown::taken_by_medium}});
+  draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
+       {{"spatial", [](const Shown& at) { return at.spatial_error / degree; }},
+        {"theta", [](const Shown& at) { return at.azimuth_error / degree; }},
+        {"q", [](const Shown& at) { return at.elevation_error / degree; }}});
+  return figures;
 }
 
 const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
@@ -202,7 +181,7 @@ Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
                              "damping took. " +
                                  course;
   Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
-  if (run.samples.size() > 1) chapter.drawings = drawings_of(run, number);
+  if (run.samples.size() > 1) chapter.figures = figures_of(run, number);
   return chapter;
 }
 

@@ -135,23 +135,23 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
 // Finitely many drives give all of the law's force where they move all that moves, and W falls as before;
 // where they do not, the run tells how much was left over.
 TEST_F(Dynamics, FewDrivesAreAsGoodAsTheyMoveAllThatMoves) {
+  const std::string all =
+      dynamics_arm() + dynamics_task("duration = 4\nbasis = \"sections\"\n" + bent_target);
+  const RunResult everywhere = run(all, {"record.report=false"});
+  EXPECT_EQ(number(dynamics(everywhere), "left_over"), 0);
   for (const char* drives : {"torques", "moments"}) {
     SCOPED_TRACE(drives);
-    const std::string all =
-        dynamics_arm() + dynamics_task("duration = 4\nbasis = \"sections\"\n" + bent_target);
     const std::string set = fmt::format("task.0.law.drives=\"{}\"", drives);
-    const RunResult driven = run(all, {set, "record.report=false"}),
-                    everywhere = run(all, {"record.report=false"});
+    const RunResult driven = run(all, {set, "record.report=false"});
     EXPECT_EQ(driven.outcome, RunOutcome::done);
-    EXPECT_LT(*dynamics(driven).find("left_over")->as<double>(), 1e-9);
-    EXPECT_NEAR(*dynamics(driven).find("remaining")->find("tip")->as<double>(),
-                *dynamics(everywhere).find("remaining")->find("tip")->as<double>(), 1e-7);
-    EXPECT_EQ(*dynamics(everywhere).find("left_over")->as<double>(), 0);
-    const RunResult few =
-        run(all, {set, "task.0.basis=\"polynomial\"", "task.0.nodes=6", "record.report=false"});
+    EXPECT_LT(number(dynamics(driven), "left_over"), 1e-9);
+    EXPECT_NEAR(number(*dynamics(driven).find("remaining"), "tip"),
+                number(*dynamics(everywhere).find("remaining"), "tip"), 1e-7);
+    const RunResult few = run(all, {set, "task.0.basis=\"polynomial\"", "task.0.nodes=6", "task.0.duration=1",
+                                    "record.report=false"});
     EXPECT_EQ(few.outcome, RunOutcome::failed);
     EXPECT_THAT(few.reasons[0], HasSubstr("drives move an arm of 12 numbers"));
-    EXPECT_GT(*dynamics(few).find("left_over")->as<double>(), 0.01);
+    EXPECT_GT(number(dynamics(few), "left_over"), 0.01);
     EXPECT_FALSE(truth(*dynamics(few).find("verdict"), "balanced"));
   }
 }
@@ -229,8 +229,7 @@ TEST_F(Dynamics, TellsWhatItsBasisCannotHave) {
   const RunResult result = run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=2"});
   EXPECT_GT(number(dynamics(result), "target_off"), 0.05);
   EXPECT_EQ(number(dynamics(result), "start_off"), 0);
-  EXPECT_THAT(read_text_file(result.folder / report_file_name, std::size_t{1} << 26),
-              HasSubstr("deg off the target as it was said"));
+  EXPECT_THAT(text_of(result, report_file_name), HasSubstr("deg off the target as it was said"));
   EXPECT_LT(
       number(dynamics(run(text, {"task.0.basis=\"polynomial\"", "task.0.nodes=10", "task.0.duration=0.1"})),
              "target_off"),
@@ -257,7 +256,7 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
   }
   EXPECT_EQ(number(verdict, "largest_rise"), rise);
   EXPECT_GT(rise, 0);
-  const std::string page = read_text_file(result.folder / report_file_name, std::size_t{1} << 26);
+  const std::string page = text_of(result, report_file_name);
   EXPECT_THAT(page, HasSubstr(fmt::format("its largest rise is {:.2g} J", rise)));
   EXPECT_THAT(page, HasSubstr("The law had measured angles"));
   // Too late is too late.
@@ -292,8 +291,7 @@ TEST_F(Dynamics, GoesByTheErrorsInTwoImagePlanes) {
   EXPECT_EQ(far.outcome, RunOutcome::done) << testing::PrintToString(far.reasons);
   EXPECT_GT(number(dynamics(far), "triangulated"), 0.05);
   EXPECT_LT(number(*dynamics(far).find("remaining"), "spatial"), 0.02);
-  EXPECT_THAT(read_text_file(far.folder / report_file_name, std::size_t{1} << 26),
-              HasSubstr("there both pictures were triangulated"));
+  EXPECT_THAT(text_of(far, report_file_name), HasSubstr("there both pictures were triangulated"));
 }
 
 // Where the arm rises by a radian along its one section and the azimuth is off by half of that, the azimuth's
@@ -347,19 +345,8 @@ TEST_F(Dynamics, MayIgnoreElasticityOnTheWayToAStraightArm) {
   EXPECT_TRUE(truth(verdict, "monotone") && truth(verdict, "balanced") && truth(verdict, "settled"));
 }
 
-TEST_F(Dynamics, AnArmThatIsThereStaysThere) {
-  const RunResult result =
-      run(replaced(dynamics_arm("planar"), "[[arm", "initial.archings = [0.3, -0.2, 0.1]\n[[arm") +
-          dynamics_task("duration = 1\ntarget.archings = [0.3, -0.2, 0.1]\n"));
-  EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
-  EXPECT_LT(number(*dynamics(result).find("remaining"), "tip"), 1e-9);
-}
-
 TEST_F(Dynamics, TheExampleDoesWhatItSays) {
-  Quiet quiet;
-  const std::filesystem::path file = checkout_file("examples/07_theory/experiment.toml");
-  const RunResult result =
-      run_experiment(load_experiment(file), make_new_folder(folder_.path() / "results"), quiet);
+  const RunResult result = run(load_experiment(checkout_file("examples/07_theory/experiment.toml")));
   EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
   EXPECT_TRUE(truth(*dynamics(result, 0).find("verdict"), "monotone"));
   EXPECT_FALSE(truth(dynamics(result, 0), "measured"));

@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Both, LearningServo, testing::Values("broyden", "recurs
 
 // Which the model's derivatives bring nowhere.
 TEST(Servo, IsLostWithAModelThatIsWrong) {
-  ServoBench bench(servo_file("timeout = 3\n" + servo_target));
+  ServoBench bench(servo_file("timeout = 1\n" + servo_target));
   EXPECT_FALSE(servo_of_turned_arm(bench).is_done);
   EXPECT_GT(bench.truth(wanted).rms, 0.05);
 }

@@ -14,23 +14,18 @@
 #include "flexura/estimate/backbone_pixels.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/photograph.h"
-#include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
 namespace flexura {
 namespace {
 
 // The offsets of one camera over its loop's pictures, each as long as it is worked on.
-NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
-  LineChart chart{.name = fmt::format("offsets-{}", run.cameras[i]),
-                  .heading = fmt::format("offsets of camera {}", run.cameras[i]),
-                  .value_label = "size, power of ten",
-                  .legend = "",
-                  .least = 1,
-                  .series = {},
-                  .x_label = "pictures of both cameras"};
+ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
+  LineChart chart{.heading = fmt::format("offsets of camera {}", run.cameras[i]),
+                  .x_label = "pictures of both cameras",
+                  .value_label = "size, power of ten"};
   std::vector<const LoopDecision*> steps;
-  std::vector<double> looks;
+  std::vector<double>& looks = chart.x;
   for (const LoopDecision& step : run.loop->steps) {
     if (run.cameras[i] != run.believed.cameras[step.camera].name || step.looks == 0) continue;
     steps.push_back(&step);
@@ -40,9 +35,8 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
   for (const LoopDecision* first : steps) {
     const std::string name = fmt::format("{} ({})", first->step, first->unit);
     if (std::ranges::find(chart.series, name, &ChartSeries::name) != chart.series.end()) continue;
-    ChartSeries& series =
-        chart.series.emplace_back(ChartSeries{name, fmt::format("s{}", chart.series.size()), {}, {}});
-    series.values.assign(looks.size(), std::numeric_limits<double>::quiet_NaN());
+    ChartSeries& series = chart.series.emplace_back(
+        ChartSeries{name, std::vector(looks.size(), std::numeric_limits<double>::quiet_NaN())});
     std::size_t last = looks.size();
     for (const LoopDecision* step : steps) {
       if (step->step != first->step || step->unit != first->unit) continue;
@@ -55,10 +49,10 @@ NamedDrawing falling_offsets(const CalibrationRun& run, std::size_t i, std::size
       last = place;
     }
   }
-  return {fmt::format("calibration-{}-{}", number + 1, chart.name), chart_picture(chart, looks, {})};
+  return {fmt::format("calibration-{}-offsets-{}", number + 1, run.cameras[i]), std::move(chart)};
 }
 
-NamedDrawing loop_drawing(const CalibrationRun& run, std::size_t i, const char* what, std::size_t number,
+ReportFigure loop_drawing(const CalibrationRun& run, std::size_t i, const char* what, std::size_t number,
                           ImagePlot plot) {
   plot.outlines.push_back({"picture's middle",
                            "s5",
@@ -66,7 +60,7 @@ NamedDrawing loop_drawing(const CalibrationRun& run, std::size_t i, const char* 
   return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[i], what), image_picture(plot)};
 }
 
-NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
+ReportFigure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
   const char* when = is_after ? "after" : "before";
   return loop_drawing(run, i, when, number,
                       sight_picture(run, is_after ? *run.loop->after[i] : *run.loop->before[i],
@@ -74,7 +68,7 @@ NamedDrawing loop_photograph(const CalibrationRun& run, std::size_t i, bool is_a
 }
 
 // What the simulator has of a camera's arc.
-NamedDrawing ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
+ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
   const IdealArc& ideal = run.arcs[i].ideal;
   constexpr int count = 40;
   ImagePlot plot = photograph(ideal.picture, {},
@@ -141,15 +135,15 @@ Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
                   loop_points(run),
                   false};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (result.before[i]) chapter.drawings.push_back(loop_photograph(run, i, false, number));
-    if (result.after[i]) chapter.drawings.push_back(loop_photograph(run, i, true, number));
+    if (result.before[i]) chapter.figures.push_back(loop_photograph(run, i, false, number));
+    if (result.after[i]) chapter.figures.push_back(loop_photograph(run, i, true, number));
   }
-  for (std::size_t i = 0; i < run.arcs.size(); ++i) chapter.drawings.push_back(ideal_drawing(run, i, number));
+  for (std::size_t i = 0; i < run.arcs.size(); ++i) chapter.figures.push_back(ideal_drawing(run, i, number));
   for (std::size_t i = 0; i < 2; ++i) {
     const bool has_steps = std::ranges::any_of(result.steps, [&](const LoopDecision& step) {
       return step.looks > 0 && run.believed.cameras[step.camera].name == run.cameras[i];
     });
-    if (has_steps) chapter.drawings.push_back(falling_offsets(run, i, number));
+    if (has_steps) chapter.figures.push_back(falling_offsets(run, i, number));
   }
   return chapter;
 }

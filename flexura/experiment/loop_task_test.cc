@@ -5,23 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "flexura/base/degree.h"
-#include "flexura/base/progress.h"
 #include "flexura/experiment/calibrate_results.h"
 #include "flexura/experiment/calibrate_task.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
-#include "flexura/store/mcap_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/loop_files.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -135,11 +128,7 @@ TEST(EtalonLoop, StopsWhereAStageDoesNotReach) {
   bench.expect_back();
 }
 
-TEST(EtalonLoop, StopsWhereNoFrameComesAndWhereTooManyAreNeeded) {
-  CalibrationBench lost(etalon_rig("method = \"etalon\"\nframe_timeout = 1\n",
-                                   small({WrongStart{}, WrongStart{}}, ", drop = 1")));
-  EXPECT_THAT(lost.calibrate().reason, HasSubstr("camera front gave no frame for 1 s"));
-  lost.expect_back();
+TEST(EtalonLoop, StopsWhereTooManyPicturesAreNeeded) {
   TestRandom random(5);
   CalibrationBench many(
       etalon_rig("method = \"etalon\"\nimages = 3\n", small({wrong_start(random), wrong_start(random)})));
@@ -152,31 +141,25 @@ TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
   const std::string text = etalon_rig("method = \"etalon\"\nname = \"cylinder\"\n",
                                       small({wrong_start(random, 0.3), wrong_start(random, 0.3)}));
   const Experiment experiment = parse_experiment(text, "x.toml");
-  const TemporaryFolder folder, again;
-  Quiet quiet;
-  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  Runs runs;
+  const RunResult result = runs.run(experiment);
   ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
-  const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
+  const Node& calibration = entry_of(result, "calibrations");
   EXPECT_TRUE(*calibration.find("done")->as<bool>());
   EXPECT_NE(calibration.find("remainder_in_truth"), nullptr);
-  McapReader log(folder.path() / log_file_name);
-  std::map<std::string, std::size_t> counts;
-  for (const McapMessage& message : log.messages()) ++counts[message.channel->topic];
+  auto counts = logged_counts(result);
   const auto& pictures = *calibration.find("pictures")->as<Node::Array>();
   EXPECT_EQ(counts["/calibration/sightings"],
             static_cast<std::size_t>(*pictures[0].as<std::int64_t>() + *pictures[1].as<std::int64_t>()));
   EXPECT_EQ(counts["/calibration/decisions"], calibration.find("steps")->as<Node::Array>()->size() + 1)
       << "the last one says how it ended";
   EXPECT_GE(counts["/calibration/moves"], 4U);
-  EXPECT_THAT(read_text_file(folder.path() / report_file_name, 1 << 26), HasSubstr("Calibration: cylinder"));
-  const Experiment found = load_experiment(folder.path() / rig_file_name);
+  EXPECT_THAT(text_of(result, report_file_name), HasSubstr("Calibration: cylinder"));
+  const Experiment found = load_experiment(result.folder / rig_file_name);
   EXPECT_NE(found.cameras()[0].initial.pan, 0);
   const auto& seen = *calibration.find("principal_point_off_as_seen")->as<Node::Array>();
   EXPECT_DOUBLE_EQ(*found.cameras()[1].lens.cy, 119.5 + *seen[1].as<Node::Array>()->at(1).as<double>());
-  (void)run_experiment(experiment, again.path(), quiet);
-  for (const char* name : {"log.mcap", "summary.json", "rig.toml", "report.html"})
-    EXPECT_EQ(read_text_file(folder.path() / name, 1U << 30), read_text_file(again.path() / name, 1U << 30))
-        << name;
+  EXPECT_EQ(files_in(runs.run(experiment).folder), files_in(result.folder));
 }
 
 // As printed, without a bearing and with cylinders that are equally large, all procedures stop where they
@@ -277,21 +260,6 @@ TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
                   ::testing::AnyOf(HasSubstr("do not agree with those before"),
                                    HasSubstr("are not explained"), HasSubstr("no two cameras explain")));
     }
-  }
-}
-
-// Near the goal, where a second look that says more than half of the first is not noise for that.
-TEST(ArcsLoop, GoesOnOrStopsWhereAHeadSlipsNearTheGoal) {
-  const LoopRig rig = arcs_cameras({WrongStart{.pan = 0.012}, WrongStart{}});
-  CalibrationBench bench(arcs_rig("method = \"arcs\"\n", rig));
-  RigPorts ports = bench.ports();
-  SlippedPan slipped(*ports.cameras[0].head, 0.9 * degree);
-  ports.cameras[0].head = &slipped;
-  const LoopResult result = bench.calibrate(ports);
-  if (result.is_done) {
-    EXPECT_LT(std::abs(bench.truth(result).angle), 0.4 * degree);
-  } else {
-    EXPECT_NE(result.reason, "");
   }
 }
 

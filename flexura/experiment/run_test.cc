@@ -12,13 +12,10 @@
 #include "flexura/base/degree.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/export_csv.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/model/backbone.h"
-#include "flexura/store/mcap_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/checkout.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -46,15 +43,6 @@ class Run : public ::testing::Test {
   RunResult run(const Experiment& experiment) {
     CountProgress progress;
     return run_experiment(experiment, make_new_folder(folder_.path() / "results"), progress);
-  }
-  static std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-      if (entry.is_regular_file()) {
-        files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
-      }
-    }
-    return files;
   }
   static std::array<double, 2> tip_of(const RunResult& result) {
     const auto& position = *result.summary.find("tip")->find("position")->as<Node::Array>();
@@ -96,22 +84,6 @@ TEST_F(Run, PassesThroughThePapersIntermediatePoses) {
     EXPECT_NEAR(backbone.tip().position.x(), x, 5e-7) << fraction;
     EXPECT_NEAR(backbone.tip().position.y(), y, 5e-7) << fraction;
   }
-}
-
-TEST_F(Run, WritesTheSameBytesEachTime) {
-  const Experiment experiment = load_experiment(paper_arm);
-  const auto first = files_in(run(experiment).folder);
-  const auto second = files_in(run(experiment).folder);
-  EXPECT_EQ(first, second);
-  EXPECT_TRUE(first.contains("log.mcap"));
-  EXPECT_TRUE(first.contains("report.html"));
-  EXPECT_TRUE(first.contains("figures/arm-end.svg"));
-}
-
-TEST_F(Run, RunsItsOwnExperimentFileToTheSameBytes) {
-  const RunResult first = run(load_experiment(paper_arm));
-  const RunResult second = run(load_experiment(first.folder / experiment_file_name));
-  EXPECT_EQ(files_in(first.folder), files_in(second.folder));
 }
 
 // Ends a run early, and keeps what it has seen.
@@ -161,12 +133,15 @@ TEST_F(Run, ThatIsCancelledAtItsEndIsDone) {
             RunOutcome::done);
 }
 
-TEST_F(Run, WritesTheSameBytesWhenItIsWatched) {
-  const Experiment experiment = load_experiment(paper_arm);
+TEST_F(Run, WritesTheSameBytesFromItsOwnFileAndWatched) {
+  const RunResult result = run(load_experiment(paper_arm));
+  const auto files = files_in(result.folder);
   CancelAfter watcher(1000);
   const auto folder = make_new_folder(folder_.path() / "watched");
-  (void)run_experiment(experiment, folder, watcher, &watcher);
-  EXPECT_EQ(files_in(folder), files_in(run(experiment).folder));
+  (void)run_experiment(load_experiment(result.folder / experiment_file_name), folder, watcher, &watcher);
+  EXPECT_EQ(files_in(folder), files);
+  for (const char* name : {"log.mcap", "report.html", "figures/arm-end.svg"})
+    EXPECT_TRUE(files.contains(name)) << name;
 }
 
 TEST_F(Run, NeverWritesIntoResultsThatExist) {
@@ -223,9 +198,9 @@ TEST_F(Run, SimulatesAnUnsafeMotionAndShowsIt) {
   const auto& violations = *result.summary.find("violations")->as<Node::Array>();
   ASSERT_THAT(violations, SizeIs(2));
   EXPECT_EQ(*violations[0].find("obstacle")->as<std::string>(), "ball");
-  const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
+  const std::string report = text_of(result, report_file_name);
   EXPECT_THAT(report, HasSubstr("section 1: contact with ball, "));
-  EXPECT_THAT(report, HasSubstr("class=\"warning-tube\""));
+  EXPECT_THAT(report, HasSubstr("class=\"warning\""));
 }
 
 TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
@@ -236,12 +211,12 @@ TEST_F(Run, ShowsViolationsAtTheirWorstMomentsBetweenTwoSteps) {
   ASSERT_THAT(result.reasons, SizeIs(1));
   const auto& violation = result.summary.find("violations")->as<Node::Array>()->at(0);
   EXPECT_NEAR(*violation.find("worst_time")->as<double>(), 0.3, 1e-9);
-  const std::string report = read_text_file(result.folder / report_file_name, 1 << 24);
+  const std::string report = text_of(result, report_file_name);
   EXPECT_THAT(report, HasSubstr("data-time=\"0.3\">0.300</button> " + result.reasons[0] + "</figcaption>"));
   EXPECT_THAT(report, HasSubstr("\"times\":[0,0.2,0.3,0.4,0.6]"));
   const std::string figure =
       read_text_file(result.folder / figures_folder_name / "arm-unsafe-1.svg", 1 << 24);
-  EXPECT_THAT(figure, HasSubstr("class=\"warning-tube\""));
+  EXPECT_THAT(figure, HasSubstr("class=\"warning\""));
 }
 
 TEST_F(Run, PlaysAFormulaUpToWhereItHasNoValue) {
@@ -269,7 +244,7 @@ TEST_F(Run, LogsTheLastStateWhateverTheRate) {
 TEST_F(Run, PicturesTheMiddleHoweverFewStatesAreRecorded) {
   Experiment experiment = load_experiment(paper_arm);
   const auto heading = [&] {
-    const std::string svg = read_text_file(run(experiment).folder / "figures" / "arm-middle.svg", 1 << 24);
+    const std::string svg = text_of(run(experiment), "figures/arm-middle.svg");
     const std::size_t tip = svg.find(">E(");
     return svg.substr(svg.find("middle, t = "), 20) + svg.substr(tip, svg.find('<', tip) - tip);
   };

@@ -3,13 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
-#include "flexura/experiment/schedule.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
+#include <map>
+#include <string>
+
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -94,38 +91,24 @@ TEST(SceneLog, SaysWhereTheFramesStand) {
   EXPECT_GT(frames.transforms[1].translation.z, 1);
 }
 
-struct Counted {
-  std::map<std::string, int> messages;
-  std::map<std::string, std::string> schemas;
-  std::map<std::string, std::size_t> bytes;
-};
-
-Counted count(const std::string& text) {
-  const TemporaryFolder folder;
-  Quiet quiet;
-  (void)run_experiment(experiment_of(text), folder.path(), quiet);
-  Counted counted;
-  const McapReader log(folder.path() / log_file_name);
-  for (const McapMessage& message : log.messages()) {
-    ++counted.messages[message.channel->topic];
-    counted.bytes[message.channel->topic] += message.data.size();
-    counted.schemas[message.channel->topic] = message.channel->schema.name;
-  }
-  return counted;
-}
-
 TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {
-  const Counted kept = count(furnished);
-  EXPECT_EQ(kept.messages.at("/arm/state"), 51);
-  EXPECT_EQ(kept.messages.at("/scene"), 1 + 11);
-  EXPECT_EQ(kept.messages.at("/frames"), 1);
-  EXPECT_EQ(kept.schemas.at("/scene"), "foxglove.SceneUpdate");
-  EXPECT_EQ(kept.schemas.at("/frames"), "foxglove.FrameTransforms");
-  EXPECT_EQ(kept.schemas.at("/arm/poses"), "foxglove.PosesInFrame");
-  EXPECT_EQ(kept.schemas.at("/events"), "foxglove.Log");
-  const Counted left_out = count("record.scene = false\n" + furnished);
-  EXPECT_FALSE(left_out.messages.contains("/scene"));
-  EXPECT_FALSE(left_out.messages.contains("/frames"));
+  Runs runs;
+  const RunResult kept = runs.run(furnished);
+  auto counts = logged_counts(kept);
+  EXPECT_EQ(counts["/arm/state"], 51U);
+  EXPECT_EQ(counts["/scene"], 1U + 11U);
+  EXPECT_EQ(counts["/frames"], 1U);
+  std::map<std::string, std::string> schemas;
+  const McapReader log = open_log(kept.folder);
+  for (const McapMessage& message : log.messages())
+    schemas[message.channel->topic] = message.channel->schema.name;
+  EXPECT_EQ(schemas["/scene"], "foxglove.SceneUpdate");
+  EXPECT_EQ(schemas["/frames"], "foxglove.FrameTransforms");
+  EXPECT_EQ(schemas["/arm/poses"], "foxglove.PosesInFrame");
+  EXPECT_EQ(schemas["/events"], "foxglove.Log");
+  const auto left_out = logged_counts(runs.run("record.scene = false\n" + furnished));
+  EXPECT_FALSE(left_out.contains("/scene"));
+  EXPECT_FALSE(left_out.contains("/frames"));
 }
 
 }  // namespace

@@ -8,39 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
-#include "flexura/store/json.h"
-#include "flexura/store/mcap_reader.h"
-#include "tests/support/quiet.h"
+#include "tests/support/runs.h"
 #include "tests/support/servo_files.h"
-#include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
 
 // Every command to a head that follows stands in the log, as every stretch does.
 TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
-  const TemporaryFolder temporary;
-  const auto folder = temporary.path() / "results";
-  std::filesystem::create_directory(folder);
-  Quiet quiet;
   const std::string task =
       "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n"
       "stretches = [1.1, 1, 0.9]\n";
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002";
   rig.arm += "\nstretch_limits = [0.8, 1.2]";
-  const RunResult result = run_experiment(parse_experiment(servo_file(task, rig), "x.toml"), folder, quiet);
+  Runs runs;
+  const RunResult result = runs.run(servo_file(task, rig));
   EXPECT_EQ(result.outcome, RunOutcome::done);
   std::size_t steps = 0, heads = 0;
   std::vector<double> stretches;
-  const McapReader log(folder / log_file_name);
-  for (const McapMessage& message : log.messages()) {
-    if (message.channel->topic != servo_steps_topic) continue;
-    const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
+  for (const auto& step : logged<ServoStepMessage>(result, servo_steps_topic)) {
     ++steps;
     ASSERT_EQ(step.sent_stretches.size(), 3U);
     if (steps == 1) {
@@ -71,23 +58,16 @@ double to_go(const ServoSightingMessage& sighting) {
 }
 
 TEST(ServoLog, HasWhatTheLawCompares) {
-  const TemporaryFolder temporary;
-  const auto folder = temporary.path() / "results";
-  std::filesystem::create_directory(folder);
-  Quiet quiet;
-  const RunResult result = run_experiment(
-      parse_experiment(servo_file("law = \"points\"\npoints = 9\n" + servo_target), "x.toml"), folder, quiet);
+  Runs runs;
+  const RunResult result = runs.run(servo_file("law = \"points\"\npoints = 9\n" + servo_target));
   EXPECT_EQ(result.outcome, RunOutcome::done);
-  std::vector<ServoSightingMessage> sightings;
-  const McapReader log(folder / log_file_name);
-  for (const McapMessage& message : log.messages())
-    if (message.channel->topic == servo_sightings_topic)
-      sightings.push_back(read_as<ServoSightingMessage>(parse_json(message.text(), "log")));
+  const auto sightings = logged<ServoSightingMessage>(result, servo_sightings_topic);
   ASSERT_GT(sightings.size(), 40u);
   for (const ServoSightingMessage& sighting : sightings) {
     ASSERT_TRUE(sighting.features);
     EXPECT_EQ(sighting.features->size(), 9u);
   }
+  EXPECT_TRUE(std::filesystem::exists(result.folder / "figures" / "servo-1-errors.svg"));
   EXPECT_GT(to_go(sightings.front()), 15);
   EXPECT_LT(to_go(sightings.back()), 0.5);
 }
@@ -95,17 +75,12 @@ TEST(ServoLog, HasWhatTheLawCompares) {
 // Four pixels cannot tell six bends.
 TEST(ServoLog, HasWhereSomeMotionShowsInNothing) {
   for (const bool are_enough : {false, true}) {
-    const TemporaryFolder temporary;
-    Quiet quiet;
+    Runs runs;
     const std::string task =
         fmt::format("law = \"points\"\npoints = {}\ntimeout = 1\ntolerance = 0.002\n", are_enough ? 9 : 1);
-    (void)run_experiment(parse_experiment(servo_file(task + servo_target), "x.toml"), temporary.path(),
-                         quiet);
     int fresh = 0, singular = 0;
-    const McapReader log(temporary.path() / log_file_name);
-    for (const McapMessage& message : log.messages()) {
-      if (message.channel->topic != servo_steps_topic) continue;
-      const auto step = read_as<ServoStepMessage>(parse_json(message.text(), "log"));
+    for (const auto& step :
+         logged<ServoStepMessage>(runs.run(servo_file(task + servo_target)), servo_steps_topic)) {
       fresh += step.fresh ? 1 : 0, singular += step.singular ? 1 : 0;
       if (step.fresh) {
         EXPECT_NE(step.singular, are_enough) << "at " << step.time << " s";
@@ -126,10 +101,8 @@ TEST(ServoLog, ManyServosFollowEachOther) {
   std::string text = servo_file(tasks);
   const std::string clock = "[clock]\nstep = 0.05\n";
   text.erase(text.find(clock), clock.size());
-  const TemporaryFolder temporary;
-  Quiet quiet;
-  const RunResult result = run_experiment(parse_experiment(text, "x.toml"), temporary.path(), quiet);
-  EXPECT_EQ(result.outcome, RunOutcome::done);
+  Runs runs;
+  EXPECT_EQ(runs.run(text).outcome, RunOutcome::done);
 }
 
 }  // namespace

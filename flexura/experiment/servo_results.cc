@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -13,7 +14,6 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/photograph.h"
 #include "flexura/model/backbone.h"
-#include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
 namespace flexura {
@@ -48,51 +48,35 @@ Node fault_node(const LimiterFault& fault, double start) {
   return {std::move(members), {}};
 }
 
-NamedDrawing errors_over_time(const ServoRun& run, std::size_t number) {
-  LineChart chart{.name = "errors",
-                  .heading = "distance from the wanted shape",
-                  .value_label = "share of the length, power of ten",
-                  .legend = "",
-                  .least = 1,
-                  .series = {},
-                  .x_label = "time in the task (s)"};
-  const auto power = [](double value) { return std::log10(std::max(value, 1e-7)); };
-  std::vector<double> times;
-  ChartSeries rms{"seen", "s0", {}}, tip{"tip", "s1", {}}, truth{"truth", "s2", {}};
+// The errors falling, and the law's potential: as powers of ten, over the time in the task.
+std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t number) {
+  const auto power = [](double value, double least) { return std::log10(std::max(value, least)); };
+  constexpr double least_share = 1e-7, least_potential = 1e-12;
+  LineChart errors{.heading = "distance from the wanted shape",
+                   .x_label = "time in the task (s)",
+                   .value_label = "share of the length, power of ten",
+                   .series = {{"seen", {}}, {"tip", {}}, {"truth", {}}}};
+  LineChart potential{.heading = "half the square of the law's error",
+                      .x_label = errors.x_label,
+                      .value_label = "power of ten",
+                      .series = {{"potential", {}}}};
   for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
     const ServoStep& step = run.result.steps[i];
     if (!step.is_fresh || !step.error) continue;
-    times.push_back(*step.seen_at - run.result.start);
-    rms.values.push_back(power(step.error->rms)), tip.values.push_back(power(step.error->tip));
-    truth.values.push_back(run.truth[i] ? power(run.truth[i]->rms)
-                                        : std::numeric_limits<double>::quiet_NaN());
+    errors.x.push_back(*step.seen_at - run.result.start);
+    errors.series[0].values.push_back(power(step.error->rms, least_share));
+    errors.series[1].values.push_back(power(step.error->tip, least_share));
+    errors.series[2].values.push_back(run.truth[i] ? power(run.truth[i]->rms, least_share)
+                                                   : std::numeric_limits<double>::quiet_NaN());
+    potential.series[0].values.push_back(power(step.potential, least_potential));
   }
-  chart.series = {rms, tip, truth};
-  return {fmt::format("servo-{}-errors", number + 1), chart_picture(chart, times, {})};
-}
-
-NamedDrawing potential_over_time(const ServoRun& run, std::size_t number) {
-  LineChart chart{.name = "potential",
-                  .heading = "half the square of the law's error",
-                  .value_label = "power of ten",
-                  .legend = "",
-                  .least = 1,
-                  .series = {},
-                  .x_label = "time in the task (s)"};
-  constexpr double least = 1e-12;
-  std::vector<double> times;
-  ChartSeries potential{"potential", "s3", {}};
-  for (const ServoStep& step : run.result.steps) {
-    if (!step.is_fresh || !step.error) continue;
-    times.push_back(*step.seen_at - run.result.start);
-    potential.values.push_back(std::log10(std::max(step.potential, least)));
-  }
-  chart.series = {potential};
-  return {fmt::format("servo-{}-potential", number + 1), chart_picture(chart, times, {})};
+  potential.x = errors.x;
+  return {ReportFigure{fmt::format("servo-{}-errors", number + 1), std::move(errors)},
+          ReportFigure{fmt::format("servo-{}-potential", number + 1), std::move(potential)}};
 }
 
 // A picture with the axis as measured in it, and the wanted shape as it would be seen.
-NamedDrawing servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
+ReportFigure servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
   const ServoSight& sight = is_last ? *run.result.last : *run.result.first;
   const char* when = is_last ? "last" : "first";
   const auto found = std::ranges::find_if(
@@ -169,15 +153,13 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
     chapter.points.push_back(fmt::format(
         "{} steps were missed: what was to be done in one took longer than a step.", result.missed_steps));
   for (std::size_t i = 0; i < 2; ++i) {
-    if (result.first) chapter.drawings.push_back(servo_photograph(run, i, false, number));
-    if (result.last) chapter.drawings.push_back(servo_photograph(run, i, true, number));
+    if (result.first) chapter.figures.push_back(servo_photograph(run, i, false, number));
+    if (result.last) chapter.figures.push_back(servo_photograph(run, i, true, number));
   }
   const bool has_errors =
       std::ranges::any_of(result.steps, [](const ServoStep& step) { return step.error && step.is_fresh; });
-  if (has_errors) {
-    chapter.drawings.push_back(errors_over_time(run, number));
-    chapter.drawings.push_back(potential_over_time(run, number));
-  }
+  if (has_errors)
+    for (ReportFigure& figure : falling_errors(run, number)) chapter.figures.push_back(std::move(figure));
   return chapter;
 }
 

@@ -2,15 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <variant>
 
-#include "flexura/experiment/run.h"
-#include "flexura/picture/image_file.h"
-#include "tests/support/quiet.h"
 #include "tests/support/servo_bench.h"
-#include "tests/support/temporary_folder.h"
 
 namespace flexura {
 namespace {
@@ -207,26 +204,8 @@ TEST(Servo, SaysThatItIsHeldBack) {
   ServoSetup rig;
   rig.arm = "max_bend_deg = 60";
   ServoBench bench(servo_file("timeout = 3\n[[task.target]]\nbends = [[1.0, 0], [0, 0], [0, 0]]\n", rig));
-  class HalfArm : public ArmPort {
-   public:
-    explicit HalfArm(ArmPort& arm) : arm_(arm) {}
-    CommandOutcome command(const ArmState& state, double duration) override {
-      ArmState half = state;
-      for (Eigen::Vector2d& bend : half.bends) bend *= 0.5;
-      return arm_.command(half, duration);
-    }
-    CommandOutcome halt() override { return arm_.halt(); }
-    Outcome<ArmReading> read() override {
-      ArmReading reading = arm_.read().value();
-      for (Eigen::Vector2d& bend : reading.state.bends) bend *= 2;
-      return reading;
-    }
-
-   private:
-    ArmPort& arm_;
-  };
   RigPorts ports = bench.ports();
-  HalfArm half(*ports.arm);
+  TurnedArm half(*ports.arm, 0, 0.5);
   ports.arm = &half;
   const ServoResult result = bench.servo(ports);
   EXPECT_FALSE(result.is_done);
@@ -246,16 +225,12 @@ TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
   ServoConfig config = bench.config();
   RecordedViews views;
   for (std::size_t i = 0; i < 2; ++i) views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
-  for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points}) {
-    config.goals = {{0, views}}, config.law = law;
-    ServoNotes notes;
-    const RigModel model = bench.believed();
-    const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
-    ASSERT_TRUE(result.is_done) << result.reason;
-    const ServoError left = bench.truth(wanted);
-    std::printf("from pictures: %.4f %% of the length left\n", 100 * left.rms);
-    EXPECT_LT(left.rms, 0.003);
-  }
+  config.goals = {{0, views}}, config.law = ServoLawKind::points;
+  ServoNotes notes;
+  const RigModel model = bench.believed();
+  const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_LT(bench.truth(wanted).rms, 0.003);
 }
 
 // What is said of a servo is the same whether its steps are kept or not.
@@ -275,22 +250,6 @@ TEST(Servo, KeepsNoStepsWhereNoneAreAskedFor) {
   EXPECT_EQ(kept.settled, left.settled);
   EXPECT_EQ(kept.overshoot, left.overshoot);
   EXPECT_EQ(kept.remaining->rms, left.remaining->rms);
-}
-
-TEST(ServoTask, RunsFromAFile) {
-  const TemporaryFolder temporary;
-  const auto folder = temporary.path() / "results";
-  std::filesystem::create_directory(folder);
-  Quiet quiet;
-  const RunResult result =
-      run_experiment(parse_experiment(servo_file(servo_target), "x.toml"), folder, quiet);
-  EXPECT_EQ(result.outcome, RunOutcome::done);
-  const Node* servos = result.summary.find("servos");
-  ASSERT_NE(servos, nullptr);
-  const Node& servo = servos->as<Node::Array>()->front();
-  EXPECT_TRUE(*servo.find("done")->as<bool>());
-  EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.005);
-  EXPECT_TRUE(std::filesystem::exists(folder / "figures" / "servo-1-errors.svg"));
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "flexura/experiment/study_results.h"
-#include "flexura/report/chart.h"
 #include "flexura/report/image_picture.h"
 
 namespace flexura {
@@ -34,21 +34,19 @@ double number(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-// A chart of some features; lines by the first source, some dots by the second, crosses by the third if there
+// A chart of some features; lines by the first source, some dots by the second, rings by the third if there
 // is one.
-NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const std::size_t> features) {
+ReportFigure chart_of(const ImageStudy& study, const char* chart_name, LineChart chart,
+                      std::span<const std::size_t> features) {
   constexpr std::size_t most_dots = 24;
   const UnitSpelling unit = shown_unit(study.variation);
   const std::string name = plain_name(study.variation.name);
   chart.x_label = unit.symbol.empty() ? name : fmt::format("{} ({})", name, unit.symbol);
   const std::size_t count = study.values.size();
   const std::size_t pitch = (count + most_dots - 1) / most_dots;
-  std::vector<double> x;
-  x.reserve(count);
-  for (const double value : study.values) x.push_back(value / unit.factor);
+  for (const double value : study.values) chart.x.push_back(value / unit.factor);
   for (const std::size_t feature : features) {
-    ChartSeries& series = chart.series.emplace_back(
-        ChartSeries{plain_name(feature_names[feature]), fmt::format("s{}", chart.series.size()), {}});
+    ChartSeries& series = chart.series.emplace_back(ChartSeries{plain_name(feature_names[feature]), {}});
     for (std::size_t i = 0; i < count; ++i) {
       const auto some_of = [&](std::size_t column, std::size_t shift) {
         return i % pitch == shift ? number(study.columns[column].features[i][feature])
@@ -57,18 +55,18 @@ NamedDrawing chart_of(const ImageStudy& study, LineChart chart, std::span<const 
       series.values.push_back(number(study.columns[0].features[i][feature]));
       series.dots.push_back(some_of(1, 0));
       // Between the dots, where there is room.
-      if (study.columns.size() > 2) series.crosses.push_back(some_of(2, pitch / 2));
+      if (study.columns.size() > 2) series.rings.push_back(some_of(2, pitch / 2));
     }
   }
-  if (x.front() > x.back()) {
-    std::ranges::reverse(x);
+  if (chart.x.front() > chart.x.back()) {
+    std::ranges::reverse(chart.x);
     for (ChartSeries& series : chart.series) {
       std::ranges::reverse(series.values);
       std::ranges::reverse(series.dots);
-      std::ranges::reverse(series.crosses);
+      std::ranges::reverse(series.rings);
     }
   }
-  return {fmt::format("{}-{}", study.name, chart.name), chart_picture(chart, x, {})};
+  return {fmt::format("{}-{}", study.name, chart_name), std::move(chart)};
 }
 
 // The square, and the circle's parts that the lens shows.
@@ -90,7 +88,7 @@ std::vector<ImageOutline::Line> lines_of(const TargetImage& image) {
   return lines;
 }
 
-NamedDrawing target_picture(const ImageStudy& study) {
+ReportFigure target_picture(const ImageStudy& study) {
   constexpr std::size_t shown = 5;
   ImagePlot plot{.heading = "the target in the image",
                  .legend = plain_name(study.variation.name),
@@ -110,10 +108,9 @@ std::string text_of(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
   const auto [measured, rms] = study.measured_difference();
   const std::string pictures =
-      measured == 0
-          ? ""
-          : fmt::format(" Crosses: {} lengths measured in pictures of the square, {:.3f} px rms off.",
-                        measured, rms);
+      measured == 0 ? ""
+                    : fmt::format(" Rings: {} lengths measured in pictures of the square, {:.3f} px rms off.",
+                                  measured, rms);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(
@@ -134,7 +131,8 @@ Chapter study_chapter(const ImageStudy& study) {
   constexpr std::array<std::size_t, 1> ratio{8};
   const auto add = [&](const char* name, const char* heading, const char* label, double least,
                        std::span<const std::size_t> features) {
-    chapter.drawings.push_back(chart_of(study, {name, heading, label, "", least, {}}, features));
+    chapter.figures.push_back(chart_of(
+        study, name, {.heading = heading, .x_label = {}, .value_label = label, .least = least}, features));
   };
   add("edges", "edges of the square", "length (px)", 1, edges);
   add("sizes", "height and width of the square", "distance (px)", 1, sizes);

@@ -9,16 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "flexura/base/progress.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/experiment/study_results.h"
 #include "flexura/store/csv_reader.h"
-#include "flexura/store/text_file.h"
 #include "tests/support/checkout.h"
 #include "tests/support/experiment_files.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {
@@ -26,7 +22,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::size_t largest_file = std::size_t{1} << 26;
 const std::filesystem::path example = checkout_file("examples/04_image_study/experiment.toml");
 
 constexpr const char* good_study = R"([[arm.section]]
@@ -49,25 +44,12 @@ std::string study_with(const std::string& from, const std::string& to) {
   return replaced(good_study, from, to);
 }
 
-class NoProgress : public Progress {
- public:
-  void update(double, std::string_view) override {}
-};
-
-class Study : public ::testing::Test {
+class Study : public ::testing::Test, public Runs {
  protected:
-  RunResult run(const Experiment& experiment) {
-    NoProgress none;
-    return run_experiment(experiment, make_new_folder(folder_.path() / "results"), none);
-  }
-  static std::string text_of(const RunResult& result, const std::string& file) {
-    return read_text_file(result.folder / file, largest_file);
-  }
   // Values at which the first study has all features.
   static std::int64_t seen(const RunResult& result) {
-    return *result.summary.find("studies")->as<Node::Array>()->at(0).find("seen")->as<std::int64_t>();
+    return *entry_of(result, "studies").find("seen")->as<std::int64_t>();
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(Study, BadFilesSayWhatIsWrong) {
@@ -145,7 +127,7 @@ TEST_F(Study, WritesTableFiguresReportAndSummary) {
   const std::string html = text_of(result, "report.html");
   EXPECT_THAT(html, HasSubstr("Study: study"));
   EXPECT_THAT(html, HasSubstr("id=\"picture-study-image\""));
-  const Node& study = result.summary.find("studies")->as<Node::Array>()->at(0);
+  const Node& study = entry_of(result, "studies");
   EXPECT_EQ(*study.find("seen")->as<std::int64_t>(), 5);
   EXPECT_LE(*study.find("largest_difference_px")->as<double>(), 1e-9);
 }

@@ -3,81 +3,39 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace flexura {
 namespace {
 
-using std::numbers::pi;
-
-Arc planar_arc(double bend_x) {
-  Arm arm;
-  arm.sections.resize(2);
-  arm.sections[1].length = 2.0;
-  ArmState state = ArmState::straight(2);
-  state.bends = {{-0.7, 0.0}, {bend_x, 0.0}};
-  return Backbone(arm, state).arcs()[1];
-}
-
-// Where a piece of a circle is half way, from its ends, radius and turn alone.
-Eigen::Vector2d middle_of(const CirclePiece& piece) {
-  const Eigen::Vector2d chord = piece.to - piece.from;
-  if (piece.angle == 0.0) return piece.from + chord / 2;
-  const double height = piece.radius * (1 - std::cos(piece.angle / 2));
-  const Eigen::Vector2d right = Eigen::Vector2d(chord.y(), -chord.x()).normalized();
-  return piece.from + chord / 2 + (piece.angle > 0.0 ? height : -height) * right;
-}
-
-TEST(CirclePieces, EndWhereKinematicsSaysAndRunAlongTheArc) {
-  for (const double bend : {0.0, 1e-12, -1e-6, 0.3, -0.3, pi / 2, -pi, 4.0, -2 * pi, 9.0, -20.0}) {
+TEST(ArcPoints, FollowTheArcAndStandAside) {
+  const PlotFrame frame = {{-2.0, 2.0}, {-2.0, 2.0}, {10.0, 20.0}, {400.0, 400.0}};
+  for (const double bend : {0.0, 1e-9, 0.3, -2.0, 7.0}) {
     SCOPED_TRACE(bend);
-    const Arc arc = planar_arc(bend);
-    const std::vector<CirclePiece> pieces = circle_pieces(arc);
-    const auto count = static_cast<double>(pieces.size());
-    EXPECT_EQ(pieces.front().from, seen(PlotView::xoy, arc.X_WS.position));
-    EXPECT_LT((pieces.back().to - seen(PlotView::xoy, arc.pose(arc.length).position)).norm(), 1e-9);
-    double turn = 0.0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      EXPECT_LT(std::abs(pieces[i].angle), pi / 2);
-      turn += pieces[i].angle;
-      const double middle = arc.length * (static_cast<double>(i) + 0.5) / count;
-      EXPECT_LT((middle_of(pieces[i]) - seen(PlotView::xoy, arc.pose(middle).position)).norm(), 1e-9);
+    Arm arm;
+    arm.sections.resize(1);
+    ArmState state = ArmState::straight(1);
+    state.bends[0].x() = bend;
+    const Backbone backbone(arm, state);
+    const Arc& arc = backbone.arcs()[0];
+    for (const double aside : {0.0, 6.0}) {
+      const auto points = arc_points(arc, PlotView::xoy, frame, {aside, aside});
+      EXPECT_TRUE(bend != 0.0 || points.size() == 2);
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Eigen::Vector2d middle = (points[i] + points[i + 1]) / 2;
+        double nearest = 1e9;
+        for (int k = 0; k <= 4000; ++k) {
+          const Eigen::Vector2d at =
+              frame.page(seen(PlotView::xoy, arc.pose(arc.length * k / 4000).position));
+          nearest = std::min(nearest, (middle - at).norm());
+        }
+        EXPECT_NEAR(nearest, aside, 0.15);
+      }
     }
-    EXPECT_NEAR(turn, -bend, 1e-12) << "bend_x > 0 is clockwise to camera 1";
+    const auto left = arc_points(arc, PlotView::xoy, frame, {3.0, 5.0});
+    const auto middle = arc_points(arc, PlotView::xoy, frame);
+    EXPECT_NEAR((left.front() - middle.front()).norm(), 3.0, 1e-9);
+    EXPECT_NEAR((left.back() - middle.back()).norm(), 5.0, 1e-9);
   }
-}
-
-TEST(CirclePieces, TurnTheOtherWayForABaseSeenFromBehind) {
-  Arc arc = planar_arc(1.0);
-  arc.X_WS.rotation.col(0) *= -1;
-  arc.X_WS.rotation.col(1) *= -1;
-  EXPECT_GT(circle_pieces(arc).front().angle, 0.0);
-}
-
-TEST(BezierPieces, StayWithinFiveMillionthsOfTheRadius) {
-  for (const double bend : {1e-9, 0.2, pi / 4, 2.0, 7.0}) {
-    Arc arc = planar_arc(0.0);
-    arc.bend = {bend * std::cos(0.4), bend * std::sin(0.4)};
-    const std::vector<Bezier> pieces = bezier_pieces(arc, PlotView::zoy);
-    const auto count = static_cast<double>(pieces.size());
-    EXPECT_LT((pieces.back()[3] - seen(PlotView::zoy, arc.pose(arc.length).position)).norm(), 1e-9);
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const Bezier& b = pieces[i];
-      const Eigen::Vector2d middle = (b[0] + 3 * b[1] + 3 * b[2] + b[3]) / 8;
-      const double s = arc.length * (static_cast<double>(i) + 0.5) / count;
-      EXPECT_LT((middle - seen(PlotView::zoy, arc.pose(s).position)).norm(), 5e-6 * arc.length / bend + 1e-15)
-          << bend;
-    }
-  }
-}
-
-TEST(ArcPath, IsALineWhereTheEyeCannotTellAndArcsElsewhere) {
-  const PlotFrame frame = {{-5.0, 5.0}, {0.0, 10.0}, {0.0, 0.0}, {400.0, 400.0}};
-  EXPECT_EQ(arc_path(planar_arc(1e-9), PlotView::xoy, frame, true).find('A'), std::string::npos);
-  const std::string path = arc_path(planar_arc(-1.0), PlotView::xoy, frame, true);
-  EXPECT_NE(path.find("A80 80 0 0 0 "), std::string::npos) << path;
-  EXPECT_NE(arc_path(planar_arc(1.0), PlotView::xoy, frame, true).find("A80 80 0 0 1 "), std::string::npos);
-  EXPECT_NE(arc_path(planar_arc(1.0), PlotView::zoy, frame, false).find('C'), std::string::npos);
 }
 
 TEST(LiesInXoy, AsksForAPlanarArmWithItsPlaneUpright) {

@@ -34,27 +34,16 @@ void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm&
 
 void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
                const Arc& arc, std::size_t section, bool is_unsafe) {
-  const bool exact = motion.in_plane && scene.views[v] == PlotView::xoy;
-  const std::string colour = fmt::format("s{}", section % 8);
-  std::array<double, 2> radius = motion.arm.sections[section].radius;
-  for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2);
-  const bool tapers = radius[0] != radius[1];
-  const auto draw = [&](const std::string& name, const std::string& more, double border) {
-    if (tapers) {
-      const std::array<double, 2> wider = {radius[0] + border, radius[1] + border};
-      svg.leaf("path", {{"class", name + "taper" + more},
-                        {"d", taper_path(arc, scene.views[v], scene.frames[v], wider)}});
-    } else {
-      svg.leaf("path", {{"class", name + "tube" + more},
-                        {"stroke-width", page_number(2 * (radius[0] + border))},
-                        {"d", arc_path(arc, scene.views[v], scene.frames[v], exact)}});
-    }
+  const auto draw = [&](const std::string& css_class, double border) {
+    std::array<double, 2> radius = motion.arm.sections[section].radius;
+    for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2) + border;
+    svg.leaf("path", {{"class", css_class}, {"d", tube_path(arc, scene.views[v], scene.frames[v], radius)}});
   };
   if (is_unsafe) {
-    draw("warning-", "", warning_border);
-    draw("gap-", "", warning_gap);
+    draw("warning", warning_border);
+    draw("gap", warning_gap);
   }
-  draw("", " " + colour, 0);
+  draw(fmt::format("tube s{}", section % 8), 0);
 }
 
 // The line of the chosen drawing curve; arcs are the tube itself.
@@ -89,17 +78,8 @@ std::vector<std::size_t> back_to_front(PlotView view, const Backbone& backbone) 
 }
 
 void draw_joints(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Backbone& backbone) {
-  for (const Arc& arc : backbone.arcs().subspan(1)) {
-    const Eigen::Vector2d at = scene.frames[v].page(seen(scene.views[v], arc.X_WS.position));
-    svg.leaf("circle",
-             {{"class", "joint"}, {"cx", page_number(at.x())}, {"cy", page_number(at.y())}, {"r", "2.8"}});
-  }
-}
-
-void draw_dot(XmlWriter& svg, const Eigen::Vector2d& at, const std::string& css_class,
-              const std::string& radius) {
-  svg.leaf("circle",
-           {{"class", css_class}, {"cx", page_number(at.x())}, {"cy", page_number(at.y())}, {"r", radius}});
+  for (const Arc& arc : backbone.arcs().subspan(1))
+    svg.circle(scene.frames[v].page(seen(scene.views[v], arc.X_WS.position)), "joint", 2.8);
 }
 
 std::vector<Eigen::Vector2d> tip_points(const ReportMotion& motion, const PlotFrame& frame, PlotView view) {
@@ -111,37 +91,25 @@ std::vector<Eigen::Vector2d> tip_points(const ReportMotion& motion, const PlotFr
 
 std::string backbone_path(const PlotScene& scene, std::size_t v, const ReportMotion& motion, std::size_t i) {
   std::string path;
-  for (const Arc& arc : motion.backbones[i].arcs()) {
-    path +=
-        arc_path(arc, scene.views[v], scene.frames[v], motion.in_plane && scene.views[v] == PlotView::xoy);
-  }
+  for (const Arc& arc : motion.backbones[i].arcs())
+    path += polyline_path(arc_points(arc, scene.views[v], scene.frames[v]));
   return path;
 }
 
-// Labels the tip in a view where the arm and the base leave room.
-void label_tip(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
-               std::size_t i, std::string_view content) {
-  LabelPlacer placer(scene.frames[v]);
-  const Backbone& backbone = motion.backbones[i];
-  for (const Arc& arc : backbone.arcs()) {
-    for (int k = 0; k <= 10; ++k) {
-      placer.avoid(scene.frames[v].page(seen(scene.views[v], arc.pose(arc.length * k / 10).position)), 100.0);
-    }
-  }
-  placer.place(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), content);
-}
-
-// Names for the start, the middle and the end of the tip's path; one name where they fall together.
-std::vector<std::pair<std::size_t, std::string>> named_tips(const ReportMotion& motion) {
-  std::vector<std::pair<std::size_t, std::string>> names;
+// Names for the start, the middle and the end of the tip's path; one name where they fall together on the
+// page.
+std::vector<std::pair<Eigen::Vector2d, std::string>> named_tips(const ReportMotion& motion,
+                                                                const PlotFrame& frame, PlotView view) {
+  constexpr double together = 20.0;
+  std::vector<std::pair<Eigen::Vector2d, std::string>> names;
   const std::pair<std::size_t, const char*> all[] = {
       {0, "start"}, {motion.middle, "middle"}, {motion.end(), "end"}};
   for (const auto& [i, name] : all) {
-    const auto same = std::ranges::find_if(names, [&, at = i](const auto& other) {
-      return (motion.tip(other.first) - motion.tip(at)).norm() < 1e-3 * motion.arm.length();
-    });
+    const Eigen::Vector2d at = frame.page(seen(view, motion.tip(i)));
+    const auto same =
+        std::ranges::find_if(names, [&](const auto& other) { return (other.first - at).norm() < together; });
     if (same == names.end()) {
-      names.emplace_back(i, name);
+      names.emplace_back(at, name);
     } else {
       same->second += std::string(", ") + name;
     }
@@ -213,8 +181,9 @@ Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::
     if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
       draw_joints(svg, scene, v, backbone);
     draw_missed_targets(svg, scene, v, motion, i, shown);
-    draw_dot(svg, scene.frames[v].page(seen(scene.views[v], motion.tip(i))), "tip", "5");
-    label_tip(svg, scene, v, motion, i, one_view ? tip : "E");
+    const Eigen::Vector2d at = scene.frames[v].page(seen(scene.views[v], motion.tip(i)));
+    svg.circle(at, "tip", 5);
+    label_beside(svg, scene.frames[v], at, one_view ? tip : "E");
   }
   return {scene.width, scene.height,
           fmt::format("The arm at the {}, {}, with its end effector at {} m", when, moment(motion, i), tip),
@@ -222,11 +191,6 @@ Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::
 }
 
 }  // namespace
-
-std::string section_class(std::size_t index) {
-  const std::size_t dash = index / 8 % 4;
-  return dash == 0 ? fmt::format("s{}", index % 8) : fmt::format("s{} dash{}", index % 8, dash);
-}
 
 Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                     std::string_view when) {
@@ -258,17 +222,10 @@ Drawing tip_path_picture(const ReportMotion& motion) {
     const std::vector<Eigen::Vector2d> path =
         simplified(tip_points(motion, scene.frames[v], scene.views[v]), 0.05);
     svg.leaf("path", {{"class", "path"}, {"d", polyline_path(path)}});
-    LabelPlacer placer(scene.frames[v]);
-    for (const Eigen::Vector2d& point : path) placer.avoid(point, 0.1);
-    const auto tips = named_tips(motion);
-    const auto page = [&](std::size_t i) {
-      return scene.frames[v].page(seen(scene.views[v], motion.tip(i)));
-    };
-    for (const auto& [i, name] : tips) {
-      draw_dot(svg, page(i), "tip", "5");
-      placer.avoid(page(i), 100.0);
+    for (const auto& [at, name] : named_tips(motion, scene.frames[v], scene.views[v])) {
+      svg.circle(at, "tip", 5);
+      label_beside(svg, scene.frames[v], at, name);
     }
-    for (const auto& [i, name] : tips) placer.place(svg, page(i), name);
   }
   return {scene.width, scene.height,
           fmt::format("The end effector's path from {} to {} m", motion.tip_text(0),

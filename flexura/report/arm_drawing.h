@@ -9,10 +9,6 @@
 
 namespace flexura {
 
-/// The style classes of section `index`: its colour, and from the ninth on a dash to tell it from the earlier
-/// ones.
-[[nodiscard]] std::string section_class(std::size_t index);
-
 /// The arm at state i with its end effector's coordinates, as in the paper's Figs. 6 to 8. `when` names the
 /// state: "start", "middle", "end".
 [[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,

@@ -104,11 +104,7 @@ void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, 
         fmt::format("M{} {}H{}", page_number(frame.corner.x()), page_number(y), page_number(frame.right()));
   }
   svg.leaf("path", {{"class", "grid"}, {"d", grid}});
-  svg.leaf("rect", {{"class", "plot"},
-                    {"x", page_number(frame.corner.x())},
-                    {"y", page_number(frame.corner.y())},
-                    {"width", page_number(frame.size.x())},
-                    {"height", page_number(frame.size.y())}});
+  svg.rect(frame.corner, frame.size, "plot");
   for (std::size_t i = 0; i < x_ticks.values.size(); ++i) {
     const double x = frame.page({x_ticks.values[i], frame.y.low}).x();
     svg.label({x, frame.bottom() + 17}, "tick middle", x_ticks.labels[i]);
@@ -123,6 +119,45 @@ void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, 
   svg.leaf("text",
            {{"class", "middle"}, {"transform", fmt::format("translate({}) rotate(-90)", page_point(side))}},
            y_name);
+}
+
+void open_inside(XmlWriter& svg, const PlotFrame& frame) {
+  svg.open("svg", {{"x", page_number(frame.corner.x())},
+                   {"y", page_number(frame.corner.y())},
+                   {"width", page_number(frame.size.x())},
+                   {"height", page_number(frame.size.y())},
+                   {"viewBox", page_point(frame.corner) + ' ' + page_point(frame.size)}});
+}
+
+std::string line_class(std::size_t index) {
+  // One solid line at the bottom, and gaps in all others: lines on top of each other show.
+  const std::size_t color = index % 8, dash = color == 0 ? 0 : 1 + (color - 1) % 3;
+  return fmt::format("s{} dash{}", color, (dash + index / 8) % 4);
+}
+
+double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,
+                   const Eigen::Vector2d& corner, double right) {
+  constexpr double row_height = 22.0, swatch_width = 34.0;
+  const auto text_width = [](const std::string& text) { return 7.8 * static_cast<double>(text.size()); };
+  double x = corner.x();
+  double y = corner.y() + 16.0;
+  if (!title.empty()) {
+    svg.label({x, y}, "tick", title);
+    x += text_width(title) + 10.0;
+  }
+  const double indent = x;
+  for (const LegendEntry& entry : entries) {
+    const double width = swatch_width + 6.0 + text_width(entry.name) + 10.0;
+    if (x + width > right) {
+      x = indent;
+      y += row_height;
+    }
+    svg.leaf("path", {{"class", "line " + entry.css_class},
+                      {"d", polyline_path({{x, y - 5.0}, {x + swatch_width, y - 5.0}})}});
+    svg.label({x + swatch_width + 6.0, y}, "", entry.name);
+    x += width;
+  }
+  return y + 10.0 - corner.y();
 }
 
 }  // namespace flexura

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,8 @@ struct Ticks {
 /// At most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
 [[nodiscard]] Ticks nice_ticks(Interval range, int most);
 
-/// A plot's place on the page and what it shows. Data's y goes up unless it is told otherwise, the page's
-/// goes down.
+/// A plot's place on the page and what it shows. Data's y goes up unless y_down is set, the page's goes
+/// down.
 struct PlotFrame {
   Interval x;
   Interval y;
@@ -62,5 +63,22 @@ inline constexpr double space_below_axes = 44.0;
 
 /// Draws the plot's border, grid, ticks and the names of its axes.
 void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name);
+
+/// Opens a picture within the picture that cuts off what leaves the plot; close() closes it.
+void open_inside(XmlWriter& svg, const PlotFrame& frame);
+
+/// The style classes of line `index`: its colour and its dash. No two of 32 lines are the same.
+[[nodiscard]] std::string line_class(std::size_t index);
+
+/// One line's name, and the style classes of the line.
+struct LegendEntry {
+  std::string name;
+  std::string css_class;
+};
+
+/// Draws a legend in rows from the page point `corner` (top left) on, no further right than `right`: a title
+/// that may be empty, then the entries. Returns its height, page units.
+double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,
+                   const Eigen::Vector2d& corner, double right);
 
 }  // namespace flexura

@@ -62,19 +62,10 @@ TEST(Padded, GivesAnExtentToWhatHasNone) {
   }
 }
 
-TEST(Padded, GrowsAboutTheMiddle) {
-  const Interval range = padded({1.0, 3.0}, 4.0, 0.1);
-  EXPECT_NEAR(range.low, -0.4, 1e-12);
-  EXPECT_NEAR(range.high, 4.4, 1e-12);
-  const Interval wide = padded({1.0, 3.0}, 0.5, 0.0);
-  EXPECT_EQ(wide.low, 1.0);
-  EXPECT_EQ(wide.high, 3.0);
-}
-
-TEST(PlotFrame, PutsDataUpOnThePage) {
-  const PlotFrame frame = {{-1.0, 1.0}, {0.0, 4.0}, {10.0, 20.0}, {200.0, 400.0}};
-  EXPECT_EQ(frame.page({-1.0, 0.0}), Eigen::Vector2d(10.0, 420.0));
-  EXPECT_EQ(frame.page({1.0, 4.0}), Eigen::Vector2d(210.0, 20.0));
+TEST(LineClass, IsAnotherForEachOf32Lines) {
+  std::set<std::string> classes;
+  for (std::size_t i = 0; i < 32; ++i) classes.insert(line_class(i));
+  EXPECT_EQ(classes.size(), 32U);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "flexura/report/svg.h"
@@ -10,30 +10,36 @@ namespace flexura {
 
 /// One line of a chart.
 struct ChartSeries {
-  std::string name;                  ///< Short and without spaces, for the legend: "3", "X".
-  std::string css_class;             ///< Its colour and dash.
-  std::vector<double> values;        ///< One a time. Where one is no number the line is interrupted.
-  std::vector<double> dots = {};     ///< The same from another source, drawn as dots; likewise, or empty.
-  std::vector<double> crosses = {};  ///< From a third, drawn as crosses; likewise.
+  std::string name;                ///< For the legend: "3", "X".
+  std::vector<double> values;      ///< One a place of x. Where one is no number the line is interrupted.
+  std::vector<double> dots = {};   ///< The same from another source, drawn as dots; likewise, or empty.
+  std::vector<double> rings = {};  ///< From a third, drawn as rings; likewise.
+  std::string css_class = {};      ///< Its colour and dash; empty: by its place in the chart.
 };
 
-/// Values over time, or over something else.
+/// Values over time, or over something else: a plot in the page, a picture as a file.
 struct LineChart {
-  std::string name;         ///< "bends": names the file, and tells the page's script what it shows.
-  std::string heading;      ///< "bend of each section"
-  std::string value_label;  ///< "bend_x (deg)"
-  std::string legend;       ///< What the series are: "section"; may be empty.
-  double least = 1.0;       ///< The smallest extent of values that is not blown up.
-  std::vector<ChartSeries> series;
-  std::string x_label = {};  ///< What takes the time's place; empty: the time.
+  std::string heading;         ///< "bend of each section"
+  std::string x_label;         ///< "t (s)"
+  std::string value_label;     ///< "bend_x (deg)"
+  double least = 1.0;          ///< The smallest extent of values that is not blown up.
+  std::vector<double> x = {};  ///< Ascending; at least one.
+  std::vector<ChartSeries> series = {};
+  std::string legend = {};         ///< What the series are: "section"; may be empty.
+  bool is_of_run = false;          ///< Over the run's times: the page's player marks where it stands.
+  std::vector<double> marks = {};  ///< Where fine vertical lines stand.
 
-  [[nodiscard]] bool is_over_time() const { return x_label.empty(); }
+  /// The style classes of a series.
+  [[nodiscard]] std::string class_of(const ChartSeries& one) const;
 };
 
-/// Draws the chart over `times` (s, or what x_label says; ascending), with a fine vertical line at each of
-/// `event_times`. Its body is one group; over time it has the class "chart" and says where the plot is, for
-/// the page's script.
-[[nodiscard]] Drawing chart_picture(const LineChart& chart, const std::vector<double>& times,
-                                    const std::vector<double>& event_times);
+/// A part of a report that is a file of its own, too: "tip-path".
+struct ReportFigure {
+  std::string name;
+  std::variant<Drawing, LineChart> content;
+};
+
+/// The chart as a picture.
+[[nodiscard]] Drawing chart_picture(const LineChart& chart);
 
 }  // namespace flexura

@@ -11,7 +11,7 @@ namespace flexura {
 inline constexpr std::size_t max_series = 32;
 
 /// What a report plots over time: bends, archings and cord angles (an arm in XOY), stretches (where they
-/// change) and the tip's coordinates. Angles in degrees, lengths in m.
-[[nodiscard]] std::vector<LineChart> charts_of(const ReportMotion& motion);
+/// change) and the tip's coordinates, named so. Angles in degrees, lengths in m.
+[[nodiscard]] std::vector<ReportFigure> charts_of(const ReportMotion& motion);
 
 }  // namespace flexura

@@ -16,9 +16,9 @@ namespace {
 
 using testing::ElementsAre;
 
-const LineChart& chart_of(const std::vector<LineChart>& charts, const std::string& name) {
-  for (const LineChart& chart : charts)
-    if (chart.name == name) return chart;
+const LineChart& chart_of(const std::vector<ReportFigure>& charts, const std::string& name) {
+  for (const ReportFigure& chart : charts)
+    if (chart.name == name) return std::get<LineChart>(chart.content);
   throw std::invalid_argument("no chart " + name);
 }
 

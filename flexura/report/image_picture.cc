@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "flexura/report/axes.h"
-#include "flexura/report/legend.h"
 
 namespace flexura {
 namespace {
@@ -41,25 +40,18 @@ PlotFrame frame_of(const ImagePlot& plot) {
   return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}, true};
 }
 
-void draw_background(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
-  if (plot.background.empty()) return;
+// The image itself, where it is there, and its border.
+void draw_image(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
   const Eigen::Vector2d corner = frame.page({-0.5, -0.5});
   const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));
-  svg.leaf("image", {{"href", plot.background},
-                     {"x", page_number(corner.x())},
-                     {"y", page_number(corner.y())},
-                     {"width", page_number(size.x())},
-                     {"height", page_number(size.y())}});
-}
-
-void draw_border(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
-  const Eigen::Vector2d corner = frame.page({-0.5, -0.5});
-  const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));
-  svg.leaf("rect", {{"class", "plot"},
-                    {"x", page_number(corner.x())},
-                    {"y", page_number(corner.y())},
-                    {"width", page_number(size.x())},
-                    {"height", page_number(size.y())}});
+  if (!plot.background.empty()) {
+    svg.leaf("image", {{"href", plot.background},
+                       {"x", page_number(corner.x())},
+                       {"y", page_number(corner.y())},
+                       {"width", page_number(size.x())},
+                       {"height", page_number(size.y())}});
+  }
+  svg.rect(corner, size, "plot");
 }
 
 void draw_outline(XmlWriter& svg, const PlotFrame& frame, const ImageOutline& outline) {
@@ -80,14 +72,8 @@ Drawing image_picture(const ImagePlot& plot) {
   XmlWriter svg;
   svg.label({frame.corner.x(), 22.0}, "heading", plot.heading);
   draw_axes(svg, frame, "column (px)", "row (px)");
-  // A picture within the picture cuts off what leaves the plot.
-  svg.open("svg", {{"x", page_number(frame.corner.x())},
-                   {"y", page_number(frame.corner.y())},
-                   {"width", page_number(frame.size.x())},
-                   {"height", page_number(frame.size.y())},
-                   {"viewBox", page_point(frame.corner) + ' ' + page_point(frame.size)}});
-  draw_background(svg, plot, frame);
-  draw_border(svg, plot, frame);
+  open_inside(svg, frame);
+  draw_image(svg, plot, frame);
   for (const ImageOutline& outline : plot.outlines) draw_outline(svg, frame, outline);
   svg.close();
   std::vector<LegendEntry> entries;

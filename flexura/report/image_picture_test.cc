@@ -10,6 +10,7 @@
 namespace flexura {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -50,27 +51,26 @@ TEST(ImagePicture, KeepsToTheImageWhateverItShows) {
   }
 }
 
-TEST(Chart, OverSomethingElseThanTimeInterruptsLinesAndDrawsDots) {
+TEST(Chart, InterruptsLinesAndDrawsDotsAndRings) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  LineChart chart{"edges", "edges", "length (px)", "", 1, {}, "orbit (deg)"};
-  chart.series.push_back({"top", "s0", {1, 2, none, 3, none, 4, 5}, {1, none, none, none, none, 4, none}});
-  const Drawing drawing = chart_picture(chart, {0, 1, 2, 3, 4, 5, 6}, {});
-  EXPECT_THAT(drawing.body, HasSubstr("orbit (deg)"));
-  EXPECT_THAT(drawing.body, Not(HasSubstr("class=\"chart\""))) << "the page's script knows times only";
-  EXPECT_EQ(count_of(drawing.body, "<circle"), 3U) << "two dots, and the value that stands alone";
-  const std::size_t line = drawing.body.find("class=\"line s0\"");
+  LineChart chart{.heading = "edges", .x_label = "orbit (deg)", .value_label = "length (px)"};
+  chart.x = {0, 1, 2, 3, 4, 5, 6}, chart.marks = {2.5};
+  chart.series.push_back({.name = "top",
+                          .values = {1, 2, none, 3, none, 4, 5},
+                          .dots = {1, none, none, none, none, 4, none},
+                          .rings = {none, 2, none, none, none, none, none}});
+  const std::string body = chart_picture(chart).body;
+  EXPECT_THAT(body, HasSubstr("orbit (deg)"));
+  EXPECT_EQ(count_of(body, "class=\"dot "), 3U) << "two dots, and the value that stands alone";
+  EXPECT_EQ(count_of(body, "class=\"ring "), 1U);
+  EXPECT_EQ(count_of(body, "class=\"event\""), 1U);
+  const std::size_t line = body.find("class=\"line s0 dash0\"");
   ASSERT_NE(line, std::string::npos);
-  EXPECT_EQ(count_of(drawing.body.substr(line), "M"), 2U) << "two runs";
-  EXPECT_THAT(drawing.body, Not(HasSubstr("nan")));
-}
-
-TEST(Chart, WithoutAnyNumberHasEmptyAxes) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  LineChart chart{"edges", "edges", "length (px)", "", 1, {}, "orbit (deg)"};
-  chart.series.push_back({"top", "s0", {none, none}, {}});
-  const Drawing drawing = chart_picture(chart, {0, 1}, {});
-  EXPECT_THAT(drawing.body, Not(HasSubstr("nan")));
-  EXPECT_THAT(drawing.body, Not(HasSubstr("line s0")));
+  EXPECT_EQ(count_of(body.substr(line), "M"), 2U) << "two runs";
+  chart.series[0].values = {none, none, none, none, none, none, none};
+  chart.series[0].dots = chart.series[0].rings = {};
+  EXPECT_THAT(chart_picture(chart).body, AllOf(Not(HasSubstr("line s0")), Not(HasSubstr("nan"))))
+      << "empty axes";
 }
 
 }  // namespace

@@ -89,19 +89,11 @@ std::vector<UnsafeMoment> unsafe_moments(const ReportMotion& motion) {
 std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& wanted,
                                       std::size_t most) {
   if (times.size() <= most) return evenly(times.size(), times.size());
-  std::vector<std::size_t> marked;
-  marked.reserve(wanted.size());
-  for (const double time : wanted) marked.push_back(nearest_index(times, time));
-  keep_each_once(marked);
-  const std::size_t most_marked = most / 2;
-  std::vector<std::size_t> kept;
-  if (marked.size() <= most_marked) {
-    kept = marked;
-  } else if (most_marked >= 2) {
-    for (const std::size_t i : evenly(marked.size(), most_marked)) kept.push_back(marked[i]);
-  }
-  const std::vector<std::size_t> rest = evenly(times.size(), most - std::min(kept.size(), most - 2));
-  kept.insert(kept.end(), rest.begin(), rest.end());
+  // The first and the last, and as many of those wanted as may fill half.
+  const std::size_t marks = std::min(wanted.size(), most / 2 - 1);
+  std::vector<std::size_t> kept = evenly(times.size(), most - marks);
+  for (std::size_t i = 0; i < marks; ++i)
+    kept.push_back(nearest_index(times, wanted[i * wanted.size() / marks]));
   keep_each_once(kept);
   return kept;
 }

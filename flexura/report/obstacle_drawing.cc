@@ -137,14 +137,7 @@ Eigen::AlignedBox3d with_obstacles(Eigen::AlignedBox3d box, const std::vector<Ob
 void draw_obstacles(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion) {
   if (motion.obstacles.empty()) return;
   const PlotFrame& frame = scene.frames[v];
-  const std::string width = page_number(frame.size.x());
-  const std::string height = page_number(frame.size.y());
-  // An svg in an svg cuts off what leaves it.
-  svg.open("svg", {{"x", page_number(frame.corner.x())},
-                   {"y", page_number(frame.corner.y())},
-                   {"width", width},
-                   {"height", height},
-                   {"viewBox", fmt::format("{} {} {}", page_point(frame.corner), width, height)}});
+  open_inside(svg, frame);
   const std::vector<Obstacle> named = obstacles(motion.obstacles);
   const Look look{scene.views[v], frame, motion};
   for (std::size_t i = 0; i < named.size(); ++i) {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
-
-#include "flexura/kinematics/shape.h"
 
 namespace flexura {
 namespace {
@@ -14,14 +12,21 @@ namespace {
 // Nine digits: a micrometre in a kilometre, and half the size of all of them.
 std::string json_number(double value) { return fmt::format("{:.9g}", value + 0.0); }
 
-class JsonArray {
- public:
-  void add(double value) { text_ += (text_.empty() ? "" : ",") + json_number(value); }
-  [[nodiscard]] std::string text() const { return '[' + text_ + ']'; }
+std::string json_array(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + json_number(value);
+  return '[' + text + ']';
+}
 
- private:
-  std::string text_;
-};
+// A chart's values: six digits are more than a screen shows.
+std::string json_values(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) {
+    if (!text.empty()) text += ',';
+    text += std::isfinite(value) ? fmt::format("{:.6g}", value + 0.0) : "null";
+  }
+  return '[' + text + ']';
+}
 
 std::string unsafe_json(const ReportMotion& motion) {
   std::string text;
@@ -34,23 +39,20 @@ std::string unsafe_json(const ReportMotion& motion) {
   return '[' + text + ']';
 }
 
-const char* curve_name(CurveKind kind) {
-  if (kind == CurveKind::arcs) return "arcs";
-  return kind == CurveKind::bezier ? "bezier" : "catmull_rom";
-}
-
-std::string states_json(const ReportMotion& motion) {
-  JsonArray bends;
-  JsonArray stretches;
-  for (const ArmState& state : motion.states) {
-    for (const Eigen::Vector2d& bend : state.bends) {
-      bends.add(bend.x());
-      if (motion.arm.kind == ArmKind::spatial) bends.add(bend.y());
-    }
-    if (!motion.stretches_change) continue;
-    for (const double stretch : state.stretches) stretches.add(stretch);
+std::string chart_html(const LineChart& chart) {
+  std::string names, values;
+  for (const ChartSeries& one : chart.series) {
+    names += fmt::format("<li class=\"{}\">{}</li>\n", chart.class_of(one), xml_escape(one.name));
+    values += fmt::format("{}[{},{},{}]", values.empty() ? "" : ",", json_values(one.values),
+                          json_values(one.dots), json_values(one.rings));
   }
-  return fmt::format(R"("bends":{},"stretches":{})", bends.text(), stretches.text());
+  return fmt::format(
+      "<figcaption>{0}</figcaption>\n<div class=\"chart\" role=\"group\" aria-label=\"Chart: {0}\" "
+      "data-x=\"{1}\" data-y=\"{2}\" data-least=\"{3}\" data-legend=\"{4}\">\n<ul>\n{5}</ul>\n"
+      "<script type=\"application/json\">{{\"x\":{6},\"marks\":{7},\"series\":[{8}]}}</script>\n</div>\n",
+      xml_escape(chart.heading), xml_escape(chart.x_label), xml_escape(chart.value_label), chart.least,
+      xml_escape(chart.legend), names, chart.is_of_run ? "null" : json_values(chart.x),
+      json_array(chart.marks), values);
 }
 
 }  // namespace
@@ -85,28 +87,29 @@ std::string csp_hash(std::string_view hex) {
   return "'sha256-" + base64 + "'";
 }
 
-std::string motion_json(const ReportMotion& motion) {
-  JsonArray rotation;
-  JsonArray lengths;
-  JsonArray radii;
-  JsonArray times;
-  const Pose& X_WB = motion.arm.X_WB;
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) rotation.add(X_WB.rotation(row, column));
-  }
-  for (const Section& section : motion.arm.sections) {
-    lengths.add(section.length);
-    for (const double radius : section.radius) radii.add(radius);
-  }
-  for (const double time : motion.times) times.add(time);
+std::string figure_html(const ReportFigure& figure) {
+  const auto* drawing = std::get_if<Drawing>(&figure.content);
   return fmt::format(
-      "{{\"planar\":{},\"coordinates\":{},\"baseAngle\":{},\"axes\":{},\"origin\":[{},{},{}],"
-      "\"lengths\":{},\"radii\":{},\"times\":{},\"unsafe\":{},\"curve\":\"{}\",\"tension\":{},{}}}",
-      motion.arm.kind == ArmKind::planar, motion.tip_coordinates(),
-      json_number(base_tangent_angle(motion.arm)), rotation.text(), json_number(X_WB.position.x()),
-      json_number(X_WB.position.y()), json_number(X_WB.position.z()), lengths.text(), radii.text(),
-      times.text(), unsafe_json(motion), curve_name(motion.curve), json_number(motion.tension),
-      states_json(motion));
+      "<figure id=\"picture-{}\">\n{}</figure>\n", figure.name,
+      drawing != nullptr ? inline_svg(*drawing) : chart_html(std::get<LineChart>(figure.content)));
+}
+
+std::string motion_json(const ReportMotion& motion) {
+  const Pose& X_WB = motion.arm.X_WB;
+  std::vector<double> lengths, radii, states;
+  for (const Section& section : motion.arm.sections) {
+    lengths.push_back(section.length);
+    radii.insert(radii.end(), section.radius.begin(), section.radius.end());
+  }
+  for (const ArmState& state : motion.states) {
+    for (std::size_t k = 0; k < state.bends.size(); ++k)
+      states.insert(states.end(), {state.bends[k].x(), state.bends[k].y(), state.stretches[k]});
+  }
+  return fmt::format(
+      R"({{"coordinates":{},"axes":{},"origin":{},"lengths":{},"radii":{},"times":{},"unsafe":{},"states":{}}})",
+      motion.tip_coordinates(), json_array({X_WB.rotation.data(), X_WB.rotation.data() + 9}),
+      json_array({X_WB.position.data(), X_WB.position.data() + 3}), json_array(lengths), json_array(radii),
+      json_array(motion.times), unsafe_json(motion), json_array(states));
 }
 
 }  // namespace flexura

@@ -16,6 +16,10 @@ namespace flexura {
 /// What a content security policy calls a text whose SHA-256 is `hex`: 'sha256-BASE64'.
 [[nodiscard]] std::string csp_hash(std::string_view hex);
 
+/// A figure's element: a picture as it is; of a chart its heading and legend, and its numbers as JSON, of
+/// which the page's script makes a plot.
+[[nodiscard]] std::string figure_html(const ReportFigure& figure);
+
 /// The motion as JSON for the page's script: numbers only, so it can stand inside a script element.
 [[nodiscard]] std::string motion_json(const ReportMotion& motion);
 

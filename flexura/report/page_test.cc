@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace flexura {
@@ -26,10 +27,20 @@ TEST(MotionJson, HoldsNumbersOnly) {
   data.times = {0.0, 0.5};
   data.states = {ArmState::straight(1), {{{0.25, -1.0 / 3.0}}, {1.0}}};
   const std::string json = motion_json(motion_of(data));
-  EXPECT_NE(json.find("\"bends\":[0,0,0.25,-0.333333333]"), std::string::npos) << json;
-  EXPECT_NE(json.find("\"stretches\":[]"), std::string::npos) << json;
-  data.states[1].stretches[0] = 1.5;
-  EXPECT_NE(motion_json(motion_of(data)).find("\"stretches\":[1,1.5]"), std::string::npos);
+  EXPECT_NE(json.find("\"states\":[0,0,1,0.25,-0.333333333,1]"), std::string::npos) << json;
+}
+
+TEST(FigureHtml, HoldsAChartsTextsEscapedAndItsNumbers) {
+  LineChart chart{.heading = "<h>", .x_label = "\"x\"", .value_label = "y", .x = {0, 1}, .marks = {0.5}};
+  chart.series = {{.name = "</script>", .values = {1.0 / 3, std::nan("")}, .rings = {std::nan(""), 2}}};
+  const std::string html = figure_html({"a", chart});
+  for (const char* part : {"<figure id=\"picture-a\">", "<figcaption>&lt;h&gt;", "data-x=\"&quot;x&quot;\"",
+                           "<li class=\"s0 dash0\">&lt;/script&gt;</li>",
+                           R"({"x":[0,1],"marks":[0.5],"series":[[[0.333333,null],[],[null,2]]]}</script>)"})
+    EXPECT_NE(html.find(part), std::string::npos) << part << " in " << html;
+  chart.is_of_run = true;
+  EXPECT_NE(figure_html({"a", chart}).find("{\"x\":null,"), std::string::npos)
+      << "the page has the run's times";
 }
 
 }  // namespace

@@ -4,10 +4,13 @@
 
 #include <cmath>
 
+#include "embedded/LICENSE.h"
 #include "embedded/figure_css.h"
 #include "embedded/report_css.h"
 #include "embedded/report_html.h"
 #include "embedded/report_js.h"
+#include "embedded/uPlot_iife_min_js.h"
+#include "embedded/uPlot_min_css.h"
 #include "flexura/report/arm_drawing.h"
 #include "flexura/report/charts.h"
 #include "flexura/report/obstacle_drawing.h"
@@ -18,40 +21,22 @@ namespace {
 
 constexpr std::size_t max_listed_events = 1000;
 
-std::vector<NamedDrawing> arm_drawings(const ReportMotion& motion, const PlotScene& scene) {
+std::vector<ReportFigure> arm_figures(const ReportMotion& motion, const PlotScene& scene) {
   return {{"arm-start", arm_picture(motion, scene, 0, "start")},
           {"arm-middle", arm_picture(motion, scene, motion.middle, "middle")},
           {"arm-end", arm_picture(motion, scene, motion.end(), "end")}};
 }
 
-std::vector<NamedDrawing> unsafe_drawings(const ReportMotion& motion, const PlotScene& scene) {
-  std::vector<NamedDrawing> drawings;
-  drawings.reserve(motion.unsafe_moments.size());
-  for (const UnsafeMoment& moment : motion.unsafe_moments) {
-    drawings.push_back(
-        {fmt::format("arm-unsafe-{}", drawings.size() + 1), unsafe_picture(motion, scene, moment)});
-  }
-  return drawings;
-}
-
-std::vector<NamedDrawing> chart_drawings(const ReportMotion& motion) {
-  std::vector<NamedDrawing> drawings;
-  for (const LineChart& chart : charts_of(motion)) {
-    drawings.push_back({chart.name, chart_picture(chart, motion.times, motion.event_times)});
-  }
-  return drawings;
-}
+std::string unsafe_name(std::size_t k) { return fmt::format("arm-unsafe-{}", k + 1); }
 
 PlotScene motion_scene(const ReportMotion& motion) {
   return scene_of(with_targets(with_obstacles(swept_box(motion), motion.obstacles), motion), motion.in_plane,
                   0.1 * motion.arm.length());
 }
 
-std::string figures_html(const std::vector<NamedDrawing>& drawings) {
+std::string figures_html(const std::vector<ReportFigure>& figures) {
   std::string html;
-  for (const NamedDrawing& named : drawings) {
-    html += fmt::format("<figure id=\"picture-{}\">\n{}</figure>\n", named.name, inline_svg(named.drawing));
-  }
+  for (const ReportFigure& figure : figures) html += figure_html(figure);
   return html;
 }
 
@@ -68,28 +53,6 @@ std::string summary_html(const ReportMotion& motion) {
          row("sections", fmt::format("{}", sections)) + row("length", fixed(motion.arm.length(), 3) + " m") +
          row("duration", fixed(motion.times.back() - motion.times.front(), 3) + " s") + moment("start", 0) +
          moment("middle", motion.middle) + moment("end", motion.end());
-}
-
-std::string sections_html(const ReportMotion& motion) {
-  const bool planar = motion.arm.kind == ArmKind::planar;
-  std::vector<std::pair<std::string_view, std::string_view>>
-      columns;  // What the script calls it, and its heading.
-  columns.emplace_back("bends-x", "bend_x");
-  columns.emplace_back(planar ? "archings" : "bends-y", planar ? "arching" : "bend_y");
-  if (motion.has_cord_angles()) columns.emplace_back("cord-angles", "cord angle");
-  if (motion.stretches_change) columns.emplace_back("stretches", "stretch");
-  std::string html = "<thead><tr><th scope=\"col\">section</th>";
-  for (const auto& [name, heading] : columns) {
-    html += fmt::format(R"(<th scope="col">{}{}</th>)", heading,
-                        name == "stretches" ? "" : " <small>deg</small>");
-  }
-  html += "</tr></thead>\n<tbody>\n";
-  for (std::size_t i = 0; i < motion.arm.sections.size(); ++i) {
-    html += fmt::format(R"(<tr><th scope="row"><i class="s{}"></i>{}</th>)", i % 8, i + 1);
-    for (const auto& [name, heading] : columns) html += fmt::format(R"(<td data-value="{}"></td>)", name);
-    html += "</tr>\n";
-  }
-  return html + "</tbody>\n";
 }
 
 std::string events_html(const ReportData& data) {
@@ -141,14 +104,13 @@ std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
       "<section aria-labelledby=\"worst-title\">\n<h2 id=\"worst-title\">The worst moments</h2>\n<div "
       "class=\"pictures {}\">\n",
       motion.in_plane ? "one" : "two");
-  const std::vector<NamedDrawing> drawings = unsafe_drawings(motion, scene);
-  for (std::size_t k = 0; k < drawings.size(); ++k) {
+  for (std::size_t k = 0; k < motion.unsafe_moments.size(); ++k) {
     const UnsafeMoment& moment = motion.unsafe_moments[k];
     const double time = motion.times[moment.state];
     html += fmt::format(
         "<figure id=\"picture-{}\">\n{}<figcaption><button type=\"button\" class=\"jump\" "
         "data-time=\"{:.9g}\">{}</button> {}</figcaption>\n</figure>\n",
-        drawings[k].name, inline_svg(drawings[k].drawing), time, fixed(time, 3),
+        unsafe_name(k), inline_svg(unsafe_picture(motion, scene, moment)), time, fixed(time, 3),
         xml_escape(moment_text(motion, moment)));
   }
   return html + "</div>\n</section>\n";
@@ -165,7 +127,7 @@ std::string chapters_html(const ReportData& data) {
         "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n{3}<div "
         "class=\"charts{4}\">\n{5}</div>\n</section>\n",
         i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), points,
-        chapter.is_first_tall ? " chapter" : "", figures_html(chapter.drawings));
+        chapter.is_first_tall ? " chapter" : "", figures_html(chapter.figures));
   }
   return html;
 }
@@ -196,9 +158,10 @@ std::string curve_html(const ReportMotion& motion) {
 
 std::string policy() {
   return fmt::format(
-      "default-src 'none'; img-src data:; script-src {}; style-src {} {}; base-uri 'none'; form-action "
+      "default-src 'none'; img-src data:; script-src {} {}; style-src {} {} {}; base-uri 'none'; form-action "
       "'none'",
-      csp_hash(embedded::report_js_sha256), csp_hash(embedded::figure_css_sha256),
+      csp_hash(embedded::uPlot_iife_min_js_sha256), csp_hash(embedded::report_js_sha256),
+      csp_hash(embedded::uPlot_min_css_sha256), csp_hash(embedded::figure_css_sha256),
       csp_hash(embedded::report_css_sha256));
 }
 
@@ -207,17 +170,22 @@ std::string policy() {
 std::vector<FigureFile> report_figures(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
   const PlotScene scene = motion_scene(motion);
-  std::vector<NamedDrawing> drawings = arm_drawings(motion, scene);
-  for (NamedDrawing& unsafe : unsafe_drawings(motion, scene)) drawings.push_back(std::move(unsafe));
-  drawings.push_back({"tip-path", tip_path_picture(motion)});
-  for (NamedDrawing& chart : chart_drawings(motion)) drawings.push_back(std::move(chart));
-  for (const Chapter& chapter : data.chapters)
-    drawings.insert(drawings.end(), chapter.drawings.begin(), chapter.drawings.end());
-  std::vector<FigureFile> figures;
-  figures.reserve(drawings.size());
-  for (const NamedDrawing& named : drawings)
-    figures.push_back({named.name + ".svg", standalone_svg(named.drawing)});
-  return figures;
+  std::vector<FigureFile> files;
+  const auto add = [&](const std::vector<ReportFigure>& figures) {
+    for (const auto& [name, content] : figures) {
+      const auto* drawing = std::get_if<Drawing>(&content);
+      files.push_back(
+          {name + ".svg",
+           standalone_svg(drawing != nullptr ? *drawing : chart_picture(std::get<LineChart>(content)))});
+    }
+  };
+  add(arm_figures(motion, scene));
+  for (std::size_t k = 0; k < motion.unsafe_moments.size(); ++k)
+    add({{unsafe_name(k), unsafe_picture(motion, scene, motion.unsafe_moments[k])}});
+  add({{"tip-path", tip_path_picture(motion)}});
+  add(charts_of(motion));
+  for (const Chapter& chapter : data.chapters) add(chapter.figures);
+  return files;
 }
 
 std::string report_html(const ReportData& data) {
@@ -226,9 +194,9 @@ std::string report_html(const ReportData& data) {
   // An arm in XOY has three narrow pictures to a row, and its tip's path, as high as two charts, stands
   // beside the last two. The wide pictures of a spatial arm come two to a row, and the path fills the fourth
   // place.
-  std::vector<NamedDrawing> arms = arm_drawings(motion, scene);
-  std::vector<NamedDrawing> charts = chart_drawings(motion);
-  NamedDrawing path = {"tip-path", tip_path_picture(motion)};
+  std::vector<ReportFigure> arms = arm_figures(motion, scene);
+  std::vector<ReportFigure> charts = charts_of(motion);
+  ReportFigure path = {"tip-path", tip_path_picture(motion)};
   if (motion.in_plane) {
     charts.insert(charts.end() - 1, std::move(path));
   } else {
@@ -240,13 +208,15 @@ std::string report_html(const ReportData& data) {
                                         {"figure_css", std::string(embedded::figure_css)},
                                         {"report_css", std::string(embedded::report_css)},
                                         {"report_js", std::string(embedded::report_js)},
+                                        {"uplot_license", std::string(embedded::LICENSE)},
+                                        {"uplot_css", std::string(embedded::uPlot_min_css)},
+                                        {"uplot_js", std::string(embedded::uPlot_iife_min_js)},
                                         {"summary", summary_html(motion)},
                                         {"thinned", curve_html(motion) + thinned_html(motion)},
                                         {"safety", safety_html(data) + unsafe_html(motion, scene)},
                                         {"views", motion.in_plane ? "one" : "two"},
                                         {"arms", figures_html(arms)},
                                         {"player", inline_svg(player_picture(motion, scene))},
-                                        {"sections", sections_html(motion)},
                                         {"charts", figures_html(charts)},
                                         {"chapters", chapters_html(data)},
                                         {"events", events_html(data)},

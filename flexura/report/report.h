@@ -9,23 +9,17 @@
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/obstacle.h"
-#include "flexura/report/svg.h"
+#include "flexura/report/chart.h"
 
 namespace flexura {
-
-/// A picture and its name, "tip-path".
-struct NamedDrawing {
-  std::string name;
-  Drawing drawing;
-};
 
 /// A part of a report for what its makers measured beside the motion.
 struct Chapter {
   std::string heading;                   ///< Any text.
   std::string text;                      ///< Likewise: a paragraph.
-  std::vector<NamedDrawing> drawings;    ///< Names that make file names, each once in the report.
+  std::vector<ReportFigure> figures;     ///< Names that make file names, each once in the report.
   std::vector<std::string> points = {};  ///< Any text: a list below the paragraph.
-  bool is_first_tall = true;             ///< The first drawing is as high as two.
+  bool is_first_tall = true;             ///< The first figure is as high as two.
 };
 
 /// What a finished run hands to its report.
@@ -84,10 +78,10 @@ struct FigureFile {
 /// when times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
-/// The report's pictures: arm-start, arm-middle, arm-end, arm-unsafe-1 and on (violations at their worst
-/// moments, those of one moment together), tip-path, bends (a spatial arm: bends-x and bends-y), archings and
-/// cord-angles (planar arms), stretches (where they change), tip; and those of the chapters. Throws as
-/// report_html does.
+/// The report's pictures and charts, for papers: arm-start, arm-middle, arm-end, arm-unsafe-1 and on
+/// (violations at their worst moments, those of one moment together), tip-path, bends (a spatial arm: bends-x
+/// and bends-y), archings and cord-angles (planar arms), stretches (where they change), tip; and those of the
+/// chapters. Throws as report_html does.
 [[nodiscard]] std::vector<FigureFile> report_figures(const ReportData& data);
 
 }  // namespace flexura

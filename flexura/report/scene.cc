@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <string>
 
 namespace flexura {
 namespace {
@@ -16,11 +14,6 @@ constexpr double flattest_plot = 0.6;  // Height over width of a plot.
 constexpr double margin_part = 0.06;
 
 Interval range_along(const Eigen::AlignedBox3d& box, int axis) { return {box.min()[axis], box.max()[axis]}; }
-
-Eigen::AlignedBox2d text_box(const Eigen::Vector2d& corner, std::string_view content) {
-  const Eigen::Vector2d size = {7.6 * static_cast<double>(content.size()), 17.0};
-  return {corner, corner + size};
-}
 
 }  // namespace
 
@@ -87,40 +80,10 @@ void draw_scene_axes(XmlWriter& svg, const PlotScene& scene, std::string_view he
   }
 }
 
-double LabelPlacer::cost(const Eigen::AlignedBox2d& box) const {
-  const Eigen::AlignedBox2d plot(frame_.corner, frame_.corner + frame_.size);
-  const Eigen::Vector2d border = {4.0, 3.0};
-  double cost = plot.contains(Eigen::AlignedBox2d(box.min() - border, box.max() + border)) ? 0.0 : 1e6;
-  for (const Taken& taken : taken_) {
-    const double distance = box.exteriorDistance(taken.point);
-    cost += distance <= 0.0 ? taken.weight : std::max(0.0, 1.0 - distance / 8.0);
-  }
-  return cost;
-}
-
-void LabelPlacer::place(XmlWriter& svg, const Eigen::Vector2d& at, std::string_view content) {
-  const Eigen::Vector2d size = text_box({0.0, 0.0}, content).sizes();
-  Eigen::AlignedBox2d best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double away : {12.0, 22.0, 36.0, 54.0, 80.0}) {
-    for (const double side : {0.0, 1.0, 0.5}) {  // Left edge, right edge or middle of the text at the point.
-      for (const double level : {0.5, 0.0, 1.0}) {  // Beside, above or below it.
-        if (side == 0.5 && level == 0.5) continue;
-        const Eigen::Vector2d corner = {at.x() - side * size.x() + (1 - 2 * side) * away,
-                                        at.y() - size.y() / 2 + (2 * level - 1) * (size.y() / 2 + away)};
-        const Eigen::AlignedBox2d box = text_box(corner, content);
-        const double total = cost(box) + 0.1 * away;
-        if (total < least) {
-          least = total;
-          best = box;
-        }
-      }
-    }
-  }
-  svg.label({best.min().x(), best.min().y() + 13.0}, "halo", content);
-  for (double x = best.min().x() - 2.0; x <= best.max().x() + 6.0; x += 6.0) {
-    for (double y = best.min().y() - 2.0; y <= best.max().y() + 6.0; y += 6.0) avoid({x, y}, 100.0);
-  }
+void label_beside(XmlWriter& svg, const PlotFrame& frame, const Eigen::Vector2d& at,
+                  std::string_view content) {
+  const bool is_left = at.x() < frame.corner.x() + frame.size.x() / 2;
+  svg.label({at.x() + (is_left ? 11.0 : -11.0), at.y() + 5.0}, is_left ? "halo" : "halo end", content);
 }
 
 }  // namespace flexura

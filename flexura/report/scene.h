@@ -39,25 +39,8 @@ struct PlotScene {
 /// Draws the heading and the axes of every view.
 void draw_scene_axes(XmlWriter& svg, const PlotScene& scene, std::string_view heading);
 
-/// Places one-line labels beside points so that they stay in the plot and keep off what is drawn.
-class LabelPlacer {
- public:
-  explicit LabelPlacer(PlotFrame frame) : frame_(std::move(frame)) {}
-  /// Labels keep off this page point, the more the greater its weight.
-  void avoid(const Eigen::Vector2d& point, double weight) { taken_.push_back({point, weight}); }
-  /// Writes the label beside the page point `at`.
-  void place(XmlWriter& svg, const Eigen::Vector2d& at, std::string_view content);
-
- private:
-  struct Taken {
-    Eigen::Vector2d point;
-    double weight;
-  };
-
-  [[nodiscard]] double cost(const Eigen::AlignedBox2d& box) const;
-
-  PlotFrame frame_;
-  std::vector<Taken> taken_;
-};
+/// A label beside the page point `at`, on the side where the plot has more room.
+void label_beside(XmlWriter& svg, const PlotFrame& frame, const Eigen::Vector2d& at,
+                  std::string_view content);
 
 }  // namespace flexura

@@ -8,67 +8,41 @@
 #include <utility>
 
 #include "embedded/figure_css.h"
+#include "flexura/base/utf8.h"
 
 namespace flexura {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
-// Number of bytes of a character that starts with `first`, 0 where none does.
-std::size_t bytes_announced(unsigned first) {
-  if (first < 0x80) return 1;
-  if (first < 0xC2 || first > 0xF4) return 0;
-  if (first < 0xE0) return 2;
-  return first < 0xF0 ? 3 : 4;
-}
-
-// Number of bytes of the valid UTF-8 character at the start of `text`; 0 when there is none.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t size = bytes_announced(first);
-  if (size == 0 || size > text.size()) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return 0;
-  }
-  // Overlong forms, surrogates and what lies beyond U+10FFFF differ from good characters in the second byte.
-  if (size >= 3) {
-    const unsigned second = byte(1);
-    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F)) return 0;
-    if ((first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F)) return 0;
-  }
-  return size;
-}
-
-bool forbidden_in_xml(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character[0]);
-  if (first < 0x20) return first != '\t' && first != '\n' && first != '\r';
-  return character == "\x7F" || character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF";
-}
-
 }  // namespace
 
 std::string xml_escape(std::string_view text) {
+  const bool is_good = is_utf8(text);
   std::string out;
   out.reserve(text.size() + text.size() / 8);
-  while (!text.empty()) {
-    const std::size_t size = character_bytes(text);
-    const std::string_view character = text.substr(0, std::max<std::size_t>(size, 1));
-    text.remove_prefix(character.size());
-    if (size == 0 || forbidden_in_xml(character)) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_blank = c == '\t' || c == '\n' || c == '\r';
+    const std::string_view three = text.substr(i, 3);
+    if (three == "\xEF\xBF\xBE" || three == "\xEF\xBF\xBF") {
       out += replacement;
-    } else if (character == "&") {
+      i += 2;
+    } else if ((byte < 0x20 && !is_blank) || byte == 0x7F || (byte >= 0x80 && !is_good)) {
+      out += replacement;
+    } else if (c == '&') {
       out += "&amp;";
-    } else if (character == "<") {
+    } else if (c == '<') {
       out += "&lt;";
-    } else if (character == ">") {
+    } else if (c == '>') {
       out += "&gt;";
-    } else if (character == "\"") {
+    } else if (c == '"') {
       out += "&quot;";
-    } else if (character == "'") {
+    } else if (c == '\'') {
       out += "&#39;";
     } else {
-      out += character;
+      out += c;
     }
   }
   return out;
@@ -161,6 +135,21 @@ void XmlWriter::leaf(std::string_view tag, Attributes attributes, std::string_vi
 void XmlWriter::label(const Eigen::Vector2d& at, std::string_view css_class, std::string_view content) {
   leaf("text", {{"x", page_number(at.x())}, {"y", page_number(at.y())}, {"class", std::string(css_class)}},
        content);
+}
+
+void XmlWriter::circle(const Eigen::Vector2d& at, std::string_view css_class, double radius) {
+  leaf("circle", {{"class", std::string(css_class)},
+                  {"cx", page_number(at.x())},
+                  {"cy", page_number(at.y())},
+                  {"r", page_number(radius)}});
+}
+
+void XmlWriter::rect(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, std::string_view css_class) {
+  leaf("rect", {{"class", std::string(css_class)},
+                {"x", page_number(corner.x())},
+                {"y", page_number(corner.y())},
+                {"width", page_number(size.x())},
+                {"height", page_number(size.y())}});
 }
 
 std::string XmlWriter::text() {

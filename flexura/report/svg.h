@@ -47,6 +47,8 @@ class XmlWriter {
   void leaf(std::string_view tag, Attributes attributes, std::string_view content);
   /// A one-line text at a page point. `css_class` holds "middle" or "end" for another anchor than the start.
   void label(const Eigen::Vector2d& at, std::string_view css_class, std::string_view content);
+  void circle(const Eigen::Vector2d& at, std::string_view css_class, double radius);
+  void rect(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, std::string_view css_class);
   /// Everything written so far, with all elements closed.
   [[nodiscard]] std::string text();
 

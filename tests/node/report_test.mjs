@@ -127,17 +127,43 @@ const checks = {
     assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
   },
 
-  async "a chart tells its values where the pointer is"() {
-    const { page } = await open();
-    const figure = page.locator(".charts figure").first();
-    await figure.scrollIntoViewIfNeeded();
-    const box = await figure.locator("svg").boundingBox();
+  async "a chart shows its values at the player's time, and at the pointer's"() {
+    const { page, faults } = await open();
+    const chart = page.locator(".chart").first();
+    const values = async () => (await chart.locator(".u-value").allTextContents()).map(Number);
+    const [first, last] = await limits(page);
+    await scrubTo(page, last);
+    const atEnd = await values();
+    assert.ok(Math.abs(atEnd[0] - last) < 1e-3 * (1 + last), `${atEnd[0]} is not ${last}`);
+    // The table beside the player shows the same numbers.
+    const cells = (await page.locator("#values tbody tr td:nth-child(2)").allTextContents()).map(Number);
+    near([atEnd.slice(1)], [cells], 0.05, "chart against table");
+    const plot = chart.locator(".u-over");
+    await plot.scrollIntoViewIfNeeded();
+    const box = await plot.boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    const names = (await figure.locator(".chart").getAttribute("data-series")).split(" ");
-    assert.equal(await figure.locator(".readout li").count(), names.length);
-    for (const value of await figure.locator(".readout b").allTextContents()) assert.match(value, /^-?\d+\.\d+$/);
+    assert.notDeepEqual(await values(), atEnd);
     await page.mouse.move(0, 0);
-    assert.equal(await figure.locator(".readout").isVisible(), false);
+    assert.deepEqual(await values(), atEnd);
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    assert.ok(Math.abs((await timeOf(page)) - (first + last) / 2) < 0.02 * (last - first), "a click takes the player there");
+    assert.deepEqual(faults, []);
+  },
+
+  async "every chart is drawn, in each line's own colour"() {
+    const { page } = await open();
+    for (const chart of await page.locator(".chart").all()) {
+      assert.equal(await chart.locator("canvas").count(), 1);
+      const looks = await chart.locator(".u-series:not(:first-child) .u-marker").evaluateAll((markers) =>
+        markers.map((marker) => getComputedStyle(marker).borderTopColor));
+      const drawn = await chart.locator("canvas").evaluate((canvas) => {
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        const colors = new Set();
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255) colors.add(`rgb(${data[i]}, ${data[i + 1]}, ${data[i + 2]})`);
+        return [...colors];
+      });
+      assert.ok(looks.some((look) => drawn.includes(look)), `${looks} in none of its pixels`);
+    }
   },
 
   async "nothing is wider than the window, clipped or on top of something else"() {

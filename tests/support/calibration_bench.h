@@ -12,6 +12,7 @@
 #include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/ideal_picture.h"
+#include "tests/support/odd_ports.h"
 #include "tests/support/rig_bench.h"
 
 namespace flexura {
@@ -94,43 +95,32 @@ class CalibrationBench : public RigBench {
   }
 };
 
-/// An arm whose sections bend by other shares of what they are told, and do not know it.
-class WrongArm : public ArmPort {
+/// An arm whose sections bend by other shares of what they are sent, and do not know it.
+class WrongArm : public OddArm {
  public:
-  WrongArm(ArmPort& arm, std::vector<double> gains) : arm_(arm), gains_(std::move(gains)) {}
-  CommandOutcome command(const ArmState& state, double duration) override {
-    ArmState bent = state;
-    for (std::size_t i = 0; i < bent.bends.size(); ++i) bent.bends[i] *= gains_[i];
-    return arm_.command(bent, duration);
-  }
-  CommandOutcome halt() override { return arm_.halt(); }
-  Outcome<ArmReading> read() override {
-    auto reading = arm_.read();
-    if (reading.fault()) return reading;
-    ArmReading told = reading.value();
-    for (std::size_t i = 0; i < told.state.bends.size(); ++i) told.state.bends[i] /= gains_[i];
-    return told;
-  }
-
- private:
-  ArmPort& arm_;
-  std::vector<double> gains_;
+  WrongArm(ArmPort& arm, const std::vector<double>& gains)
+      : OddArm(
+            arm,
+            [=](ArmReading reading) {
+              for (std::size_t i = 0; i < gains.size(); ++i) reading.state.bends[i] /= gains[i];
+              return reading;
+            },
+            [=](ArmState bent) {
+              for (std::size_t i = 0; i < gains.size(); ++i) bent.bends[i] *= gains[i];
+              return bent;
+            }) {}
 };
 
 /// A head whose pan motor takes commands and does not turn.
-class StuckPan : public HeadPort {
+class StuckPan : public OddHead {
  public:
-  explicit StuckPan(HeadPort& head) : head_(head) {}
-  CommandOutcome command(const HeadState& state) override {
-    HeadState reached = state;
-    reached.pan = 0;
-    return head_.command(reached);
-  }
-  CommandOutcome halt() override { return head_.halt(); }
-  Outcome<HeadReading> read() override { return head_.read(); }
-
- private:
-  HeadPort& head_;
+  explicit StuckPan(HeadPort& head)
+      : OddHead(
+            head, [](HeadReading reading) { return reading; },
+            [](HeadState state) {
+              state.pan = 0;
+              return state;
+            }) {}
 };
 
 /// A head that says it stands where it was sent, and stands elsewhere: from its first turn on, or from when

@@ -9,7 +9,6 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/report/axes.h"
-#include "flexura/report/legend.h"
 #include "flexura/report/svg.h"
 #include "tests/support/calibration_trials.h"
 
@@ -73,10 +72,7 @@ class OutcomePlot {
       for (const CalibrationTrial& trial : trials) {
         if (outcome_of(trial) != kinds[i].first) continue;
         const Eigen::Vector2d at = frame.page({trial.turn * in_degrees, trial.shift});
-        svg_.leaf("circle", {{"class", "dot " + color},
-                             {"cx", page_number(at.x())},
-                             {"cy", page_number(at.y())},
-                             {"r", "2"}});
+        svg_.circle(at, "dot " + color, 2);
       }
     }
     end_plot(entries, frame);

@@ -10,6 +10,7 @@
 
 #include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
+#include "tests/support/odd_ports.h"
 #include "tests/support/rig_bench.h"
 #include "tests/support/servo_files.h"
 
@@ -92,26 +93,22 @@ class BrokenArm : public ArmPort {
 
 /// An arm whose drives are not mounted as the model has them: it bends into `share` of what it is told,
 /// turned by `angle` rad about its sections' axes. What it says of itself is what its drives know.
-class TurnedArm : public ArmPort {
+class TurnedArm : public OddArm {
  public:
-  TurnedArm(ArmPort& arm, double angle, double share) : arm_(arm), angle_(angle), share_(share) {}
-  CommandOutcome command(const ArmState& state, double duration) override {
-    return arm_.command(turned(state, angle_, share_), duration);
-  }
-  CommandOutcome halt() override { return arm_.halt(); }
-  Outcome<ArmReading> read() override {
-    ArmReading reading = arm_.read().value();
-    reading.state = turned(reading.state, -angle_, 1 / share_);
-    return reading;
-  }
+  TurnedArm(ArmPort& arm, double angle, double share)
+      : OddArm(
+            arm,
+            [=](ArmReading reading) {
+              reading.state = turned(reading.state, -angle, 1 / share);
+              return reading;
+            },
+            [=](ArmState state) { return turned(std::move(state), angle, share); }) {}
 
  private:
   static ArmState turned(ArmState state, double angle, double share) {
     for (Eigen::Vector2d& bend : state.bends) bend = share * (Eigen::Rotation2Dd(angle) * bend);
     return state;
   }
-  ArmPort& arm_;
-  double angle_, share_;
 };
 
 }  // namespace flexura

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/results.h"
+#include "flexura/experiment/results_log.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/json.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/quiet.h"
+#include "tests/support/temporary_folder.h"
+
+namespace flexura {
+
+/// Runs experiments, each into a new folder below one that goes with it.
+class Runs {
+ public:
+  RunResult run(const Experiment& experiment, RunWatcher* watcher = nullptr) {
+    Quiet quiet;
+    return run_experiment(experiment, make_new_folder(folder_.path() / "results"), quiet, watcher);
+  }
+  RunResult run(const std::string& text, const std::vector<std::string>& sets = {}) {
+    return run(parse_experiment(text, "x.toml", {sets, {}}));
+  }
+
+ protected:
+  TemporaryFolder folder_;
+};
+
+/// The messages of one topic in a run's log, in their order.
+template <class M>
+std::vector<M> logged(const RunResult& result, std::string_view topic) {
+  std::vector<M> found;
+  const McapReader log = open_log(result.folder);
+  for (const McapMessage& message : log.messages())
+    if (message.channel->topic == topic) found.push_back(read_as<M>(parse_json(message.text(), "the log")));
+  return found;
+}
+
+/// How many messages each topic of a run's log has.
+inline std::map<std::string, std::size_t> logged_counts(const RunResult& result) {
+  std::map<std::string, std::size_t> counts;
+  const McapReader log = open_log(result.folder);
+  for (const McapMessage& message : log.messages()) ++counts[message.channel->topic];
+  return counts;
+}
+
+/// The text of a file of a run's results.
+inline std::string text_of(const RunResult& result, const std::filesystem::path& file) {
+  return read_text_file(result.folder / file, std::size_t{1} << 30);
+}
+
+/// The texts of all files of a folder, by their names in it.
+inline std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[entry.path().lexically_relative(folder)] = read_text_file(entry.path(), std::size_t{1} << 30);
+  return files;
+}
+
+/// Entry i of a list of a run's summary: "servos", "calibrations".
+inline const Node& entry_of(const RunResult& result, const char* list, std::size_t i = 0) {
+  return result.summary.find(list)->as<Node::Array>()->at(i);
+}
+
+}  // namespace flexura

@@ -151,6 +151,7 @@ function(flexura_fuzz_target stem folder source)
     endif()
     add_executable(${stem} ${source})
     target_link_libraries(${stem} PRIVATE fuzz_driver flexura::${folder} flexura_settings)
+    flexura_use_pch(${stem} flexura_pch HEADERS ${FLEXURA_PCH_HEADERS})
     set(cases 3000)
     if(FLEXURA_SANITIZE)  # A scene takes ten times as long there.
       set(cases 1000)

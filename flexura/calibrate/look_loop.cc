@@ -115,7 +115,7 @@ RigStance LookLoop::zoomed(std::size_t i, double ratio) const {
 
 bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
   constexpr double rounding = 1e-9;
-  const RigStance& is = stance(i);
+  const RigStance& is = this->stance(i);
   return std::abs(stance.head.pan - is.head.pan) < rounding &&
          std::abs(stance.head.tilt - is.head.tilt) < rounding &&
          std::abs(stance.head.zoom - is.head.zoom) < rounding * (1 + std::abs(is.head.zoom)) &&

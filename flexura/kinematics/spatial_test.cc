@@ -64,7 +64,7 @@ TEST(Spatial, AgreesWithTheIntegralOfTheTangentTo1em12) {
     EXPECT_LE((tip.rotation - tip_pose(arm, state).rotation).norm(), 1e-12);
     const double fraction = random.uniform(0.0, 1.0);
     const Pose inside = integrated_pose(arm, state, fraction);
-    const Arc& last = Backbone(arm, state).arcs().back();
+    const Arc last = Backbone(arm, state).arcs().back();
     EXPECT_LE((inside.position - last.pose(fraction * last.length).position).norm(), 1e-12);
     EXPECT_LE((inside.rotation - last.pose(fraction * last.length).rotation).norm(), 1e-12);
   });

@@ -71,9 +71,9 @@ void expect_gradient_is_the_derivative(TipRows rows, TestRandom& random) {
   const Eigen::VectorXd x = variables.pack(random_state_within(random, arm));
   problem.linearise(x, r, J);
   const Eigen::VectorXd gradient = J.transpose() * r;
-  const Eigen::MatrixXd rows = J.topRows(3);
+  const Eigen::MatrixXd by_position = J.topRows(3);
   EXPECT_LE((numerical_jacobian(half_square, x, 0.02).value.transpose() - gradient).norm(), 1e-8);
-  EXPECT_LE((numerical_jacobian(position, x, 0.02).value - rows).norm(), 1e-8);
+  EXPECT_LE((numerical_jacobian(position, x, 0.02).value - by_position).norm(), 1e-8);
 }
 
 TEST(TipProblem, GivesTheDerivativeOfItsSquareAndOfThePosition) {

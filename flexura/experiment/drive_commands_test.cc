@@ -21,6 +21,7 @@
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/checkout.h"
+#include "tests/support/drives.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
 

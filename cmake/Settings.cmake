@@ -28,6 +28,8 @@ target_compile_options(flexura_settings INTERFACE
   # At -O3 GCC 12 sees overlaps, overruns and unset members in std::string and std::shared_ptr that are not there
   # (GCC bugs 105651, 105329, 105562); AddressSanitizer looks for the real ones.
   "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
+  # Less garbage is collected than GCC does by default: some 5 % less time, for a fifth more memory.
+  $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>
   # The stable_sort of libstdc++ 12 uses what it calls deprecated itself.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>
   # Tests name their files by the path within the project, wherever it lies: ccache knows them again.

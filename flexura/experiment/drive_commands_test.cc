@@ -15,7 +15,13 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/kinematics/tendons.h"
 #include "tests/support/checkout.h"
+<<<<<<< HEAD
 #include "tests/support/runs.h"
+=======
+#include "tests/support/drives.h"
+#include "tests/support/quiet.h"
+#include "tests/support/temporary_folder.h"
+>>>>>>> w-kine
 
 namespace flexura {
 namespace {

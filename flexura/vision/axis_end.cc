@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 
 // Lines beside the axis along which an end is looked for, in half widths.
-constexpr std::array<double, 9> lines = {-0.8, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.8};
+constexpr std::array<double, 9> end_lines = {-0.8, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.8};
 
 // Of the half width: ends that bulge more are round, or seen from before or behind.
 constexpr double bulging = 0.6;
@@ -107,7 +107,7 @@ std::optional<double> reach_of(const TubeTracker<Value>& tracker, const Way& way
   return x;
 }
 
-using Reaches = std::array<std::optional<double>, lines.size()>;
+using Reaches = std::array<std::optional<double>, end_lines.size()>;
 
 // Least squares over the lines found, of which some have to be on either side. A bulge is from 0 (a flat end
 // seen from the side) to the half width (a round one, or a disc that faces the camera).
@@ -115,11 +115,11 @@ bool fit_shape(const Reaches& reaches, double half_width, Shape& shape) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::array<int, 2> found{};
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+  for (std::size_t i = 0; i < end_lines.size(); ++i) {
     if (!reaches[i]) continue;
-    const Eigen::Vector3d row(1, lines[i], std::sqrt(1 - lines[i] * lines[i]));
+    const Eigen::Vector3d row(1, end_lines[i], std::sqrt(1 - end_lines[i] * end_lines[i]));
     normal += row * row.transpose(), sum += *reaches[i] * row;
-    if (lines[i] != 0) ++found[lines[i] < 0 ? 0 : 1];
+    if (end_lines[i] != 0) ++found[end_lines[i] < 0 ? 0 : 1];
   }
   if (found[0] < 2 || found[1] < 2) return false;
   const Eigen::Vector3d free = solve_definite(normal, sum);
@@ -134,9 +134,9 @@ bool fit_shape(const Reaches& reaches, double half_width, Shape& shape) {
 double roughness(const Reaches& reaches, const Shape& shape) {
   double squares = 0;
   int count = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+  for (std::size_t i = 0; i < end_lines.size(); ++i) {
     if (!reaches[i]) continue;
-    const double left = *reaches[i] - shape.reach(lines[i]);
+    const double left = *reaches[i] - shape.reach(end_lines[i]);
     squares += left * left, ++count;
   }
   return std::sqrt(squares / std::max(count, 1));
@@ -162,13 +162,13 @@ bool is_clear_ahead(const TubeTracker<Value>& tracker, const Way& way, const Sha
 template <typename Value>
 std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& way) {
   Reaches reaches;
-  for (std::size_t i = 0; i < lines.size(); ++i) reaches[i] = first_ground(tracker, way, lines[i]);
+  for (std::size_t i = 0; i < end_lines.size(); ++i) reaches[i] = first_ground(tracker, way, end_lines[i]);
   Shape shape;
   for (int round = 0; round < 3; ++round) {
     if (!fit_shape(reaches, way.half_width_at(shape.x), shape)) return std::nullopt;
-    for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t i = 0; i < end_lines.size(); ++i)
       if (reaches[i])
-        reaches[i] = reach_of(tracker, way, lines[i], shape.reach(lines[i]), shape.normal(way, lines[i]));
+        reaches[i] = reach_of(tracker, way, end_lines[i], shape.reach(end_lines[i]), shape.normal(way, end_lines[i]));
   }
   if (!fit_shape(reaches, way.half_width_at(shape.x), shape) || shape.x < 0) return std::nullopt;
   if (roughness(reaches, shape) > rough + rough_share * way.half_width) return std::nullopt;

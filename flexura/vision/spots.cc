@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr double least_area = 8;      // Smaller ones are specks, px^2.
+constexpr double least_spot_area = 8;      // Smaller ones are specks, px^2.
 constexpr double longest = 4;         // Length over width, or width over length.
 constexpr double least_sigma = 0.03;  // The samples are a pixel apart, px.
 
@@ -131,7 +131,7 @@ class SpotFinder {
     const double mean = first / sum, spread = spread_of(sum, first, second);
     const double ratio = spread_of(sum, across, across_second) / spread;
     const bool is_compact = ratio > 1 / longest && ratio < longest;
-    if (area < least_area || !is_compact) return std::nullopt;
+    if (area < least_spot_area || !is_compact) return std::nullopt;
     // What is seen of a band that is partly hidden is longer across the arm than along it; what is seen of
     // the ground along a border is the opposite.
     const bool touches = edges[0] > 0 || edges[1] > 0, is_cut = std::max(edges[0], edges[1]) > 2 * spread;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "tests/support/random_cases.h"
 

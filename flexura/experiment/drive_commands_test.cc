@@ -15,13 +15,8 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/kinematics/tendons.h"
 #include "tests/support/checkout.h"
-<<<<<<< HEAD
-#include "tests/support/runs.h"
-=======
 #include "tests/support/drives.h"
-#include "tests/support/quiet.h"
-#include "tests/support/temporary_folder.h"
->>>>>>> w-kine
+#include "tests/support/runs.h"
 
 namespace flexura {
 namespace {

@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-constexpr double longest = 1e4;                            // s
+constexpr double longest_time = 1e4;                       // s
 constexpr double shortest_step = 1e-4, longest_step = 10;  // s
 constexpr std::size_t most_targets = 10000, most_points = 10000;
 
@@ -55,7 +55,7 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
                      {.meaning = "When it is wanted, from the task's start; in between, what is wanted goes "
                                  "from one target to the next in straight lines.",
                       .unit = Unit::second,
-                      .range = between(0, longest)}))
+                      .range = between(0, longest_time)}))
           .field("position", &Target::position,
                  {.meaning = "Where the tip shall be in the world.",
                   .unit = Unit::metre,
@@ -126,7 +126,7 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field("anchor", &T::anchor,
                  {.meaning = "Angles that flow carries are drawn back as exp(-t/anchor).",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest)})
+                  .range = above_up_to(0, longest_time)})
           .field(
               "jacobian", &T::jacobian,
               {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
@@ -156,19 +156,19 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           .field("settle", &T::settle,
                  {.meaning = "And stays so near for this time.",
                   .unit = Unit::second,
-                  .range = between(0, longest)})
+                  .range = between(0, longest_time)})
           .field("timeout", &T::timeout,
                  {.meaning = "How long to go on after the last target's time.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest)})
+                  .range = above_up_to(0, longest_time)})
           .field("blind", &T::blind,
                  {.meaning = "Unseen for so long, the arm stops and waits.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest)})
+                  .range = above_up_to(0, longest_time)})
           .field("lost", &T::lost,
                  {.meaning = "Unseen for so long, the task is given up.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest)})
+                  .range = above_up_to(0, longest_time)})
           .field(
               "follow", &T::follow,
               {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})

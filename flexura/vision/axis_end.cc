@@ -168,7 +168,8 @@ std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& 
     if (!fit_shape(reaches, way.half_width_at(shape.x), shape)) return std::nullopt;
     for (std::size_t i = 0; i < end_lines.size(); ++i)
       if (reaches[i])
-        reaches[i] = reach_of(tracker, way, end_lines[i], shape.reach(end_lines[i]), shape.normal(way, end_lines[i]));
+        reaches[i] =
+            reach_of(tracker, way, end_lines[i], shape.reach(end_lines[i]), shape.normal(way, end_lines[i]));
   }
   if (!fit_shape(reaches, way.half_width_at(shape.x), shape) || shape.x < 0) return std::nullopt;
   if (roughness(reaches, shape) > rough + rough_share * way.half_width) return std::nullopt;

@@ -10,7 +10,7 @@ namespace {
 
 // H. H. Rosenbrock's valley: r = (10 (y - x^2), 1 - x).
 struct Valley {
-  Eigen::Vector2d x{-1.2, 1}, there;
+  Eigen::Vector2d x{-1.2, 1}, there{0, 0};
   int kept = 0, most_kept = 1000;
   static Eigen::Vector2d residual(const Eigen::Vector2d& x) {
     return {10 * (x.y() - x.x() * x.x()), 1 - x.x()};

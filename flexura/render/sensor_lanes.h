@@ -108,13 +108,14 @@ struct Expectation {
 }
 
 // Of a block blurred along the row.
+template <std::size_t channels>
 void expect_block(const SensorRow& row, const float* light, const SensorLevels& levels,
                   Expectation& expected) {
-  for (std::size_t i = 0; i < sensor_block * row.channels; i += step_values) {
+  for (std::size_t i = 0; i < sensor_block * channels; i += step_values) {
     const float* const middle = light + i;
     const Step sum = blurred(
-        middle, row, [&](std::size_t tap) { return middle - tap * row.channels; },
-        [&](std::size_t tap) { return middle + tap * row.channels; });
+        middle, row, [&](std::size_t tap) { return middle - tap * channels; },
+        [&](std::size_t tap) { return middle + tap * channels; });
     expect(sum, levels, i, expected);
   }
 }
@@ -163,16 +164,16 @@ constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
   }
 }
 
-template <typename Value>
-void deliver(const SensorRow& row, const float* light, const unsigned char* is_known,
-             const SensorLevels& levels, NoiseRow noise, Value* to) {
-  const std::size_t values = sensor_block * row.channels;
+template <std::size_t channels, typename Value>
+void deliver_blocks(const SensorRow& row, const float* light, const unsigned char* is_known,
+                    const SensorLevels& levels, NoiseRow noise, Value* to) {
+  constexpr std::size_t values = sensor_block * channels;
   Expectation expected;
   Words places;
   for (std::size_t j = 0; j < lanes; ++j)
     places[j] = noise.start + static_cast<std::uint32_t>(j) * first_factor;
   for (std::size_t block = 0; block < row.blocks; ++block) {
-    if (is_known[block] == 0) expect_block(row, light + block * values, levels, expected);
+    if (is_known[block] == 0) expect_block<channels>(row, light + block * values, levels, expected);
     for (std::size_t i = 0; i < values; i += step_values) {
       Step level;
       each([&](std::size_t j) { level.v[j] = load(expected.means + i + j * lanes); });
@@ -184,6 +185,13 @@ void deliver(const SensorRow& row, const float* light, const unsigned char* is_k
       put(level, levels.top, to + block * values + i);
     }
   }
+}
+
+template <typename Value>
+void deliver(const SensorRow& row, const float* light, const unsigned char* is_known,
+             const SensorLevels& levels, NoiseRow noise, Value* to) {
+  const auto blocks = row.channels == 1 ? deliver_blocks<1, Value> : deliver_blocks<3, Value>;
+  blocks(row, light, is_known, levels, noise, to);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   for (const PlanePart& plane : stage.planes) leave_plane(plane);
   plan_screens(stage);
   for (SpanRow& row : rows_) draw_screens(row);
-  for (std::size_t i = 0; i < skin_count_; ++i) draw(skins_[i]);
+  for (const std::size_t i : by_row_) draw(skins_[i]);
   for (std::size_t i = 0; i < rim_count_; ++i) draw(rims_[i]);
   for (std::size_t i = 0; i < skin_count_; ++i) divide(skins_[i]);
   for (std::size_t i = 0; i < rim_count_; ++i) divide_rim(rims_[i]);

@@ -180,6 +180,7 @@ class QuickPicture {
   std::size_t skin_count_ = 0;
   std::vector<Rim> rims_;
   std::size_t rim_count_ = 0;
+  std::vector<std::size_t> by_row_;  // Skins by their first row.
   std::vector<std::uint8_t> meets_;  // Of the stage's pieces: whether another stretch of the arm cuts it.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;

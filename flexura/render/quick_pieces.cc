@@ -106,7 +106,13 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   find_meetings(stage);
   if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
     return false;
-  for (std::size_t i = 0; i < skin_count_; ++i) skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
+  // Where neighbours overlap at the same depth the first one stays: from the top of the picture on.
+  by_row_.clear();
+  for (std::size_t i = 0; i < skin_count_; ++i) {
+    skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
+    by_row_.push_back(i);
+  }
+  std::ranges::sort(by_row_, {}, [this](std::size_t i) { return std::pair(skins_[i].rows.begin, i); });
   return true;
 }
 

@@ -46,7 +46,7 @@ template <bool is_tapered>
   // The contour bends as the centreline does, seen on the skin's normal: a parabola's mean height in the
   // pixel.
   const Wide bent = 1 + k * h,
-               along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
+             along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
   const Wide across = at_least(0.1f, 1 - along_ray * along_ray / dot(ray.direction, ray.direction));
   const Wide bending = -k * h / (radius * bent * steepness * across);
   const Wide normal_u = -by_u * steepness, normal_v = -by_v * steepness;

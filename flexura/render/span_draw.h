@@ -99,7 +99,8 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
       const float slack = overlap * radius + 0.2f * reach;
       const Height there = height(piece, ray, lowest.t);
       const Vector passing = along(ray.point, ray.direction, lowest.t - there.slope / there.curving);
-      const WideMask is_passing = is_within(piece, passing, slack + piece.kink_before, slack + piece.kink_after);
+      const WideMask is_passing =
+          is_within(piece, passing, slack + piece.kink_before, slack + piece.kink_after);
       WideMask is_taken = is_border & is_asked & (is_passing | (is_here & (lowest.value < 0)));
       if (piece.kink_before + piece.kink_after > 0) {
         const auto inner = [=](float kink) { return kink > 0 ? -kink : slack; };
@@ -158,9 +159,9 @@ void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& ro
     store(row.depth + u, choose(is_drawn, depth, before));
     if (is_straight && is_first && screen.is_plain) return;
     const Wide x = depth * at(screen.place[0], place) - screen.middle[0],
-                 y = depth * at(screen.place[1], place) - screen.middle[1];
+               y = depth * at(screen.place[1], place) - screen.middle[1];
     const Wide factor = at_least(0, (1 + screen.gradient[0] * x + screen.gradient[1] * y) *
-                                          (1 - 0.5f * screen.falloff * (x * x + y * y)));
+                                        (1 - 0.5f * screen.falloff * (x * x + y * y)));
     Wide light[3];
     for (std::size_t c = 0; c < 3; ++c) light[c] = screen.brightness[c] * factor;
     store_light(light, is_drawn, screen.channels, row.light + static_cast<std::size_t>(u) * screen.channels);

@@ -108,7 +108,7 @@ struct Girth {
 };
 [[gnu::always_inline]] inline Girth girth_at(const SpanPiece& piece, const Vector& p) {
   const Wide opposite = piece.curvature * p.z, adjacent = at_least(0.1f, 1 - piece.curvature * p.x),
-               inverse = 1 / adjacent, ratio = opposite * inverse, square = ratio * ratio;
+             inverse = 1 / adjacent, ratio = opposite * inverse, square = ratio * ratio;
   const Wide slope = piece.widening * inverse * inverse / (1 + square);
   return {piece.radius + piece.widening * (p.z * inverse) * arc_by_tangent(square), slope * opposite,
           slope * adjacent};
@@ -135,7 +135,7 @@ struct Height {
   const float k = piece.curvature;
   const Wide r = girth.radius, r_slope = girth.by_x * d.x + girth.by_z * d.z;
   const Wide way = ray.h2 * t, h = ray.h0 + t * (ray.h1 + way) - 0.5f * k * r * r,
-               h_slope = ray.h1 + 2 * way - k * r * r_slope, h_curving = 2 * ray.h2 - k * r_slope * r_slope;
+             h_slope = ray.h1 + 2 * way - k * r * r_slope, h_curving = 2 * ray.h2 - k * r_slope * r_slope;
   return {h * h + p.y * p.y - r * r, h * h_slope + p.y * d.y - r * r_slope,
           h_slope * h_slope + h * h_curving + d.y * d.y - r_slope * r_slope, r};
 }
@@ -187,7 +187,7 @@ template <bool is_tapered>
 // Whether p is no farther than so much before the plane across the piece's start and beyond that across its
 // end.
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float before,
-                                             float after) {
+                                                 float after) {
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
   return (p.z >= -before) & (beyond <= after);
 }
@@ -250,7 +250,7 @@ struct SquarePart {
   // Where nothing changes in the image there is no normal: then all lies on one side.
   constexpr float least = 1e-6f;
   const Wide a = at_least(least, choose(is_steep, size_y, size_x)),
-               b = at_least(least, choose(is_steep, size_x, size_y));
+             b = at_least(least, choose(is_steep, size_x, size_y));
   // The triangle at the nearer corner; then the band, when the line crosses opposite sides.
   const Wide far = size_of(offset);
   const Wide t = at_least(0, 0.5f * (a + b) - far);
@@ -280,9 +280,9 @@ struct SquarePart {
 // The share of the pixel beyond the edge, from the distance in space and how it changes in the image.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Wide share_beyond(const SpanPiece& piece, const SpanEdge& edge,
-                                                  const RayLanes<is_tapered>& ray, const Place& place,
-                                                  const Wide& depth, const Vector& normal,
-                                                  const Wide& distance) {
+                                                const RayLanes<is_tapered>& ray, const Place& place,
+                                                const Wide& depth, const Vector& normal,
+                                                const Wide& distance) {
   const Wide along_ray = dot(ray.direction, edge.normal);
   const Wide slant = along_ray / dot(normal, ray.direction);
   const auto slope = [&](float Linear::* by) {

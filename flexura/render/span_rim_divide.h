@@ -33,8 +33,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const Wide outside = 1 - within.area, turn = -within.area / at_least(1e-6f, outside);
     const Wide factor = rim.is_front ? turn : Wide(1);
     const WideMask is_some = rim.is_front ? outside > 1e-6f : within.area > 0;
-    const Place part_place =
-        moved(place, choose(is_some, factor * within.x, Wide(0)), choose(is_some, factor * within.y, Wide(0)));
+    const Place part_place = moved(place, choose(is_some, factor * within.x, Wide(0)),
+                                   choose(is_some, factor * within.y, Wide(0)));
     const Sight<is_tapered> part = see<is_tapered>(piece, part_place, piece.centering + 1);
     Wide light[3];
     skin_light(piece, part_place, part, light);
@@ -42,8 +42,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const WideMask is_skin_known = ~is_some | (is_simple & sight.is_settled);
     const WideMask is_known = rim.is_front ? is_skin_known | ~is_skin_side : is_skin_known & is_skin_side;
     const WideMask is_plain = is_known & lowest.is_sure & (lowest.value < -gap * (2 * lowest.radius - gap)) &
-                          (size_of(line.bending) < sharpest) & (size_of(line.flatness) < flattest) &
-                          (line.at.z > 0);
+                              (size_of(line.bending) < sharpest) & (size_of(line.flatness) < flattest) &
+                              (line.at.z > 0);
     store_flags(is_plain, pixels.is_plain + i);
     const Wide skin_area = rim.is_front ? choose(is_skin_side, outside, Wide(0)) : within.area;
     const Wide end_area = rim.is_front ? within.area : Wide(0);

@@ -9,8 +9,8 @@
 
 // Vectors of single numbers by the compiler's own operators (GCC's vector extensions, which clang has too),
 // and what these lack. Each lane is worked on by itself and rounded once, so that the width changes no bit.
-// For all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has its
-// own copy.
+// For all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has
+// its own copy.
 namespace flexura {
 namespace {
 
@@ -152,8 +152,8 @@ FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
 #endif
 }
 
-// Two vectors as one: what is computed in one waits for what was computed just before, and the other fills the
-// time.
+// Two vectors as one: what is computed in one waits for what was computed just before, and the other fills
+// the time.
 constexpr std::size_t wide_lanes = 2 * lanes;
 template <typename V, typename Number>
 struct Pair {
@@ -163,13 +163,13 @@ struct Pair {
   FLEXURA_INLINE Pair(const V& l, const V& h) : low(l), high(h) {}
   FLEXURA_INLINE Pair(Number value) : low(value - V{}), high(low) {}  // NOLINT: as numbers do
 
-#define FLEXURA_OPERATOR(Result, op)                                           \
-  FLEXURA_INLINE friend Result operator op(const Pair& a, const Pair& b) {     \
-    return {a.low op b.low, a.high op b.high};                                 \
+#define FLEXURA_OPERATOR(Result, op)                                       \
+  FLEXURA_INLINE friend Result operator op(const Pair& a, const Pair& b) { \
+    return {a.low op b.low, a.high op b.high};                             \
   }
-#define FLEXURA_OPERATORS(op)                                                  \
-  FLEXURA_OPERATOR(Pair, op)                                                   \
-  FLEXURA_INLINE friend Pair& operator op##=(Pair& a, const Pair& b) { return a = a op b; }
+#define FLEXURA_OPERATORS(op) \
+  FLEXURA_OPERATOR(Pair, op)  \
+  FLEXURA_INLINE friend Pair& operator op##=(Pair & a, const Pair & b) { return a = a op b; }
   FLEXURA_OPERATORS(+)
   FLEXURA_OPERATORS(-)
   FLEXURA_OPERATORS(*)
@@ -194,7 +194,9 @@ FLEXURA_INLINE Wide choose(const WideMask& mask, const Wide& a, const Wide& b) {
   return {mask.low ? a.low : b.low, mask.high ? a.high : b.high};
 }
 FLEXURA_INLINE Wide size_of(const Wide& a) { return choose(a < 0, -a, a); }
-FLEXURA_INLINE Wide at_least(float low, const Wide& v) { return {at_least(low, v.low), at_least(low, v.high)}; }
+FLEXURA_INLINE Wide at_least(float low, const Wide& v) {
+  return {at_least(low, v.low), at_least(low, v.high)};
+}
 FLEXURA_INLINE Wide square_root(const Wide& v) { return {square_root(v.low), square_root(v.high)}; }
 FLEXURA_INLINE Wide wide_load(const float* from) { return {load(from), load(from + lanes)}; }
 FLEXURA_INLINE void store(float* to, const Wide& v) { store(to, v.low), store(to + lanes, v.high); }

@@ -76,7 +76,10 @@ TEST(CalibrationChapter, ShowsOffsetsFallingAndBothCamerasBeforeAndAfter) {
     // Powers of ten: from tens of pixels to what is accepted, or what a head's step leaves.
     const auto& offsets = content_of<LineChart>(chapter, "calibration-1-offsets-" + camera);
     EXPECT_EQ(offsets.series.at(0).name, "horizontal orientation (px)");
-    EXPECT_LT(offsets.series[0].values.back(), offsets.series[0].values.front() - 1);
+    std::vector<double> seen = offsets.series[0].values;  // Where another offset was looked at: no number.
+    std::erase_if(seen, [](double value) { return std::isnan(value); });
+    ASSERT_GE(seen.size(), 2U);
+    EXPECT_LT(seen.back(), seen.front() - 1);
   }
 }
 

@@ -212,7 +212,7 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
 // What play leads to hangs on the sides that heads come from: pictures that it spoils are left out.
 TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
   int refused = 0;
-  for (const double backlash : {0.2, 0.8, 2.0}) {
+  for (const double backlash : {0.2, 0.5, 1.0, 1.4}) {
     std::string file = etalon_rig("method = \"bundle-etalon\"\n", {});
     const std::string exact = "pan = { zero = 0 }";
     for (std::size_t at = file.find(exact); at != std::string::npos; at = file.find(exact, at + 1))
@@ -228,7 +228,7 @@ TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
     for (const Eigen::Vector2d& aim : left.aim) EXPECT_LT(aim.norm(), 0.01) << backlash;
   }
   EXPECT_GT(refused, 0);
-  EXPECT_LT(refused, 3);
+  EXPECT_LT(refused, 4);
 }
 
 // Without stages too few places tell a focal length as well as is wanted; it says how well it is known.

@@ -100,11 +100,16 @@ TEST(QuickTaper, AgreesWithTheExactWayAtTheEndsOfTheArm) {
   compare_ways_of("ends of tapered arms", 120, 0.04, [](TestRandom& random) {
     const BentArm bent = random_tapered_arm(random, random.integer(0, 1) == 0 ? 0.0999 : 0.02);
     const bool is_tip = random.integer(0, 1) == 1;
-    Pose end = bent.backbone().pose(is_tip ? bent.backbone().length() : 0);
-    if (!is_tip) end.rotation.col(2) *= -1;
-    const double distance = random.uniform(0.5, 2);
-    const double focal = 64 * distance / (random.uniform(1.5, 6) * bent.arm.sections.front().radius[0]);
-    return sight_of(random, bent, view_of_place(random, end, distance, random.uniform(0, 1.7), focal));
+    const Pose end = bent.backbone().pose(is_tip ? bent.backbone().length() : 0);
+    const double angle = random.uniform(0, 1.7), around = random.uniform(0, 2 * std::numbers::pi);
+    const Eigen::Vector3d axis = (is_tip ? 1 : -1) * end.rotation.col(2);
+    const Eigen::Vector3d side =
+        std::cos(around) * end.rotation.col(0) + std::sin(around) * end.rotation.col(1);
+    const double distance = random.uniform(0.5, 2), radius = bent.arm.sections.front().radius[0];
+    const Eigen::Vector3d from = end.position + distance * (std::cos(angle) * axis + std::sin(angle) * side);
+    const Pose X_WC = look_at(from, end.position + random.vector<3>(-0.01, 0.01), {0.1, 1, 0.05});
+    return sight_of(random, bent,
+                    pinhole_view(X_WC, 64, 48, 64 * distance / (random.uniform(1.5, 6) * radius)));
   });
 }
 

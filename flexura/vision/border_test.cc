@@ -50,7 +50,10 @@ TEST(LargestFigure, HasItsBorderWhereItIsInOrderHoweverBlurred) {
       EXPECT_LT(circle->rms, 0.025 + 0.02 * blur) << blur;
       EXPECT_NEAR(found.blur, blur, 0.03 * blur) << is_dark;
       EXPECT_GT(points.size(), 300U) << blur;
-      for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LT((points[i] - points[i - 1]).norm(), 2.5) << i;
+      // In order: neighbours are next to each other, farther where the blur leaves some of them out.
+      const double nearby = blur < 1 ? 2.5 : 4;
+      for (std::size_t i = 1; i < points.size(); ++i)
+        EXPECT_LT((points[i] - points[i - 1]).norm(), nearby) << i << ", blur " << blur;
     }
   }
 }

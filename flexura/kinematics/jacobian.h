@@ -23,12 +23,12 @@ class BackboneJacobian {
   using Columns = Eigen::Matrix<double, 6, 3>;
   /// A section as it stands.
   struct Part {
-    Pose X_WS;              ///< Its base.
-    Eigen::Vector2d bend;   ///< rad.
-    double rest_length;     ///< Not stretched, m.
-    double stretch;         ///< The factor on rest_length.
-    Columns V_end;          ///< Twist of its end at its own rates, in W.
-    Eigen::Vector3d p_end;  ///< Its end, in W, m.
+    Pose X_WS;               ///< Its base.
+    Eigen::Vector2d bend;    ///< rad.
+    double rest_length = 0;  ///< Not stretched, m.
+    double stretch = 1;      ///< The factor on rest_length.
+    Columns V_end;           ///< Twist of its end at its own rates, in W.
+    Eigen::Vector3d p_end;   ///< Its end, in W, m.
   };
 
   BackboneJacobian() = default;

@@ -88,7 +88,8 @@ bool sample_end(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& pl
                        __attribute__((always_inline)) { return see_end<is_tapered>(rim, piece, place); };
   float sums[3], count = 0;
   const bool is_sure = sample_points(many_points, middle, see, sums, count);
-  constexpr float points = sizeof many_points.x / sizeof(float);
+  constexpr std::size_t point_count = sizeof many_points.x / sizeof(float);
+  constexpr auto points = static_cast<float>(point_count);
   for (std::size_t c = 0; c < 3; ++c) pixels.light[c * span_step + index] = sums[c] / points;
   pixels.share[index] = count / points;
   const Seen seen = see(middle);

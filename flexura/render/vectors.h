@@ -163,10 +163,12 @@ struct Pair {
   FLEXURA_INLINE Pair(const V& l, const V& h) : low(l), high(h) {}
   FLEXURA_INLINE Pair(Number value) : low(value - V{}), high(low) {}  // NOLINT: as numbers do
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type and the name of an operator take none.
 #define FLEXURA_OPERATOR(Result, op)                                       \
   FLEXURA_INLINE friend Result operator op(const Pair& a, const Pair& b) { \
     return {a.low op b.low, a.high op b.high};                             \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 #define FLEXURA_OPERATORS(op) \
   FLEXURA_OPERATOR(Pair, op)  \
   FLEXURA_INLINE friend Pair& operator op##=(Pair & a, const Pair & b) { return a = a op b; }

@@ -4,9 +4,9 @@
 usage: tidy.py --build BUILD [--all]
 
 BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources as they were
-when clang-tidy last passed on them. Without --all, it checks the sources (.cc) that differ from the record. With --all
-it checks every source, which also shows what a changed header means for those that include it. Each source that passes
-is brought up to date in the record.
+when clang-tidy last passed on them. Without --all, it checks the sources (.cc) of the product that differ from the
+record. With --all it checks every source, tests and benchmarks too, which also shows what a changed header means for
+those that include it. Each source that passes is brought up to date in the record.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
 compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
@@ -80,6 +80,11 @@ def recorded(record):
     return dict(reversed(line.split()) for line in record.read_text().splitlines())
 
 
+def is_product(source):
+    """Whether it is compiled into the libraries or the program."""
+    return source.is_relative_to(ROOT / "flexura") and not source.stem.endswith(("_test", "_fuzz"))
+
+
 def changed_since(record, sources):
     """The sources that differ from the record; all of them when the settings do."""
     now, before = digests({SETTINGS, *sources}), recorded(record)
@@ -107,11 +112,12 @@ def check_all(build, waiting):
     return failed
 
 
-def keep_record(whole, not_passed):
-    """Brings the record up to date, but for the sources that have not passed."""
-    before, left_out = recorded(RECORD), {str(source.relative_to(ROOT)) for source in not_passed}
-    digests_now = {name: digest if name not in left_out else before.get(name) for name, digest in whole.items()}
-    RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in digests_now.items() if digest))
+def keep_record(known, passed):
+    """The record with today's digests of what has passed; `known` are all the sources that there are."""
+    names = {str(source.relative_to(ROOT)) for source in known}
+    kept = {name: digest for name, digest in recorded(RECORD).items() if name in names}
+    kept.update(digests(passed))
+    RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in sorted(kept.items())))
 
 
 def main():
@@ -129,17 +135,17 @@ def main():
     reach = {source: reached(source, include_folders(command)) for source, command in commands.items()}
     reach = {source: {file for file in files if not file.is_relative_to(ROOT / "build")}
              for source, files in reach.items()}
-    sources = list(reach) if arguments.all else changed_since(RECORD, list(reach))
+    sources = list(reach) if arguments.all else changed_since(RECORD, [*filter(is_product, reach)])
     passes = {source: cache / key(commands[source], reach[source]) for source in sources}
     waiting = {source: passed for source, passed in passes.items() if not passed.exists()}
 
     start = time.monotonic()
-    whole = digests({SETTINGS, *reach})
     failed = 0
     try:
         failed = check_all(arguments.build, waiting)
     finally:
-        keep_record(whole, [source for source, passed in passes.items() if not passed.exists()])
+        done = {source for source, passed in passes.items() if passed.exists()}
+        keep_record({SETTINGS, *reach}, done if failed else done | {SETTINGS})
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
     return 1 if failed else 0

@@ -113,7 +113,7 @@ def check_all(build, waiting):
 
 
 def keep_record(known, passed):
-    """The record with today's digests of what has passed; `known` are all the sources that there are."""
+    """The record with today's digests of what has passed; `known` are all the sources that may stay in it."""
     names = {str(source.relative_to(ROOT)) for source in known}
     kept = {name: digest for name, digest in recorded(RECORD).items() if name in names}
     kept.update(digests(passed))
@@ -145,7 +145,8 @@ def main():
         failed = check_all(arguments.build, waiting)
     finally:
         done = {source for source, passed in passes.items() if passed.exists()}
-        keep_record({SETTINGS, *reach}, done if failed else done | {SETTINGS})
+        # What was to be looked at and has not passed is looked at again, even where its own text is as before.
+        keep_record({SETTINGS, *reach} - (set(sources) - done), done if failed else done | {SETTINGS})
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
     return 1 if failed else 0

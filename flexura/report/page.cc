@@ -51,7 +51,7 @@ std::string chart_html(const LineChart& chart) {
       "data-x=\"{1}\" data-y=\"{2}\" data-least=\"{3}\" data-legend=\"{4}\">\n<ul>\n{5}</ul>\n"
       "<script type=\"application/json\">{{\"x\":{6},\"marks\":{7},\"series\":[{8}]}}</script>\n</div>\n",
       xml_escape(chart.heading), xml_escape(chart.x_label), xml_escape(chart.value_label), chart.least,
-      xml_escape(chart.legend), names, chart.is_of_run ? "null" : json_values(chart.x),
+      xml_escape(chart.legend), names, chart.is_of_run ? "null" : json_array(chart.x),
       json_array(chart.marks), values);
 }
 

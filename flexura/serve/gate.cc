@@ -86,13 +86,21 @@ bool Gate::knows_origin(std::string_view origin, std::string_view local) const {
   return origin.starts_with(scheme) && knows_host(origin.substr(scheme.size()), local);
 }
 
+bool Gate::has_bearer(const RequestHead& head) const {
+  const std::string* value = head.find("authorization");
+  constexpr std::string_view scheme = "bearer ";
+  return value != nullptr && in_lower_case(value->substr(0, scheme.size())) == scheme &&
+         equal_in_constant_time(trimmed(std::string_view(*value).substr(scheme.size())), token_);
+}
+
+std::string Gate::cookie(std::string_view host) const {
+  const std::string called = with_port(host, http_port);
+  return "flexura_" + called.substr(called.rfind(':') + 1) + '=' + token_ +
+         "; Path=/; HttpOnly; SameSite=Strict";
+}
+
 bool Gate::has_token(const RequestHead& head) const {
-  bool found = false;
-  if (const std::string* value = head.find("authorization")) {
-    constexpr std::string_view scheme = "bearer ";
-    found = in_lower_case(value->substr(0, scheme.size())) == scheme &&
-            equal_in_constant_time(trimmed(std::string_view(*value).substr(scheme.size())), token_);
-  }
+  bool found = has_bearer(head);
   const std::string* value = head.find("cookie");
   for (std::string_view rest = value == nullptr ? std::string_view() : *value; !rest.empty();) {
     const std::string_view pair = trimmed(rest.substr(0, rest.find(';')));

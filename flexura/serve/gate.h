@@ -25,6 +25,12 @@ class Gate {
   /// Whether the request shows the token: "Bearer TOKEN" in its Authorization header, or a cookie of any
   /// name whose value it is.
   [[nodiscard]] bool has_token(const RequestHead& head) const;
+  /// Whether its Authorization header does.
+  [[nodiscard]] bool has_bearer(const RequestHead& head) const;
+  /// The cookie with the token for a page that calls this server by `host`. No script reads it, and no page
+  /// of another host has it sent. Cookies know no ports: its name has that of `host`, so that each of two
+  /// programs on a host has its own.
+  [[nodiscard]] std::string cookie(std::string_view host) const;
   [[nodiscard]] const std::string& token() const { return token_; }
 
  private:

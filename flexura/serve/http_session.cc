@@ -42,7 +42,10 @@ Step HttpSession::next() {
   }
   if (!head) return ReadMore{};
   last_ = !head->keep_alive;
-  return decide(*head);
+  Step step = decide(*head);
+  const bool is_let_in = std::holds_alternative<Question>(step) && site_->gate.has_bearer(*head);
+  cookie_ = is_let_in ? "Set-Cookie: " + site_->gate.cookie(*head->find("host")) + "\r\n" : std::string();
+  return step;
 }
 
 int HttpSession::read_head(std::optional<RequestHead>* head) {
@@ -123,7 +126,7 @@ Answer HttpSession::format(HttpAnswer host) const {
                              .length = host.body.size(),
                              .policy = host.policy,
                              .cache = "no-store",
-                             .more = {},
+                             .more = cookie_,
                              .last = last_});
   if (host.status != 204 && host.status != 304) answer.body = std::move(host.body);
   answer.last = last_;

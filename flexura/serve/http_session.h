@@ -67,6 +67,7 @@ class HttpSession {
   std::string buffer_;
   std::size_t looked_ = 0;  // So far into buffer_ there is no end of a head.
   bool last_ = false;       // The request being answered is the last.
+  std::string cookie_;      // A line for the head of its answer: it showed the token in its header.
 };
 
 }  // namespace flexura

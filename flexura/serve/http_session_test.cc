@@ -69,6 +69,28 @@ TEST(HttpSession, ServesAssetsToAnyone) {
   }
 }
 
+TEST(HttpSession, GivesTheCookieToWhoShowsTheTokenInTheHeader) {
+  const auto head_of = [](const std::string& more) {
+    HttpSession session(site(), "127.0.0.1");
+    session.feed(get("/series", more));
+    EXPECT_TRUE(std::holds_alternative<Question>(session.next()));
+    return session.format({.status = 200, .content_type = "text/plain", .body = "x"}).head;
+  };
+  EXPECT_NE(head_of(bearer).find("\r\nSet-Cookie: flexura_8421=" + token +
+                                 "; Path=/; HttpOnly; SameSite=Strict\r\n"),
+            std::string::npos);
+  const std::string cookie = line("Cookie", "flexura_8421=" + token);
+  const std::string wrong = line("Authorization", "Bearer f" + token.substr(1));
+  EXPECT_EQ(head_of(cookie).find("Set-Cookie"), std::string::npos);
+  EXPECT_EQ(head_of(cookie + wrong).find("Set-Cookie"), std::string::npos);
+  // Of one answer alone, and never of a refusal.
+  HttpSession session(site(), "127.0.0.1");
+  session.feed(get("/series", bearer) + get("/series", cookie) + request("POST", "/series", bearer));
+  (void)session.next(), (void)session.next();
+  EXPECT_EQ(session.format({.status = 200}).head.find("Set-Cookie"), std::string::npos);
+  EXPECT_EQ(std::get<Answer>(session.next()).head.find("Set-Cookie"), std::string::npos);
+}
+
 TEST(HttpSession, SaysInEveryAnswerWhatAPageMayDo) {
   for (const std::string& bytes : Texts{get("/"), get("/nothing"), get("/nothing", "Origin: http://evil\r\n"),
                                         get("/.."), request("POST", "/series", bearer)}) {

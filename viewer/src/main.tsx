@@ -11,7 +11,7 @@ import './panels/cameras.css';
 import './plots/plots.css';
 import './timeline/timeline.css';
 import './teach/teach.css';
-import { cookie_of, pasted_token, take_token } from './connection/address';
+import { pasted_token, take_token } from './connection/address';
 import { bindings_of, is_in_sight } from './keys/bindings';
 import { KeyMap } from './keys/keys';
 import { preferences, theme_now } from './state/preferences';
@@ -23,8 +23,7 @@ let token = take_token(location, history);
 const viewer = new Viewer({
   base: new URL('.', location.href).href,
   token: () => token,
-  settle: (tried, is_good) => {
-    if (is_good) document.cookie = cookie_of(tried, location.port);
+  settle: (tried) => {
     if (tried === token) token = null;
   },
 });

@@ -1,5 +1,5 @@
 // The token comes behind the address's #, which never leaves the browser; it is taken out of the address bar at once.
-// One that lets in is kept in a cookie, which ends with the browser: so reloading works, and another tab comes in too.
+// The program answers one that lets in with a cookie, which no script reads and which ends with the browser: so reloading works, and another tab comes in too.
 
 /** Tokens are 128 bits in hexadecimal digits. */
 export function is_token(text: string): boolean {
@@ -17,9 +17,4 @@ export function take_token(location: Location, history: History): string | null 
 /** The token in what someone pasted: the whole address or the digits alone. Null when there is none. */
 export function pasted_token(text: string): string | null {
   return /(?:^|token=)([0-9a-fA-F]{32})$/.exec(text.trim())?.[1] ?? null;
-}
-
-/** For `document.cookie`. Cookies know no ports, but two programs on one host have one each. */
-export function cookie_of(token: string, port: string): string {
-  return `flexura_${port}=${token}; path=/; SameSite=Strict`;
 }

@@ -4,28 +4,27 @@ import { is_token } from './address';
 export interface Entry {
   /** Where the program serves, with a slash at its end. */
   base: string;
-  /** What the address brought or someone pasted, until it is settled. */
+  /** What the address brought or someone pasted, until it was tried. */
   token(): string | null;
-  /** Whether that lets in, and so belongs into the cookie. */
-  settle(token: string, is_good: boolean): void;
+  /** It was tried: the program has answered it with its cookie, or it lets nobody in. */
+  settle(token: string): void;
 }
 
 export type EntryOutcome = { kind: 'in' } | { kind: 'unreachable' } | { kind: 'refused'; why: string };
 
-/** Each question waits so long for its answer, ms: a network that goes away without a word answers none. */
+/** The program has so long to answer, ms: a network that goes away without a word never does. */
 export async function enter(entry: Entry, answer_ms: number): Promise<EntryOutcome> {
-  const ask = async (options: RequestInit): Promise<number> =>
-    (await fetch(new URL('series', entry.base), { cache: 'no-store', ...options, signal: AbortSignal.timeout(answer_ms) })).status;
   const token = entry.token();
   try {
-    let status = 401;
-    if (token !== null) {
-      // What is no token need not be sent, and in a header could not. The cookie stays out: it may be the better one.
-      if (is_token(token)) status = await ask({ credentials: 'omit', headers: { Authorization: `Bearer ${token}` } });
-      entry.settle(token, status !== 401);
-    }
-    // An address that is wrong, or another's, ends no session that is good without it.
-    if (status === 401) status = await ask({ credentials: 'same-origin' });
+    const { status } = await fetch(new URL('series', entry.base), {
+      cache: 'no-store',
+      // An address that is wrong, or another's, ends no session that the cookie still lets in.
+      credentials: 'same-origin',
+      // What is no token need not be sent, and in a header could not.
+      headers: token !== null && is_token(token) ? { Authorization: `Bearer ${token}` } : {},
+      signal: AbortSignal.timeout(answer_ms),
+    });
+    if (token !== null) entry.settle(token);
     if (status === 401) {
       return { kind: 'refused', why: 'This page has no token that the program knows: it was started again, or the address is not the whole one.' };
     }

@@ -128,6 +128,10 @@ export class FakeServer {
     const image = /^\/image\/(.+)\.png$/.exec(pathname);
     if (image || pathname === '/series' || pathname === '/report') {
       if (!this.may(request)) return end(401);
+      if (request.headers.authorization === `Bearer ${this.token}`) {
+        const port = /:(\d+)$/.exec(request.headers.host ?? '')?.[1] ?? '80';
+        response.setHeader('Set-Cookie', `flexura_${port}=${this.token}; Path=/; HttpOnly; SameSite=Strict`);
+      }
       if (pathname === '/report') return end(200, '<!doctype html><title>Report</title><p>The report.', 'text/html');
       if (!image) return this.series(searchParams, end);
       const camera = this.rig.scene.cameras.findIndex(({ name }) => name === decodeURIComponent(image[1]));

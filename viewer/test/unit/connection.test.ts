@@ -1,5 +1,5 @@
 import { expect, test, vi } from 'vitest';
-import { cookie_of, is_token, pasted_token, take_token } from '../../src/connection/address';
+import { is_token, pasted_token, take_token } from '../../src/connection/address';
 import { Backoff } from '../../src/connection/backoff';
 import { enter } from '../../src/connection/entry';
 import { Latest } from '../../src/connection/latest';
@@ -24,37 +24,35 @@ test('a pasted address or token is taken, other text is not', () => {
   for (const other of ['', token.slice(1), token + 'a', 'a'.repeat(100000), 'g'.repeat(32)]) expect(is_token(other)).toBe(false);
 });
 
-test('the cookie is of one program, and no foreign page has it sent', () => {
-  expect(cookie_of('00ff', '8421')).toBe('flexura_8421=00ff; path=/; SameSite=Strict');
-});
-
-test('a token that lets in is kept, one that does not is forgotten, and the cookie may do all the same', async () => {
+test('a token is tried once, beside the cookie, and then forgotten', async () => {
   const good = 'ab'.repeat(16);
   const wrong = 'cd'.repeat(16);
   let cookie: string | null = null;
+  let token: string | null = null;
   const asked: (string | undefined)[] = [];
   vi.stubGlobal('fetch', (_: URL, { credentials, headers }: RequestInit) => {
-    const header = (headers as Record<string, string> | undefined)?.['Authorization'];
-    asked.push(header ?? credentials);
-    const shown = header?.slice(7) ?? (credentials === 'omit' ? null : cookie);
-    return Promise.resolve({ status: shown === good ? 404 : 401 });
+    const header = (headers as Record<string, string>)['Authorization'];
+    asked.push(header);
+    expect(credentials).toBe('same-origin');
+    const is_shown = header === `Bearer ${good}`;
+    if (is_shown) cookie = good;  // As the program answers.
+    return Promise.resolve({ status: is_shown || cookie === good ? 404 : 401 });
   });
-  const come_with = async (token: string | null): Promise<string> => {
-    asked.length = 0;
-    const settle = (tried: string, is_good: boolean): void => void (is_good && (cookie = tried));
-    return (await enter({ base: 'http://127.0.0.1:1/', token: () => token, settle }, 1000)).kind;
+  const come_with = async (tried: string | null): Promise<string> => {
+    token = tried;
+    const settle = (settled: string): void => void (settled === token && (token = null));
+    const { kind } = await enter({ base: 'http://127.0.0.1:1/', token: () => token, settle }, 1000);
+    expect(token).toBe(null);
+    return kind;
   };
   try {
     expect(await come_with(null)).toBe('refused');
     expect(await come_with(wrong)).toBe('refused');
     expect(await come_with('zz')).toBe('refused');
-    expect(asked).toEqual(['same-origin']);
+    expect(asked).toEqual([undefined, `Bearer ${wrong}`, undefined]);
     expect(await come_with(good)).toBe('in');
-    expect(asked).toEqual([`Bearer ${good}`]);
-    expect(cookie).toBe(good);
     expect(await come_with(null)).toBe('in');
     for (const bad of [wrong, 'zz', '']) expect(await come_with(bad)).toBe('in');
-    expect(cookie).toBe(good);
   } finally {
     vi.unstubAllGlobals();
   }

@@ -5,7 +5,8 @@
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
 # THREADS says that its code or its tests start threads: ThreadSanitizer has something to look for in its tests alone.
-# LIGHT says that its code does no long arithmetic: it is compiled with -O1, which takes a third less time than -O3.
+# LIGHT says that its code does no long arithmetic: it is compiled with -O1, which takes less time than -O3. Not for
+# folders that compile kernels of Eigen: the linker may take theirs for the whole program.
 # SHARDS: each test executable runs as so many ctests, NAME.1 and so on, so that one folder does not keep the rest waiting.
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)

@@ -32,10 +32,13 @@ cmake --build "$build" --target "${targets[@]}"
   echo "| --- | ---: | ---: | --- |"
   for target in "${targets[@]}"; do
     log=build/studies/$target.log
-    FLEXURA_CASES=$times "$build/bin/$target" >"$log" 2>&1 || true
+    status=0
+    FLEXURA_CASES=$times "$build/bin/$target" >"$log" 2>&1 || status=$?
+    failed=$(sed -n 's/^\[  FAILED  \] \([A-Za-z0-9_/.]*\)$/\1/p' "$log" | sort -u | paste -sd ' ')
+    [ "$status" -eq 0 ] || failed=${failed:-exit status $status}
     echo "| \`$target\` | $(sed -n 's/^\[==========\] \([0-9]*\) tests\? from .* ran.*/\1/p' "$log") |" \
       "$(sed -n 's/^\[  PASSED  \] \([0-9]*\) tests\?.*/\1/p' "$log") |" \
-      "$(sed -n 's/^\[  FAILED  \] \([A-Za-z0-9_/.]*\)$/\1/p' "$log" | sort -u | paste -sd ' ') |"
+      "$failed |"
   done
 } >build/studies/properties.md
 mv build/studies/properties.md "$page"

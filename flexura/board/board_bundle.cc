@@ -245,6 +245,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
   fit.square_sum = first, fit.steps = 1;
   for (const BoardView& view : views)
     for (const auto& pixels : view.pixels) fit.points += pixels.size();
+  bool is_shown = true;  // What stands in the equations is of fit.bundle.
   BoardBundle tried;
   VectorXd cameras;
   std::vector<Vector6> boards;
@@ -260,7 +261,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
         cost - step.cost <= config.least_gain * cost || step.cost < exact * static_cast<double>(fit.points);
     std::swap(fit.bundle, tried);
     cost = fit.square_sum = step.cost;
-    const bool is_shown = equations.linearize(fit.bundle);
+    is_shown = equations.linearize(fit.bundle);
     fit.is_converged = is_small && is_shown;
     return is_small || !is_shown;
   };
@@ -270,6 +271,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
   };
   const auto eased = [](double damping, double) { return std::max(0.01 * damping, 1e-9); };
   levenberg_marquardt(first, {.eased = eased}, config.most_steps - 1, try_step, keep, leave);
+  if (!is_shown) return fit;
   fit.information = equations.information();
   fit.unknowns = static_cast<std::size_t>(fit.information.rows()) + 6 * views.size();
   return fit;

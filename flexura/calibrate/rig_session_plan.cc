@@ -157,6 +157,7 @@ ViewGrid RigSessionPlan::grid(const RigModel& model) const {
   if (config_.etalon) {
     grid.poses.resize(1), grid.zooms = {0, 1, 2}, grid.target = EtalonFigure(*config_.etalon).middle();
     std::vector<std::array<std::array<double, 2>, 3>> zooms;
+    zooms.reserve(model.cameras.size());
     for (std::size_t i = 0; i < model.cameras.size(); ++i) zooms.push_back(etalon_zooms(model, i));
     grid.own = [zooms](std::size_t i, double zoom) { return zooms[i][static_cast<std::size_t>(zoom)]; };
   }

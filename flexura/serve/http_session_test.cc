@@ -74,7 +74,7 @@ TEST(HttpSession, GivesTheCookieToWhoShowsTheTokenInTheHeader) {
     HttpSession session(site(), "127.0.0.1");
     session.feed(get("/series", more));
     EXPECT_TRUE(std::holds_alternative<Question>(session.next()));
-    return session.format({.status = 200, .content_type = "text/plain", .body = "x"}).head;
+    return session.format(HttpAnswer{}).head;
   };
   EXPECT_NE(head_of(bearer).find("\r\nSet-Cookie: flexura_8421=" + token +
                                  "; Path=/; HttpOnly; SameSite=Strict\r\n"),
@@ -87,7 +87,7 @@ TEST(HttpSession, GivesTheCookieToWhoShowsTheTokenInTheHeader) {
   HttpSession session(site(), "127.0.0.1");
   session.feed(get("/series", bearer) + get("/series", cookie) + request("POST", "/series", bearer));
   (void)session.next(), (void)session.next();
-  EXPECT_EQ(session.format({.status = 200}).head.find("Set-Cookie"), std::string::npos);
+  EXPECT_EQ(session.format(HttpAnswer{}).head.find("Set-Cookie"), std::string::npos);
   EXPECT_EQ(std::get<Answer>(session.next()).head.find("Set-Cookie"), std::string::npos);
 }
 

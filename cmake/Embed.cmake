@@ -9,6 +9,7 @@ function(flexura_embed target)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     cmake_path(GET file FILENAME name)
     string(MAKE_C_IDENTIFIER ${name} symbol)
+    string(TOLOWER ${symbol} symbol)
     set(header ${CMAKE_CURRENT_BINARY_DIR}/embedded/${symbol}.h)
     add_custom_command(OUTPUT ${header}
       COMMAND ${CMAKE_COMMAND} -DINPUT=${file} -DOUTPUT=${header} -DSYMBOL=${symbol}

@@ -26,6 +26,7 @@ class MotionCharts {
     if (shown < count) chart.heading += fmt::format(" ({} of {} sections)", shown, count);
     chart.legend = "section";
     std::vector<std::vector<double>> all;
+    all.reserve(motion_.states.size());
     for (const ArmState& state : motion_.states) all.push_back(values(state));
     for (std::size_t k = 0; k < shown; ++k) {
       const std::size_t section = shown == 1 ? 0 : k * (count - 1) / (shown - 1);
@@ -76,6 +77,7 @@ std::vector<ReportFigure> charts_of(const ReportMotion& motion) {
     all.add_sections(is_planar ? "bends" : "bends-" + letter, "bend_" + letter, "bend_" + letter + " (deg)",
                      1, [axis](const ArmState& state) {
                        std::vector<double> bends;
+                       bends.reserve(state.bends.size());
                        for (const Eigen::Vector2d& bend : state.bends) bends.push_back(bend[axis]);
                        return degrees(bends);
                      });

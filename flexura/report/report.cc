@@ -4,13 +4,13 @@
 
 #include <cmath>
 
-#include "embedded/LICENSE.h"
 #include "embedded/figure_css.h"
+#include "embedded/license.h"
 #include "embedded/report_css.h"
 #include "embedded/report_html.h"
 #include "embedded/report_js.h"
-#include "embedded/uPlot_iife_min_js.h"
-#include "embedded/uPlot_min_css.h"
+#include "embedded/uplot_iife_min_js.h"
+#include "embedded/uplot_min_css.h"
 #include "flexura/report/arm_drawing.h"
 #include "flexura/report/charts.h"
 #include "flexura/report/obstacle_drawing.h"
@@ -160,8 +160,8 @@ std::string policy() {
   return fmt::format(
       "default-src 'none'; img-src data:; script-src {} {}; style-src {} {} {}; base-uri 'none'; form-action "
       "'none'",
-      csp_hash(embedded::uPlot_iife_min_js_sha256), csp_hash(embedded::report_js_sha256),
-      csp_hash(embedded::uPlot_min_css_sha256), csp_hash(embedded::figure_css_sha256),
+      csp_hash(embedded::uplot_iife_min_js_sha256), csp_hash(embedded::report_js_sha256),
+      csp_hash(embedded::uplot_min_css_sha256), csp_hash(embedded::figure_css_sha256),
       csp_hash(embedded::report_css_sha256));
 }
 
@@ -208,9 +208,9 @@ std::string report_html(const ReportData& data) {
                                         {"figure_css", std::string(embedded::figure_css)},
                                         {"report_css", std::string(embedded::report_css)},
                                         {"report_js", std::string(embedded::report_js)},
-                                        {"uplot_license", std::string(embedded::LICENSE)},
-                                        {"uplot_css", std::string(embedded::uPlot_min_css)},
-                                        {"uplot_js", std::string(embedded::uPlot_iife_min_js)},
+                                        {"uplot_license", std::string(embedded::license)},
+                                        {"uplot_css", std::string(embedded::uplot_min_css)},
+                                        {"uplot_js", std::string(embedded::uplot_iife_min_js)},
                                         {"summary", summary_html(motion)},
                                         {"thinned", curve_html(motion) + thinned_html(motion)},
                                         {"safety", safety_html(data) + unsafe_html(motion, scene)},

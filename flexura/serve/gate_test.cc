@@ -134,6 +134,13 @@ TEST(Gate, TakesTheTokenFromTheHeader) {
   EXPECT_FALSE(gate().has_token(head("X: " + gate_token)));
 }
 
+TEST(Gate, NamesTheCookieByThePortThatThePageKnows) {
+  const std::string rest = "=" + gate_token + "; Path=/; HttpOnly; SameSite=Strict";
+  EXPECT_EQ(gate().cookie("lab.example:8421"), "flexura_8421" + rest);
+  EXPECT_EQ(gate().cookie("tunnel:9000"), "flexura_9000" + rest);
+  EXPECT_EQ(gate().cookie("[::1]"), "flexura_80" + rest);
+}
+
 TEST(Gate, TakesTheTokenFromACookie) {
   for (const std::string& value :
        Texts{"flexura_8421=" + gate_token, "a=b; flexura_8421=" + gate_token + "; c",

@@ -34,7 +34,7 @@ class TunnelTest : public testing::Test {
   [[nodiscard]] int come_in(const std::string& host) const {
     return ask("GET /series", host, "Authorization: Bearer " + server_->token() + "\r\n").status;
   }
-  // With the cookie that the page there has made, which is called by the port that the page knows.
+  // With the cookie that the page there was given, which is called by the port that the page knows.
   [[nodiscard]] int connect(const std::string& host) const {
     return ask("GET /socket", host,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"

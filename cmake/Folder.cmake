@@ -5,8 +5,8 @@
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
 # THREADS says that its code or its tests start threads: ThreadSanitizer has something to look for in its tests alone.
-# LIGHT says that its code does no long arithmetic: it is compiled with -O1, which takes less time than -O3. Not for
-# folders that compile kernels of Eigen: the linker may take theirs for the whole program.
+# LIGHT says that its code does no long arithmetic: it is compiled with -O1, its tests with -O0, which takes less time
+# than -O3. Not for folders that compile kernels of Eigen: the linker may take theirs for the whole program.
 # SHARDS: each test executable runs as so many ctests, NAME.1 and so on, so that one folder does not keep the rest waiting.
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)
@@ -27,9 +27,11 @@ function(flexura_folder name)
     PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:flexura_settings>)
   target_compile_features(flexura_${name} PUBLIC cxx_std_20)
   if(arg_LIGHT)
-    target_compile_options(flexura_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(flexura_${name} PRIVATE ${FLEXURA_LIGHT_OPTIONS})
+    flexura_use_pch(flexura_${name} flexura_light_pch OPTIONS ${FLEXURA_LIGHT_OPTIONS} HEADERS ${FLEXURA_PCH_HEADERS})
+  else()
+    flexura_use_pch(flexura_${name} flexura_pch HEADERS ${FLEXURA_PCH_HEADERS})
   endif()
-  flexura_use_pch(flexura_${name} flexura_pch HEADERS ${FLEXURA_PCH_HEADERS})
   set_property(GLOBAL APPEND PROPERTY FLEXURA_FOLDERS ${name})
 
   set(has_tests ${FLEXURA_TESTS})
@@ -40,9 +42,13 @@ function(flexura_folder name)
     set(full_tests ${tests})
     list(FILTER tests EXCLUDE REGEX "_full_test[.]cc$")
     list(FILTER full_tests INCLUDE REGEX "_full_test[.]cc$")
-    flexura_test(${name}_test ${name} quick ${name} ${tests} SHARDS ${arg_SHARDS})
+    set(light "")
+    if(arg_LIGHT)
+      set(light LIGHT)
+    endif()
+    flexura_test(${name}_test ${name} quick ${name} ${tests} SHARDS ${arg_SHARDS} ${light})
     if(FLEXURA_FULL_TESTS)
-      flexura_test(${name}_full_test ${name}.full full ${name} ${full_tests} SHARDS ${arg_SHARDS})
+      flexura_test(${name}_full_test ${name}.full full ${name} ${full_tests} SHARDS ${arg_SHARDS} ${light})
     endif()
   endif()
   # A reader of bytes starts no threads: nothing for ThreadSanitizer to find.
@@ -55,13 +61,16 @@ function(flexura_folder name)
   endforeach()
 endfunction()
 
+set(FLEXURA_LIGHT_OPTIONS $<$<CONFIG:Release>:-O1>)
 # The code under test is optimized as always; the tests' own code compiles a fifth faster with less of it.
 set(FLEXURA_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
+set(FLEXURA_LIGHT_TEST_OPTIONS $<$<CONFIG:Release>:-O0>)
 
 # flexura_use_pch(TARGET NAME HEADERS headers... [LINKS targets...] [OPTIONS options...])
 #
 # Precompiled headers, made once under NAME and shared by every TARGET that asks for them with the same arguments: they
-# cost as much as they save in four sources. The lint preset compiles without, so each source still includes what it uses.
+# cost as much as they save in four sources. GCC optimizes all that is compiled with them as they were themselves, whatever
+# a TARGET says: OPTIONS have the TARGET's -O. The lint preset compiles without, so each source still includes what it uses.
 function(flexura_use_pch target name)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "HEADERS;LINKS;OPTIONS")
   if(NOT FLEXURA_PCH)
@@ -91,11 +100,11 @@ set(FLEXURA_PCH_HEADERS
   <Eigen/Dense> <fmt/format.h> <algorithm> <cmath> <filesystem> <functional> <map> <memory> <optional> <string> <variant>
   <vector>)
 
-# flexura_test(EXECUTABLE CTEST_NAME LABEL FOLDER sources... [SHARDS n])
+# flexura_test(EXECUTABLE CTEST_NAME LABEL FOLDER sources... [SHARDS n] [LIGHT])
 #
 # One test executable for a folder and a size; nothing when there are no sources.
 function(flexura_test executable ctest_name label folder)
-  cmake_parse_arguments(PARSE_ARGV 4 arg "" "SHARDS" "")
+  cmake_parse_arguments(PARSE_ARGV 4 arg "LIGHT" "SHARDS" "")
   if(NOT arg_UNPARSED_ARGUMENTS)
     return()
   endif()
@@ -109,8 +118,14 @@ function(flexura_test executable ctest_name label folder)
   endif()
   target_link_libraries(${executable} PRIVATE
     flexura::${folder} checkout flexura_settings Eigen3::Eigen GTest::gtest_main GTest::gmock)
-  target_compile_options(${executable} PRIVATE ${FLEXURA_TEST_OPTIONS})
-  flexura_use_pch(${executable} flexura_test_pch LINKS GTest::gmock OPTIONS ${FLEXURA_TEST_OPTIONS}
+  set(options ${FLEXURA_TEST_OPTIONS})
+  set(headers flexura_test_pch)
+  if(arg_LIGHT)
+    set(options ${FLEXURA_LIGHT_TEST_OPTIONS})
+    set(headers flexura_light_test_pch)
+  endif()
+  target_compile_options(${executable} PRIVATE ${options})
+  flexura_use_pch(${executable} ${headers} LINKS GTest::gmock OPTIONS ${options}
     HEADERS <gtest/gtest.h> <gmock/gmock.h> ${FLEXURA_PCH_HEADERS})
   set(timeout 600)
   if(FLEXURA_SANITIZE)
@@ -152,7 +167,8 @@ function(flexura_fuzz_target stem folder source)
     endif()
     add_executable(${stem} ${source})
     target_link_libraries(${stem} PRIVATE fuzz_driver flexura::${folder} flexura_settings)
-    flexura_use_pch(${stem} flexura_pch HEADERS ${FLEXURA_PCH_HEADERS})
+    target_compile_options(${stem} PRIVATE ${FLEXURA_LIGHT_OPTIONS})
+    flexura_use_pch(${stem} flexura_light_pch OPTIONS ${FLEXURA_LIGHT_OPTIONS} HEADERS ${FLEXURA_PCH_HEADERS})
     set(cases 3000)
     if(FLEXURA_SANITIZE)  # A scene takes ten times as long there.
       set(cases 1000)

@@ -41,7 +41,7 @@ TEST(ShapeWithDoubtfulViews, IsFoundWithTheErrorsOfTheViews) {
 // Pictures of two shapes: what explains little of them tells nothing of where cameras stand.
 TEST(ShapeWithDoubtfulViews, SaysHowACameraStandsOnlyWhereThatExplainsThePictures) {
   int unsaid = 0;
-  for_random_cases(60, [&](TestRandom& random) {
+  for_random_cases(24, [&](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const auto look = [&] {
       return wrong_cameras(Backbone(prior.arm, random_bends(random, prior.arm, 1.8)), random, 0.02).seen;

@@ -120,20 +120,20 @@ View aimed(const View& view, const Backbone& backbone, double s, double focal_le
 
 TEST(Coverage, OfTubesIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0, errors); });
+  for_random_cases(3, [&](TestRandom& random) { compare_silhouettes(random, 0, errors); });
   errors.expect_small();
 }
 
 TEST(Coverage, OfTaperedTubesIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(6, [&](TestRandom& random) { compare_silhouettes(random, 0.006, errors); });
+  for_random_cases(3, [&](TestRandom& random) { compare_silhouettes(random, 0.006, errors); });
   errors.expect_small();
 }
 
 // The narrower side of a step in white, the rest in black.
 TEST(Coverage, OfTubesWhoseRadiusStepsIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) {
+  for_random_cases(3, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0, 0.006);
     const Backbone backbone = bent.backbone();
     const double step = backbone.arcs()[1].s;
@@ -169,7 +169,7 @@ void compare_rings(const BentArm& bent, const Backbone& backbone, const View& vi
 
 TEST(Coverage, OfMarkerRingsIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) {
+  for_random_cases(3, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, taper_or_none(random, 0.004));
     const Backbone backbone = bent.backbone();
     compare_rings(bent, backbone, random_view_of(random, backbone), 0.1, errors);
@@ -179,7 +179,7 @@ TEST(Coverage, OfMarkerRingsIsThatOfManySamples) {
 
 TEST(Coverage, OfRingsFinerThanPixelsIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(3, [&](TestRandom& random) {
+  for_random_cases(1, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, taper_or_none(random, 0.004));
     const Backbone backbone = bent.backbone();
     const double pitch = random.uniform(0.0004, 0.01);
@@ -191,7 +191,7 @@ TEST(Coverage, OfRingsFinerThanPixelsIsThatOfManySamples) {
 // From a tube of 2 px to one that fills the picture, with lenses of all kinds.
 TEST(Coverage, AtAnyZoomIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(4, [&](TestRandom& random) {
+  for_random_cases(2, [&](TestRandom& random) {
     BentArm bent = random_bent_arm(random, taper_or_none(random, 0.003), taper_or_none(random, 0.003));
     const double thickness = std::exp(random.uniform(-1.5, 0.7));
     for (Section& section : bent.arm.sections) {
@@ -243,7 +243,7 @@ void compare_with_rays(const Scene& scene, const View& view, CoverageErrors& err
 // Where everything stands in the way of everything.
 TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
   CoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) {
+  for_random_cases(3, [&](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0.003);
     const Backbone backbone = bent.backbone();
     View view = random_view_of(random, backbone);
@@ -284,7 +284,7 @@ void add_obstacles(TestRandom& random, KnownScene& known) {
 
 TEST(BodyCoverage, OfObstaclesThatCutEachOtherIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(8, [&](TestRandom& random) {
+  for_random_cases(5, [&](TestRandom& random) {
     KnownScene known;
     add_obstacles(random, known);
     if (random.integer(0, 1) == 0) known.add(PlaneConfig{.point = {0, -0.2, 0}}, 0.8);
@@ -295,7 +295,7 @@ TEST(BodyCoverage, OfObstaclesThatCutEachOtherIsThatOfManySamples) {
 
 TEST(BodyCoverage, OfTheEtalonAmongObstaclesIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) {
+  for_random_cases(3, [&](TestRandom& random) {
     KnownScene known;
     Etalon& etalon = known.scene.etalon.emplace();
     const auto place = near_origin(random);
@@ -330,13 +330,13 @@ void compare_known_disks(TestRandom& random, double wildness, BothCoverageErrors
 
 TEST(BodyCoverage, OfGuideDisksIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) { compare_known_disks(random, 1, errors); });
+  for_random_cases(3, [&](TestRandom& random) { compare_known_disks(random, 1, errors); });
   errors.expect_small();
 }
 
 TEST(BodyCoverage, OfGuideDisksThatTheArmPassesThroughIsThatOfManySamples) {
   BothCoverageErrors errors;
-  for_random_cases(5, [&](TestRandom& random) { compare_known_disks(random, 2.5, errors); });
+  for_random_cases(3, [&](TestRandom& random) { compare_known_disks(random, 2.5, errors); });
   errors.expect_small();
 }
 

@@ -79,7 +79,7 @@ class Loop {
     Stopwatch own;
     constexpr int turns_a_goal = 20;
     const WantedShape& wanted = goals_[static_cast<std::size_t>(turns_ / turns_a_goal % 2)];
-    scene_.arm.tube = tube_of(arm_, Backbone(arm_, state_));
+    scene_.arm.tube = tube_of(Backbone(arm_, state_));
     const auto number = static_cast<std::uint64_t>(turns_++);
     if (helper_) helper_->start([this, number] { look(eyes_[1], scene_, number); });
     look(eyes_[0], scene_, number);

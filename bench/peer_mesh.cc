@@ -95,13 +95,13 @@ std::vector<Strip> strips_of(const ArmLook& arm) {
 
 Pose pose_at(const ArmLook& arm, double s) {
   std::size_t i = 0;
-  while (i + 1 < arm.tube.size() && s > arm.tube[i + 1].arc.s) ++i;
-  return arm.tube[i].arc.pose(s - arm.tube[i].arc.s);
+  while (i + 1 < arm.tube.size() && s > arm.tube[i + 1].s) ++i;
+  return arm.tube[i].pose(s - arm.tube[i].s);
 }
 
 double radius_of(const ArmLook& arm) { return arm.tube.front().radius[0]; }
 
-double length_of(const ArmLook& arm) { return arm.tube.back().arc.s + arm.tube.back().arc.length; }
+double length_of(const ArmLook& arm) { return arm.tube.back().s + arm.tube.back().length; }
 
 PeerMesh mesh_of(const Setting& setting) {
   const ArmLook& arm = setting.scene.arm;

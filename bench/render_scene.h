@@ -33,7 +33,7 @@ inline ArmState setting_state() { return {{{1.5, 0.1}, {2.0, -0.2}, {2.0, 0.2}},
 inline Setting setting(int width, int height) {
   const Arm arm = setting_arm();
   Setting result;
-  result.scene.arm.tube = tube_of(arm, Backbone(arm, setting_state()));
+  result.scene.arm.tube = tube_of(Backbone(arm, setting_state()));
   for (int i = 0; i < 12; ++i) {
     const double s = (i + 0.5) / 12;
     result.scene.arm.markers.push_back({s - 0.008, s + 0.008});
@@ -61,7 +61,7 @@ inline Setting laboratory_setting(int width, int height, double tip = 1) {
       arm.sections[i].radius[end] *= 1 + (tip - 1) * static_cast<double>(i + end) / sections;
   const ArmState state{{{0.6, 0.4}, {-0.8, 0.5}, {0.9, -0.6}}, {1, 1, 1}};
   Setting result;
-  result.scene.arm.tube = tube_of(arm, Backbone(arm, state));
+  result.scene.arm.tube = tube_of(Backbone(arm, state));
   const Color colors[3] = {{0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
   for (int i = 0; i < 12; ++i) {
     const double s = (i + 0.5) / 12;

@@ -42,7 +42,7 @@ Film make_film() {
     film.states.push_back(state);
     Scene scene;
     scene.background = Color::Constant(0.8);
-    scene.arm.tube = tube_of(film.arm, Backbone(film.arm, state));
+    scene.arm.tube = tube_of(Backbone(film.arm, state));
     scene.arm.albedo = {0.08, 0.08, 0.09};
     auto& frame = film.frames.emplace_back();
     auto& seen = film.sightings.emplace_back();

@@ -11,7 +11,7 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
 #include "flexura/model/arm_config.h"
-#include "flexura/model/backbone.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/store/json.h"
 
 namespace flexura {
@@ -46,9 +46,10 @@ const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
 }
 
 Node answer(const Arm& arm, const ForwardRequest& request) {
-  const Backbone backbone(arm, arm_state(arm, request.shape()));
+  const Backbone backbone = ArmModel(arm).backbone(arm_state(arm, request.shape()));
   Node::Array bases;
-  for (const Arc& arc : backbone.arcs()) bases.push_back(point_node(arc.X_WS.position));
+  for (const Arc& arc : backbone.arcs())
+    if (arc.section == bases.size()) bases.push_back(point_node(arc.X_WS.position));
   bases.push_back(point_node(backbone.tip().position));
   Node::Table members{{"tip", {}, pose_node(backbone.tip())}, {"bases", {}, {std::move(bases), {}}}};
   if (request.at) {

@@ -163,13 +163,13 @@ Node answer(const Arm& arm, const InverseRequest& request) {
   if (request.curve) {
     CurveTarget target;
     for (const Triple& point : *request.curve) target.points.push_back(vector(point));
-    return answer_one(arm, request, solve_inverse(arm, target, config));
+    return answer_one(arm, request, solve_inverse(ArmModel(arm), target, config));
   }
   const TipTarget target = tip_target(request);
   std::vector<InverseResult> solutions;
-  if (request.all) solutions = all_inverse_solutions(arm, target, config);
+  if (request.all) solutions = all_inverse_solutions(ArmModel(arm), target, config);
   if (!request.all || solutions.empty()) {
-    Node node = answer_one(arm, request, solve_inverse(arm, target, config));
+    Node node = answer_one(arm, request, solve_inverse(ArmModel(arm), target, config));
     if (request.all) node.as<Node::Table>()->push_back({"solutions", {}, {Node::Array{}, {}}});
     return node;
   }

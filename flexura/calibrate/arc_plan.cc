@@ -51,7 +51,7 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
     if (!state)
       return fmt::format("the arm cannot be bent into an arc of {:.0f} deg in {}", bend / degree,
                          name_of_plane(i));
-    plan.arcs[i] = *state;
+    plan.arcs[i] = loop.believed().arm_model().actuation().command(*state);
     const Backbone backbone(arm, *state);
     plan.centers[i] = backbone.pose(0).position + plan.radius * towards[i];
     middles[i] = aims_at_centers ? plan.centers[i] : backbone.pose(0.5 * arm.length()).position;

@@ -45,9 +45,8 @@ class ArcsCorrected : public ArcsLoop {
       : ArcsLoop(loop),
         prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.believed())))),
         seen_as_(eyes_of_arcs(loop.config())),
-        eyes_(
-            arm_eyes(loop.believed(), prior_, seen_as_,
-                     arm_middle(loop.believed(), ArmState::straight(loop.believed().arm.sections.size())))) {}
+        eyes_(arm_eyes(loop.believed(), prior_, seen_as_,
+                       arm_middle(loop.believed(), ArmState::straight(loop.believed().sections())))) {}
 
  private:
   [[nodiscard]] const RigModel* before() const { return reading_ ? &reading_->found.model : nullptr; }

@@ -22,10 +22,7 @@ bool stands(const AxisConfig& axis, double sent, double reads) {
 }  // namespace
 
 RigHands::RigHands(const RigPorts& ports, const RigModel& believed, const RigPatience& patience)
-    : ports_(ports),
-      sections_(believed.arm.sections.size()),
-      patience_(patience),
-      sent_(ports.cameras.size()) {
+    : ports_(ports), sections_(believed.sections()), patience_(patience), sent_(ports.cameras.size()) {
   for (const CameraConfig& camera : believed.cameras) cameras_.emplace_back(camera);
 }
 

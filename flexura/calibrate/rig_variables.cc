@@ -26,9 +26,9 @@ void require(bool holds, const std::string& message) {
 
 void check_observations(const RigModel& guess, const RigObservations& seen) {
   for (const ArmState& pose : seen.poses)
-    require(pose.bends.size() == guess.arm.sections.size() && pose.stretches.size() == pose.bends.size(),
+    require(pose.bends.size() == guess.sections() && pose.stretches.size() == pose.bends.size(),
             fmt::format("a pose of {} bends does not fit an arm of {} sections", pose.bends.size(),
-                        guess.arm.sections.size()));
+                        guess.sections()));
   for (std::size_t i = 0; i < seen.stances.size(); ++i) {
     const RigStance& stance = seen.stances[i];
     require(stance.camera < guess.cameras.size(),
@@ -48,10 +48,12 @@ void check_observations(const RigModel& guess, const RigObservations& seen) {
 }  // namespace
 
 RigVariables::RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen)
-    : guess_(guess), commanded_(seen.poses), read_(seen.stances) {
+    : guess_(guess), read_(seen.stances) {
   guess_.bend_gains.resize(guess_.arm.sections.size(), 1.0);
   check(prior);
   check_observations(guess_, seen);
+  for (const ArmState& pose : seen.poses)
+    commanded_.push_back(guess.actuation.arcs() == 0 ? pose : guess.actuation.shape(pose));
   for (CameraConfig& camera : guess_.cameras) camera.lens = spelled_out(camera);
   for (std::size_t i = 0; i < guess_.cameras.size(); ++i) add_camera(guess_.cameras[i], prior.cameras[i]);
   add_arm(prior.arm);

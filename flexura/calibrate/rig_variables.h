@@ -87,7 +87,7 @@ class RigVariables {
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
   /// The rig that x means.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
-  /// The observations' poses, as commanded, and stances, as read.
+  /// The observations' poses, the shapes as commanded, and stances, as read.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
   /// How the arm stood in a pose.

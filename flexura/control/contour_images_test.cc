@@ -30,7 +30,7 @@ View bent_view_of(TestRandom& random, const Backbone& backbone) {
 
 Scene scene_of(const BentArm& bent) {
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  scene.arm.tube = tube_of(bent.backbone());
   scene.arm.tip = TipKind::flat;
   return scene;
 }

@@ -29,8 +29,12 @@ double turning_time(double step, double row) {
 
 }  // namespace
 
-CommandLimiter::CommandLimiter(Arm arm, LimiterConfig config, const ArmState& start)
-    : arm_(std::move(arm)), config_(std::move(config)), limits_(limit_watches(arm_)), sent_(start) {
+CommandLimiter::CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start)
+    : model_(std::move(arm)),
+      arm_(model_.driven()),
+      config_(std::move(config)),
+      limits_(limit_watches(arm_)),
+      sent_(start) {
   if (!(config_.step > 0) || !std::isfinite(config_.step))
     throw std::invalid_argument("a limiter's step must be finite and above 0");
   if (!(config_.list_step >= 0) || !std::isfinite(config_.list_step))
@@ -255,7 +259,7 @@ std::string CommandLimiter::contact(const std::vector<ArmState>& way) const {
   }
   const MotionPtr motion = keyframe_motion(times, states, Interpolation::linear);
   const SafetyReport report =
-      check_motions(arm_, config_.obstacles, sent_, {{motion, 0, "look-ahead"}}, config_.step);
+      check_motions(model_, config_.obstacles, sent_, {{motion, 0, "look-ahead"}}, config_.step);
   for (const Violation& violation : report.violations) return violation.what();
   return {};
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/safety/limits.h"
@@ -53,10 +53,11 @@ struct LimiterFault {
 /// that way to rest and stays there until reset().
 class CommandLimiter {
  public:
-  /// At rest in `start`. std::invalid_argument: a state that does not fit the arm, breaks a limit or
-  /// (with looks_ahead) touches something, a step
-  /// that is not positive.
-  CommandLimiter(Arm arm, LimiterConfig config, const ArmState& start);
+  /// At rest in `start`, a command. std::invalid_argument: a state that does not fit the arm, breaks a limit
+  /// or (with looks_ahead) touches something, a step that is not positive.
+  CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
+  CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
+      : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
   /// The command for the next step, as near to `asked` as it can be: on the straight line in the rates from
   /// braking to the law's.
@@ -107,7 +108,8 @@ class CommandLimiter {
   [[nodiscard]] int braking_steps(const ArmState& next) const;
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
 
-  Arm arm_;
+  ArmModel model_;
+  Arm arm_;  // As its drives see it.
   LimiterConfig config_;
   std::vector<LimitWatch> limits_;
   ArmState sent_;

@@ -42,7 +42,7 @@ View view_from_side(const BentArm& bent, double azimuth) {
 std::vector<Sighting> photographed(const BentArm& bent, const std::vector<View>& views, std::uint64_t seed) {
   Scene scene;
   scene.background = Color::Constant(0.85);
-  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  scene.arm.tube = tube_of(bent.backbone());
   scene.arm.albedo = {0.08, 0.08, 0.09};
   std::vector<Sighting> seen;
   for (const View& view : views) {

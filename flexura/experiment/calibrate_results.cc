@@ -255,6 +255,21 @@ std::string loop_rig_toml(const Experiment& experiment, const CalibrationRun& ru
          file_text(file);
 }
 
+// As long as was found. Of a section of several arcs a file says that these are equally long, and how they
+// share its bend: as they did, in all its length.
+void set_sections(const RigModel& found, std::vector<Section>& sections) {
+  const Actuation actuation = found.arm_model().actuation();
+  for (Section& section : sections) {
+    section.length = 0;
+    if (section.bend_profile) section.bend_profile->clear();
+  }
+  for (std::size_t arc = 0; arc < actuation.arcs(); ++arc) {
+    Section& section = sections[actuation.section_of()[arc]];
+    section.length += found.arm.sections[arc].length;
+    if (section.bend_profile) section.bend_profile->push_back(std::max(0.0, actuation.share_of(arc)));
+  }
+}
+
 }  // namespace
 
 std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& run) {
@@ -263,15 +278,14 @@ std::string found_rig_toml(const Experiment& experiment, const CalibrationRun& r
   file.arm = experiment.arm;
   const RigModel& found = run.result.found.model;
   // Markers stay where they are on each section, as these are longer or shorter than believed.
-  const Arm believed = experiment.arm.arm();
+  const Arm believed = experiment.arm.model().shaped();
   const auto moved = [&](double s) {
     const ArmState straight = ArmState::straight(found.arm.sections.size());
     return arc_length_of(found.arm, straight, material_point(believed, s));
   };
   for (Marker& marker : file.arm.look.marker) marker.at = moved(marker.at);
   for (Disk& disk : file.arm.look.disk) disk.at = moved(disk.at);
-  for (std::size_t i = 0; i < file.arm.section.size(); ++i)
-    file.arm.section[i].length = found.arm.sections[i].length;
+  set_sections(found, file.arm.section);
   for (const CameraConfig& camera : found.cameras) file.camera.push_back(camera);
   start_at(run.result.wanted.stances, file);
   const RigSigmas& sigmas = run.result.steps.back().sigmas;

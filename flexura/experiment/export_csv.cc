@@ -24,6 +24,22 @@ void name_columns(CsvText& csv, std::string_view stem, std::size_t count) {
   for (std::size_t i = 1; i <= count; ++i) csv.cell(fmt::format("{}_{}", stem, i));
 }
 
+// The places of the base of each `part`, and of the tip, and how that is turned.
+void name_places(CsvText& csv, std::string_view part, std::size_t count) {
+  for (std::size_t i = 0; i <= count; ++i) {
+    const std::string stem = i < count ? fmt::format("{}_{}", part, i + 1) : "tip";
+    for (const char axis : {'x', 'y', 'z'}) csv.cell(fmt::format("{}_{}", stem, axis));
+  }
+  for (const char axis : {'w', 'x', 'y', 'z'}) csv.cell(fmt::format("tip_q{}", axis));
+}
+
+void add_places(CsvText& csv, const PosesMessage& poses) {
+  for (const PoseMessage& pose : poses.poses)
+    csv.cells(std::array{pose.position.x, pose.position.y, pose.position.z});
+  const QuaternionMessage& q = poses.poses.back().orientation;
+  csv.cells(std::array{q.w, q.x, q.y, q.z});
+}
+
 void name_columns(CsvText& csv, const ArmStateMessage& state) {
   const std::size_t sections = state.bends.size();
   csv.cell("time");
@@ -34,11 +50,7 @@ void name_columns(CsvText& csv, const ArmStateMessage& state) {
     csv.cell(fmt::format("bend_y_{}", i));
   }
   name_columns(csv, "stretch", sections);
-  for (std::size_t i = 0; i <= sections; ++i) {
-    const std::string stem = i < sections ? fmt::format("base_{}", i + 1) : "tip";
-    for (const char axis : {'x', 'y', 'z'}) csv.cell(fmt::format("{}_{}", stem, axis));
-  }
-  for (const char part : {'w', 'x', 'y', 'z'}) csv.cell(fmt::format("tip_q{}", part));
+  name_places(csv, "base", sections);
   csv.end_row();
 }
 
@@ -48,11 +60,23 @@ void add_row(CsvText& csv, const ArmStateMessage& state, const PosesMessage& pos
   if (state.cord_angles) csv.cells(*state.cord_angles);
   for (const auto& bend : state.bends) csv.cells(bend);
   csv.cells(state.stretches);
-  for (const PoseMessage& pose : poses.poses)
-    csv.cells(std::array{pose.position.x, pose.position.y, pose.position.z});
-  const QuaternionMessage& q = poses.poses.back().orientation;
-  csv.cells(std::array{q.w, q.x, q.y, q.z});
+  add_places(csv, poses);
   csv.end_row();
+}
+
+// The arm as it truly was; as many arcs in each row.
+void add_truth(std::optional<CsvText>& csv, std::size_t& arcs, double time, const PosesMessage& poses) {
+  if (!csv) {
+    arcs = poses.poses.size() - 1;
+    csv.emplace().cell("time");
+    name_places(*csv, "arc", arcs);
+    csv->end_row();
+  }
+  if (poses.poses.size() != arcs + 1)
+    throw std::runtime_error(fmt::format("the log's true arm at {} s has other arcs than before", time));
+  csv->cell(time);
+  add_places(*csv, poses);
+  csv->end_row();
 }
 
 // A column is a number of the arm; one log has one arm.
@@ -108,6 +132,7 @@ void add_row(CsvText& csv, const ServoStepMessage& step) {
 
 struct Tables {
   CsvText states;
+  std::optional<CsvText> truth;  // Of runs that play a rig.
   CsvText events;
   std::optional<CsvText> dynamics;  // Of runs with such a task.
   std::optional<CsvText> servo;     // Likewise.
@@ -119,6 +144,7 @@ Tables tables_of(const McapReader& log, const std::string& name) {
   tables.events.end_row();
   std::optional<ArmStateMessage> state;  // waiting for its poses, which follow it
   std::optional<std::size_t> sections;
+  std::size_t true_arcs = 0;
   for (const McapMessage& message : log.messages()) {
     const std::string& topic = message.channel->topic;
     if (topic == arm_state_topic) {
@@ -130,6 +156,10 @@ Tables tables_of(const McapReader& log, const std::string& name) {
       check_sizes(*state, *sections, poses);
       add_row(tables.states, *state, poses);
       state.reset();
+    } else if (topic == arm_truth_topic) {
+      const auto poses = read_as<PosesMessage>(parse_json(message.text(), name));
+      if (!poses.poses.empty())
+        add_truth(tables.truth, true_arcs, static_cast<double>(message.log_time) * 1e-9, poses);
     } else if (topic == dynamics_samples_topic) {
       if (!tables.dynamics) name_dynamics_columns(tables.dynamics.emplace());
       add_row(*tables.dynamics, read_as<DynamicsSampleMessage>(parse_json(message.text(), name)));
@@ -159,6 +189,7 @@ ExportResult export_csv(const std::filesystem::path& results) {
   const Tables tables = from_log([&] { return tables_of(log, (results / log_file_name).string()); });
   ExportResult result{make_new_folder(results / "csv"), log.truncated()};
   write_new_file(result.folder / "states.csv", tables.states.text());
+  if (tables.truth) write_new_file(result.folder / "truth.csv", tables.truth->text());
   write_new_file(result.folder / "events.csv", tables.events.text());
   if (tables.dynamics) write_new_file(result.folder / "dynamics.csv", tables.dynamics->text());
   if (tables.servo) write_new_file(result.folder / "servo.csv", tables.servo->text());

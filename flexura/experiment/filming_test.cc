@@ -291,8 +291,8 @@ TEST(Filming, IsKeptInTheLogAndNothingElseOfTheLogChanges) {
     EXPECT_EQ(message.frame_id, "camera/front");
     EXPECT_THAT(message.data.data, ::testing::StartsWith("\x89PNG"));
   }
-  for (const char* topic : {"/camera/front", "/camera/side", "/arm/reading", "/head/front", "/head/side",
-                            "/stage/front", "/stage/side"}) {
+  for (const char* topic : {"/camera/front", "/camera/side", "/arm/truth", "/arm/reading", "/head/front",
+                            "/head/side", "/stage/front", "/stage/side"}) {
     EXPECT_FALSE(filmed[topic].empty()) << topic;
     filmed.erase(topic);
   }

@@ -13,7 +13,7 @@ namespace flexura {
 namespace {
 
 struct IdealCamera {
-  Arm arm;
+  ArmModel arm;
   SceneMaker maker;
   Renderer renderer;
   LightImage light;
@@ -23,11 +23,14 @@ struct IdealCamera {
 
 std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(
     const Experiment& experiment) {
-  const Arm arm = experiment.arm.arm();
-  auto ideal = std::make_shared<IdealCamera>(IdealCamera{
-      arm, SceneMaker(arm, experiment.arm.look, experiment.stand, experiment.obstacle), Renderer(), {}});
+  const ArmModel arm = experiment.arm.model();
+  auto ideal = std::make_shared<IdealCamera>(
+      IdealCamera{arm,
+                  SceneMaker(arm.driven(), experiment.arm.look, experiment.stand, experiment.obstacle),
+                  Renderer(),
+                  {}});
   return [ideal](const View& view, const ArmState& state) {
-    ideal->renderer.render(ideal->maker.scene(Backbone(ideal->arm, state)), view, PixelKind::gray,
+    ideal->renderer.render(ideal->maker.scene(ideal->arm.backbone(state)), view, PixelKind::gray,
                            ideal->light);
     Image<std::uint8_t> picture(view.width, view.height);
     for (std::size_t i = 0; i < picture.values().size(); ++i)

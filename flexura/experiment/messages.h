@@ -48,7 +48,8 @@ struct PoseMessage {
   QuaternionMessage orientation;  ///< A unit quaternion; w stands last.
 };
 
-/// foxglove.PosesInFrame, on /arm/poses: each section's base frame and, last, the tip, in the world.
+/// foxglove.PosesInFrame, on /arm/poses as commanded and on /arm/truth as it is: each section's base frame
+/// (the truth: each arc's) and, last, the tip, in the world.
 struct PosesMessage {
   TimeMessage timestamp;
   std::string frame_id;  ///< "world"
@@ -264,6 +265,7 @@ struct ImageMessage {
 /// Where a run's log has its messages.
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
+inline constexpr std::string_view arm_truth_topic = "/arm/truth";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";

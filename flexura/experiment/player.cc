@@ -120,13 +120,18 @@ void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     witness_.state(step_, time, state);
     tell_dynamics(time);
-    if (filming_) witness_.readings(filming_->ports());
+    if (filming_) read_rig();
   }
   witness_.command(time, state);
   if (watcher_ != nullptr)
     watcher_->state(time, state, filming_ ? filming_->camera_readings() : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
+}
+
+void Player::read_rig() {
+  const RigPorts ports = filming_->ports();
+  witness_.readings(ports, filming_->true_backbone(ports.clock->now()));
 }
 
 // Of each run of dynamics what it began and ended with, and what it had come to.
@@ -161,7 +166,7 @@ void Player::stop_after(const Leg& leg, const std::string& failure) {
   witness_.expect(step_);
   witness_.state(step_, leg.end(), played_.last);
   tell_dynamics(leg.end());
-  if (filming_) witness_.readings(filming_->ports());
+  if (filming_) read_rig();
 }
 
 // The task for the rig that begins at `time` or before, if it was not done yet and may be done.

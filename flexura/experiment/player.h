@@ -57,6 +57,7 @@ class Player {
   void tell_up_to(double time);
   void step(double time, const ArmState& state);
   void film_to(double time, const ArmState& state);
+  void read_rig();
   void tell_dynamics(double time);
   [[nodiscard]] bool ends_with_dynamics(double time);
   void stop_after(const Leg& leg, const std::string& failure);

@@ -65,6 +65,7 @@ struct Recorder::Channels {
   std::optional<std::uint16_t> scene;
   std::optional<std::uint16_t> frames;
   std::optional<std::uint16_t> commands;
+  std::optional<std::uint16_t> truth;
   std::optional<std::uint16_t> arm_reading;
   std::optional<std::uint16_t> calibration_moves, calibration_arcs, calibration_sightings,
       calibration_decisions;
@@ -94,9 +95,17 @@ void Recorder::state(double time, const ArmState& state, const Backbone& backbon
   channels_->write(channels_->state, log_time, message);
 
   PosesMessage poses{time_message(log_time), "world", {}};
-  for (const Arc& arc : backbone.arcs()) poses.poses.push_back(pose_message(arc.X_WS));
+  for (const Arc& arc : backbone.arcs())
+    if (arc.section == poses.poses.size()) poses.poses.push_back(pose_message(arc.X_WS));
   poses.poses.push_back(pose_message(backbone.tip()));
   channels_->write(channels_->poses, log_time, poses);
+}
+
+void Recorder::truth(double time, const Backbone& backbone) {
+  PosesMessage poses{time_message(nanoseconds(time)), "world", {}};
+  for (const Arc& arc : backbone.arcs()) poses.poses.push_back(pose_message(arc.X_WS));
+  poses.poses.push_back(pose_message(backbone.tip()));
+  channels_->write(channels_->truth, arm_truth_topic, time, poses);
 }
 
 void Recorder::event(double time, Level level, std::string_view source, std::string_view text) {

@@ -40,6 +40,9 @@ class Recorder {
   /// The first command opens the channel: logs of arms without a drive have none.
   void commands(const DriveCommandsMessage& message);
 
+  /// The arm as it truly is, where a rig plays. The first opens the channel.
+  void truth(double time, const Backbone& backbone);
+
   /// What a rig's devices say of themselves. The first reading opens the channel.
   void reading(const ArmReading& reading);
   void reading(const std::string& camera, const HeadReading& reading);

@@ -31,7 +31,7 @@
 namespace flexura {
 namespace {
 
-Node task_nodes(const Experiment& experiment, const Arm& arm, const Schedule& schedule) {
+Node task_nodes(const Experiment& experiment, const ArmModel& arm, const Schedule& schedule) {
   Node::Array tasks;
   for (std::size_t i = 0; i < experiment.task.size(); ++i) {
     const Leg& leg = schedule.legs()[i];
@@ -41,7 +41,7 @@ Node task_nodes(const Experiment& experiment, const Arm& arm, const Schedule& sc
                      {"name", {}, {leg.name, {}}},
                      {"start", {}, {leg.start, {}}},
                      {"end", {}, {end, {}}},
-                     {"tip", {}, pose_node(Backbone(arm, leg.motion->at(leg.motion->duration())).tip())}},
+                     {"tip", {}, pose_node(arm.backbone(leg.motion->at(leg.motion->duration())).tip())}},
          {}});
   }
   return {std::move(tasks), {}};
@@ -63,7 +63,7 @@ Node camera_nodes(const std::vector<CameraConfig>& cameras,
   return {std::move(list), {}};
 }
 
-Node summary_of(const Experiment& experiment, const Arm& arm, const Player& player, const Played& played,
+Node summary_of(const Experiment& experiment, const ArmModel& arm, const Player& player, const Played& played,
                 const RunResult& result) {
   const Schedule& schedule = player.schedule();
   Node::Table summary{
@@ -74,10 +74,10 @@ Node summary_of(const Experiment& experiment, const Arm& arm, const Player& play
       {"seed", {}, {experiment.seed, {}}},
       {"duration", {}, {played.time, {}}},
       {"steps", {}, {static_cast<std::int64_t>(std::max<std::size_t>(played.states, 1) - 1), {}}},
-      {"sections", {}, {static_cast<std::int64_t>(arm.sections.size()), {}}},
-      {"length", {}, {arm.length(), {}}},
-      {"tip_at_start", {}, pose_node(Backbone(arm, schedule.initial()).tip())},
-      {"tip", {}, pose_node(Backbone(arm, played.last).tip())}};
+      {"sections", {}, {static_cast<std::int64_t>(arm.driven().sections.size()), {}}},
+      {"length", {}, {arm.driven().length(), {}}},
+      {"tip_at_start", {}, pose_node(arm.backbone(schedule.initial()).tip())},
+      {"tip", {}, pose_node(arm.backbone(played.last).tip())}};
   if (played.states > schedule.steps() && played.failure.empty())
     summary.push_back({"tasks", {}, task_nodes(experiment, arm, schedule)});
   const Node found = safety_node(player.safety());
@@ -149,7 +149,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     throw InputError(std::vector<Problem>{{{}, "nothing to do: expected at least one [[task]]"}});
   write_new_file(folder / experiment_file_name, experiment_toml(experiment));
 
-  const Arm arm = experiment.arm.arm();
+  const ArmModel arm = experiment.arm.model();
   RunResult result;
   result.folder = folder;
   Witness witness(folder, arm, watcher);

@@ -127,17 +127,17 @@ FramesMessage frames_message(const Experiment& experiment) {
   return frames;
 }
 
-SceneMessage arm_message(const Arm& arm, const ColorConfig& color, double time, const Backbone& backbone) {
+SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone) {
   EntityMessage drawn = entity("arm", time);
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    const auto& radius = arm.sections[i].radius;
-    const Arc& arc = backbone.arcs()[i];
-    if (i == 0 || radius != arm.sections[i - 1].radius) {
+  const std::array<double, 2>* radius = nullptr;  // Of the line that is drawn.
+  for (const Arc& arc : backbone.arcs()) {
+    if (radius == nullptr || arc.radius != *radius) {
       LineMessage line;
-      line.thickness = radius[0] + radius[1];
+      line.thickness = arc.radius[0] + arc.radius[1];
       line.color = {color[0], color[1], color[2], 1};
       line.points.push_back(point_message(arc.X_WS.position));
       drawn.lines.push_back(std::move(line));
+      radius = &arc.radius;
     }
     add_points(arc, drawn.lines.back().points);
   }

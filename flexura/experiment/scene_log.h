@@ -16,8 +16,7 @@ namespace flexura {
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
 /// The arm along `backbone`: strips as thick as its sections are on average, in micrometres.
-[[nodiscard]] SceneMessage arm_message(const Arm& arm, const ColorConfig& color, double time,
-                                       const Backbone& backbone);
+[[nodiscard]] SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone);
 
 /// Which states have the arm drawn: the first, and then ten a second of simulated time.
 class SceneTimes {

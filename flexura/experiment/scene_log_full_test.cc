@@ -46,6 +46,7 @@ TEST(RunsLog, OpensElsewhereUnderFoxglovesNames) {
   }
   const std::map<std::string, std::string> expected{{"/arm/state", "flexura.ArmState"},
                                                     {"/arm/poses", "foxglove.PosesInFrame"},
+                                                    {"/arm/truth", "foxglove.PosesInFrame"},
                                                     {"/arm/reading", "flexura.ArmReading"},
                                                     {"/events", "foxglove.Log"},
                                                     {"/scene", "foxglove.SceneUpdate"},

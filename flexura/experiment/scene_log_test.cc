@@ -71,7 +71,7 @@ TEST(SceneLog, DrawsTheArmNearItsBackbone) {
   const Experiment experiment = experiment_of(furnished);
   const Arm arm = experiment.arm.arm();
   const Backbone backbone(arm, {{{1.5, 0.5}, {-2, 0}}, {1, 1}});
-  const SceneMessage scene = arm_message(arm, {0, 0, 0}, 1.25, backbone);
+  const SceneMessage scene = arm_message({0, 0, 0}, 1.25, backbone);
   const EntityMessage& drawn = scene.entities.at(0);
   EXPECT_EQ(drawn.id, "arm");
   EXPECT_EQ(drawn.timestamp.nsec, 250'000'000);

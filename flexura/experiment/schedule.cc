@@ -7,7 +7,6 @@
 
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/arrays.h"
-#include "flexura/model/backbone.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
 
@@ -20,8 +19,8 @@ constexpr double target_tolerance = 1e-6;
 }  // namespace
 
 Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed)
-    : arm_(experiment.arm.arm()),
-      initial_(arm_state(arm_, experiment.arm.initial)),
+    : model_(experiment.arm.model()),
+      initial_(arm_state(model_.driven(), experiment.arm.initial)),
       obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {
   if (experiment.drive) drive_ = experiment.drive->drive();
@@ -32,7 +31,7 @@ Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, Mot
     if (const auto* servo = std::get_if<ServoTask>(&experiment.task[i])) {
       add_servo(*servo, from, motion);
     } else {
-      add(experiment.task[i], motion ? motion : task_motion(experiment.task[i], arm_, from));
+      add(experiment.task[i], motion ? motion : task_motion(experiment.task[i], model_, from));
     }
   }
   if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
@@ -46,8 +45,8 @@ void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
   duration_ += motion->duration();
   const auto target = tip_target(task);
   if (!target) return;
-  const double missed = (Backbone(arm_, motion->at(motion->duration())).tip().position - *target).norm();
-  if (missed > target_tolerance * arm_.length()) add_missed(missed, target);
+  const double missed = (model_.backbone(motion->at(motion->duration())).tip().position - *target).norm();
+  if (missed > target_tolerance * model_.driven().length()) add_missed(missed, target);
 }
 
 // Of the last task.
@@ -63,15 +62,16 @@ void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& t
 
 // With those of its targets of which the nearest shape of the arm stays farther away than it may.
 void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
-  const auto shapes = servo_target_shapes(servo, arm_, from);
-  add(servo, known ? known : servo_motion(shapes, arm_, from));
+  const auto shapes = servo_target_shapes(servo, model_, from);
+  add(servo, known ? known : servo_motion(shapes, model_.driven(), from));
   legs_.back().is_steered = true, legs_.back().is_foreseen = known != nullptr;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
     const auto& position = servo.target[i].position;
-    add_missed(shapes[i]->missed * arm_.length(), position ? std::optional(vector(*position)) : std::nullopt);
+    add_missed(shapes[i]->missed * model_.driven().length(),
+               position ? std::optional(vector(*position)) : std::nullopt);
     missed_targets_.back().name += fmt::format(": target[{}]", i);
-    missed_targets_.back().limit = servo.tolerance * arm_.length();
+    missed_targets_.back().limit = servo.tolerance * model_.driven().length();
   }
 }
 
@@ -90,7 +90,7 @@ ArmState Schedule::state_at(double time) const {
 }
 
 std::optional<std::vector<SectionRates>> Schedule::rates(double start, double end) const {
-  std::vector<SectionRates> most(arm_.sections.size());
+  std::vector<SectionRates> most(model_.driven().sections.size());
   for (std::size_t k = leg_at(start); k < legs_.size() && legs_[k].start <= end; ++k) {
     const Leg& leg = legs_[k];
     const double duration = leg.motion->duration();
@@ -110,7 +110,7 @@ SafetyReport Schedule::check(Progress* progress) const {
   std::vector<TimedMotion> motions;
   motions.reserve(legs_.size());
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start, leg.name});
-  SafetyReport report = check_motions(arm_, obstacles_, initial_, motions, step_, progress);
+  SafetyReport report = check_motions(model_, obstacles_, initial_, motions, step_, progress);
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
   for (const Leg& leg : legs_)
     if (!leg.is_foreseen)
@@ -126,7 +126,7 @@ SafetyReport Schedule::check(Progress* progress) const {
     for (const Leg& leg : legs_)
       if (leg.is_steered) steered.push_back({leg.start, leg.end(), leg.is_foreseen});
     check_drive(
-        arm_, *drive_, [this](double time) { return state_at(time); }, times,
+        model_.driven(), *drive_, [this](double time) { return state_at(time); }, times,
         [this](double start, double end) { return rates(start, end); }, report, steered);
   }
   report.sort();

@@ -9,7 +9,7 @@
 #include "flexura/base/progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/kinematics/motion.h"
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/safety/violation.h"
@@ -58,7 +58,7 @@ class Schedule {
   void add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known);
   void add_missed(double missed, const std::optional<Eigen::Vector3d>& target);
 
-  Arm arm_;
+  ArmModel model_;
   std::optional<Drive> drive_;
   ArmState initial_;
   std::vector<Obstacle> obstacles_;

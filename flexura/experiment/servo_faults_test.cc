@@ -212,7 +212,7 @@ TEST(ServoFaults, SlowSectionsAreNotUnsafe) {
   rig.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 5";
   ServoBench bench(servo_file(servo_target, rig));
   const Arm arm = bench.experiment().arm.arm();
-  const MotionPtr motion = task_motion(bench.experiment().task.front(), arm, ArmState::straight(3));
+  const MotionPtr motion = task_motion(bench.experiment().task.front(), ArmModel(arm), ArmState::straight(3));
   constexpr double step = 0.01;
   for (double time = 0; time < motion->duration(); time += step)
     for (std::size_t i = 0; i < 3; ++i)

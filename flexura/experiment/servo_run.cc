@@ -127,9 +127,10 @@ void add_true_remaining(ServoRun& run) {
 }  // namespace
 
 std::vector<double> band_places(const Experiment& experiment, const Arm& believed) {
-  const Arm arm = experiment.arm.arm();
+  const ArmModel model = experiment.arm.model();
+  const Arm& arm = model.shaped();
   std::vector<double> places;
-  for (const Marker& marker : experiment.arm.look.markers(arm)) {
+  for (const Marker& marker : experiment.arm.look.markers(model.driven())) {
     const ArmState straight = ArmState::straight(believed.sections.size());
     places.push_back(arc_length_of(believed, straight, material_point(arm, marker.at)));
   }
@@ -142,15 +143,16 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
   ServoConfig config;
   config.cameras = servo_cameras(task, cameras);
   const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
+  const ArmModel arm = believed.arm_model();
   ArmState state = from;
   for (const ServoTargetConfig& target : task.target) {
     if (!target.pictures.empty()) {
       config.goals.push_back({target.time, recorded_views(target, {first, second}, experiment.folder)});
       continue;
     }
-    const ServoTargetShape shape = servo_target_shape(target, believed.arm, state);
+    const ServoTargetShape shape = servo_target_shape(target, arm, state);
     state = shape.state;
-    config.goals.push_back({target.time, shape.state, shape.missed});
+    config.goals.push_back({target.time, arm.actuation().shape(shape.state), shape.missed});
   }
   config.law = task.law, config.jacobian = task.jacobian;
   config.measure = task.measure, config.anchor = task.anchor;

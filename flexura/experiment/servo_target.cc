@@ -106,11 +106,12 @@ double distance_from(const Backbone& backbone, const std::vector<Eigen::Vector3d
   return std::sqrt(squares);
 }
 
-ServoTargetShape along(const Arm& arm, const std::vector<Eigen::Vector3d>& points, const ArmState& from) {
+ServoTargetShape along(const ArmModel& arm, const std::vector<Eigen::Vector3d>& points,
+                       const ArmState& from) {
   InverseConfig config;
   config.start = from;
   const InverseResult found = solve_inverse(arm, CurveTarget{points}, config);
-  return {found.state, distance_from(Backbone(arm, found.state), points) / arm.length()};
+  return {found.state, distance_from(arm.backbone(found.state), points) / arm.shaped().length()};
 }
 
 }  // namespace
@@ -122,17 +123,19 @@ double curve_length(const std::vector<std::array<double, 3>>& points) {
   return length;
 }
 
-ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const Arm& arm, const ArmState& from) {
-  if (target.azimuths) return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm), from);
+ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const ArmModel& arm,
+                                    const ArmState& from) {
+  if (target.azimuths)
+    return along(arm, curve_of_angles(*target.azimuths, *target.elevations, arm.shaped()), from);
   if (target.curve) return along(arm, smooth_curve(vectors(*target.curve)), from);
-  if (!target.position) return {arm_state(arm, target), 0};
+  if (!target.position) return {arm_state(arm.driven(), target), 0};
   InverseConfig config;
   config.start = from;
   const InverseResult found = solve_inverse(arm, TipTarget{.position = vector(*target.position)}, config);
-  return {found.state, found.converged() ? 0 : found.position_error / arm.length()};
+  return {found.state, found.converged() ? 0 : found.position_error / arm.shaped().length()};
 }
 
-std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task, const Arm& arm,
+std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task, const ArmModel& arm,
                                                                  ArmState from) {
   std::vector<std::optional<ServoTargetShape>> shapes;
   for (const ServoTargetConfig& target : task.target) {

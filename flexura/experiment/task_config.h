@@ -102,7 +102,7 @@ void check_task(const TaskConfig& task, ArmKind kind, std::size_t sections, cons
 [[nodiscard]] std::optional<Eigen::Vector3d> tip_target(const TaskConfig& task);
 
 /// The motion that a task (checked by check_task) is, for an arm that stands in `from`.
-[[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from);
+[[nodiscard]] MotionPtr task_motion(const TaskConfig& task, const ArmModel& arm, const ArmState& from);
 /// Of a servo of the arm with targets of these shapes: what is to be expected of it before it is done. As
 /// slow as the sections' rates ask for.
 [[nodiscard]] MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shapes,

@@ -50,18 +50,18 @@ std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& fr
   return Profile::trapezoid(1.0, std::max(rate, least), std::max(acceleration, least));
 }
 
-MotionPtr motion_of(const HoldTask& task, const Arm&, const ArmState& from) {
+MotionPtr motion_of(const HoldTask& task, const ArmModel&, const ArmState& from) {
   return hold_motion(from, task.duration);
 }
 
-MotionPtr motion_of(const StudyTask&, const Arm&, const ArmState& from) { return hold_motion(from, 0); }
+MotionPtr motion_of(const StudyTask&, const ArmModel&, const ArmState& from) { return hold_motion(from, 0); }
 
 // Every way that a calibration may take, once: out to each pose and back.
-MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& from) {
+MotionPtr motion_of(const CalibrateTask& task, const ArmModel& arm, const ArmState& from) {
   if (is_before_etalon(task)) return hold_motion(from, 0);  // The arm is not there.
   std::vector<double> times = {0};
   std::vector<ArmState> states = {from};
-  for (const ArmState& pose : calibration_poses(task, arm)) {
+  for (const ArmState& pose : calibration_poses(task, arm.driven())) {
     for (const ArmState* next : {&pose, &from}) {
       times.push_back(times.back() + task.move_duration);
       states.push_back(*next);
@@ -70,23 +70,23 @@ MotionPtr motion_of(const CalibrateTask& task, const Arm& arm, const ArmState& f
   return keyframe_motion(std::move(times), states, Interpolation::linear);
 }
 
-MotionPtr motion_of(const ServoTask& task, const Arm& arm, const ArmState& from) {
-  return servo_motion(servo_target_shapes(task, arm, from), arm, from);
+MotionPtr motion_of(const ServoTask& task, const ArmModel& arm, const ArmState& from) {
+  return servo_motion(servo_target_shapes(task, arm, from), arm.driven(), from);
 }
 
 // The shape that a move goes to. The search for one starts from where the arm is.
-ArmState state_to_reach(const MoveTask& task, const Arm& arm, const ArmState& from) {
+ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmState& from) {
   const auto tip = tip_target(task);
-  if (!tip) return arm_state(arm, task.to);
+  if (!tip) return arm_state(arm.driven(), task.to);
   InverseConfig config;
   config.start = from;
   return solve_inverse(arm, TipTarget{.position = *tip}, config).state;
 }
 
 // What is to be expected before it is simulated: the straight way to its target.
-MotionPtr motion_of(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
+MotionPtr motion_of(const DynamicsTask& task, const ArmModel& arm, const ArmState& from) {
   if (!is_possible(from)) return hold_motion(from, task.duration);
-  const DynamicsPlant plant(task, arm, from);
+  const DynamicsPlant plant(task, arm.driven(), from);
   return keyframe_motion({0, task.duration}, {from, plant.state(plant.target(), from)},
                          Interpolation::linear);
 }
@@ -104,8 +104,9 @@ Profile profile_of(MoveLaw law, double duration) {
   throw std::logic_error("a trapezoid finds its own duration");
 }
 
-MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) {
-  const ArmState to = state_to_reach(task, arm, from);
+MotionPtr motion_of(const MoveTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
+  const ArmState to = state_to_reach(task, model, from);
   if (task.law.front() == MoveLaw::trapezoid) {
     const auto trapezoid = shared_trapezoid(task, from, to);
     if (!trapezoid) return hold_motion(from, 0);
@@ -125,7 +126,8 @@ MotionPtr motion_of(const MoveTask& task, const Arm& arm, const ArmState& from) 
   return point_to_point_motion(from, to, std::move(profiles));
 }
 
-MotionPtr motion_of(const SineTask& task, const Arm& arm, const ArmState& from) {
+MotionPtr motion_of(const SineTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
   std::vector<double> phases;
   phases.reserve(arm.sections.size());
   for (std::size_t i = 0; i < arm.sections.size(); ++i) phases.push_back(of_section(task.phase, i));
@@ -135,7 +137,8 @@ MotionPtr motion_of(const SineTask& task, const Arm& arm, const ArmState& from) 
                      task.duration);
 }
 
-MotionPtr motion_of(const KeyframesTask& task, const Arm& arm, const ArmState&) {
+MotionPtr motion_of(const KeyframesTask& task, const ArmModel& model, const ArmState&) {
+  const Arm& arm = model.driven();
   return keyframes_task_motion(task, arm);
 }
 
@@ -160,7 +163,8 @@ std::vector<double> values_of(const Formulas& formulas, double t, double T, std:
   return values;
 }
 
-MotionPtr motion_of(const ExpressionTask& task, const Arm& arm, const ArmState& from) {
+MotionPtr motion_of(const ExpressionTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
   struct Law {
     std::optional<Formulas> cord_angles, archings, bends_x, bends_y, stretches;
   };
@@ -222,7 +226,7 @@ MotionPtr servo_motion(const std::vector<std::optional<ServoTargetShape>>& shape
   return keyframe_motion(std::move(times), states, Interpolation::smooth);
 }
 
-MotionPtr task_motion(const TaskConfig& task, const Arm& arm, const ArmState& from) {
+MotionPtr task_motion(const TaskConfig& task, const ArmModel& arm, const ArmState& from) {
   return std::visit([&](const auto& one) { return motion_of(one, arm, from); }, task);
 }
 

@@ -76,11 +76,11 @@ Node::Table axis_members(const AxisPoint& point) {
           {"visible", {}, {point.is_visible, {}}}};
 }
 
-Node axis_node(const Renderer& renderer, const std::vector<TubeArc>& tube) {
+Node axis_node(const Renderer& renderer, const std::vector<Arc>& tube) {
   constexpr int pieces = 200;
   std::vector<double> places;
   if (!tube.empty()) {
-    const double length = tube.back().arc.s + tube.back().arc.length;
+    const double length = tube.back().s + tube.back().length;
     for (int i = 0; i <= pieces; ++i) places.push_back(length * i / pieces);
   }
   Node::Array list;

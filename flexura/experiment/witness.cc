@@ -17,8 +17,8 @@ constexpr std::size_t max_kept_states = 10000;
 
 }  // namespace
 
-Witness::Witness(const std::filesystem::path& folder, const Arm& arm, RunWatcher* watcher)
-    : recorder_(folder / log_file_name, arm), watcher_(watcher), arm_(arm) {}
+Witness::Witness(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher)
+    : recorder_(folder / log_file_name, model.driven()), watcher_(watcher), model_(model) {}
 
 void Witness::expect(std::size_t last_step) {
   last_step_ = last_step, kept_every_ = last_step / max_kept_states + 1;
@@ -38,10 +38,10 @@ void Witness::draw_scene(const Experiment& experiment) {
 }
 
 void Witness::state(std::size_t step, double time, const ArmState& state) {
-  const Backbone backbone(arm_, state);
+  const Backbone backbone = model_.backbone(state);
   recorder_.state(time, state, backbone);
   if (drawn_color_ && (scene_times_.is_next(time) || step == last_step_))
-    recorder_.scene(time, arm_message(arm_, *drawn_color_, time, backbone));
+    recorder_.scene(time, arm_message(*drawn_color_, time, backbone));
   ++recorded_;
   if (step % kept_every_ != 0 && step != last_step_) return;
   times_.push_back(time);
@@ -86,11 +86,12 @@ void Witness::servo_ended() {
   if (watcher_ != nullptr) watcher_->servo_ended();
 }
 
-void Witness::readings(const RigPorts& rig) {
+void Witness::readings(const RigPorts& rig, const Backbone& truth) {
   // While a task waits for the rig, several steps of the clock are recorded at one time of the rig's.
   // Times that the log cannot tell apart are one.
   const std::int64_t now = std::llround(rig.clock->now() * 1e9);
   if (std::exchange(read_at_, now) == now) return;
+  recorder_.truth(rig.clock->now(), truth);
   recorder_.reading(rig.arm->read().value());
   for (const CameraPorts& camera : rig.cameras) {
     recorder_.reading(camera.name, camera.head->read().value());
@@ -99,7 +100,7 @@ void Witness::readings(const RigPorts& rig) {
 }
 
 void Witness::write_commands(const Drive& drive, const std::filesystem::path& file) {
-  commands_.emplace(arm_, drive, file);
+  commands_.emplace(model_.driven(), drive, file);
 }
 
 void Witness::command(double time, const ArmState& state) {
@@ -120,7 +121,7 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
   ReportData data{.title = experiment.title,
                   .version = experiment.flexura,
                   .experiment_text = experiment_toml(experiment),
-                  .arm = std::move(arm_),
+                  .arm = model_.driven(),
                   .times = std::move(times_),
                   .states = std::move(states_),
                   .events = std::move(marks_),

@@ -26,7 +26,7 @@ class RunWatcher;
 class Witness {
  public:
   /// `watcher` is told what happens and what calibrations and servos do; may be null.
-  Witness(const std::filesystem::path& folder, const Arm& arm, RunWatcher* watcher = nullptr);
+  Witness(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher = nullptr);
 
   /// Which step of the clock is the last one, as far as it is known: a task may take its own time.
   void expect(std::size_t last_step);
@@ -35,8 +35,9 @@ class Witness {
   void draw_scene(const Experiment& experiment);
   void state(std::size_t step, double time, const ArmState& state);
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// What the devices of the rig say of themselves, once for each time of its clock.
-  void readings(const RigPorts& rig);
+  /// What the devices of the rig say of themselves, and how its arm truly stands, once for each time of its
+  /// clock.
+  void readings(const RigPorts& rig, const Backbone& truth);
   /// What a calibration does, has the simulator work out, sees in a picture that came at `received` s, and
   /// decides.
   void calibration(const CalibrationMoveMessage& message);
@@ -70,7 +71,7 @@ class Witness {
   SceneTimes scene_times_;
   std::map<std::string, std::int64_t> frames_;  // by camera
   std::optional<std::int64_t> read_at_;         // when devices were read last, ns
-  Arm arm_;
+  ArmModel model_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
   std::size_t recorded_ = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/kinematics/driven_problem.h"
 #include "flexura/kinematics/inverse_check.h"
 #include "flexura/kinematics/inverse_distinct.h"
 #include "flexura/kinematics/inverse_search.h"
@@ -24,12 +25,16 @@ constexpr int starts_before_proof = 2;
 
 // A question in the base's frame, with all that its answer needs.
 struct Question {
-  Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_config)
+  // `the_arm` is that of shapes; of a model commands are varied, else the shapes themselves.
+  Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_config,
+           const ArmModel* the_model = nullptr)
       : arm(the_arm),
         target(the_target),
         config(the_config),
-        variables(the_arm),
+        model(the_model),
+        variables(the_model != nullptr ? the_model->driven() : the_arm),
         length(variables.max_length()) {
+    if (model != nullptr) driven.emplace(*model);
     position_tolerance = config.position_tolerance.value_or(1e-9 * length);
     X_BT.position = arm.X_WB.inverse() * target.position;
     if (target.rotation) X_BT.rotation = arm.X_WB.rotation.transpose() * *target.rotation;
@@ -60,6 +65,8 @@ struct Question {
   const Arm& arm;
   const TipTarget& target;
   const InverseConfig& config;
+  const ArmModel* model;
+  std::optional<DrivenVariables> driven;
   ArmVariables variables;
   double length;
   double position_tolerance;
@@ -72,15 +79,29 @@ TipRows rows_of(const TipTarget& target) {
   return target.direction ? TipRows::direction : TipRows::position;
 }
 
-TipProblem problem_of(const Question& q, TipRows rows) {
-  return {rows, q.variables, q.X_BT, q.length, q.position_tolerance, q.config.angle_tolerance};
-}
+// The question as a problem of what is varied.
+class VariedTip {
+ public:
+  VariedTip(const Question& q, TipRows rows)
+      : of_shape_(rows, q.driven ? q.driven->shaped() : q.variables, q.X_BT, q.length, q.position_tolerance,
+                  q.config.angle_tolerance) {
+    if (q.driven) driven_.emplace(*q.driven, of_shape_);
+  }
+  [[nodiscard]] BoundedProblem& problem() {
+    return driven_ ? static_cast<BoundedProblem&>(*driven_) : of_shape_;
+  }
+
+ private:
+  TipProblem of_shape_;
+  std::optional<DrivenProblem> driven_;
+};
 
 // What is said of a state, from the model's own forward kinematics.
 InverseResult describe(const Question& q, const Found& found) {
   InverseResult result;
   result.state = q.variables.state(found.x);
-  const Pose X_WT = tip_pose(q.arm, result.state);
+  const Pose X_WT =
+      tip_pose(q.arm, q.model != nullptr ? q.model->actuation().shape(result.state) : result.state);
   result.tip = X_WT.position;
   result.position_error = (X_WT.position - q.target.position).norm();
   const Eigen::Vector3d z = X_WT.rotation.col(2);
@@ -95,8 +116,8 @@ InverseResult describe(const Question& q, const Found& found) {
 }
 
 InverseResult answer_out_of_reach(const Question& q, TipRows rows) {
-  TipProblem problem = problem_of(q, rows);
-  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
+  VariedTip problem(q, rows);
+  BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
   const Found found = nearest(descent, starts, std::min(nearest_starts, q.config.max_starts));
   InverseResult result = describe(q, found);
@@ -108,8 +129,8 @@ InverseResult answer_out_of_reach(const Question& q, TipRows rows) {
 
 InverseResult answer(const Question& q) {
   const TipRows rows = rows_of(q.target);
-  TipProblem problem = problem_of(q, rows);
-  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
+  VariedTip problem(q, rows);
+  BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
   Found found;
   search(descent, starts, std::min(starts_before_proof, q.config.max_starts), found);
@@ -197,13 +218,19 @@ InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const Inver
   return answer({arm, target, config});
 }
 
-std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
-                                                 const InverseConfig& config) {
+InverseResult solve_inverse(const ArmModel& model, const TipTarget& target, const InverseConfig& config) {
+  if (model.actuation().is_one_to_one()) return solve_inverse(model.shaped(), target, config);
   check_question(target, config);
-  const Question q(arm, target, config);
+  return answer({model.shaped(), target, config, &model});
+}
+
+namespace {
+
+std::vector<InverseResult> all_solutions(const Question& q) {
+  const InverseConfig& config = q.config;
   if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
-  TipProblem problem = problem_of(q, rows_of(target));
-  BoundedDescent descent(problem, q.variables.bounds(), q.variables.size());
+  VariedTip problem(q, rows_of(q.target));
+  BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
   InverseStarts starts = q.starts();
   SolutionList list(q, descent);
   for (int i = 0; i < config.max_starts; ++i) {
@@ -219,6 +246,21 @@ std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget
     results.back().outcome = InverseOutcome::converged;
   }
   return results;
+}
+
+}  // namespace
+
+std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
+                                                 const InverseConfig& config) {
+  check_question(target, config);
+  return all_solutions({arm, target, config});
+}
+
+std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
+                                                 const InverseConfig& config) {
+  if (model.actuation().is_one_to_one()) return all_inverse_solutions(model.shaped(), target, config);
+  check_question(target, config);
+  return all_solutions({model.shaped(), target, config, &model});
 }
 
 std::string_view name_of(InverseOutcome outcome) {

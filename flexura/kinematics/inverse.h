@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 
 // Inverse kinematics: the state that puts the tip, or the whole backbone, where it is wanted
 // (docs/inverse-kinematics.md). The same question has the same answer, bit for bit.
@@ -89,12 +89,22 @@ struct InverseResult {
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
                                           const InverseConfig& config = {});
 
+/// The same for an arm whose sections may be several arcs: the state of the result is a command, a state of
+/// model.driven() within its limits; the tip and the curve are those of the shape that it makes.
+[[nodiscard]] InverseResult solve_inverse(const ArmModel& model, const TipTarget& target,
+                                          const InverseConfig& config = {});
+[[nodiscard]] InverseResult solve_inverse(const ArmModel& model, const CurveTarget& target,
+                                          const InverseConfig& config = {});
+
 /// The distinct solutions that config.max_starts descents find, least bent first; empty when there is none.
 /// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
 /// that one is found for each valley of the wish. Two are the same when their backbones are nowhere further
 /// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
 /// stands for its turns about that: the first section that is bent bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
+                                                               const InverseConfig& config = {});
+/// The same of commands: two are the same when the backbones are that arms of single arcs would have of them.
+[[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
                                                                const InverseConfig& config = {});
 
 }  // namespace flexura

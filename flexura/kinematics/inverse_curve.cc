@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/kinematics/curve_problem.h"
+#include "flexura/kinematics/driven_problem.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/inverse_check.h"
 #include "flexura/kinematics/inverse_search.h"
@@ -71,26 +72,66 @@ double polyline_error(const std::vector<Eigen::Vector3d>& points) {
   return bulge + missing;
 }
 
-InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseConfig& config) {
+namespace {
+
+// A curve's problem as one of what is varied: commands of a model, else shapes.
+class VariedCurve {
+ public:
+  VariedCurve(const Arm& arm, const ArmModel* model, const std::vector<Eigen::Vector3d>& points)
+      : driven_(model != nullptr ? std::optional<DrivenVariables>(*model) : std::nullopt),
+        variables_(model != nullptr ? model->driven() : arm),
+        length_(variables_.max_length()),
+        of_shape_(driven_ ? driven_->shaped() : variables_, points, length_) {
+    if (driven_) of_command_.emplace(*driven_, of_shape_);
+  }
+  VariedCurve(const VariedCurve&) = delete;
+  VariedCurve& operator=(const VariedCurve&) = delete;
+  ~VariedCurve() = default;
+
+  [[nodiscard]] const ArmVariables& variables() const { return variables_; }
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] const CurveProblem& of_shape() const { return of_shape_; }
+  [[nodiscard]] BoundedProblem& problem() {
+    return of_command_ ? static_cast<BoundedProblem&>(*of_command_) : of_shape_;
+  }
+  [[nodiscard]] double largest_distance(const Eigen::VectorXd& x) {
+    return of_shape_.largest_distance(driven_ ? driven_->shape(x) : x);
+  }
+  [[nodiscard]] Eigen::VectorXd start_along_tangents() const {
+    const Eigen::VectorXd shape = of_shape_.start_along_tangents();
+    return driven_ ? driven_->command(shape) : shape;
+  }
+
+ private:
+  std::optional<DrivenVariables> driven_;
+  ArmVariables variables_;
+  double length_;
+  CurveProblem of_shape_;
+  std::optional<DrivenProblem> of_command_;
+};
+
+// `arm` is that of shapes.
+InverseResult answer(const Arm& arm, const ArmModel* model, const CurveTarget& target,
+                     const InverseConfig& config) {
   check_question(target, config);
-  const ArmVariables variables(arm);
-  const double length = variables.max_length();
   const std::vector<Eigen::Vector3d> points = in_base(arm, target.points);
+  VariedCurve curve(arm, model, points);
+  const ArmVariables& variables = curve.variables();
+  const double length = curve.length();
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
   const double tolerance = config.position_tolerance.value_or(allowance);
-  CurveProblem problem(variables, points, length);
-  BoundedDescent descent(problem, variables.bounds(), variables.size());
-  std::optional<Eigen::VectorXd> first = problem.start_along_tangents();
+  BoundedDescent descent(curve.problem(), variables.bounds(), variables.size());
+  std::optional<Eigen::VectorXd> first = curve.start_along_tangents();
   if (config.start) first = variables.pack(*config.start);
-  InverseStarts starts(variables, problem.end(), first, config.seed);
+  InverseStarts starts(variables, curve.of_shape().end(), first, config.seed);
 
   Found found;
   Eigen::VectorXd x(variables.size());
   double error = 0.0;
-  const int affordable = affordable_iterations(problem, variables, most_starts * most_iterations);
+  const int affordable = affordable_iterations(curve.of_shape(), variables, most_starts * most_iterations);
   while (found.starts < std::min(config.max_starts, most_starts) && descent.iterations < affordable) {
     if (config.start && found.starts == 1) {
-      x = problem.start_along_tangents();
+      x = curve.start_along_tangents();
     } else {
       starts.next(x);
     }
@@ -99,18 +140,19 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     const Descent ended = descent.descend(limits, x);
     found.keep_better(x, descent.square, ended);
     ++found.starts;
-    error = problem.largest_distance(found.x);
+    error = curve.largest_distance(found.x);
     if (error <= tolerance) break;
   }
 
   if (error > tolerance && found.ended == Descent::exhausted) {
-    const int settling = affordable_iterations(problem, variables, settling_iterations);
+    const int settling = affordable_iterations(curve.of_shape(), variables, settling_iterations);
     settle(descent, settling, found);
-    error = problem.largest_distance(found.x);
+    error = curve.largest_distance(found.x);
   }
   InverseResult result;
   result.state = variables.state(found.x);
-  result.tip = tip_pose(arm, result.state).position;
+  result.tip =
+      tip_pose(arm, model != nullptr ? model->actuation().shape(result.state) : result.state).position;
   result.position_error = error;
   result.position_tolerance = tolerance;
   result.iterations = descent.iterations;
@@ -124,6 +166,17 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
     result.outcome = outcome_of_missed(descent, found);
   }
   return result;
+}
+
+}  // namespace
+
+InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const InverseConfig& config) {
+  return answer(arm, nullptr, target, config);
+}
+
+InverseResult solve_inverse(const ArmModel& model, const CurveTarget& target, const InverseConfig& config) {
+  const bool is_plain = model.actuation().is_one_to_one();
+  return answer(model.shaped(), is_plain ? nullptr : &model, target, config);
 }
 
 }  // namespace flexura

@@ -20,11 +20,12 @@ double Arm::length() const {
   return sum;
 }
 
-void require_fit(const Arm& arm, const ArmState& state) {
-  const std::size_t count = arm.sections.size();
-  if (state.bends.size() == count && state.stretches.size() == count) return;
+void require_fit(const Arm& arm, const ArmState& state) { require_fit(arm.sections.size(), state); }
+
+void require_fit(std::size_t sections, const ArmState& state) {
+  if (state.bends.size() == sections && state.stretches.size() == sections) return;
   throw std::invalid_argument(fmt::format("an arm of {} sections cannot take {} bends and {} stretches",
-                                          count, state.bends.size(), state.stretches.size()));
+                                          sections, state.bends.size(), state.stretches.size()));
 }
 
 }  // namespace flexura

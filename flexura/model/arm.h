@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "flexura/math/pose.h"
@@ -24,6 +25,9 @@ struct Section {
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
   std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
   double max_stretch_rate = std::numeric_limits<double>::infinity();  ///< Largest |d stretch/dt|, 1/s.
+  /// How its bend is spread along it (Actuation): so many arcs of equal length, bent in these proportions,
+  /// each at least 0, one above. None: one arc.
+  std::optional<std::vector<double>> bend_profile = {};
 
   /// Whether its limits leave it more than one length.
   [[nodiscard]] bool can_stretch() const { return stretch_limits[0] < stretch_limits[1]; }
@@ -63,5 +67,7 @@ struct Arm {
 
 /// std::invalid_argument unless `state` has one bend and one stretch for each section of `arm`.
 void require_fit(const Arm& arm, const ArmState& state);
+/// The same of an arm of so many sections.
+void require_fit(std::size_t sections, const ArmState& state);
 
 }  // namespace flexura

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@ namespace {
 
 // More than any robot has; keeps a mistaken file from filling the memory.
 constexpr std::size_t max_sections = 1000;
+constexpr std::size_t max_arcs = 100;  // Of one section.
 
 // A micrometre: as far from the origin as coordinates go, doubles still tell such lengths apart.
 constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
@@ -31,6 +33,11 @@ void check_arm(const ArmConfig& config, Reader& reader) {
   if (!is_planar && config.base.tangent) {
     reader.problem_at("base.tangent", "is for planar arms: expected base.rotation for a spatial one");
   }
+  std::size_t arcs = 0;
+  for (const Section& section : config.section)
+    arcs += section.bend_profile ? section.bend_profile->size() : 1;
+  if (arcs > max_sections)
+    reader.problem_at("section", fmt::format("has {} arcs: expected up to {} in all", arcs, max_sections));
   check_shape(config.initial, config.kind, config.section.size(), "initial", reader);
   check_look(config.look, config.arm(), "look", reader);
 }
@@ -71,7 +78,16 @@ const Table<Section>& fields_of(const Section*) {
                  {.meaning = "Fastest change of the stretch, 1/s.",
                   .range = above(0),
                   .default_text = "no limit"})
+          .field("bend_profile", &Section::bend_profile,
+                 {.meaning = "How the bend is spread along the section: it is so many arcs of equal length, "
+                             "bent in these proportions.",
+                  .range = between(0, 1e6),
+                  .count = {1, max_arcs},
+                  .default_text = "one arc"})
           .check([](const Section& section, Reader& reader) {
+            const auto& profile = section.bend_profile;
+            if (profile && std::ranges::all_of(*profile, [](double part) { return part == 0; }))
+              reader.problem_at("bend_profile", "is all 0: expected a number above 0 among them");
             if (section.stretch_limits[0] > section.stretch_limits[1]) {
               reader.problem_at("stretch_limits", "expected the smaller factor first");
             }

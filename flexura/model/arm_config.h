@@ -9,6 +9,7 @@
 #include "flexura/base/field.h"
 #include "flexura/base/fields.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/look.h"
 
 namespace flexura {
@@ -44,8 +45,10 @@ struct ArmConfig {
   std::vector<Section> section;  ///< Base first.
   LookConfig look;
 
-  /// The arm it describes.
+  /// The arm it describes, as its drives see it.
   [[nodiscard]] Arm arm() const;
+  /// And the arcs that its sections are made of.
+  [[nodiscard]] ArmModel model() const { return ArmModel(arm()); }
 };
 
 const std::vector<std::string>& names_of(const ArmKind*);

@@ -2,16 +2,27 @@
 
 namespace flexura {
 
-ArmState RigModel::bent(const ArmState& state) const {
-  ArmState result = state;
+std::size_t RigModel::sections() const {
+  return actuation.arcs() == 0 ? arm.sections.size() : actuation.sections();
+}
+
+ArmState RigModel::bent(const ArmState& command) const {
+  ArmState result = actuation.arcs() == 0 ? command : actuation.shape(command);
   for (std::size_t i = 0; i < bend_gains.size(); ++i) result.bends.at(i) *= bend_gains[i];
   return result;
 }
 
-RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras) {
+ArmModel RigModel::arm_model() const {
+  if (actuation.is_one_to_one()) return ArmModel(arm);
+  return {driven, actuation.with_gains(bend_gains), arm};
+}
+
+RigModel rig_model(const Arm& driven, const std::vector<CameraConfig>& cameras) {
   RigModel model;
-  model.arm = arm;
-  model.bend_gains.assign(arm.sections.size(), 1.0);
+  const Actuation actuation(driven);
+  model.arm = shaped_arm(driven, actuation);
+  if (!actuation.is_one_to_one()) model.driven = driven, model.actuation = actuation;
+  model.bend_gains.assign(actuation.arcs(), 1.0);
   model.cameras = cameras;
   return model;
 }

@@ -9,24 +9,31 @@
 #include "flexura/camera/head.h"
 #include "flexura/camera/mount.h"
 #include "flexura/camera/view.h"
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 
 namespace flexura {
 
 /// An arm and the cameras that look at it: as they are believed to be, or as they were found. The arm's base
 /// is where the world is counted from (docs/calibration.md, "Gauge").
 struct RigModel {
-  Arm arm;
-  std::vector<double> bend_gains;  ///< Factor on each section's commanded bend; empty: all 1.
+  Arm arm;                         ///< One section an arc of its shapes.
+  std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
+  Arm driven = {};           ///< The arm as its drives see it, where a section of it is several arcs,
+  Actuation actuation = {};  ///< and what these are; of no arm: commands are shapes.
 
-  /// How the arm stands when it is commanded to `state`, as far as the model knows. std::out_of_range: a
-  /// state of fewer sections than there are gains.
-  [[nodiscard]] ArmState bent(const ArmState& state) const;
+  /// Sections of a command.
+  [[nodiscard]] std::size_t sections() const;
+  /// The shape in which the arm stands when it is commanded so, as far as the model knows.
+  /// std::invalid_argument: of another arm; std::out_of_range: of fewer sections than there are gains.
+  [[nodiscard]] ArmState bent(const ArmState& command) const;
+  /// The same with what is known of gains as one actuation, of arms whose sections are several arcs; of
+  /// others without the gains.
+  [[nodiscard]] ArmModel arm_model() const;
 };
 
-/// A model of that arm and these cameras, nothing of which is known to be wrong.
-[[nodiscard]] RigModel rig_model(const Arm& arm, const std::vector<CameraConfig>& cameras);
+/// A model of that arm, as its drives see it, and these cameras, nothing of which is known to be wrong.
+[[nodiscard]] RigModel rig_model(const Arm& driven, const std::vector<CameraConfig>& cameras);
 
 /// A way in which one camera stood, as its head and stage say.
 struct RigStance {

@@ -50,7 +50,7 @@ TEST(LightImage, OfAStraightTubeHasTheAreaBetweenItsEdgesAndRims) {
   Arm arm;
   arm.sections.push_back({.length = 10, .radius = {radius, radius}});
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, Backbone(arm, ArmState::straight(1)));
+  scene.arm.tube = tube_of(Backbone(arm, ArmState::straight(1)));
   scene.arm.albedo = {1, 1, 1};
   for (const double turned : {0.0, 0.1, 0.5}) {
     const Eigen::Vector3d up(std::sin(turned), std::cos(turned), 0);
@@ -97,7 +97,7 @@ TEST(LightImage, OfASymmetricSceneIsSymmetric) {
   Arm arm = paper_arm();
   arm.sections.resize(3);
   for (Section& section : arm.sections) section.radius = {0.3, 0.3};
-  scene.arm.tube = tube_of(arm, Backbone(arm, ArmState::straight(3)));
+  scene.arm.tube = tube_of(Backbone(arm, ArmState::straight(3)));
   scene.arm.markers.push_back({1, 1.5, {1, 0, 0}});
   scene.arm.disks.push_back({2.5, 0.5, 0.1});
   scene.light.direction = {0, 1, 1};
@@ -129,7 +129,7 @@ TEST(LightImage, OfASymmetricSceneIsSymmetric) {
 TEST(LightImage, IsTheSameWhateverWasDrawnBefore) {
   Arm arm = paper_arm();
   Scene scene;
-  scene.arm.tube = tube_of(arm, Backbone(arm, paper_state()));
+  scene.arm.tube = tube_of(Backbone(arm, paper_state()));
   const View view = pinhole_view(look_at({-4, 6, 24}, {-4, 6, 0}), 64, 48, 80);
   const LightImage fresh = picture_of(scene, view);
   Renderer renderer;

@@ -37,7 +37,7 @@ struct KnownScene {
   void set_arm(const BentArm& bent, const Backbone& backbone) {
     constexpr int frustums = 300;  // a section
     arm.emplace(bent.arm, backbone, frustums);
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     scene.arm.albedo = Color::Constant(arm_gray(-1));
   }
 
@@ -250,7 +250,7 @@ TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
     Intrinsics lens = view.lens.intrinsics();
     lens.distortion = {-0.2, 0.05, 0.001, 0.001, 0};
     view.lens = Lens(lens);
-    compare_with_rays(crowded_scene(random, bent, backbone), view, errors);
+    compare_with_rays(crowded_scene(random, backbone), view, errors);
   });
   errors.expect_small("crowded");
 }

@@ -24,7 +24,7 @@ TEST(Depth, IsThatOfFrustumsWhereRaysDoNotGraze) {
     const BentArm bent = random_bent_arm(random, 0.005);
     const Backbone backbone = bent.backbone();
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     const View view = random_view_of(random, backbone);
     Renderer renderer;
     renderer.prepare(scene, view);
@@ -59,7 +59,7 @@ TEST(Depth, HasNoSeamWhereSectionsMeet) {
     const BentArm bent = random_bent_arm(random, 0);
     const Backbone backbone = bent.backbone();
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     const Pose X_WS = backbone.pose(0.33);  // Sections 0 and 1 meet here.
     const double angle = random.uniform(-3, 3);
     const Eigen::Vector3d out = X_WS.rotation * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
@@ -92,7 +92,7 @@ TEST(Depth, IsContinuousWhereASectionStraightens) {
     state.bends[0] = {bend, 0.5 * bend};
     Scene scene = plain_scene();
     scene.arm.albedo = {1, 1, 1};
-    scene.arm.tube = tube_of(arm, Backbone(arm, state));
+    scene.arm.tube = tube_of(Backbone(arm, state));
     Renderer renderer;
     LightImage result;
     renderer.render(scene, view, PixelKind::gray, result);
@@ -122,7 +122,7 @@ TEST(Coverage, OfAGeneralBackboneConvergesToTheArcs) {
   state.bends = {{1.2, 0.4}, {-0.5, 1.5}, {-1.8, -1.0}};
   const Backbone backbone(arm, state);
   const View view = pinhole_view(look_at({0.4, 0.6, 1.8}, {0.1, 0.5, 0}), 160, 120, 150);
-  const auto light_of = [&](const std::vector<TubeArc>& tube) {
+  const auto light_of = [&](const std::vector<Arc>& tube) {
     Scene scene = plain_scene();
     scene.arm.albedo = {1, 1, 1};
     scene.arm.tube = tube;
@@ -131,16 +131,16 @@ TEST(Coverage, OfAGeneralBackboneConvergesToTheArcs) {
     renderer.render(scene, view, PixelKind::gray, picture);
     return picture.light;
   };
-  const Image<float> exact = light_of(tube_of(arm, backbone));
+  const Image<float> exact = light_of(tube_of(backbone));
   double last = std::numeric_limits<double>::infinity();
   // Samples that never fall on the sections' ends.
   for (const int count : {8, 32, 128}) {
-    std::vector<TubeSample> samples;
+    std::vector<BackboneSample> samples;
     for (int i = 0; i <= count; ++i) {
       const double s = backbone.length() * i / count;
       samples.push_back({backbone.pose(s), s, 0.02, 0});
     }
-    const Image<float> light = light_of(tube_through(samples));
+    const Image<float> light = light_of(tube_of(Backbone::through(samples)));
     double largest = 0;
     for (std::size_t i = 0; i < light.values().size(); ++i)
       largest = std::max(largest, static_cast<double>(std::abs(light.values()[i] - exact.values()[i])));

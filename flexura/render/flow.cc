@@ -48,7 +48,7 @@ class Carrier {
     double along = 0;
     if (hit.label.kind == SurfaceKind::disk) {
       arc = static_cast<std::size_t>(&tube_arc_at(from_.arm.tube, hit.s) - from_.arm.tube.data());
-      along = hit.s - from_.arm.tube[arc].arc.s;
+      along = hit.s - from_.arm.tube[arc].s;
     } else if (hit.part.kind == Part::Kind::piece) {
       const TubePiece& piece = stage.pieces[hit.part.index];
       arc = piece.tube_arc;
@@ -57,7 +57,7 @@ class Carrier {
       arc = stage.discs[hit.part.index].tube_arc;
       along = stage.discs[hit.part.index].along;
     }
-    const Arc &before = from_.arm.tube[arc].arc, &after = to_.arm.tube[arc].arc;
+    const Arc &before = from_.arm.tube[arc], &after = to_.arm.tube[arc];
     along = std::clamp(along, 0.0, before.length);
     return after.pose(along * (after.length / before.length)) * (before.pose(along).inverse() * p);
   }

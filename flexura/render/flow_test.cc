@@ -35,7 +35,7 @@ struct Moment {
   }
   [[nodiscard]] Scene scene() const {
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     scene.arm.markers.push_back({s(1, 0.2), s(1, 0.5), {1, 0, 0}});
     for (std::size_t section = 0; section < 3; ++section)
       scene.arm.disks.push_back({s(section, 0.7), 0.045, 0.01});
@@ -154,7 +154,7 @@ TEST(Flow, IsNoNumberWhereNothingIs) {
   const BentArm bent = random_bent_arm(random, 0);
   const Backbone backbone = bent.backbone();
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(bent.arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   Renderer renderer;
   const View view = random_view_of(random, backbone);
   renderer.prepare(scene, view);

@@ -17,9 +17,9 @@ namespace flexura {
 namespace {
 
 // An arm with rings before a screen or two, and now and then an obstacle, a round tip, disks or a taper.
-Scene busy_scene(TestRandom& random, const Backbone& backbone, const Arm& arm, const View& view) {
+Scene busy_scene(TestRandom& random, const Backbone& backbone, const View& view) {
   Scene scene;
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   if (random.integer(0, 3) == 0) scene.arm.tip = TipKind::round;
   for (int i = random.integer(0, 12); i > 0; --i) {
     const double s = random.uniform(-0.02, 1);
@@ -62,7 +62,7 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
   const Difference all = compare_ways_of("busy scenes", 25, 0.015, [](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 1) == 0 ? 0.003 : 0);
     const View view = some_view(random, bent.backbone());
-    const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
+    const Scene scene = busy_scene(random, bent.backbone(), view);
     return Sight{scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray};
   });
   // Of a sanitized build's few cases the mean says nothing.
@@ -100,7 +100,7 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     intrinsics.fy *= random.uniform(0.5, 2);
     if (random.integer(0, 1) == 1) intrinsics.distortion[0] = random.uniform(-0.2, 0.2);
     view.lens = Lens(intrinsics);
-    Scene scene = busy_scene(random, backbone, bent.arm, view);
+    Scene scene = busy_scene(random, backbone, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};
     return Sight{scene, view};
   });
@@ -112,16 +112,16 @@ TEST(QuickPicture, DrawsTaperedArmsToo) {
   arm.kind = ArmKind::spatial;
   arm.sections.push_back({.length = 0.5, .radius = {0.04, 0.03}});
   arm.sections.push_back({.length = 0.5, .radius = {0.03, 0.028}});
-  const Backbone backbone(arm, {{{0.5, 0.2}, {-0.7, 0.3}}, {1, 1}});
+  const ArmState state = {{{0.5, 0.2}, {-0.7, 0.3}}, {1, 1}};
   const View view = pinhole_view(look_at({0.3, 0.5, 2}, {0, 0.5, 0}), 160, 120, 200);
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(Backbone(arm, state));
   scene.arm.markers = {{0.2, 0.25}, {0.7, 0.75}};
   // It covers some 700 pixels.
   EXPECT_LT(left_out_of(scene, view), 30);
   // Cones are no arms.
   arm.sections[0].radius = {0.09, 0.03};
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(Backbone(arm, state));
   EXPECT_GT(left_out_of(scene, view), 300);
 }
 
@@ -133,7 +133,7 @@ TEST(QuickPicture, DrawsSectionsBesideDisks) {
   const Backbone backbone(arm, {{{0.2, 0}, {-0.3, 0.1}}, {1, 1}});
   const View view = pinhole_view(look_at({0, 0.5, 2}, {0, 0.5, 0}), 160, 120, 200);
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   const std::size_t without = left_out_of(scene, view);
   scene.arm.disks.push_back({.s = 0.5, .radius = 0.05, .thickness = 0.01});
   const std::size_t with = left_out_of(scene, view);
@@ -145,7 +145,7 @@ TEST(QuickPicture, IsTheSameOnEveryPath) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 1) == 0 ? 0.004 : 0);
     View view = some_view(random, bent.backbone());
     view.width -= random.integer(0, 30);
-    const Scene scene = busy_scene(random, bent.backbone(), bent.arm, view);
+    const Scene scene = busy_scene(random, bent.backbone(), view);
     const PixelKind pixels = random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray;
     expect_same_on_every_path({scene, view, pixels});
   });
@@ -159,7 +159,7 @@ TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
   TestRandom random(4);
   const View view = random_view_of(random, bent.backbone());
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  scene.arm.tube = tube_of(bent.backbone());
   const auto is_drawn = [](const Scene& one, const View& seen) {
     return left_out_of(one, seen) <
            static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height);

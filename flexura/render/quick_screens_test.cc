@@ -19,7 +19,7 @@ TEST(QuickScreens, AgreesWithTheExactWayWhereEdgesOfScreensAreSeen) {
     Sight sight;
     sight.view = pinhole_view(random_view_of(random, backbone).X_WC, 48, 36, 60 * random.uniform(1, 6));
     Scene& scene = sight.scene;
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     for (int i = random.integer(0, 6); i > 0; --i) {
       const double s = random.uniform(0, 1);
       scene.arm.markers.push_back({s, s + random.uniform(0.01, 0.1), {0.9, 0.9, 0.9}});

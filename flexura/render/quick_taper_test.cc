@@ -47,7 +47,7 @@ Sight sight_of(TestRandom& random, const BentArm& bent, const View& view) {
   Sight sight{plain_scene(), view};
   sight.scene.light.directional = 0.7;
   sight.scene.background = {0.9, 0.9, 0.9};
-  sight.scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  sight.scene.arm.tube = tube_of(bent.backbone());
   for (int i = random.integer(0, 8); i > 0; --i) {
     const double s = random.uniform(-0.02, bent.backbone().length());
     sight.scene.arm.markers.push_back({s, s + random.uniform(0.003, 0.03), {0.9, 0.9, 0.9}});

@@ -82,7 +82,7 @@ void add_arm(Bytes& bytes, Scene& scene) {
     state.bends[static_cast<std::size_t>(i)] = {bytes.number(-4, 4), bytes.number(-4, 4)};
   }
   const Backbone backbone(arm, state);
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   if (bytes.choice(4) == 0) {
     const double from = bytes.number(0, 1);
     scene.arm.markers.push_back({from, from + bytes.number(0.01, 0.3), {1, 0, 0}});
@@ -145,7 +145,7 @@ void add_stand(Bytes& bytes, Scene& scene) {
 Eigen::Vector3d place_in(Bytes& bytes, const Scene& scene) {
   if (!scene.arm.tube.empty()) {
     const Arc& arc =
-        scene.arm.tube[static_cast<std::size_t>(bytes.choice(static_cast<int>(scene.arm.tube.size())))].arc;
+        scene.arm.tube[static_cast<std::size_t>(bytes.choice(static_cast<int>(scene.arm.tube.size())))];
     return arc.pose(bytes.number(0, 1) * arc.length).position;
   }
   if (scene.etalon) return scene.etalon->X_WE.position;
@@ -223,7 +223,7 @@ bool is_comparable(const Scene& scene, const View& view) {
   const Intrinsics& lens = view.lens.intrinsics();
   const bool is_linear = !lens.is_distorted() || std::min(lens.fx, lens.fy) * widest > 1;
   return is_linear &&
-         std::ranges::all_of(scene.arm.tube, [](const TubeArc& arc) { return arc.arc.length > shortest; });
+         std::ranges::all_of(scene.arm.tube, [](const Arc& arc) { return arc.length > shortest; });
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ namespace {
 
 // Everything at once but a floor, before which nothing would be drawn the quick way.
 Scene some_scene(TestRandom& random, const BentArm& bent) {
-  Scene scene = crowded_scene(random, bent, bent.backbone());
+  Scene scene = crowded_scene(random, bent.backbone());
   scene.obstacles.pop_back();
   return scene;
 }
@@ -87,7 +87,7 @@ TEST(Renderer, DrawsTheSameWhateverWasDrawnBefore) {
   TestRandom random(3);
   const BentArm bent = random_bent_arm(random, 0.003, 0.003);
   Scene scene;
-  scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  scene.arm.tube = tube_of(bent.backbone());
   scene.background = {0.9, 0.9, 0.9};
   View view = random_view_of(random, bent.backbone());
   view = pinhole_view(view.X_WC, 24, 18, 30);

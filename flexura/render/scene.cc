@@ -82,21 +82,21 @@ void check_arm(const ArmLook& arm) {
   require_few(arm.markers.size(), "markers");
   require_few(arm.disks.size(), "disks");
   for (std::size_t i = 0; i < arm.tube.size(); ++i) {
-    const TubeArc& at = arm.tube[i];
+    const Arc& at = arm.tube[i];
     const auto place = [i](const char* value = nullptr) { return Place{"the arm's arc", value, i}; };
-    require_pose(at.arc.X_WS, place());
-    require_size(at.arc.length, place("length"));
+    require_pose(at.X_WS, place());
+    require_size(at.length, place("length"));
     for (const double radius : at.radius) require_size(radius, place("radius"));
-    require_finite(at.arc.s, place("s"));
-    for (const double bend : at.arc.bend) require_finite(bend, place("bend"));
-    if (!(at.arc.bend.norm() <= largest_bend))
-      refuse("{}: a bend of {} rad", place().text(), at.arc.bend.norm());
+    require_finite(at.s, place("s"));
+    for (const double bend : at.bend) require_finite(bend, place("bend"));
+    require_finite(at.twist, place("twist"));
+    if (!(at.bend.norm() <= largest_bend)) refuse("{}: a bend of {} rad", place().text(), at.bend.norm());
     if (at.section >= most_parts) refuse("{}: section {}", place().text(), at.section);
     if (i == 0) continue;
-    const Arc& before = arm.tube[i - 1].arc;
+    const Arc& before = arm.tube[i - 1];
     const Pose X_WS = before.pose(before.length);
-    const double off = (X_WS.position - at.arc.X_WS.position).norm();
-    const double turned = (X_WS.rotation.col(2) - at.arc.X_WS.rotation.col(2)).norm();
+    const double off = (X_WS.position - at.X_WS.position).norm();
+    const double turned = (X_WS.rotation.col(2) - at.X_WS.rotation.col(2)).norm();
     const bool continues = off <= 1e-6 * (1 + before.length) && turned <= 1e-6;
     if (!continues) refuse("{} does not continue the one before", place().text());
   }

@@ -37,7 +37,7 @@ struct GuideDisk {
 
 /// The arm as it is seen. Empty `tube`: none.
 struct ArmLook {
-  std::vector<TubeArc> tube;  ///< From the base on, each arc at the end of the one before.
+  std::vector<Arc> tube;  ///< From the base on, each arc at the end of the one before.
   TipKind tip = TipKind::flat;
   Color albedo = {0.16, 0.16, 0.17};
   Color disk_albedo = {0.35, 0.35, 0.37};

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "flexura/math/arrays.h"
 
@@ -46,23 +45,11 @@ Light light_of(const LightConfig& config) {
           .angular_radius = config.angular_radius};
 }
 
-// Arc length along the arm as it stands of a place along the unstretched arm.
-double stretched(const Arm& arm, const Backbone& backbone, double at) {
-  double base = 0;
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    const double length = arm.sections[i].length;
-    const Arc& arc = backbone.arcs()[i];
-    if (at <= base + length) return arc.s + (at - base) * (arc.length / length);
-    base += length;
-  }
-  return backbone.length();
-}
-
 }  // namespace
 
 SceneMaker::SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
                        const std::vector<ObstacleConfig>& obstacles)
-    : arm_(arm), shows_arm_(stand.arm), markers_(look.markers(arm)), disks_(look.disk) {
+    : shows_arm_(stand.arm), markers_(look.markers(arm)), disks_(look.disk) {
   still_.arm.tip = look.tip;
   still_.arm.albedo = vector(look.color);
   still_.arm.disk_albedo = vector(look.disk_color);
@@ -81,16 +68,16 @@ SceneMaker::SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig
 Scene SceneMaker::scene(const Backbone& backbone) const {
   Scene scene = still_;
   if (!shows_arm_) return scene;
-  scene.arm.tube = tube_of(arm_, backbone);
+  scene.arm.tube = tube_of(backbone);
   for (const Marker& marker : markers_) {
     const double from = std::max(marker.at - marker.width / 2, 0.0);
-    scene.arm.markers.push_back({.s_from = stretched(arm_, backbone, from),
-                                 .s_to = stretched(arm_, backbone, marker.at + marker.width / 2),
+    scene.arm.markers.push_back({.s_from = backbone.s_at_rest(from),
+                                 .s_to = backbone.s_at_rest(marker.at + marker.width / 2),
                                  .albedo = vector(marker.color)});
   }
   for (const Disk& disk : disks_) {
     scene.arm.disks.push_back(
-        {.s = stretched(arm_, backbone, disk.at), .radius = disk.radius, .thickness = disk.thickness});
+        {.s = backbone.s_at_rest(disk.at), .radius = disk.radius, .thickness = disk.thickness});
   }
   return scene;
 }

@@ -19,15 +19,14 @@ class SceneMaker {
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 
-  /// The scene with the arm along `backbone`, one arc a section. Markers and disks move with the arm's
-  /// material: where a section is stretched, so are its bands. std::invalid_argument: another number of arcs.
+  /// The scene with the arm along `backbone`. Markers and disks move with the arm's material: where a section
+  /// is stretched, so are its bands.
   [[nodiscard]] Scene scene(const Backbone& backbone) const;
 
   /// The same without the arm.
   [[nodiscard]] const Scene& stand() const { return still_; }
 
  private:
-  Arm arm_;
   bool shows_arm_;
   std::vector<Marker> markers_;
   std::vector<Disk> disks_;

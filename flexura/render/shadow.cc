@@ -90,11 +90,11 @@ void add_side(const Eigen::Vector3d& normal, Reach&& reach_along, Stage& stage) 
 
 }  // namespace
 
-void add_caster(const TubeArc& tube, TipKind ends, const Pose& X_CW, Stage& stage) {
+void add_caster(const Arc& tube, TipKind ends, const Pose& X_CW, Stage& stage) {
   if (stage.scene->light.shadow == 0) return;
-  const Eigen::Vector3d axis = X_CW.rotation * tube.arc.X_WS.rotation.col(2);
-  const Eigen::Vector3d half_way = 0.5 * tube.arc.length * axis;
-  stage.casters.push_back({X_CW * tube.arc.X_WS.position + half_way, stage.caster_sides.size(), 0});
+  const Eigen::Vector3d axis = X_CW.rotation * tube.X_WS.rotation.col(2);
+  const Eigen::Vector3d half_way = 0.5 * tube.length * axis;
+  stage.casters.push_back({X_CW * tube.X_WS.position + half_way, stage.caster_sides.size(), 0});
   const auto reach = [&](const Eigen::Vector3d& n) {
     const double cosine = axis.dot(n);
     const double across = ends == TipKind::round ? 1 : std::sqrt(std::max(0.0, 1 - cosine * cosine));

@@ -9,7 +9,7 @@ namespace flexura {
 
 /// Adds the shadow of a straight tube whose ends are both flat or both round; none if the scene's light casts
 /// none.
-void add_caster(const TubeArc& tube, TipKind ends, const Pose& X_CW, Stage& stage);
+void add_caster(const Arc& tube, TipKind ends, const Pose& X_CW, Stage& stage);
 /// And of a box around the origin of X_CB.
 void add_caster(const Pose& X_CB, const std::array<double, 3>& half_sizes, Stage& stage);
 

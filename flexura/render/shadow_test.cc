@@ -132,7 +132,7 @@ TEST(Shadow, OfADiskReachesBeyondThatOfItsArm) {
   arm.sections.push_back({.length = 0.4, .radius = {0.02, 0.02}});
   Scene scene = plain_scene();
   const Backbone backbone(arm, ArmState::straight(1));
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   scene.arm.disks.push_back({.s = 0.2, .radius = 0.1, .thickness = 0.01});
   Pose at_disk = backbone.pose(0.195);
   expect_shadow(scene, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& d) {
@@ -146,7 +146,7 @@ TEST(Shadow, OfAnArmThatStandsJustOverTheFloor) {
   arm.sections.push_back({.length = 0.4, .radius = {0.08, 0.08}});
   Scene scene = plain_scene();
   const Backbone backbone(arm, ArmState::straight(1));
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   expect_shadow(scene, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& d) {
     return meets_cylinder(backbone.pose(0), 0.4, 0.08, p, d);
   });
@@ -166,7 +166,7 @@ TEST(Shadow, OfTheArmFallsOnItself) {
   scene.light = {
       .direction = {1, 0.05, 0.02}, .ambient = 0, .directional = 1, .shadow = 1, .angular_radius = 0.02};
   scene.arm.albedo = {1, 1, 1};
-  scene.arm.tube = tube_of(arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   const View view = pinhole_view(look_at({1, 1.1, 1}, {0.15, 0.25, 0}), 120, 120, 260);
   Renderer renderer;
   renderer.prepare(scene, view);

@@ -35,13 +35,13 @@ struct Section2d {
   }
 };
 
-Section2d section_at(const TubeArc& tube, double distance, const Pose& X_CW) {
+Section2d section_at(const Arc& tube, double distance, const Pose& X_CW) {
   Section2d section;
-  section.X_CS = X_CW * tube.arc.pose(distance);
-  section.s = tube.arc.s + distance;
-  section.widening = (tube.radius[1] - tube.radius[0]) / tube.arc.length;
+  section.X_CS = X_CW * tube.carried(distance);
+  section.s = tube.s + distance;
+  section.widening = (tube.radius[1] - tube.radius[0]) / tube.length;
   section.radius = tube.radius[0] + section.widening * distance;
-  section.curvature = tube.arc.bend / tube.arc.length;
+  section.curvature = tube.bend / tube.length;
   const Eigen::Vector3d center = section.X_CS.rotation.transpose() * section.X_CS.position;
   section.across_x = center.x(), section.across_y = center.y(), section.along = center.z();
   return section;
@@ -83,8 +83,8 @@ class OutlineMaker {
     }
     close();
     add_rim(section_at(arm.tube.front(), 0, X_CW_));
-    const TubeArc& last = arm.tube.back();
-    const Section2d tip = section_at(last, last.arc.length, X_CW_);
+    const Arc& last = arm.tube.back();
+    const Section2d tip = section_at(last, last.length, X_CW_);
     if (arm.tip == TipKind::flat) {
       add_rim(tip);
     } else {
@@ -94,12 +94,12 @@ class OutlineMaker {
   }
 
  private:
-  int count_for(const TubeArc& tube) const {
+  int count_for(const Arc& tube) const {
     double pixels = 0;
     std::optional<Eigen::Vector2d> before;
     constexpr int parts = 8;
     for (int i = 0; i <= parts; ++i) {
-      const Pose X_WS = tube.arc.pose(tube.arc.length * i / parts);
+      const Pose X_WS = tube.pose(tube.length * i / parts);
       const auto pixel = renderer_.prepared().view.project(X_WS.position);
       if (before && pixel) pixels += (*pixel - *before).norm();
       before = pixel;
@@ -107,11 +107,11 @@ class OutlineMaker {
     return static_cast<int>(std::clamp(std::ceil(pixels / step_), 8.0, 2000.0));
   }
 
-  void add_arc(const TubeArc& tube) {
+  void add_arc(const Arc& tube) {
     const int count = count_for(tube);
     double before = 0;
     for (int i = 0; i <= count; ++i) {
-      const double distance = tube.arc.length * i / count;
+      const double distance = tube.length * i / count;
       const bool is_open = section_at(tube, distance, X_CW_).openness() > 0;
       if (i > 0 && is_open != was_open_)
         add_turn(tube, is_open ? distance : before, is_open ? before : distance);
@@ -124,7 +124,7 @@ class OutlineMaker {
   }
 
   // The point between an open and a closed section where both sides meet.
-  void add_turn(const TubeArc& tube, double open, double closed) {
+  void add_turn(const Arc& tube, double open, double closed) {
     const double began = open;
     for (int step = 0; step < 60; ++step) {
       const double middle = 0.5 * (open + closed);

@@ -36,7 +36,7 @@ TEST(Outlines, AreWhereRaysTouchTheTube) {
     const Backbone backbone = bent.backbone();
     const double radius = bent.arm.sections[0].radius[0];
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     const View view = random_view_of(random, backbone);
     Renderer renderer;
     renderer.prepare(scene, view);
@@ -65,7 +65,7 @@ TEST(Outlines, ThatAreSeenPartTheArmFromTheBackground) {
     const BentArm bent = random_bent_arm(random, 0.006);
     const Backbone backbone = bent.backbone();
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     scene.arm.tip = TipKind::round;
     const View view = random_view_of(random, backbone);
     Renderer renderer;
@@ -102,7 +102,7 @@ TEST(Outlines, OfAStraightTubeSeenFromTheSideAreTwoLinesAndTwoRims) {
   Arm arm;
   arm.sections.push_back({.length = 1, .radius = {0.05, 0.05}});
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, Backbone(arm, ArmState::straight(1)));
+  scene.arm.tube = tube_of(Backbone(arm, ArmState::straight(1)));
   Renderer renderer;
   renderer.prepare(scene, pinhole_view(look_at({0, 0.5, 2}, {0, 0.5, 0}), 200, 200, 150));
   const auto found = outlines(renderer);
@@ -123,7 +123,7 @@ TEST(Outlines, OfATubeSeenFromItsEndHaveNoContour) {
   Arm arm;
   arm.sections.push_back({.length = 1, .radius = {0.05, 0.05}});
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, Backbone(arm, ArmState::straight(1)));
+  scene.arm.tube = tube_of(Backbone(arm, ArmState::straight(1)));
   Renderer renderer;
   renderer.prepare(scene, pinhole_view(look_at({0, 3, 0}, {0, 0, 0}, {1, 0, 0}), 100, 100, 100));
   for (const Outline& outline : outlines(renderer)) EXPECT_EQ(outline.kind, OutlineKind::rim);

@@ -21,19 +21,19 @@ int add_body(Stage& stage, SurfaceKind kind, std::size_t index, const Color& alb
 }
 
 // A straight tube, closed by discs, around the z of X_WS from its origin on.
-TubeArc straight_tube(const Pose& X_WS, double length, double radius) {
-  TubeArc tube;
-  tube.arc.X_WS = X_WS;
-  tube.arc.length = length;
+Arc straight_tube(const Pose& X_WS, double length, double radius) {
+  Arc tube;
+  tube.X_WS = X_WS;
+  tube.length = length;
   tube.radius = {radius, radius};
   return tube;
 }
 
-void add_ring_edge(std::span<const TubeArc> tube, double s, const Pose& X_CW, Stage& stage) {
-  const TubeArc& at = tube_arc_at(tube, s);
-  const double along = std::clamp(s - at.arc.s, 0.0, at.arc.length);
-  const double radius = at.radius[0] + (at.radius[1] - at.radius[0]) * along / at.arc.length;
-  const Pose X_CS = X_CW * at.arc.pose(along);
+void add_ring_edge(std::span<const Arc> tube, double s, const Pose& X_CW, Stage& stage) {
+  const Arc& at = tube_arc_at(tube, s);
+  const double along = std::clamp(s - at.s, 0.0, at.length);
+  const double radius = at.radius[0] + (at.radius[1] - at.radius[0]) * along / at.length;
+  const Pose X_CS = X_CW * at.pose(along);
   stage.ring_edges.push_back({s, circle_at(X_CS.rotation, X_CS.position, radius)});
 }
 
@@ -80,20 +80,20 @@ void add_arm(const ArmLook& arm, const Pose& X_CW, Stage& stage) {
   stage.first_arm_piece = static_cast<int>(stage.pieces.size());
   add_tube(arm.tube, X_CW, skin, step, {TubeEnd{TipKind::flat, base}, TubeEnd{arm.tip, tip}}, stage);
   stage.last_arm_piece = static_cast<int>(stage.pieces.size()) - 1;
-  stage.arm_length = arm.tube.back().arc.s + arm.tube.back().arc.length;
+  stage.arm_length = arm.tube.back().s + arm.tube.back().length;
   add_rings(arm.markers, stage);
   for (const MarkerRing& marker : arm.markers) {
     for (const double s : {marker.s_from, marker.s_to}) {
-      if (s > arm.tube.front().arc.s && s < stage.arm_length) add_ring_edge(arm.tube, s, X_CW, stage);
+      if (s > arm.tube.front().s && s < stage.arm_length) add_ring_edge(arm.tube, s, X_CW, stage);
     }
   }
   for (std::size_t i = 0; i < arm.disks.size(); ++i) {
     const GuideDisk& disk = arm.disks[i];
-    const TubeArc& at = tube_arc_at(arm.tube, disk.s);
-    Pose X_WS = at.arc.pose(std::clamp(disk.s - at.arc.s, 0.0, at.arc.length));
+    const Arc& at = tube_arc_at(arm.tube, disk.s);
+    Pose X_WS = at.pose(std::clamp(disk.s - at.s, 0.0, at.length));
     X_WS.position -= 0.5 * disk.thickness * X_WS.rotation.col(2);
     const int body = add_body(stage, SurfaceKind::disk, i, arm.disk_albedo);
-    const TubeArc tube = straight_tube(X_WS, disk.thickness, disk.radius);
+    const Arc tube = straight_tube(X_WS, disk.thickness, disk.radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::flat, body}, TubeEnd{TipKind::flat, body}},
              stage);
     add_caster(tube, TipKind::flat, X_CW, stage);
@@ -122,7 +122,7 @@ void add_etalon(const Etalon& etalon, const Pose& X_CW, Stage& stage) {
   Pose X_WS;  // z along the etalon's +Y, x along its +Z
   X_WS.rotation << X_WE.rotation.col(2), X_WE.rotation.col(0), X_WE.rotation.col(1);
   X_WS.position = X_WE.position - 0.5 * etalon.height * X_WE.rotation.col(1);
-  const TubeArc tube = straight_tube(X_WS, etalon.height, etalon.radius);
+  const Arc tube = straight_tube(X_WS, etalon.height, etalon.radius);
   add_tube({&tube, 1}, X_CW, skin, skin, {TubeEnd{TipKind::flat, bottom}, TubeEnd{TipKind::flat, top}},
            stage);
   add_caster(tube, TipKind::flat, X_CW, stage);
@@ -186,7 +186,7 @@ struct ObstacleAdder {
     X_WS.position = from;
     if (length > 0) X_WS.rotation = rotation_from_z(way);
     // A sphere is a capsule of hardly any length.
-    const TubeArc tube = straight_tube(X_WS, std::max(length, 1e-9 * radius), radius);
+    const Arc tube = straight_tube(X_WS, std::max(length, 1e-9 * radius), radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::round, body}, TubeEnd{TipKind::round, body}},
              stage);
     add_caster(tube, TipKind::round, X_CW, stage);

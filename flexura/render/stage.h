@@ -103,7 +103,7 @@ struct TubeEnd {
 
 /// Adds the pieces and ends of a tube; where the radius jumps from one arc to the next a disc of `step_body`
 /// closes the wider one.
-void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int step_body,
+void add_tube(std::span<const Arc> arcs, const Pose& X_CW, int body, int step_body,
               const std::array<TubeEnd, 2>& ends, Stage& stage);
 
 }  // namespace flexura

@@ -45,9 +45,7 @@ void add_piece(TubePiece& piece, bool goes_on, Stage& stage) {
   stage.pieces.push_back(piece);
 }
 
-void add_arc(const TubeArc& tube_arc, std::size_t index, const Pose& X_CW, int body, bool goes_on,
-             Stage& stage) {
-  const Arc& arc = tube_arc.arc;
+void add_arc(const Arc& arc, std::size_t index, const Pose& X_CW, int body, bool goes_on, Stage& stage) {
   const double theta = arc.bend.norm();
   const int count = std::max(1, static_cast<int>(std::ceil(theta / largest_turn)));
   TubePiece piece;
@@ -55,32 +53,32 @@ void add_arc(const TubeArc& tube_arc, std::size_t index, const Pose& X_CW, int b
   piece.tube_arc = index;
   piece.curvature = theta / arc.length;
   piece.length = arc.length / count;
-  piece.widening = (tube_arc.radius[1] - tube_arc.radius[0]) / arc.length;
+  piece.widening = (arc.radius[1] - arc.radius[0]) / arc.length;
   const Eigen::Vector2d towards = theta > 0 ? Eigen::Vector2d(arc.bend / theta) : Eigen::Vector2d(1, 0);
   Eigen::Matrix3d spin;
   spin << towards.x(), -towards.y(), 0, towards.y(), towards.x(), 0, 0, 0, 1;
   for (int i = 0; i < count; ++i) {
     const double from = i * piece.length;
-    const Pose X_CS = X_CW * arc.pose(from);
+    const Pose X_CS = X_CW * arc.carried(from);
     piece.R_CP = X_CS.rotation * spin;
     piece.p_CP = X_CS.position;
     piece.start_in_arc = from;
     piece.s = arc.s + from;
-    piece.radius = tube_arc.radius[0] + piece.widening * from;
+    piece.radius = arc.radius[0] + piece.widening * from;
     add_piece(piece, goes_on || i > 0, stage);
     piece.before = piece.after = -1;
   }
 }
 
-TubePiece ball(const TubeArc& tube_arc, std::size_t index, bool at_end, const Pose& X_CW, int body) {
-  const double along = at_end ? tube_arc.arc.length : 0.0;
-  const Pose X_CS = X_CW * tube_arc.arc.pose(along);
+TubePiece ball(const Arc& tube_arc, std::size_t index, bool at_end, const Pose& X_CW, int body) {
+  const double along = at_end ? tube_arc.length : 0.0;
+  const Pose X_CS = X_CW * tube_arc.pose(along);
   TubePiece piece;
   piece.is_ball = true;
   piece.R_CP = X_CS.rotation;
   piece.p_CP = X_CS.position;
   piece.radius = tube_arc.radius[at_end ? 1 : 0];
-  piece.s = tube_arc.arc.s + along;
+  piece.s = tube_arc.s + along;
   piece.is_cut_before = at_end;
   piece.is_cut_after = !at_end;
   piece.body = body;
@@ -89,17 +87,17 @@ TubePiece ball(const TubeArc& tube_arc, std::size_t index, bool at_end, const Po
   return piece;
 }
 
-void add_disc(const TubeArc& tube_arc, std::size_t index, bool at_end, bool points_back, const Pose& X_CW,
+void add_disc(const Arc& tube_arc, std::size_t index, bool at_end, bool points_back, const Pose& X_CW,
               int body, Stage& stage) {
-  const double along = at_end ? tube_arc.arc.length : 0.0;
-  const Pose X_CS = X_CW * tube_arc.arc.pose(along);
+  const double along = at_end ? tube_arc.length : 0.0;
+  const Pose X_CS = X_CW * tube_arc.pose(along);
   const double radius = tube_arc.radius[at_end ? 1 : 0];
   stage.discs.push_back({circle_at(X_CS.rotation, X_CS.position, radius, points_back), body, index, along});
 }
 
 }  // namespace
 
-void add_tube(std::span<const TubeArc> arcs, const Pose& X_CW, int body, int step_body,
+void add_tube(std::span<const Arc> arcs, const Pose& X_CW, int body, int step_body,
               const std::array<TubeEnd, 2>& ends, Stage& stage) {
   bool goes_on = ends[0].shape == TipKind::round;
   if (goes_on) {

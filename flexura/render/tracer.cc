@@ -217,7 +217,7 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
       const DiscPart& disc = at(stage.discs, hit.part.index);
       hit.normal = disc.circle.normal;
       const Body& end = at(stage.bodies, static_cast<std::uint32_t>(disc.body));
-      if (end.label.kind == SurfaceKind::cap) hit.s = stage.scene->arm.tube[disc.tube_arc].arc.s + disc.along;
+      if (end.label.kind == SurfaceKind::cap) hit.s = stage.scene->arm.tube[disc.tube_arc].s + disc.along;
       body = disc.body;
       break;
     }

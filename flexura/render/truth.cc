@@ -35,11 +35,11 @@ void fill(Image<T>& image, const RayField& rays, T value) {
 }
 
 AxisPoint axis_point(const Renderer& renderer, const Tracer& tracer, double s) {
-  const TubeArc& at = tube_arc_at(renderer.prepared().stage.scene->arm.tube, s);
+  const Arc& at = tube_arc_at(renderer.prepared().stage.scene->arm.tube, s);
   AxisPoint point;
   point.s = s;
-  const double along = std::clamp(s - at.arc.s, 0.0, at.arc.length);
-  const Eigen::Vector3d p_CP = renderer.prepared().view.X_WC.inverse() * at.arc.pose(along).position;
+  const double along = std::clamp(s - at.s, 0.0, at.length);
+  const Eigen::Vector3d p_CP = renderer.prepared().view.X_WC.inverse() * at.pose(along).position;
   point.depth = p_CP.z();
   point.pixel = renderer.prepared().view.lens.project(p_CP);
   if (!point.pixel) return point;
@@ -109,7 +109,7 @@ std::vector<AxisPoint> projected_axis(const Renderer& renderer, std::span<const 
   points.reserve(s.size());
   const Tracer tracer(stage, renderer.prepared().tiles.all_parts());
   for (const double at : s)
-    points.push_back(axis_point(renderer, tracer, std::clamp(at, tube.front().arc.s, stage.arm_length)));
+    points.push_back(axis_point(renderer, tracer, std::clamp(at, tube.front().s, stage.arm_length)));
   return points;
 }
 

@@ -22,7 +22,7 @@ struct StraightArm {
 
   StraightArm() {
     for (int i = 0; i < 2; ++i) arm.sections.push_back({.length = 0.5, .radius = {0.05, 0.05}});
-    scene.arm.tube = tube_of(arm, Backbone(arm, ArmState::straight(2)));
+    scene.arm.tube = tube_of(Backbone(arm, ArmState::straight(2)));
     scene.arm.markers = {{0.2, 0.3, {1, 0, 0}}, {0.6, 0.64, {0, 1, 0}}};
   }
 };
@@ -69,7 +69,7 @@ TEST(Truth, CoverageOfAllKindsAddsUpToOne) {
     const BentArm bent = random_bent_arm(random, 0.004);
     const Backbone backbone = bent.backbone();
     Scene scene = plain_scene();
-    scene.arm.tube = tube_of(bent.arm, backbone);
+    scene.arm.tube = tube_of(backbone);
     scene.arm.markers.push_back({0.4, 0.6, {1, 0, 0}});
     Renderer renderer;
     View view = random_view_of(random, backbone);
@@ -146,7 +146,7 @@ TEST(Truth, TheAxisIsHiddenWhereTheArmHidesItself) {
   ArmState state = ArmState::straight(1);
   state.bends[0] = {1.9 * std::numbers::pi, 0};
   Scene scene = plain_scene();
-  scene.arm.tube = tube_of(arm, Backbone(arm, state));
+  scene.arm.tube = tube_of(Backbone(arm, state));
   Renderer renderer;
   // The ring's middle is at x = R; the camera on -x looks along +x.
   renderer.prepare(scene, pinhole_view(look_at({-3, 0, 0}, {0, 0, 0}), 200, 100, 150));

@@ -32,10 +32,9 @@ void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm&
                     {"d", "M-14 0H14M-12 0l-5 6M-5 0l-5 6M2 0l-5 6M9 0l-5 6"}});
 }
 
-void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
-               const Arc& arc, std::size_t section, bool is_unsafe) {
+void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Arc& arc, bool is_unsafe) {
   const auto draw = [&](const std::string& css_class, double border) {
-    std::array<double, 2> radius = motion.arm.sections[section].radius;
+    std::array<double, 2> radius = arc.radius;
     for (double& r : radius) r = std::max(r * scene.scale(), thinnest_tube / 2) + border;
     svg.leaf("path", {{"class", css_class}, {"d", tube_path(arc, scene.views[v], scene.frames[v], radius)}});
   };
@@ -43,7 +42,7 @@ void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Repo
     draw("warning", warning_border);
     draw("gap", warning_gap);
   }
-  draw(fmt::format("tube s{}", section % 8), 0);
+  draw(fmt::format("tube s{}", arc.section % 8), 0);
 }
 
 // The line of the chosen drawing curve; arcs are the tube itself.
@@ -67,7 +66,7 @@ double nearness(PlotView view, const Arc& arc) {
   return view == PlotView::xoy ? middle.z() : -middle.x();
 }
 
-// The arm's sections, the farthest first.
+// The backbone's arcs, the farthest first.
 std::vector<std::size_t> back_to_front(PlotView view, const Backbone& backbone) {
   std::vector<std::size_t> order(backbone.arcs().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -78,8 +77,11 @@ std::vector<std::size_t> back_to_front(PlotView view, const Backbone& backbone) 
 }
 
 void draw_joints(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Backbone& backbone) {
-  for (const Arc& arc : backbone.arcs().subspan(1))
+  std::size_t section = 0;
+  for (const Arc& arc : backbone.arcs()) {
+    if (std::exchange(section, arc.section) == arc.section) continue;
     svg.circle(scene.frames[v].page(seen(scene.views[v], arc.X_WS.position)), "joint", 2.8);
+  }
 }
 
 std::vector<Eigen::Vector2d> tip_points(const ReportMotion& motion, const PlotFrame& frame, PlotView view) {
@@ -174,11 +176,11 @@ Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::
     draw_obstacles(svg, scene, v, motion);
     draw_base(svg, scene.frames[v], scene.views[v], motion.arm);
     for (const std::size_t k : back_to_front(scene.views[v], backbone)) {
-      const bool is_warned = motion.is_unsafe(k, i) || is_shown(k);
-      draw_tube(svg, scene, v, motion, backbone.arcs()[k], k, is_warned);
+      const Arc& arc = backbone.arcs()[k];
+      draw_tube(svg, scene, v, arc, motion.is_unsafe(arc.section, i) || is_shown(arc.section));
     }
     draw_curve(svg, scene, v, motion, backbone);
-    if (scene.has_room_for_joints(backbone.length(), backbone.arcs().size()))
+    if (scene.has_room_for_joints(backbone.length(), motion.arm.sections.size()))
       draw_joints(svg, scene, v, backbone);
     draw_missed_targets(svg, scene, v, motion, i, shown);
     const Eigen::Vector2d at = scene.frames[v].page(seen(scene.views[v], motion.tip(i)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "flexura/model/arm_model.h"
 #include "flexura/report/arm_curve.h"
 #include "flexura/report/svg.h"
 
@@ -118,6 +119,7 @@ std::string ReportMotion::tip_text(std::size_t i) const {
 
 ReportMotion motion_of(const ReportData& data) {
   require_usable(data);
+  const ArmModel model(data.arm);
   ReportMotion motion;
   motion.arm = data.arm;
   if (data.safety) motion.violations = data.safety->violations;
@@ -138,7 +140,7 @@ ReportMotion motion_of(const ReportData& data) {
   for (const std::size_t i : kept) {
     motion.times.push_back(data.times[i]);
     motion.states.push_back(data.states[i]);
-    motion.backbones.emplace_back(data.arm, data.states[i]);
+    motion.backbones.push_back(model.backbone(data.states[i]));
     for (const double stretch : data.states[i].stretches) motion.stretches_change |= stretch != 1.0;
   }
   motion.unsafe_moments = unsafe_moments(motion);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/model/arm_model.h"
+
 namespace flexura {
 namespace {
 
@@ -97,11 +99,13 @@ std::string figure_html(const ReportFigure& figure) {
 std::string motion_json(const ReportMotion& motion) {
   const Pose& X_WB = motion.arm.X_WB;
   std::vector<double> lengths, radii, states;
-  for (const Section& section : motion.arm.sections) {
+  const ArmModel model(motion.arm);
+  for (const Section& section : model.shaped().sections) {
     lengths.push_back(section.length);
     radii.insert(radii.end(), section.radius.begin(), section.radius.end());
   }
-  for (const ArmState& state : motion.states) {
+  for (const ArmState& command : motion.states) {
+    const ArmState state = model.actuation().shape(command);
     for (std::size_t k = 0; k < state.bends.size(); ++k)
       states.insert(states.end(), {state.bends[k].x(), state.bends[k].y(), state.stretches[k]});
   }

@@ -49,10 +49,8 @@ Eigen::AlignedBox3d swept_box(const ReportMotion& motion) {
   constexpr double step = 0.2;  // rad; an arc bulges at most step^2/8 of its radius between points.
   Eigen::AlignedBox3d box;
   for (const Backbone& backbone : motion.backbones) {
-    for (std::size_t i = 0; i < backbone.arcs().size(); ++i) {
-      const Arc& arc = backbone.arcs()[i];
-      const std::array<double, 2>& radius = motion.arm.sections[i].radius;
-      const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(radius[0], radius[1]));
+    for (const Arc& arc : backbone.arcs()) {
+      const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(arc.radius[0], arc.radius[1]));
       const double steps = 1.0 + std::floor(arc.bend.norm() / step);
       for (double k = 0.0; k <= steps; ++k) {
         const Eigen::Vector3d at = arc.pose(arc.length * k / steps).position;

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "flexura/kinematics/jacobian.h"
+#include "flexura/kinematics/shaped_motion.h"
 #include "flexura/math/dense.h"
 #include "flexura/safety/checked_motion.h"
 #include "flexura/safety/contact_watch.h"
@@ -56,24 +58,14 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
   }
 }
 
-}  // namespace
-
-bool is_possible(const ArmState& state) { return !impossible_section(state); }
-
-std::optional<std::size_t> impossible_section(const ArmState& state) {
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    const double stretch = state.stretches[i];
-    const bool is_bent = state.bends[i].norm() <= largest_bend;  // Not where it is no number.
-    if (!is_bent || !std::isfinite(stretch) || stretch <= 0) return i;
-  }
-  return std::nullopt;
+// Whether it is the shape of an arm that has a hazard, whatever it was commanded to.
+bool is_of_shape(Hazard hazard) {
+  return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle;
 }
 
-SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& initial,
-                           const std::vector<TimedMotion>& motions, double step, Progress* progress) {
+SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contacts, const ArmState& initial,
+                        const std::vector<TimedMotion>& motions, double step, Progress* progress) {
   SafetyReport report;
-  std::vector<ContactWatch> contacts{ContactWatch(arm)};
-  for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
   note_singular(arm, initial, 0, report);
   ArmState before = initial;
   for (std::size_t i = 0; i < motions.size() && report.is_complete; ++i) {
@@ -93,6 +85,53 @@ SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacle
   if (!report.is_complete) report.caveats.emplace_back("cancelled: not all of it is checked");
   report.sort();
   report.notes.erase(std::ranges::unique(report.notes).begin(), report.notes.end());
+  return report;
+}
+
+}  // namespace
+
+bool is_possible(const ArmState& state) { return !impossible_section(state); }
+
+std::optional<std::size_t> impossible_section(const ArmState& state) {
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    const double stretch = state.stretches[i];
+    const bool is_bent = state.bends[i].norm() <= largest_bend;  // Not where it is no number.
+    if (!is_bent || !std::isfinite(stretch) || stretch <= 0) return i;
+  }
+  return std::nullopt;
+}
+
+SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& initial,
+                           const std::vector<TimedMotion>& motions, double step, Progress* progress) {
+  std::vector<ContactWatch> contacts{ContactWatch(arm)};
+  for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
+  return check_with(arm, contacts, initial, motions, step, progress);
+}
+
+SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& obstacles,
+                           const ArmState& initial, const std::vector<TimedMotion>& motions, double step,
+                           Progress* progress) {
+  const Actuation& actuation = model.actuation();
+  if (actuation.is_one_to_one())
+    return check_motions(model.shaped(), obstacles, initial, motions, step, progress);
+  SafetyReport report = check_with(model.driven(), {}, initial, motions, step, progress);
+  if (!report.is_complete) return report;
+  std::erase_if(report.violations, [](const Violation& violation) { return is_of_shape(violation.hazard); });
+  std::vector<TimedMotion> shaped;
+  shaped.reserve(motions.size());
+  for (const TimedMotion& motion : motions)
+    shaped.push_back({shaped_motion(actuation, motion.motion), motion.start, motion.name});
+  const SafetyReport of_shape =
+      check_motions(model.shaped(), obstacles, actuation.shape(initial), shaped, step, progress);
+  for (Violation violation : of_shape.violations) {
+    if (!is_of_shape(violation.hazard)) continue;
+    if (violation.section) violation.section = actuation.section_of()[*violation.section];
+    if (violation.other_section) violation.other_section = actuation.section_of()[*violation.other_section];
+    report.violations.push_back(std::move(violation));
+  }
+  report.is_complete = of_shape.is_complete;
+  if (!report.is_complete) report.caveats = of_shape.caveats;
+  report.sort();
   return report;
 }
 

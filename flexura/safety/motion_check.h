@@ -8,6 +8,7 @@
 #include "flexura/base/progress.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/safety/violation.h"
 
@@ -26,6 +27,13 @@ struct TimedMotion {
 /// so. See docs/safety.md. `progress` may be null; when it says so, the check ends early, and its report is
 /// not complete.
 [[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
+                                         const ArmState& initial, const std::vector<TimedMotion>& motions,
+                                         double step, Progress* progress = nullptr);
+
+/// The same of an arm whose sections may be several arcs: the motions are commands (states of
+/// model.driven()), whose bends, stretches and rates have limits; folding and contact are those of the shape
+/// that they make. A violation names the section.
+[[nodiscard]] SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 

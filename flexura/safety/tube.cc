@@ -22,7 +22,7 @@ std::vector<SectionTube> tube_arcs(const Arm& arm, const ArmState& state) {
   double turn = 0;
   double start = 0;
   for (const Arc& arc : backbone.arcs()) {
-    const std::array<double, 2>& radius = arm.sections[tubes.size()].radius;
+    const std::array<double, 2>& radius = arc.radius;
     tubes.push_back(
         {arc.X_WS, arc.bend, arc.length, radius, turn, start, {quarter * radius[0], quarter * radius[1]}});
     turn += arc.bend.norm();

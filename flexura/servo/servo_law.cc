@@ -27,10 +27,11 @@ bool is_same(const WantedShape& a, const WantedShape& b) {
 
 }  // namespace
 
-ServoLaw::ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& features)
+ServoLaw::ServoLaw(const RigModel& believed, const ServoConfig& config, ServoFeatures& features)
     : config_(config),
       features_(features),
-      law_(arm, gains_of(config)),
+      actuation_(believed.arm_model().actuation()),
+      law_(believed.arm_model().driven(), gains_of(config)),
       response_(config.jacobian, law_.variables().size()) {}
 
 void ServoLaw::pack(const ArmState& state, Eigen::VectorXd& x) const {
@@ -41,6 +42,15 @@ void ServoLaw::pack(const ArmState& state, Eigen::VectorXd& x) const {
     if (parts[i].is_spatial) x[parts[i].at + 1] = state.bends[i].y();
     if (parts[i].is_stretchable) x[parts[i].stretch_at()] = state.stretches[i];
   }
+}
+
+void ServoLaw::by_variables(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& J) {
+  if (actuation_.is_one_to_one()) {
+    law_.by_variables(by_shape, J);
+    return;
+  }
+  actuation_.by_command(by_shape, by_command_);
+  law_.by_variables(by_command_, J);
 }
 
 bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, FeatureError& result) {
@@ -54,16 +64,17 @@ bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, Feature
 
 void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& asked) {
   if (next == wanted) return;
+  const ArmState from = actuation_.command(wanted), to = actuation_.command(next);
   if (response_.is_learned()) {
-    pack(next, x_), pack(wanted, y_);
+    pack(to, x_), pack(from, y_);
     y_ = response_.drives_for(x_ - y_);
     pack(asked, x_);
     law_.variables().state(x_ + y_, asked);
     return;
   }
   for (std::size_t i = 0; i < asked.bends.size(); ++i) {
-    asked.bends[i] += next.bends[i] - wanted.bends[i];
-    asked.stretches[i] += next.stretches[i] - wanted.stretches[i];
+    asked.bends[i] += to.bends[i] - from.bends[i];
+    asked.stretches[i] += to.stretches[i] - from.stretches[i];
   }
 }
 
@@ -79,13 +90,13 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
   }
   if (response_.is_learned()) {
     if (input.is_fresh) {
-      pack(input.said, x_), pack(estimate, y_);
+      pack(input.said, x_), pack(actuation_.command(estimate), y_);
       response_.learn(x_, y_);
     }
-    law_.by_variables(is_.by_state, by_shape_);
+    by_variables(is_.by_state, by_shape_);
     J_.noalias() = by_shape_ * response_.matrix();
   } else {
-    law_.by_variables(is_.by_state, J_);
+    by_variables(is_.by_state, J_);
   }
   // What was sent since the pictures were taken is on its way.
   if (config_.predicts) {

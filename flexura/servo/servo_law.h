@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 
 #include "flexura/control/image_law.h"
+#include "flexura/model/actuation.h"
 #include "flexura/model/arm.h"
+#include "flexura/port/rig_model.h"
 #include "flexura/servo/drive_response.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
@@ -17,7 +19,7 @@ namespace flexura {
 class ServoLaw {
  public:
   /// `features` and `config` outlive it.
-  ServoLaw(const Arm& arm, const ServoConfig& config, ServoFeatures& features);
+  ServoLaw(const RigModel& believed, const ServoConfig& config, ServoFeatures& features);
 
   /// What it goes by.
   struct Input {
@@ -38,7 +40,9 @@ class ServoLaw {
   [[nodiscard]] Wish step(const Input& input);
 
  private:
-  // The variables of a state, within the limits or not.
+  // The derivatives by what the law varies, from those by the shape.
+  void by_variables(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& J);
+  // The variables of a command, within the limits or not.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
   // Of what is seen, in seen_.
   [[nodiscard]] bool find_error(const Input& input, const WantedShape& wanted, FeatureError& result);
@@ -47,13 +51,14 @@ class ServoLaw {
 
   const ServoConfig& config_;
   ServoFeatures& features_;
+  Actuation actuation_;
   ImageLaw law_;
   DriveResponse response_;
   // What a step works on, kept so that none allocates it anew.
   Eigen::VectorXd seen_, desired_, x_, y_;
   ArmState halfway_;
   FeatureError is_, was_;
-  Eigen::MatrixXd by_shape_, J_;
+  Eigen::MatrixXd by_command_, by_shape_, J_;
   ImageLaw::Work work_;
   ImageStep step_;
 };

@@ -30,7 +30,7 @@ ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::a
                MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate)} {}
 
 ServoRig::Trouble ServoRig::read() {
-  auto arm = read_arm(*ports_.arm, model_.arm.sections.size());
+  auto arm = read_arm(*ports_.arm, model_.sections());
   if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
   const auto& said = std::get<ArmReading>(arm);
   if (auto why = odd_time("the arm", said.time)) return why;

@@ -34,6 +34,7 @@ class Session {
  public:
   Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config, ServoWatcher& watcher)
       : model_(believed),
+        believed_arm_(believed.arm_model()),
         config_(config),
         watcher_(watcher),
         rig_(ports, believed, config.cameras,
@@ -42,7 +43,7 @@ class Session {
               .silent = config.patience.blind}),
         sights_(rig_, believed, config, watcher),
         features_(servo_features(config, believed)),
-        law_(believed.arm, config, *features_),
+        law_(believed, config, *features_),
         keeper_(believed, config.cameras) {}
 
   ServoResult run() {
@@ -111,7 +112,7 @@ class Session {
     sent_ = rig_.said(result_.start);
     if (config_.sent && is_near(*config_.sent, sent_)) sent_ = *config_.sent;
     try {
-      limiter_.emplace(model_.arm, limiter_config(config_), sent_);
+      limiter_.emplace(believed_arm_, limiter_config(config_), sent_);
     } catch (const std::invalid_argument& error) {
       return fmt::format("the arm cannot be steered from where it is: {}", error.what());
     }
@@ -215,7 +216,7 @@ class Session {
   [[nodiscard]] std::string at_its_limit(const ArmState& state) const {
     constexpr double nearly = 1 - 1e-6;
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
-      const Section& section = model_.arm.sections[i];
+      const Section& section = believed_arm_.driven().sections[i];
       if (state.bends[i].norm() >= nearly * section.max_bend)
         return fmt::format("section {} is bent as far as it goes", i + 1);
       const auto& [least, most] = section.stretch_limits;
@@ -282,6 +283,7 @@ class Session {
   }
 
   const RigModel& model_;
+  ArmModel believed_arm_;
   const ServoConfig& config_;
   ServoWatcher& watcher_;
   ServoRig rig_;

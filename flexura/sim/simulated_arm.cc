@@ -138,7 +138,7 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
 
 CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   if (auto fault = link_.fault()) return *fault;
-  if (!is_shape_of(arm_, state)) return link_.refusal("the shape is not one of this arm");
+  if (!is_shape_of(arm_.driven(), state)) return link_.refusal("the shape is not one of this arm");
   if (!std::isfinite(duration) || duration < 0)
     return link_.refusal(fmt::format("a motion cannot take {} s", duration));
   if (auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) {

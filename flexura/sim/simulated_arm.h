@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flexura/kinematics/motors.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/motion_ports.h"
 #include "flexura/sim/axis_motion.h"
@@ -51,16 +52,17 @@ class SimulatedArm : public ArmPort {
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
-  /// The arm's true shape, from `horizon` s before the last command on: not for algorithms.
+  /// What the true arm is commanded to by its drives as they are, from `horizon` s before the last command
+  /// on: not for algorithms.
   [[nodiscard]] ArmState truth(double time) const;
   /// The true arm's; not for algorithms.
-  [[nodiscard]] Backbone backbone(double time) const { return {arm_, truth(time)}; }
+  [[nodiscard]] Backbone backbone(double time) const { return arm_.backbone(truth(time)); }
   /// What connects the arm: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
   SimulatedLink link_;
-  Arm arm_;
+  ArmModel arm_;     // as it is
   ArmState offset_;  // without drives: true bends and stretches less believed ones
   std::variant<SimulatedDrive, BendMotion> moved_by_;
 };

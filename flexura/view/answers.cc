@@ -26,27 +26,28 @@ Node bends_answer(const ArmState& state) {
   return {std::move(bends), {}};
 }
 
-Node point_answer(const Arm& arm, const ArmState& state, double s) {
-  const double length = arm.length();
+Node point_answer(const Backbone& backbone, double s) {
+  const double length = backbone.rest_length();
   // A page that knows the arm in single precision means its end.
   const bool is_on_arm = s >= -1e-6 * length && s <= (1 + 1e-6) * length;
   if (!is_on_arm) throw ViewRefusal(fmt::format("s = {}: expected 0 to {:.6g} m", s, length));
-  const MaterialPoint at = material_point(arm, std::clamp(s, 0.0, length));
-  const Backbone backbone(arm, state);
-  const Arc& arc = backbone.arcs()[at.section];
-  const Pose X_WS = arc.pose(at.fraction * arc.length);
-  return {Node::Table{{"s", {}, {std::clamp(s, 0.0, length), {}}},
+  s = std::clamp(s, 0.0, length);
+  const auto holds = [s](const Arc& candidate) { return s <= candidate.s_rest + candidate.rest_length; };
+  const auto found = std::ranges::find_if(backbone.arcs(), holds);
+  const Arc& arc = found != backbone.arcs().end() ? *found : backbone.arcs().back();
+  const Pose X_WS = arc.pose(std::min(1.0, (s - arc.s_rest) / arc.rest_length) * arc.length);
+  return {Node::Table{{"s", {}, {s, {}}},
                       {"position", {}, point_node(X_WS.position)},
                       {"tangent", {}, point_node(X_WS.rotation.col(2))},
                       {"curvature", {}, {arc.bend.norm() / arc.length, {}}},
                       {"bending_plane", {}, {std::atan2(arc.bend.y(), arc.bend.x()), {}}},
-                      {"section", {}, {static_cast<std::int64_t>(at.section), {}}}},
+                      {"section", {}, {static_cast<std::int64_t>(arc.section), {}}}},
           {}};
 }
 
-Node backbone_answer(const Arm& arm, const ArmState& state) {
+Node backbone_answer(const Backbone& backbone) {
   Node::Array poses;
-  for (const ArmSample& sample : arm_samples(arm, state)) poses.push_back(flat_pose_node(sample.X_WS));
+  for (const ArmSample& sample : arm_samples(backbone)) poses.push_back(flat_pose_node(sample.X_WS));
   return {Node::Table{{"poses", {}, {std::move(poses), {}}}}, {}};
 }
 

@@ -4,7 +4,7 @@
 
 #include "flexura/base/node.h"
 #include "flexura/kinematics/inverse.h"
-#include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
 
 // What replies hold (docs/viewer-protocol.md).
 namespace flexura {
@@ -12,9 +12,9 @@ namespace flexura {
 /// {}.
 [[nodiscard]] Node nothing();
 /// The answer to `point`: the backbone at `s` m along the unstretched arm; a ViewRefusal beyond its ends.
-[[nodiscard]] Node point_answer(const Arm& arm, const ArmState& state, double s);
+[[nodiscard]] Node point_answer(const Backbone& backbone, double s);
 /// The answer to `backbone`.
-[[nodiscard]] Node backbone_answer(const Arm& arm, const ArmState& state);
+[[nodiscard]] Node backbone_answer(const Backbone& backbone);
 /// The answer to `tip`: what was found, and why the arm does not go there, "" when it does.
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
 /// [[bend_x, bend_y], ...], without negative zeros.

@@ -58,14 +58,14 @@ Node disk_nodes(const LookConfig& look) {
 
 Node arm_node(const ViewedRig& rig, bool is_visible) {
   const LookConfig look = rig.experiment.true_rig().arm.look;
-  return {Node::Table{{"kind", {}, Codec<ArmKind>::write(rig.truth.kind)},
-                      {"sections", {}, section_nodes(rig.truth)},
+  return {Node::Table{{"kind", {}, Codec<ArmKind>::write(rig.truth.driven().kind)},
+                      {"sections", {}, section_nodes(rig.truth.driven())},
                       {"color", {}, numbers(look.color)},
                       {"tip", {}, Codec<TipKind>::write(look.tip)},
-                      {"markers", {}, marker_nodes(look, rig.truth)},
+                      {"markers", {}, marker_nodes(look, rig.truth.driven())},
                       {"disks", {}, disk_nodes(look)},
                       {"disk_color", {}, numbers(look.disk_color)},
-                      {"base", {}, flat_pose_node(rig.truth.X_WB)},
+                      {"base", {}, flat_pose_node(rig.truth.driven().X_WB)},
                       {"visible", {}, {is_visible, {}}}},
           {}};
 }
@@ -137,7 +137,7 @@ Node tendon_nodes(const ViewedRig& rig) {
   Node::Array list;
   for (const Tendon& tendon : rig.drive->tendons) {
     list.push_back({Node::Table{{"section", {}, {static_cast<std::int64_t>(tendon.section), {}}},
-                                {"displacement", {}, numbers(tendon_range(rig.model, tendon))},
+                                {"displacement", {}, numbers(tendon_range(rig.model.driven(), tendon))},
                                 {"radius", {}, {tendon.radius, {}}},
                                 {"angle", {}, {tendon.angle, {}}}},
                     {}});
@@ -202,7 +202,8 @@ Node flat_pose_node(const Pose& X_WP) {
 
 Node scene_node(const ViewedRig& rig) {
   const StandConfig config = rig.experiment.true_stand();
-  const SceneMaker maker(rig.truth, rig.experiment.true_rig().arm.look, config, rig.experiment.obstacle);
+  const SceneMaker maker(rig.truth.driven(), rig.experiment.true_rig().arm.look, config,
+                         rig.experiment.obstacle);
   const Scene& stand = maker.stand();
   return {Node::Table{{"arm", {}, arm_node(rig, config.arm)},
                       {"screens", {}, screen_nodes(stand)},
@@ -229,7 +230,7 @@ Node controls_node(const ViewedRig& rig) {
     heads.push_back(std::move(head));
     stages.push_back(axes_node(camera, camera.stage_axes(), {"x", "y", "z"}));
   }
-  return {Node::Table{{"sections", {}, bend_nodes(rig.model)},
+  return {Node::Table{{"sections", {}, bend_nodes(rig.model.driven())},
                       {"tendons", {}, tendon_nodes(rig)},
                       {"heads", {}, {std::move(heads), {}}},
                       {"stages", {}, {std::move(stages), {}}},

@@ -36,7 +36,7 @@ StateMessage LiveRig::state() {
   const ArmReading reading = simulated_->arm().read().value();
   message.is_moving = reading.moving;
   message.arm = truth(message.time);
-  message.samples = arm_samples(rig_->truth, message.arm);
+  message.samples = arm_samples(rig_->truth.backbone(message.arm));
   for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
     const CameraStance stance = simulated_->camera(i).stance(message.time);
     message.cameras.push_back(camera_sample(rig_->cameras[i], stance));
@@ -68,10 +68,10 @@ StateMessage still_state(const ViewedRig& rig, double time, const ArmState& stat
   StateMessage message;
   message.time = time;
   message.arm = state;
-  message.samples = arm_samples(rig.model, state);
+  message.samples = arm_samples(rig.model.backbone(state));
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
     message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i)));
-  if (rig.drive) message.displacements = tendon_displacements(rig.model, *rig.drive, state).pulled;
+  if (rig.drive) message.displacements = tendon_displacements(rig.model.driven(), *rig.drive, state).pulled;
   return message;
 }
 

@@ -21,7 +21,7 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const ArmRequest& arm) const {
     session.require_free();
     const ViewedRig& rig = *session.viewed();
-    session.move({shape_wanted(rig.model, rig.drive, arm), arm.duration, std::move(reply)});
+    session.move({shape_wanted(rig.model.driven(), rig.drive, arm), arm.duration, std::move(reply)});
   }
   void operator()(const TipRequest& tip) const {
     session.require_free();
@@ -79,10 +79,11 @@ struct LiveSession::Taker : PictureSession::Taker {
                          static_cast<int>(pixel.v), std::move(reply));
   }
   void operator()(const PointRequest& point) const {
-    done(point_answer(session.viewed()->truth, session.shown_state(), point.s));
+    done(point_answer(session.viewed()->truth.backbone(session.shown_state()), point.s));
   }
   void operator()(const BackboneRequest& backbone) const {
-    done(backbone_answer(session.viewed()->truth, shape_wanted(session.viewed()->truth, backbone)));
+    done(backbone_answer(
+        session.viewed()->truth.backbone(shape_wanted(session.viewed()->truth.driven(), backbone))));
   }
 };
 

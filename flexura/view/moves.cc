@@ -36,7 +36,7 @@ bool was_there(const Violation& violation, const std::vector<Violation>& at_star
   });
 }
 
-SafetyReport check_way(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+SafetyReport check_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
                        const MotionPtr& motion) {
   constexpr double step = 0.02;
   return check_motions(arm, obstacles, from, {{motion, 0, ""}}, step);
@@ -93,12 +93,12 @@ ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive, const A
   return within_limits(arm, fit_state(arm, *drive, {*request.tendons}).state);
 }
 
-InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipRequest& request) {
+InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from, const TipRequest& request) {
   TipTarget target;
   target.position = vector(request.position);
   if (request.direction) target.direction = vector(*request.direction);
   InverseConfig config;
-  config.start = within_limits(arm, from);
+  config.start = within_limits(arm.driven(), from);
   // From where it is, for a hand that drags wants no leaps; from elsewhere only where that does not do.
   config.max_starts = 1;
   InverseResult near = solve_inverse(arm, target, config);
@@ -108,9 +108,9 @@ InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipReque
   return far.converged() ? far : near;
 }
 
-std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
                           const ArmState& to) {
-  const std::vector<Profile> profiles(arm.sections.size(), Profile::linear(1));
+  const std::vector<Profile> profiles(arm.driven().sections.size(), Profile::linear(1));
   const SafetyReport way = check_way(arm, obstacles, from, point_to_point_motion(from, to, profiles));
   if (way.is_safe()) return {};
   const SafetyReport start = check_way(arm, obstacles, from, hold_motion(from, 0));
@@ -123,14 +123,18 @@ std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles
   return {};
 }
 
-std::string touched(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& state) {
+std::string touched(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& state) {
   const auto touching = [&](const ContactWatch& watch) -> std::string {
-    const Contact contact = watch.contact(state, 0);
-    return contact.clearance < -contact_tolerance ? contact_text(watch, contact) : std::string();
+    Contact contact = watch.contact(arm.actuation().shape(state), 0);
+    if (contact.clearance >= -contact_tolerance) return {};
+    const auto& section_of = arm.actuation().section_of();
+    contact.section = section_of[contact.section];
+    if (contact.other_section) contact.other_section = section_of[*contact.other_section];
+    return contact_text(watch, contact);
   };
-  std::string text = touching(ContactWatch(arm));
+  std::string text = touching(ContactWatch(arm.shaped()));
   for (std::size_t i = 0; i < obstacles.size() && text.empty(); ++i)
-    text = touching(ContactWatch(arm, obstacles[i]));
+    text = touching(ContactWatch(arm.shaped(), obstacles[i]));
   return text;
 }
 

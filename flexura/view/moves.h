@@ -5,7 +5,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/kinematics/inverse.h"
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/view/request.h"
@@ -25,16 +25,17 @@ void require_travel(const Camera& camera, const StageRequest& request);
 /// The shape nearest to `state` within the sections' limits.
 [[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);
 
-/// A shape for the tip, near the one from which it is sought: quick enough to follow a hand.
-[[nodiscard]] InverseResult shape_for_tip(const Arm& arm, const ArmState& from, const TipRequest& request);
+/// A command for the tip, near the one from which it is sought: quick enough to follow a hand.
+[[nodiscard]] InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from,
+                                          const TipRequest& request);
 
-/// Why the arm must not go straight from one shape to another, one line; "" when nothing is in the way. What
-/// is wrong already at the start, and gets no worse, is no reason to stay.
-[[nodiscard]] std::string danger_on_way(const Arm& arm, const std::vector<Obstacle>& obstacles,
+/// Why the arm must not go straight from one command to another, one line; "" when nothing is in the way.
+/// What is wrong already at the start, and gets no worse, is no reason to stay.
+[[nodiscard]] std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                         const ArmState& from, const ArmState& to);
 
-/// What the arm touches in a shape, one line; "" when nothing.
-[[nodiscard]] std::string touched(const Arm& arm, const std::vector<Obstacle>& obstacles,
+/// What the arm touches in the shape of a command, one line; "" when nothing.
+[[nodiscard]] std::string touched(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                   const ArmState& state);
 
 }  // namespace flexura

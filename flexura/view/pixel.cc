@@ -16,24 +16,11 @@ namespace {
 
 Node optional_number(const std::optional<double>& value) { return value ? Node{*value, {}} : Node{}; }
 
-// Where on the unstretched arm lies what is `s` m from the base along the arm as it stands.
-double unstretched(const Arm& arm, const Backbone& backbone, double s) {
-  double start = 0;
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    const Arc& arc = backbone.arcs()[i];
-    const double length = arm.sections[i].length;
-    if (s <= arc.s + arc.length || i + 1 == arm.sections.size())
-      return start + std::min(1.0, (s - arc.s) / arc.length) * length;
-    start += length;
-  }
-  return start;
-}
-
 }  // namespace
 
 PixelEye::PixelEye(ViewedRigPtr rig)
     : rig_(std::move(rig)),
-      maker_(rig_->truth, rig_->experiment.true_rig().arm.look, rig_->experiment.true_stand(),
+      maker_(rig_->truth.driven(), rig_->experiment.true_rig().arm.look, rig_->experiment.true_stand(),
              rig_->experiment.obstacle) {}
 
 SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
@@ -44,7 +31,7 @@ SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
   const PixelTruth truth = pixel_truth(renderer_, u, v);
   SeenPixel seen{label(truth.label), {}, {}};
   if (std::isfinite(truth.depth)) seen.depth = truth.depth;
-  if (std::isfinite(truth.s)) seen.s = unstretched(rig_->truth, backbone, truth.s);
+  if (std::isfinite(truth.s)) seen.s = backbone.s_rest_at(truth.s);
   return seen;
 }
 

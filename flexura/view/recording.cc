@@ -158,7 +158,7 @@ ArmState Recording::state(std::size_t place) const {
   for (const auto& bend : message.bends) state.bends.emplace_back(bend[0], bend[1]);
   state.stretches = message.stretches;
   constexpr double largest = 1e6;  // more is no arm's, whoever wrote the log
-  const std::size_t sections = rig_->model.sections.size();
+  const std::size_t sections = rig_->model.driven().sections.size();
   const auto is_shape = [](const Eigen::Vector2d& bend) { return bend.norm() < largest; };
   const auto is_stretch = [](double stretch) { return stretch > 1 / largest && stretch < largest; };
   if (state.bends.size() != sections || state.stretches.size() != sections ||

@@ -72,10 +72,11 @@ struct RecordingSession::Taker : PictureSession::Taker {
   void operator()(const PointRequest& point) const {
     const Recording& recording = *session.recording_;
     const ArmState state = recording.state(recording.state_at(session.times_[client]));
-    done(point_answer(session.viewed()->model, state, point.s));
+    done(point_answer(session.viewed()->model.backbone(state), point.s));
   }
   void operator()(const BackboneRequest& backbone) const {
-    done(backbone_answer(session.viewed()->model, shape_wanted(session.viewed()->model, backbone)));
+    done(backbone_answer(
+        session.viewed()->model.backbone(shape_wanted(session.viewed()->model.driven(), backbone))));
   }
   void operator()(const CancelRequest&) const { throw ViewRefusal("no run is going on"); }
   void operator()(const OpenRequest&) const { throw ViewRefusal("this is the recording"); }

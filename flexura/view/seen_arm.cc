@@ -45,7 +45,7 @@ struct FoundArm {
 FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
   FoundArm found{eight_bits(*seen.picture, seen.white), rig.believed_view(seen.camera, seen.reading), {}};
   ArmFinderConfig config;
-  config.base = found.view.project(rig.model.X_WB.position);
+  config.base = found.view.project(rig.model.driven().X_WB.position);
   ArmFinder finder(config);
   found.arm = finder.find(*seen.picture, seen.white);
   if (auto note = hint_of_exposure(gray_picture(found.bytes))) found.arm.notes.push_back(std::move(*note));
@@ -146,8 +146,9 @@ Node::Table outcome(bool is_found, const std::string& reason, const std::vector<
 
 // What the rig's file says of the arm.
 ShapePrior prior_of(const ViewedRig& rig) {
-  ShapePrior prior = described_arm(rig.model);
-  for (const Marker& marker : rig.experiment.arm.look.markers(rig.model)) prior.markers.push_back(marker.at);
+  ShapePrior prior = described_arm(rig.model.shaped());
+  for (const Marker& marker : rig.experiment.arm.look.markers(rig.model.driven()))
+    prior.markers.push_back(marker.at);
   std::ranges::sort(prior.markers);
   return prior;
 }
@@ -201,7 +202,8 @@ Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
   Node::Table answer = outcome(estimate.is_found, estimate.reason, notes);
   answer.push_back({"numbers", {}, {std::move(numbers), {}}});
   if (estimate.is_found) {
-    answer.push_back({"poses", {}, *backbone_answer(estimate.shape.arm, estimate.shape.state).find("poses")});
+    answer.push_back(
+        {"poses", {}, *backbone_answer(Backbone(estimate.shape.arm, estimate.shape.state)).find("poses")});
     answer.push_back({"bends", {}, bends_answer(estimate.shape.state)});
     answer.push_back({"sigma", {}, number_node(estimate.rms_sigma())});
     answer.push_back({"rms_px", {}, number_node(estimate.rms)});

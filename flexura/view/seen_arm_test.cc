@@ -87,7 +87,7 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
     EXPECT_EQ(*answer.result.find("number")->as<std::int64_t>(), static_cast<unsigned char>(image[4]));
     const CameraStance stance = rig_->first_stance(place);
     const View view = rig_->cameras[place].view(stance);
-    const Backbone backbone(rig_->truth, rig_->initial);
+    const Backbone backbone = rig_->truth.backbone(rig_->initial);
     std::vector<Eigen::Vector2d> truth;
     for (int i = 0; i <= 1000; ++i)
       truth.push_back(*view.project(backbone.pose(1e-3 * i * backbone.length()).position));
@@ -109,10 +109,10 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
   const auto markers = points_of(*layers_of(answer, "markers").at(0));
   EXPECT_GE(markers.size(), 5) << "of three bands a section; one may be seen too much from its end";
   EXPECT_LE(markers.size(), 6);
-  const Backbone backbone(rig_->truth, rig_->initial);
+  const Backbone backbone = rig_->truth.backbone(rig_->initial);
   const CameraStance stance = rig_->first_stance(0);
   const View view = rig_->cameras[0].view(stance);
-  const auto look = rig_->experiment.arm.look.markers(rig_->truth);
+  const auto look = rig_->experiment.arm.look.markers(rig_->truth.driven());
   for (const Eigen::Vector2d& seen : markers) {
     const bool is_one = std::ranges::any_of(look, [&](const Marker& marker) {
       return (*view.project(backbone.pose(marker.at).position) - seen).norm() < 1;
@@ -156,7 +156,7 @@ TEST_F(MeasuredArm, IsFoundInTwoPicturesAsItStands) {
   ASSERT_TRUE(*answer.result.find("found")->as<bool>()) << *answer.result.find("reason")->as<std::string>();
   EXPECT_EQ(answer.result.find("numbers")->as<Node::Array>()->size(), 2);
   const Node::Array& tip = *answer.result.find("poses")->as<Node::Array>()->back().as<Node::Array>();
-  const Eigen::Vector3d truth = tip_pose(rig_->truth, rig_->initial).position;
+  const Eigen::Vector3d truth = tip_pose(rig_->truth.driven(), rig_->initial).position;
   for (Eigen::Index i = 0; i < 3; ++i)
     EXPECT_NEAR(*tip[static_cast<std::size_t>(i)].as<double>(), truth[i], 2e-3);
   EXPECT_LT(*answer.result.find("rms_px")->as<double>(), 0.5);

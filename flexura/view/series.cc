@@ -30,7 +30,8 @@ bool can_stretch(const Arm& arm) {
 }
 
 // One state's values, in the order of the quantities.
-std::vector<double> values_of(const Arm& arm, const ArmState& state) {
+std::vector<double> values_of(const ArmModel& model, const ArmState& state) {
+  const Arm& arm = model.driven();
   std::vector<double> values;
   const auto append = [&](const std::vector<double>& more) {
     values.insert(values.end(), more.begin(), more.end());
@@ -43,7 +44,7 @@ std::vector<double> values_of(const Arm& arm, const ArmState& state) {
     for (const Eigen::Vector2d& bend : state.bends) values.push_back(bend.y());
   }
   if (can_stretch(arm)) append(state.stretches);
-  const Eigen::Vector3d tip = tip_pose(arm, state).position;
+  const Eigen::Vector3d tip = model.backbone(state).tip().position;
   for (const double coordinate : tip) values.push_back(coordinate);
   return values;
 }
@@ -95,7 +96,7 @@ std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves, st
 }
 
 std::vector<Quantity> SeriesTable::quantities(const Recording& recording) {
-  const Arm& arm = recording.rig()->model;
+  const Arm& arm = recording.rig()->model.driven();
   std::vector<Quantity> list;
   const std::size_t sections = arm.sections.size();
   if (arm.kind == ArmKind::planar) {
@@ -112,14 +113,13 @@ std::vector<Quantity> SeriesTable::quantities(const Recording& recording) {
 }
 
 SeriesTable::SeriesTable(const Recording& recording) {
-  const Arm& arm = recording.rig()->model;
   const std::vector<Quantity> names = quantities(recording);
   std::vector<std::vector<double>*> curves;
   curves.reserve(names.size());
   for (const Quantity& quantity : names) curves.push_back(&curves_[quantity.name]);
   for (std::size_t place = 0; place < recording.states(); ++place) {
     times_.push_back(recording.time_of_state(place));
-    std::vector<double> values = values_of(arm, recording.state(place));
+    std::vector<double> values = values_of(recording.rig()->model, recording.state(place));
     if (recording.has_servo()) append_servo(recording, times_.back(), values);
     for (std::size_t i = 0; i < values.size(); ++i) curves[i]->push_back(values[i]);
   }

@@ -57,17 +57,17 @@ struct Shapes {
 };
 
 Shapes shapes_of(const ViewedRig& rig, const ServoStepMessage& step) {
-  Shapes shapes{shape_of(rig.model, step.lengths, step.desired, step.desired_stretches), {}, {}};
+  Shapes shapes{shape_of(rig.model.shaped(), step.lengths, step.desired, step.desired_stretches), {}, {}};
   if (step.seen && step.seen_stretches)
-    shapes.seen = shape_of(rig.model, step.lengths, *step.seen, *step.seen_stretches);
+    shapes.seen = shape_of(rig.model.shaped(), step.lengths, *step.seen, *step.seen_stretches);
   if (step.truth && step.true_lengths)
-    shapes.truth = shape_of(rig.truth, *step.true_lengths, *step.truth,
-                            std::vector<double>(rig.truth.sections.size(), 1));
+    shapes.truth = shape_of(rig.truth.shaped(), *step.true_lengths, *step.truth,
+                            std::vector<double>(rig.truth.shaped().sections.size(), 1));
   return shapes;
 }
 
 GhostArm ghost_of(const Named& mark, const Shape& shape) {
-  return {mark.id, mark.label, mark.color, arm_samples(shape.arm, shape.state)};
+  return {mark.id, mark.label, mark.color, arm_samples(Backbone(shape.arm, shape.state))};
 }
 
 // Between points of equal shares of both lengths, mm.

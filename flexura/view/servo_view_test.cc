@@ -106,9 +106,10 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   const Node::Array& ghosts = list_in(extras, "ghosts");
   ASSERT_THAT(ids_of(ghosts), ElementsAre("wanted", "seen", "truth"));
   const ViewedRig& rig = *seen->rig;
-  EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model, wanted_shape).position).norm(), 1e-9);
+  EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model.driven(), wanted_shape).position).norm(), 1e-9);
   const double off = (tip_of(ghosts[2]) - tip_of(ghosts[0])).norm();
-  EXPECT_NEAR(off, number_in(*extras.find("values"), "servo_true_tip") / 100 * rig.model.length(), 1e-9);
+  EXPECT_NEAR(off, number_in(*extras.find("values"), "servo_true_tip") / 100 * rig.model.driven().length(),
+              1e-9);
   const Node::Array& overlays = list_in(extras, "overlays");
   ASSERT_EQ(overlays.size(), 2);
   for (const Node& overlay : overlays) {
@@ -125,7 +126,7 @@ TEST_F(ServoView, TellsErrorsAlongTheArmAsTheServoKnowsThem) {
   for (const Node& extras : live_extras()) {
     const Node* along = extras.find("along");
     if (along == nullptr) continue;
-    const double millimetres = 10 * seen->rig->model.length();  // of a percent
+    const double millimetres = 10 * seen->rig->model.driven().length();  // of a percent
     const Node::Array& curves = list_in(*along, "curves");
     ASSERT_THAT(ids_of(curves), ElementsAre("seen", "truth"));
     last = rms_of(curves[0]);
@@ -254,7 +255,7 @@ TEST(ServoExtras, MeasureDistancesAsServosDo) {
   for (int i = 0; i < 50; ++i) {
     SCOPED_TRACE("seed " + std::to_string(case_seed(i)));
     TestRandom random(case_seed(i));
-    Arm arm = rig->model;
+    Arm arm = rig->model.driven();
     ArmState desired, seen;
     const Extras extras = servo_extras(*rig, {random_step(random, desired, seen, arm), {}});
     const ServoError error = servo_error(arm, seen, desired);
@@ -272,7 +273,7 @@ TEST(ServoExtras, MeasureDistancesAsServosDo) {
 TEST(ServoExtras, DrawWhatTheLawComparesWithLinesBetween) {
   const ViewedRigPtr rig = viewed_rig(servo_file(servo_target));
   TestRandom random(case_seed(0));
-  Arm arm = rig->model;
+  Arm arm = rig->model.driven();
   ArmState desired, seen;
   ServoSightingMessage sighting;
   sighting.camera = "front";
@@ -295,7 +296,7 @@ TEST(ServoExtras, DrawWhatTheLawComparesWithLinesBetween) {
 TEST(ServoExtras, RefuseShapesOfAnotherArm) {
   const ViewedRigPtr rig = viewed_rig(servo_file(servo_target));
   TestRandom random(case_seed(0));
-  Arm arm = rig->model;
+  Arm arm = rig->model.driven();
   ArmState desired, seen;
   const ServoStepMessage good = random_step(random, desired, seen, arm);
   const auto refuses = [&](const std::function<void(ServoStepMessage&)>& damage) {

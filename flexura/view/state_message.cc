@@ -105,23 +105,19 @@ std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cam
 
 }  // namespace
 
-std::vector<ArmSample> arm_samples(const Arm& arm, const ArmState& state) {
+std::vector<ArmSample> arm_samples(const Backbone& backbone) {
   constexpr double largest_turn = std::numbers::pi / 2, most = 64;
-  const Backbone backbone(arm, state);
   std::vector<ArmSample> samples;
-  double start = 0;
-  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
-    const Arc& arc = backbone.arcs()[i];
-    const double length = arm.sections[i].length;
+  for (const Arc& arc : backbone.arcs()) {
     const auto pieces =
         static_cast<int>(std::clamp(std::ceil(arc.bend.norm() / largest_turn - 1e-9), 1.0, most));
     for (int piece = 0; piece < pieces; ++piece) {
       const double part = static_cast<double>(piece) / pieces;
-      samples.push_back({start + part * length, piece == 0 ? arc.X_WS : arc.pose(part * arc.length)});
+      samples.push_back(
+          {arc.s_rest + part * arc.rest_length, piece == 0 ? arc.X_WS : arc.pose(part * arc.length)});
     }
-    start += length;
   }
-  samples.push_back({start, backbone.tip()});
+  samples.push_back({backbone.rest_length(), backbone.tip()});
   return samples;
 }
 

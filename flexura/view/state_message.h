@@ -45,9 +45,9 @@ struct StateMessage {
   std::vector<double> displacements;  ///< m, of the tendons.
 };
 
-/// The samples of a state message: every section's ends, and so many points between that from one to the next
-/// the backbone is one arc that turns by a right angle at most.
-[[nodiscard]] std::vector<ArmSample> arm_samples(const Arm& arm, const ArmState& state);
+/// The samples of a state message: the ends of every arc, and so many points between that from one to the
+/// next the backbone is one arc that turns by a right angle at most.
+[[nodiscard]] std::vector<ArmSample> arm_samples(const Backbone& backbone);
 
 /// std::length_error for more than 65535 of anything.
 [[nodiscard]] std::string state_message(const StateMessage& state);

@@ -39,7 +39,7 @@ StateMessage random_message(TestRandom& random) {
   message.time = random.uniform(0, 1e6);
   const auto sections = static_cast<std::size_t>(random.integer(1, 5));
   message.arm = random_state(random, sections);
-  message.samples = arm_samples(arm_of(sections), message.arm);
+  message.samples = arm_samples(Backbone(arm_of(sections), message.arm));
   for (int i = random.integer(0, 3); i > 0; --i) {
     message.cameras.push_back({{so3_exp(random.vector<3>(-1, 1)), random.vector<3>(-3, 3)},
                                {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(1, 10)},
@@ -118,7 +118,7 @@ TEST(StateMessage, HasOneArcBetweenTwoSamples) {
     const Arm arm = arm_of(3);
     const ArmState state = random_state(random, 3);
     const Backbone backbone(arm, state);
-    const auto samples = arm_samples(arm, state);
+    const auto samples = arm_samples(Backbone(arm, state));
     EXPECT_EQ(samples.front().s, 0);
     EXPECT_NEAR(samples.back().s, arm.length(), 1e-12);
     double at = 0;

@@ -53,8 +53,8 @@ Instant instant_at(const std::vector<Instant>& instants, double time) {
 
 ViewedRig::ViewedRig(Experiment read)
     : experiment(std::move(read)),
-      model(experiment.arm.arm()),
-      truth(experiment.true_rig().arm.arm()),
+      model(experiment.arm.model()),
+      truth(experiment.true_rig().arm.model()),
       initial(ArmSetup(experiment.true_rig()).initial),
       obstacles(flexura::obstacles(experiment.obstacle)) {
   if (experiment.drive) drive = experiment.drive->drive();
@@ -118,7 +118,7 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
   shot.view = [rig, camera, shown](double time) {
     return rig->cameras[camera].view(instant_at(*shown, time).stance);
   };
-  shot.backbone = [rig, shown](double time) { return Backbone(rig->truth, instant_at(*shown, time).arm); };
+  shot.backbone = [rig, shown](double time) { return rig->truth.backbone(instant_at(*shown, time).arm); };
   return {std::move(shot), shown};
 }
 

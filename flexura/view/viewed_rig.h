@@ -10,7 +10,7 @@
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run_watcher.h"
-#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/sim/simulated_camera.h"
@@ -31,8 +31,8 @@ class ViewedRig {
   explicit ViewedRig(Experiment read);
 
   Experiment experiment;
-  Arm model, truth;  ///< The arm as it is believed to be, and as it is.
-  ArmState initial;  ///< As it is.
+  ArmModel model, truth;  ///< The arm as it is believed to be, and as it is.
+  ArmState initial;       ///< As it is.
   std::vector<Obstacle> obstacles;
   std::optional<Drive> drive;    ///< As it is believed to be.
   std::vector<Camera> cameras;   ///< As they are.

@@ -25,15 +25,15 @@ TEST(ViewedRig, IsShownInPicturesAsItTrulyIsAndNotAsItIsBelievedToBe) {
   const std::vector<Instant> instants = swing(0, 1);
   const ValueShot shot = value_shot(rig, 0, 0, 0, {instants[0]});
   const Eigen::Vector3d tip = shot.shot.backbone(0).tip().position;
-  EXPECT_LT((tip - Backbone(rig->truth, instants[0].arm).tip().position).norm(), 1e-12);
-  EXPECT_NEAR((tip - Backbone(rig->model, instants[0].arm).tip().position).norm(), 0.1, 1e-12);
+  EXPECT_LT((tip - rig->truth.backbone(instants[0].arm).tip().position).norm(), 1e-12);
+  EXPECT_NEAR((tip - rig->model.backbone(instants[0].arm).tip().position).norm(), 0.1, 1e-12);
 }
 
 TEST(ViewedRig, IsShownBetweenTwoInstantsInBetween) {
   const ViewedRigPtr rig = viewed_rig(lifted_text);
   const ValueShot shot = value_shot(rig, 1, 0, 3, swing(3, 3.01));
   const ArmState arm = {{{0.3, 0}, {0, 0.1}}, {1, 1}};  // A quarter of the way.
-  EXPECT_LT((shot.shot.backbone(3.0025).tip().position - Backbone(rig->truth, arm).tip().position).norm(),
+  EXPECT_LT((shot.shot.backbone(3.0025).tip().position - rig->truth.backbone(arm).tip().position).norm(),
             1e-12);
   const View view = shot.shot.view(3.0025), there = rig->cameras[1].view({{0.05, -0.025, 1}, {}});
   EXPECT_LT((view.X_WC.rotation - there.X_WC.rotation).norm(), 1e-12);

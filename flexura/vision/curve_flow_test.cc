@@ -29,7 +29,7 @@ SeenArms bent_on() {
     bent.state = ArmState::straight(2);
     bent.state.bends = {{0.2, bend}, {-0.3, -bend}};
     seen.scene.background = Color::Constant(0.85);
-    seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
+    seen.scene.arm.tube = tube_of(bent.backbone());
     for (double s = 0.08; s < 0.78; s += 0.1)
       seen.scene.arm.markers.push_back({s - 0.01, s + 0.01, Color::Constant(0.6)});
     seen.view = pinhole_view(look_at({0, 0.4, 1.6}, {0, 0.4, 0}), 640, 480, 800);

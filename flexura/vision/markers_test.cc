@@ -40,7 +40,7 @@ class BandedPicture {
     bent.state = ArmState::straight(2);
     bent.state.bends = {{0, 0.5}, {0.2, -0.4}};
     scene.background = Color::Constant(0.85);
-    scene.arm.tube = tube_of(bent.arm, bent.backbone());
+    scene.arm.tube = tube_of(bent.backbone());
     scene.arm.albedo = {0.08, 0.08, 0.09};
     scene.arm.markers = bands;
     options.color = true;

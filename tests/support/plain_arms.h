@@ -20,7 +20,7 @@ inline SeenArm plain_arm(double bend, const SeenArmConfig& options = {}) {
   bent.state = ArmState::straight(2);
   bent.state.bends = {{0, bend}, {0, -bend}};
   seen.scene.background = Color::Constant(0.85);
-  seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  seen.scene.arm.tube = tube_of(bent.backbone());
   seen.view =
       pinhole_view(look_at({0, 0.4, 1.6}, {0, 0.4, 0}), options.width, options.height, 1.25 * options.width);
   seen.picture = photograph(seen.scene, seen.view, options, 1);
@@ -50,7 +50,7 @@ inline SeenArm bent_arm_in_view(const std::vector<Eigen::Vector2d>& bends, doubl
   bent.state.bends = bends;
   seen.radius = radius;
   seen.scene.background = Color::Constant(0.85);
-  seen.scene.arm.tube = tube_of(bent.arm, bent.backbone());
+  seen.scene.arm.tube = tube_of(bent.backbone());
   seen.view = pinhole_view(look_at(from, to), 640, 480, focal_length);
   seen.picture = photograph(seen.scene, seen.view, {.noise = 1}, 3);
   seen.truth = true_axis(seen.scene, seen.view, 2001);

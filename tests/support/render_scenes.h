@@ -68,10 +68,10 @@ inline BentArm random_bent_arm(TestRandom& random, double taper, double step = 0
 
 /// Everything at once, in the way of each other, in shades of gray: the arm with markers and disks, a screen,
 /// the etalon, an obstacle of each kind.
-inline Scene crowded_scene(TestRandom& random, const BentArm& bent, const Backbone& backbone) {
+inline Scene crowded_scene(TestRandom& random, const Backbone& backbone) {
   Scene scene = plain_scene();
   const auto gray = [](double value) { return Color(value, value, value); };
-  scene.arm.tube = tube_of(bent.arm, backbone);
+  scene.arm.tube = tube_of(backbone);
   scene.arm.tip = random.integer(0, 1) == 0 ? TipKind::flat : TipKind::round;
   scene.arm.albedo = gray(0.2), scene.arm.disk_albedo = gray(0.5);
   for (int i = 0; i < 9; ++i) scene.arm.markers.push_back({0.1 * i + 0.05, 0.1 * i + 0.08, gray(0.7)});

@@ -57,7 +57,7 @@ inline std::vector<AxisPoint> true_axis(const Scene& scene, const View& view, in
   Renderer renderer;
   renderer.prepare(scene, view);
   std::vector<double> s;
-  const double length = scene.arm.tube.back().arc.s + scene.arm.tube.back().arc.length;
+  const double length = scene.arm.tube.back().s + scene.arm.tube.back().length;
   for (int i = 0; i < count; ++i) s.push_back(length * i / (count - 1));
   return projected_axis(renderer, s);
 }
@@ -84,7 +84,7 @@ inline RandomArm random_arm(TestRandom& random, const SeenArmConfig& options) {
     bend = random.uniform(0, options.most_bend) * random.vector<2>(-1, 1).normalized();
   const Backbone backbone = bent.backbone();
   arm.scene.background = Color::Constant(random.uniform(0.7, 0.9));
-  arm.scene.arm.tube = tube_of(bent.arm, backbone);
+  arm.scene.arm.tube = tube_of(backbone);
   arm.scene.arm.tip = random.integer(0, 1) == 0 ? TipKind::flat : TipKind::round;
   arm.scene.arm.albedo = {0.08, 0.08, 0.09};
   for (double s = 0.05; options.bands && s < backbone.length() - 0.03; s += 0.07)

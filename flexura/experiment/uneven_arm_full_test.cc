@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/export_csv.h"
+#include "flexura/experiment/messages.h"
+#include "flexura/experiment/run.h"
+#include "flexura/store/text_file.h"
+#include "tests/support/checkout.h"
+#include "tests/support/quiet.h"
+#include "tests/support/servo_bench.h"
+#include "tests/support/temporary_folder.h"
+
+// The truth is an arm that no model of one arc a section fits.
+namespace flexura {
+namespace {
+
+constexpr double uneven = 0.3;
+const ArmState uneven_goal = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+
+// Sections that truly bend more near their bases; what is believed of them.
+std::string uneven_file(const std::string& task, const std::string& believed) {
+  ServoSetup rig;
+  rig.arm += "\n" + believed;
+  for (int i = 0; i < 3; ++i)
+    rig.rest += fmt::format("[[truth.arm.section]]\nbend_profile = [{}, 1, {}]\n", 1 + uneven, 1 - uneven);
+  return servo_file(task + servo_target, rig);
+}
+
+struct Reached {
+  ServoResult result;
+  ServoError estimated;  // The estimate, from the arm as it truly was then.
+  ServoError left;       // The arm, from what is wanted.
+};
+
+Reached servo(const std::string& law, const std::string& believed) {
+  ServoBench bench(uneven_file("law = \"" + law + "\"\ntolerance = 0.02\n", believed));
+  Reached reached{bench.servo(), {}, {}};
+  EXPECT_TRUE(reached.result.is_done) << reached.result.reason;
+  if (!reached.result.last) return reached;
+  const Arm shaped = bench.experiment().arm.model().shaped();
+  const ServoSight& sight = *reached.result.last;
+  reached.estimated = servo_error(bench.rig().arm().backbone(sight.time),
+                                  Backbone(shaped, sight.estimate.shape.state), shaped.length());
+  reached.left = servo_error(bench.rig().arm().backbone(bench.rig().clock().now()),
+                             bench.experiment().arm.model().backbone(uneven_goal), shaped.length());
+  std::printf("%s, %s: the estimate %.4f %% of the length off, the arm %.4f %%\n", law.c_str(),
+              believed.empty() ? "one arc a section" : believed.c_str(), 100 * reached.estimated.rms,
+              100 * reached.left.rms);
+  return reached;
+}
+
+class UnevenArm : public testing::TestWithParam<std::string> {};
+
+TEST_P(UnevenArm, IsSteeredWhateverIsBelievedAndSeenAsItIsByTheFinerModel) {
+  const Reached plain = servo(GetParam(), ""), fine = servo(GetParam(), "bend_profile = [1, 1, 1]"),
+                right = servo(GetParam(), fmt::format("bend_profile = [{}, 1, {}]", 1 + uneven, 1 - uneven));
+  // A shape of one arc a section is not what the arm has; one of three is.
+  EXPECT_GT(plain.estimated.rms, 0.003);
+  EXPECT_LT(fine.estimated.rms, 0.0015);
+  EXPECT_LT(right.estimated.rms, 0.0015);
+  EXPECT_LT(plain.left.rms, 0.03);
+  EXPECT_LT(fine.left.rms, 0.03);
+  // What is wanted can be had where it is known how sections bend.
+  EXPECT_LT(right.left.rms, 0.004);
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, UnevenArm, testing::Values("shape", "points", "silhouettes"));
+
+TEST(UnevenArmLearning, GoesByWhatIsLearnedOfTheDrivesToo) {
+  const Reached learned = servo("points\"\njacobian = \"recursive",
+                                fmt::format("bend_profile = [{}, 1, {}]", 1 + uneven, 1 - uneven));
+  EXPECT_LT(learned.left.rms, 0.006);
+}
+
+// Calibrated, steered, recorded and exported.
+TEST(UnevenArmExample, FindsHowItsSectionsBend) {
+  const TemporaryFolder folder;
+  Quiet quiet;
+  const RunResult result = run_experiment(
+      load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml")), folder.path(), quiet);
+  ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+  for (const Node& one : *result.summary.find("servos")->as<Node::Array>())
+    EXPECT_LT(*one.find("remaining_in_truth")->find("rms")->as<double>(), 0.004);
+  const Experiment found = load_experiment(folder.path() / "rig.toml");
+  constexpr std::array truth = {0.4, 0.3, 0.2};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double>& profile = *found.arm.section[i].bend_profile;
+    ASSERT_EQ(profile.size(), 3U);
+    const std::array shall = {(1 + truth[i]) / 3, 1.0 / 3, (1 - truth[i]) / 3};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(profile[k], shall[k], 0.06) << i << ", " << k;
+  }
+  const ExportResult exported = export_csv(folder.path());
+  const std::string table = read_text_file(exported.folder / "truth.csv", 1 << 26);
+  EXPECT_TRUE(table.starts_with("time,arc_1_x,arc_1_y,arc_1_z,arc_2_x"));
+  EXPECT_EQ(std::ranges::count(table.substr(0, table.find('\n')), ','), 3 * 10 + 4);
+  EXPECT_GT(std::ranges::count(table, '\n'), 500);
+}
+
+}  // namespace
+}  // namespace flexura

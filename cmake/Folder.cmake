@@ -1,6 +1,7 @@
 # flexura_folder(NAME [THREADS] [LIGHT] [BUSY_TESTS] [SHARDS n] [LINKS targets...] [PRIVATE_LINKS targets...])
 #
-# Makes the library flexura::NAME from the current folder: every *.cc and *.h in it, but for
+# Makes the library flexura::NAME from the current folder: every *.cc and *.h in it and in its rooms (the folders in it),
+# but for
 #   *_test.cc       quick tests    -> executable NAME_test,       ctest NAME,      label quick
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
@@ -12,7 +13,7 @@
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;LIGHT;BUSY_TESTS" "SHARDS" "LINKS;PRIVATE_LINKS")
-  file(GLOB sources CONFIGURE_DEPENDS *.cc *.h)
+  file(GLOB sources CONFIGURE_DEPENDS *.cc *.h */*.cc */*.h)
   set(tests ${sources})
   set(fuzzers ${sources})
   list(FILTER sources EXCLUDE REGEX "(_test|_fuzz|/main)[.]cc$")

@@ -19,8 +19,8 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/camera/view.h"
-#include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
+#include "flexura/tasks/servo/servo_run.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/exact_loops.h"
 #include "tests/support/loop_files.h"

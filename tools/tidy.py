@@ -6,7 +6,7 @@ usage: tidy.py --build BUILD [--all]
 BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources as they were
 when clang-tidy last passed on them. Without --all, it checks the sources (.cc) of the product that differ from the
 record. With --all it checks every source, tests and benchmarks too, which also shows what a changed header means for
-those that include it. Each source that passes is brought up to date in the record.
+those that include it. Each source of the product that passes is brought up to date in the record, as it was before.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
 compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
@@ -113,10 +113,10 @@ def check_all(build, waiting):
 
 
 def keep_record(known, passed):
-    """The record with today's digests of what has passed; `known` are all the sources that may stay in it."""
+    """The record with the digests of what has passed; `known` are all the sources that may stay in it."""
     names = {str(source.relative_to(ROOT)) for source in known}
     kept = {name: digest for name, digest in recorded(RECORD).items() if name in names}
-    kept.update(digests(passed))
+    kept.update(passed)
     RECORD.write_text("".join(f"{digest} {name}\n" for name, digest in sorted(kept.items())))
 
 
@@ -139,6 +139,9 @@ def main():
     passes = {source: cache / key(commands[source], reach[source]) for source in sources}
     waiting = {source: passed for source, passed in passes.items() if not passed.exists()}
 
+    # Tests and benchmarks are never compared with the record. A file that is edited meanwhile has not passed.
+    kept = {SETTINGS, *filter(is_product, reach)}
+    before = digests(kept)
     start = time.monotonic()
     failed = 0
     try:
@@ -146,7 +149,8 @@ def main():
     finally:
         done = {source for source, passed in passes.items() if passed.exists()}
         # What was to be looked at and has not passed is looked at again, even where its own text is as before.
-        keep_record({SETTINGS, *reach} - (set(sources) - done), done if failed else done | {SETTINGS})
+        passed = (done if failed else done | {SETTINGS}) & kept
+        keep_record(kept - (set(sources) - done), {name: before[name] for name in digests(passed)})
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "
           f"{time.monotonic() - start:.0f} s, {failed} with findings")
     return 1 if failed else 0

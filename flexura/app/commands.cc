@@ -17,17 +17,19 @@
 #include "flexura/app/view.h"
 #include "flexura/app/words.h"
 #include "flexura/base/table.h"
-#include "flexura/experiment/dynamics_run.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/export_csv.h"
-#include "flexura/experiment/export_mp4.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/export_mp4.h"
+#include "flexura/log/results.h"
+#include "flexura/log/results_log.h"
 #include "flexura/safety/violation_groups.h"
 #include "flexura/store/json.h"
 #include "flexura/store/schema.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/task_kinds.h"
 #include "flexura/view/run_link.h"
 
 namespace flexura {
@@ -90,6 +92,12 @@ class UnwatchedRun {
   StopSignal stop_;
 };
 
+// The films of a run's cameras.
+ExportResult export_films(const std::filesystem::path& results) {
+  const Experiment experiment = load_experiment(file_of_results(results, experiment_file_name));
+  return export_mp4(results, experiment.true_rig().cameras);
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
@@ -114,7 +122,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   // A film is an extra: a run without ffmpeg is as good, and who has told it to stop does not wait for one.
   if (experiment.record.cameras && result.outcome != RunOutcome::cancelled) {
     try {
-      (void)export_mp4(folder);
+      (void)export_films(folder);
     } catch (const std::exception& error) {
       tell(err, "no film", error.what());
     }
@@ -143,7 +151,7 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
   TerminalProgress progress(err);
-  const SafetyReport report = safety_with_dynamics(experiment, progress);
+  const SafetyReport report = check_experiment_safety(experiment, progress);
   progress.clear();
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
@@ -170,7 +178,7 @@ int export_command(const std::string& results, const std::string& format, std::o
                    std::ostream& err) {
   if (format != "csv" && format != "mp4")
     throw input_error("--to", fmt::format("\"{}\": expected csv or mp4", format));
-  const ExportResult result = format == "csv" ? export_csv(results) : export_mp4(results);
+  const ExportResult result = format == "csv" ? export_csv(results, task_tables()) : export_films(results);
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
   tell(out, format == "csv" ? "tables" : "films", result.folder.string());

@@ -9,7 +9,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/estimate/curve_angles.h"
-#include "flexura/experiment/messages.h"
+#include "flexura/log/messages.h"
 #include "flexura/math/pose.h"
 #include "flexura/model/backbone.h"
 

@@ -8,8 +8,8 @@
 
 #include "flexura/base/problems.h"
 #include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/log/messages.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/store/json.h"

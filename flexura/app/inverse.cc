@@ -8,9 +8,9 @@
 
 #include "flexura/base/problems.h"
 #include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/log/messages.h"
 #include "flexura/math/arrays.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/store/json.h"

@@ -15,10 +15,10 @@
 #include "flexura/app/words.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/filming.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/truth_files.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/rig/filming.h"
+#include "flexura/rig/truth_files.h"
 #include "flexura/sim/simulated_camera.h"
 #include "flexura/store/text_file.h"
 
@@ -57,7 +57,7 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   const FrameTimes next = times_of_frame_at(sensor, arguments.time + 1 / sensor.frame_rate);
 
   Filming filming(experiment);
-  const double played = filming.play_unfilmed(next.end, schedule);
+  const double played = play_unfilmed(next.end, schedule, filming);
   if (arguments.time > played) {
     throw input_error("--time", fmt::format("{} s is not in the run: at {:.6g} s it ends in a shape that no "
                                             "arm can take",

@@ -13,9 +13,9 @@
 
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/filming.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/rig/filming.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/experiment_files.h"

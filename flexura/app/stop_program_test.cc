@@ -14,10 +14,11 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
+#include "flexura/log/messages.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/servo/servo_messages.h"
 #include "tests/support/program.h"
 #include "tests/support/servo_files.h"
 

@@ -24,7 +24,7 @@
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/results.h"
+#include "flexura/log/results.h"
 #include "flexura/serve/gate.h"
 #include "flexura/store/gzip.h"
 #include "flexura/view/recording.h"

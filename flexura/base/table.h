@@ -83,9 +83,10 @@ class Table : public AnyTable {
   /// reference.
   Table(std::string name, std::string meaning) : AnyTable(std::move(name), std::move(meaning)) {}
 
-  /// Adds a field that fills `member`.
-  template <class M>
-  Table& field(std::string name, M S::* member, Spec spec) {
+  /// Adds a field that fills `member`, of S or of what S is made of.
+  template <class M, class Base>
+    requires std::derived_from<S, Base>
+  Table& field(std::string name, M Base::* member, Spec spec) {
     const S& value = defaults();
     const M* field = &(value.*member);
     const auto offset = reinterpret_cast<const char*>(field) - reinterpret_cast<const char*>(&value);

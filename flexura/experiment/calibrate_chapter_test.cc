@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/calibrate_results.h"
-#include "flexura/experiment/calibrate_task.h"
+#include "flexura/tasks/calibrate/calibrate_results.h"
+#include "flexura/tasks/calibrate/calibrate_run.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/loop_files.h"
 

@@ -1,5 +1,3 @@
-#include "flexura/experiment/calibrate_task.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,9 +17,10 @@
 #include "flexura/base/image.h"
 #include "flexura/base/table.h"
 #include "flexura/calibrate/rig_session_plan.h"
-#include "flexura/experiment/calibrate_results.h"
-#include "flexura/experiment/photographer.h"
+#include "flexura/rig/photographer.h"
 #include "flexura/sim/simulated_rig.h"
+#include "flexura/tasks/calibrate/calibrate_results.h"
+#include "flexura/tasks/calibrate/calibrate_run.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/calibration_files.h"
 #include "tests/support/experiment_files.h"

@@ -6,8 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "flexura/experiment/messages.h"
 #include "flexura/kinematics/tendons.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/messages.h"
 
 namespace flexura {
 namespace {
@@ -42,7 +43,7 @@ void DriveCommands::step(double time, const ArmState& state, Recorder& recorder)
     message.rates.push_back(time > time_ ? moved / (time - time_) : 0.0);
   }
   time_ = time;
-  recorder.commands(message);
+  recorder.write({drive_commands_topic, message.time, message});
   rows_.cell(time);
   for (const std::int64_t position : message.positions) rows_.cell(fmt::format("{}", position));
   rows_.cells(message.rates);

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "flexura/experiment/recorder.h"
 #include "flexura/kinematics/motors.h"
+#include "flexura/log/recorder.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/store/csv.h"

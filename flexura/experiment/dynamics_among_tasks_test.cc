@@ -10,14 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/dynamics_run.h"
-#include "flexura/experiment/export_csv.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/results_log.h"
+#include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/results.h"
+#include "flexura/log/results_log.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/dynamics/dynamics_run.h"
+#include "flexura/tasks/task_kinds.h"
 #include "tests/support/dynamics_files.h"
 #include "tests/support/dynamics_runs.h"
 #include "tests/support/experiment_files.h"
@@ -81,7 +83,7 @@ TEST_F(Dynamics, LogsEveryNthStateAndBothEnds) {
 TEST_F(Dynamics, IsExportedAsATable) {
   const RunResult result =
       run(dynamics_arm("planar") + dynamics_task("duration = 3\ntarget.archings_deg = [-20, 10, 5]\n"));
-  const ExportResult exported = export_csv(result.folder);
+  const ExportResult exported = export_csv(result.folder, task_tables());
   std::ifstream table(exported.folder / "dynamics.csv");
   std::string head, line, last;
   std::getline(table, head);
@@ -119,15 +121,14 @@ TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
    private:
     std::vector<double> told_;
   } cancelled;
-  std::map<std::size_t, MotionPtr> performed;
-  std::vector<DynamicsRun> runs;
-  run_known_dynamics(
-      parse_experiment("[clock]\nstep = 5\n" + dynamics_arm() + dynamics_task(bent_target), "x.toml"),
-      performed, runs, cancelled);
-  ASSERT_EQ(runs.size(), 1);
-  EXPECT_EQ(runs[0].reason(), "cancelled");
-  EXPECT_GT(runs[0].samples.back().energies.time, 0);
-  EXPECT_LT(runs[0].samples.back().energies.time, 1);
+  const Experiment experiment =
+      parse_experiment("[clock]\nstep = 5\n" + dynamics_arm() + dynamics_task(bent_target), "x.toml");
+  const auto& task = std::get<DynamicsTask>(experiment.task[0]);
+  const DynamicsRun run =
+      run_dynamics(task, {"dynamics", 0}, experiment, Schedule(experiment).initial(), 0, cancelled);
+  EXPECT_EQ(run.reason(), "cancelled");
+  EXPECT_GT(run.samples.back().energies.time, 0);
+  EXPECT_LT(run.samples.back().energies.time, 1);
   EXPECT_EQ(cancelled.told().size(), 21);
   EXPECT_GT(cancelled.told().back(), 0);
   EXPECT_LT(cancelled.told().back(), 0.2);
@@ -151,7 +152,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
     EXPECT_THAT(notes, testing::Not(testing::Contains(StartsWith("third"))));
   };
   Quiet quiet;
-  const SafetyReport report = safety_with_dynamics(experiment, quiet);
+  const SafetyReport report = check_experiment_safety(experiment, quiet);
   is_told(report.caveats, report.notes);
   EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
   const RunResult result = run(experiment);

@@ -1,4 +1,4 @@
-#include "flexura/experiment/dynamics_plant.h"
+#include "flexura/tasks/dynamics/dynamics_plant.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/dynamics_run.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/schedule.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
 #include "tests/support/dynamics_files.h"
@@ -131,7 +132,7 @@ TEST(DynamicsPlant, IsToldOfWhereTheCheckJudgesAnotherShape) {
         dynamics_task(
             fmt::format("target.azimuths_deg = [0, {}]\ntarget.elevations_deg = [0, 20]\n", degrees));
     Quiet quiet;
-    return safety_with_dynamics(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
+    return check_experiment_safety(parse_experiment(file, "x.toml", {{}, {}}), quiet).caveats;
   };
   EXPECT_THAT(caveats(172), testing::Contains(testing::HasSubstr("judged by arcs whose tip is up to")));
   EXPECT_THAT(caveats(5), testing::Not(testing::Contains(testing::HasSubstr("judged by arcs"))));

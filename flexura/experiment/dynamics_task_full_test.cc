@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <string>
 
-#include "flexura/experiment/dynamics_run.h"
-#include "flexura/experiment/results.h"
+#include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
+#include "flexura/experiment/schedule.h"
+#include "flexura/log/results.h"
 #include "tests/support/dynamics_files.h"
 #include "tests/support/quiet.h"
 #include "tests/support/servo_files.h"
@@ -40,7 +41,7 @@ TEST(DynamicsFully, WhatBreaksALimitAfterAServoIsUnsafe) {
                                 "0], [0, 40]]\nduration = 20\n");
     Quiet quiet;
     const Experiment experiment = parse_experiment(file, "x.toml", {{"record.report=false"}, {}});
-    const SafetyReport report = safety_with_dynamics(experiment, quiet);
+    const SafetyReport report = check_experiment_safety(experiment, quiet);
     EXPECT_TRUE(report.is_safe());
     EXPECT_THAT(report.caveats, Contains(HasSubstr("judged by the straight way only")));
     const TemporaryFolder folder;

@@ -10,14 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/dynamics_run.h"
-#include "flexura/experiment/export_csv.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/results_log.h"
+#include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/results.h"
+#include "flexura/log/results_log.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/dynamics/dynamics_messages.h"
 #include "tests/support/checkout.h"
 #include "tests/support/dynamics_files.h"
 #include "tests/support/dynamics_runs.h"
@@ -321,9 +322,9 @@ TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   Quiet quiet;
   const Experiment held = parse_experiment(text, "x.toml"),
                    let_go = parse_experiment(text, "x.toml", {falls, {}});
-  EXPECT_TRUE(safety_with_dynamics(held, quiet).is_safe());
+  EXPECT_TRUE(check_experiment_safety(held, quiet).is_safe());
   EXPECT_TRUE(Schedule(let_go).check().is_safe());
-  const SafetyReport report = safety_with_dynamics(let_go, quiet);
+  const SafetyReport report = check_experiment_safety(let_go, quiet);
   EXPECT_FALSE(report.is_safe());
   EXPECT_THAT(report.violations.front().text(), HasSubstr("table"));
   EXPECT_THAT(report.notes, testing::Contains(HasSubstr("dynamics: gravity is compensated to 0 %")));

@@ -8,9 +8,7 @@
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/keyframes.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/store/csv_reader.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 
@@ -21,62 +19,34 @@ constexpr double max_steps = 1e6;
 // An hour of two cameras at 30 Hz and more; no log should hold so many.
 constexpr double max_frames = 250000;
 
-// The files of keyframes that tasks of the document name and that are not there.
-std::vector<Problem> missing_keyframes(const Node& document, const std::filesystem::path& folder) {
-  std::vector<Problem> problems;
+// The nodes of the document's tasks.
+const Node::Array& task_nodes(const Node& document) {
+  static const Node::Array none;
   const Node* list = document.find("task");
   const auto* tasks = list == nullptr ? nullptr : list->as<Node::Array>();
-  for (std::size_t i = 0; tasks != nullptr && i < tasks->size(); ++i) {
-    const Node* file = (*tasks)[i].find("file");
-    const auto* name = file == nullptr ? nullptr : file->as<std::string>();
-    if (name == nullptr) continue;
+  return tasks == nullptr ? none : *tasks;
+}
+
+// The file that a task takes its motion from; null where it names none.
+const Node* file_of(const Node& task) {
+  const Node* file = task.find("file");
+  return file == nullptr || file->as<std::string>() == nullptr ? nullptr : file;
+}
+
+// The files that tasks of the document take their motions from and that are not there.
+std::vector<Problem> missing_files(const Node& document, const std::filesystem::path& folder) {
+  std::vector<Problem> problems;
+  const Node::Array& tasks = task_nodes(document);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Node* file = file_of(tasks[i]);
+    if (file == nullptr) continue;
     try {
-      (void)file_inside(folder, *name);
+      (void)file_inside(folder, *file->as<std::string>());
     } catch (const InputError& error) {
       problems.push_back({file->where, fmt::format("task[{}].file: {}", i, error.problems().front().what)});
     }
   }
   return problems;
-}
-
-// Where the cells of a table's lines stand in its text; quick for lines in rising order.
-class CellPlaces {
- public:
-  explicit CellPlaces(std::string_view text) : text_(text), rest_(text) {}
-
-  // Both from 1, the cell from 0.
-  int column(int line, std::size_t cell) {
-    if (line < line_) line_ = 1, rest_ = text_;
-    for (; line_ < line; ++line_) rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size() - 1) + 1);
-    const std::vector<int> columns = cell_columns(rest_.substr(0, rest_.find('\n')));
-    return cell < columns.size() ? columns[cell] : 1;
-  }
-
- private:
-  std::string_view text_, rest_;
-  int line_ = 1;
-};
-
-// Reads the CSV file of a task of keyframes into the task.
-void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesystem::path& folder) {
-  const std::filesystem::path file = file_inside(folder, task.file);
-  const std::string name = file.string();
-  const std::string text = read_text_file(file, max_toml_bytes);
-  NumberTable table = parse_csv(text, name);
-  task.columns = std::move(table.columns);
-  task.rows = std::move(table.rows);
-  task.file.clear();
-  const auto source = std::make_shared<const std::string>(name);
-  std::vector<Problem> problems;
-  CellPlaces places(text);
-  for (const KeyframeProblem& problem : keyframe_problems(task, arm.kind, arm.section.size())) {
-    const int line = problem.row < 0 ? table.header_line : table.lines[static_cast<std::size_t>(problem.row)];
-    Problem& told = problems.emplace_back();
-    told.where = {source, line, problem.row == all_rows ? 1 : places.column(line, problem.column)};
-    if (problem.row >= 0) told.what = fmt::format("column {}: ", task.columns[problem.column]);
-    told.what += problem.what;
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 // A table's member, made where it is missing.
@@ -161,21 +131,16 @@ Experiment read_document(const Node& document, std::vector<Problem> problems) {
   return experiment;
 }
 
-// The same, with the keyframes of its files.
-Experiment read_with_keyframes(const Node& document, const std::filesystem::path& folder,
-                               std::vector<Problem> problems) {
-  std::ranges::move(missing_keyframes(document, folder), std::back_inserter(problems));
+// The same, with what its tasks' files in `folder` hold.
+Experiment read_with_files(const Node& document, const std::filesystem::path& folder,
+                           std::vector<Problem> problems) {
+  std::ranges::move(missing_files(document, folder), std::back_inserter(problems));
   auto experiment = read_document(document, std::move(problems));
+  experiment.folder = folder;
   problems.clear();
-  for (TaskConfig& task : experiment.task) {
-    auto* keyframes = std::get_if<KeyframesTask>(&task);
-    if (keyframes == nullptr || keyframes->file.empty()) continue;
-    try {
-      read_keyframes(*keyframes, experiment.arm, folder);
-    } catch (const InputError& error) {
-      append(problems, error);
-    }
-  }
+  for (std::size_t i = 0; i < experiment.task.size(); ++i)
+    read_task_files(experiment.task[i], experiment, task_nodes(document).at(i), fmt::format("task[{}]", i),
+                    problems);
   if (!problems.empty()) throw InputError(std::move(problems));
   return experiment;
 }
@@ -208,32 +173,6 @@ void check_whole(const Experiment& experiment, const Node& document) {
            fmt::format("{:.3g} images in {:.6g} s by the cameras' frame rates: expected at most {:.6g}",
                        frames, duration, max_frames));
   }
-}
-
-// What is wrong with the pictures that servos are to reach.
-void check_recorded(const Experiment& experiment, const Node& document) {
-  std::vector<Problem> problems;
-  const std::vector<CameraConfig> cameras = experiment.cameras();
-  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
-    const auto* servo = std::get_if<ServoTask>(&experiment.task[i]);
-    if (servo == nullptr) continue;
-    const Node& task = document.find("task")->as<Node::Array>()->at(i);
-    const auto [first, second] = servo_cameras(*servo, cameras);
-    for (std::size_t k = 0; k < servo->target.size(); ++k) {
-      if (servo->target[k].pictures.empty()) continue;
-      try {
-        (void)recorded_views(servo->target[k], {cameras[first], cameras[second]}, experiment.folder);
-      } catch (const InputError& error) {
-        const Node& target = task.find("target")->as<Node::Array>()->at(k);
-        for (const Problem& problem : error.problems())
-          problems.push_back(
-              {target.find("pictures")->where,
-               fmt::format("task[{}].target[{}].pictures: {}{}", i, k,
-                           problem.where.source ? *problem.where.source + ": " : "", problem.what)});
-      }
-    }
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 // Puts the value of `set` (path=value) into `document`.
@@ -276,10 +215,8 @@ Node resolved_overrides(Node document, const Overrides& overrides) {
 Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides) {
   std::vector<Problem> repeated;
   const Node document = resolved_overrides(read_toml_file(file, &repeated), overrides);
-  auto experiment = read_with_keyframes(document, file.parent_path(), std::move(repeated));
+  auto experiment = read_with_files(document, file.parent_path(), std::move(repeated));
   if (experiment.title.empty()) experiment.title = file.stem().string();
-  experiment.folder = file.parent_path();
-  check_recorded(experiment, document);
   check_whole(experiment, document);
   return experiment;
 }
@@ -288,11 +225,12 @@ Experiment parse_experiment(std::string_view text, const std::string& source, co
   std::vector<Problem> repeated;
   const Node document = resolved_overrides(parse_toml(text, source, &repeated), overrides);
   auto experiment = read_document(document, std::move(repeated));
-  for (const TaskConfig& task : experiment.task) {
-    const auto* keyframes = std::get_if<KeyframesTask>(&task);
-    if (keyframes != nullptr && !keyframes->file.empty())
-      throw input_error(source, "a text alone cannot name a file of keyframes");
-  }
+  const auto names_file = [](const Node& task) {
+    const Node* file = file_of(task);
+    return file != nullptr && !file->as<std::string>()->empty();
+  };
+  if (std::ranges::any_of(task_nodes(document), names_file))
+    throw input_error(source, "a text alone cannot name a file of keyframes");
   check_whole(experiment, document);
   return experiment;
 }

@@ -1,15 +1,17 @@
-#include "flexura/experiment/export_csv.h"
+#include "flexura/log/export_csv.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <filesystem>
 
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/recorder.h"
-#include "flexura/experiment/results.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/recorder.h"
+#include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/servo/servo_messages.h"
+#include "flexura/tasks/task_kinds.h"
 #include "tests/support/temporary_folder.h"
 
 namespace flexura {
@@ -27,14 +29,14 @@ TEST(ExportCsv, HasTheErrorsOfAServoOverTime) {
     step.desired = step.sent = {std::array{0.5, 0.0}};
     step.desired_stretches = step.sent_stretches = {1.0};
     step.lengths = {0.3};
-    recorder.servo(step);
+    recorder.write({servo_steps_topic, step.time, step});
     step.time = 0.25, step.seen_at = 0.125, step.rms = 0.5, step.most = 1.5, step.tip = 1;
     step.true_rms = 0.75, step.true_most = 2, step.true_tip = 1.75, step.potential = 0.0625;
     step.limited = "section 1, a bend";
-    recorder.servo(step);
+    recorder.write({servo_steps_topic, step.time, step});
     recorder.close();
   }
-  const ExportResult exported = export_csv(folder.path());
+  const ExportResult exported = export_csv(folder.path(), task_tables());
   EXPECT_EQ(read_text_file(exported.folder / "servo.csv", 1 << 20),
             "time,seen_at,rms,most,tip,true_rms,true_most,true_tip,potential,limited\n"
             "0,,,,,,,,0,\n"

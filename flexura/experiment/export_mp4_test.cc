@@ -1,4 +1,4 @@
-#include "flexura/experiment/export_mp4.h"
+#include "flexura/log/export_mp4.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,6 +12,7 @@
 #include "flexura/base/progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
+#include "flexura/log/results.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/quiet.h"
 #include "tests/support/temporary_folder.h"
@@ -56,12 +57,15 @@ class ExportMp4 : public ::testing::Test {
 
   void film(double rate, const std::string& one, const std::string& other = "bits = 8") {
     run(fmt::format(two_cameras, rate, one, other));
-    films_ = export_mp4(results()).folder;
+    films_ = exported().folder;
   }
   void run(const std::string& text) {
     std::filesystem::create_directory(results());
     Quiet progress;
     (void)run_experiment(parse_experiment(text, "x.toml"), results(), progress);
+  }
+  [[nodiscard]] ExportResult exported() const {
+    return export_mp4(results(), load_experiment(results() / experiment_file_name).true_rig().cameras);
   }
   [[nodiscard]] std::filesystem::path results() const { return folder_.path() / "run"; }
   [[nodiscard]] std::string file(const std::string& name) const {
@@ -93,7 +97,7 @@ TEST_F(ExportMp4, HasTheCamerasFrameRateHoweverManyFramesThereAre) {
 TEST_F(ExportMp4, SaysWhenNoFrameArrived) {
   run(fmt::format(two_cameras, 20, "drop = 1", "delay = 2"));
   try {
-    (void)export_mp4(results());
+    (void)exported();
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("no frame arrived"));

@@ -1,4 +1,4 @@
-#include "flexura/experiment/filming.h"
+#include "flexura/rig/filming.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "flexura/base/table.h"
-#include "flexura/experiment/recorder.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/log/recorder.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/runs.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
-#include "flexura/experiment/calibrate_results.h"
-#include "flexura/experiment/calibrate_task.h"
+#include "flexura/tasks/calibrate/calibrate_results.h"
+#include "flexura/tasks/calibrate/calibrate_run.h"
 #include "tests/support/calibration_bench.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/loop_files.h"

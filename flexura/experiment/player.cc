@@ -32,30 +32,32 @@ class Aside : public Progress {
 
 }  // namespace
 
-Player::Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher)
+Player::Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
+               const RigFactory& make_rig)
     : experiment_(experiment),
       witness_(witness),
       progress_(progress),
       watcher_(watcher),
+      tasks_(task_runners(experiment)),
       schedule_(scheduled(0)),
       safety_(judged()),
-      believed_(rig_model(experiment.arm.arm(), experiment.cameras())),
+      believed_{.model = rig_model(experiment.arm.arm(), experiment.cameras())},
       played_{0, 0, schedule_.initial(), false, ""} {
-  if (experiment.record.cameras || std::ranges::any_of(experiment.task, is_for_rig))
-    filming_.emplace(experiment);
+  const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
+  if (experiment.record.cameras || std::ranges::any_of(tasks_, is_by_rig)) rig_ = make_rig(experiment);
   plan(0);
 }
 
-// With what tasks of dynamics do that begin where it is known.
+// With what tasks do that are simulated and begin where it is known.
 Schedule Player::scheduled(double played) {
   Aside progress(progress_, played, "simulating");
-  run_known_dynamics(experiment_, performed_, dynamics_, progress);
-  return Schedule(experiment_, performed_);
+  if (auto ended = simulate_tasks(experiment_, tasks_, done_, progress)) ended_by_ = std::move(ended);
+  return {experiment_, tasks_, done_};
 }
 
 SafetyReport Player::judged() {
   Aside progress(progress_, 0, "checking");
-  return checked(experiment_, schedule_, dynamics_, &progress);
+  return checked(schedule_, tasks_, ended_by_, &progress);
 }
 
 // What is to be told from that time on; violations and the starts of tasks at one time in this order of
@@ -67,10 +69,12 @@ void Player::plan(double from) {
     events_.push_back({leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind)});
   for (const Violation& violation : safety_.violations)
     events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
-  for (const DynamicsRun& run : dynamics_)
-    events_.push_back({schedule_.legs()[run.task].end(),
-                       run.is_done() ? Recorder::Level::info : Recorder::Level::error, run.name,
-                       run.is_done() ? "there" : run.reason()});
+  for (const auto& [task, motion] : done_) {
+    if (tasks_[task]->way() != TaskWay::simulated) continue;
+    const bool is_last = ended_by_ && ended_by_->task == task;
+    events_.push_back({schedule_.legs()[task].end(), is_last ? Recorder::Level::error : Recorder::Level::info,
+                       tasks_[task]->name(), is_last ? ended_by_->failure : "there"});
+  }
   std::erase_if(events_, [from](const Event& event) { return event.time < from; });
   std::ranges::stable_sort(events_, {}, &Event::time);
 }
@@ -78,7 +82,7 @@ void Player::plan(double from) {
 void Player::tell_up_to(double time) {
   const auto end = std::ranges::upper_bound(events_, time, {}, &Event::time);
   std::for_each(events_.begin(), end, [this](const Event& event) {
-    witness_.event(event.time, event.level, event.name, event.text);
+    witness_.log().event(event.time, event.level, event.name, event.text);
   });
   events_.erase(events_.begin(), end);
 }
@@ -93,10 +97,10 @@ Played Player::play() {
       continue;
     }
     tell_up_to(time);
-    if (ends_with_dynamics(time)) break;
+    if (ends_with_simulated(time)) break;
     const ArmState state = schedule_.state_at(time);
     if (!is_possible(state)) break;
-    film_to(time, state);
+    play_to(time, state);
     step(time, state);
     progress_.update(schedule_.duration() > 0 ? time / schedule_.duration() : 1.0,
                      schedule_.legs()[schedule_.leg_at(time)].name);
@@ -105,58 +109,41 @@ Played Player::play() {
   return played_;
 }
 
-void Player::film_to(double time, const ArmState& state) {
-  if (!filming_) return;
+void Player::play_to(double time, const ArmState& state) {
+  if (!rig_) return;
   if (experiment_.record.cameras) {
-    filming_->play_to(time, state, [this](const FilmedFrame& filmed) {
-      witness_.image(filmed.camera, filmed.frame, filmed.message);
+    rig_->play_to(time, state, [this](const FilmedFrame& filmed) {
+      witness_.log().image(filmed.camera, filmed.frame, filmed.message);
     });
   } else {
-    filming_->pass_to(time, state);
+    rig_->pass_to(time, state);
   }
 }
 
 void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     witness_.state(step_, time, state);
-    tell_dynamics(time);
-    if (filming_) read_rig();
+    tell_tasks(time);
+    if (rig_) witness_.readings(*rig_);
   }
   witness_.command(time, state);
   if (watcher_ != nullptr)
-    watcher_->state(time, state, filming_ ? filming_->camera_readings() : std::vector<CameraReading>());
+    watcher_->state(time, state, rig_ ? camera_readings(rig_->ports()) : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
 }
 
-void Player::read_rig() {
-  const RigPorts ports = filming_->ports();
-  witness_.readings(ports, filming_->true_backbone(ports.clock->now()));
+void Player::tell_tasks(double time) {
+  for (const auto& task : tasks_) task->tell_up_to(time, witness_.log());
 }
 
-// Of each run of dynamics what it began and ended with, and what it had come to.
-void Player::tell_dynamics(double time) {
-  for (; dynamics_told_ < dynamics_.size(); ++dynamics_told_, samples_told_ = 0) {
-    const DynamicsRun& run = dynamics_[dynamics_told_];
-    const auto is_past = [&](std::size_t i) {
-      return run.start + run.samples[i].energies.time <= time + same_time;
-    };
-    for (const std::size_t count = run.samples.size(); samples_told_ < count; ++samples_told_) {
-      if (!is_past(samples_told_)) return;
-      const bool is_end = samples_told_ == 0 || samples_told_ + 1 == count;
-      if (is_end || !is_past(samples_told_ + 1)) witness_.dynamics(run.message(run.samples[samples_told_]));
-    }
-  }
-}
-
-// Whether a task of dynamics that is not done is over, and the run with it.
-bool Player::ends_with_dynamics(double time) {
-  if (dynamics_.empty() || dynamics_.back().is_done()) return false;
-  const DynamicsRun& run = dynamics_.back();
-  const Leg leg = schedule_.legs()[run.task];
+// Whether the simulated task with which the run ends is over.
+bool Player::ends_with_simulated(double time) {
+  if (!ended_by_) return false;
+  const Leg leg = schedule_.legs()[ended_by_->task];
   if (time < leg.end() - same_time) return false;
-  film_to(leg.end(), leg.motion->at(leg.motion->duration()));
-  stop_after(leg, fmt::format("{}: {}", run.name, run.reason()));
+  play_to(leg.end(), leg.motion->at(leg.motion->duration()));
+  stop_after(leg, fmt::format("{}: {}", leg.name, ended_by_->failure));
   return true;
 }
 
@@ -165,44 +152,18 @@ void Player::stop_after(const Leg& leg, const std::string& failure) {
   played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.is_cancelled(), failure};
   witness_.expect(step_);
   witness_.state(step_, leg.end(), played_.last);
-  tell_dynamics(leg.end());
-  if (filming_) read_rig();
+  tell_tasks(leg.end());
+  if (rig_) witness_.readings(*rig_);
 }
 
 // The task for the rig that begins at `time` or before, if it was not done yet and may be done.
 std::optional<std::size_t> Player::rig_task_due(double time) const {
-  if (!filming_ || !safety_.is_safe()) return std::nullopt;
-  for (std::size_t i = 0; i < experiment_.task.size(); ++i) {
-    if (!is_for_rig(experiment_.task[i]) || performed_.contains(i)) continue;
+  if (!rig_ || !safety_.is_safe()) return std::nullopt;
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    if (tasks_[i]->way() != TaskWay::by_rig || done_.contains(i)) continue;
     return schedule_.legs()[i].start <= time ? std::optional(i) : std::nullopt;
   }
   return std::nullopt;
-}
-
-Player::Performed Player::calibrate(std::size_t task, const ArmState& from, const RecordSteps& record_steps) {
-  CalibrationRun run = run_calibration(experiment_, task, from, *filming_, witness_, progress_, record_steps);
-  if (run.is_done()) learn(run);
-  calibrations_.push_back(std::move(run));
-  const CalibrationRun& done = calibrations_.back();
-  return {done.motion, done.is_done() ? "" : fmt::format("{}: {}", done.name, done.reason())};
-}
-
-// A rig; or from a loop principal points alone, which are beside the file's: nothing for a rig that was
-// found.
-void Player::learn(const CalibrationRun& run) {
-  const RigModel found = run.found();
-  if (!run.loop) believed_ = found, is_rig_found_ = true;
-  for (std::size_t i = 0; run.loop && !is_rig_found_ && i < 2; ++i) {
-    const std::size_t camera = run.loop->stances[i].camera;
-    if (run.loop->principal_point[i]) believed_.cameras[camera] = found.cameras[camera];
-  }
-}
-
-Player::Performed Player::servo(std::size_t task, const ArmState& from, const RecordSteps& record_steps) {
-  servos_.push_back(
-      run_servo(experiment_, task, believed_, from, *filming_, witness_, progress_, record_steps));
-  const ServoRun& done = servos_.back();
-  return {done.motion, done.result.is_done ? "" : fmt::format("{}: {}", done.name, done.result.reason)};
 }
 
 // Whether the run goes on after it.
@@ -210,23 +171,30 @@ bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
   tell_up_to(leg.start);
   const ArmState from = leg.motion->at(0);
-  film_to(leg.start, from);
-  const RecordSteps record_step = [this](double until, const std::function<ArmState(double)>& state_at) {
+  play_to(leg.start, from);
+  const RecordSteps record_steps = [this](double until, const std::function<ArmState(double)>& state_at) {
     // A step at the end is the next task's.
     for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - same_time;
          time = experiment_.clock.step * static_cast<double>(step_))
       step(time, state_at(time));
   };
-  const bool is_servo = std::holds_alternative<ServoTask>(experiment_.task[task]);
-  const Performed done = is_servo ? servo(task, from, record_step) : calibrate(task, from, record_step);
-  performed_[task] = done.motion;
+  TaskStage stage{
+      .rig = *rig_,
+      .believed = believed_,
+      .log = witness_.log(),
+      .progress = progress_,
+      .record_steps = record_steps,
+      .motors_after = [this](std::span<const ArmState> way) { return witness_.motors_after(way); }};
+  const TaskEnd end = tasks_[task]->perform(from, stage);
+  witness_.log().task_ended();
+  done_[task] = end.motion;
   const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
-  schedule_ = done.failure.empty() ? scheduled(played) : Schedule(experiment_, performed_);
-  safety_ = checked(experiment_, schedule_, dynamics_);
+  schedule_ = end.failure.empty() ? scheduled(played) : Schedule(experiment_, tasks_, done_);
+  safety_ = checked(schedule_, tasks_, ended_by_);
   plan(schedule_.legs()[task].end());
-  filming_->skip_to_now();
-  if (done.failure.empty()) return true;
-  stop_after(schedule_.legs()[task], done.failure);
+  rig_->skip_to_now();
+  if (end.failure.empty()) return true;
+  stop_after(schedule_.legs()[task], fmt::format("{}: {}", leg.name, end.failure));
   return false;
 }
 

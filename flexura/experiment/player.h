@@ -1,22 +1,18 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/base/progress.h"
-#include "flexura/experiment/calibrate_task.h"
-#include "flexura/experiment/dynamics_run.h"
-#include "flexura/experiment/filming.h"
-#include "flexura/experiment/record_steps.h"
-#include "flexura/experiment/run_watcher.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/servo_run.h"
 #include "flexura/experiment/witness.h"
-#include "flexura/port/rig_model.h"
+#include "flexura/log/run_watcher.h"
+#include "flexura/rig/rig.h"
 #include "flexura/safety/violation.h"
+#include "flexura/tasks/task_runner.h"
 
 namespace flexura {
 
@@ -32,17 +28,18 @@ struct Played {
 /// Plays an experiment's schedule, step by step, before the eyes of a witness.
 class Player {
  public:
-  /// Nothing that is unsafe is done by rigs: then calibrations and servos are only gone through.
-  Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher);
+  /// Nothing that is unsafe is done by rigs: then tasks that they would do are only gone through. `make_rig`
+  /// is asked for a rig where cameras are recorded or a task is done by one.
+  Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
+         const RigFactory& make_rig);
 
   [[nodiscard]] const Schedule& schedule() const { return schedule_; }
   [[nodiscard]] const SafetyReport& safety() const { return safety_; }
-  [[nodiscard]] const std::vector<CalibrationRun>& calibrations() const { return calibrations_; }
-  [[nodiscard]] const std::vector<ServoRun>& servos() const { return servos_; }
-  [[nodiscard]] const std::vector<DynamicsRun>& dynamics() const { return dynamics_; }
+  /// With what came of each.
+  [[nodiscard]] const TaskRunners& tasks() const { return tasks_; }
 
-  /// Plays every step, or those before the first state that no arm can take, or until a calibration, a servo
-  /// or a task of dynamics fails or it is cancelled.
+  /// Plays every step, or those before the first state that no arm can take, or until the run ends with a
+  /// task or it is cancelled.
   Played play();
 
  private:
@@ -56,38 +53,26 @@ class Player {
   void plan(double from);
   void tell_up_to(double time);
   void step(double time, const ArmState& state);
-  void film_to(double time, const ArmState& state);
-  void read_rig();
-  void tell_dynamics(double time);
-  [[nodiscard]] bool ends_with_dynamics(double time);
+  void play_to(double time, const ArmState& state);
+  void tell_tasks(double time);
+  [[nodiscard]] bool ends_with_simulated(double time);
   void stop_after(const Leg& leg, const std::string& failure);
   [[nodiscard]] std::optional<std::size_t> rig_task_due(double time) const;
   [[nodiscard]] bool perform(std::size_t task);
-  struct Performed {
-    MotionPtr motion;
-    std::string failure;
-  };
-  [[nodiscard]] Performed calibrate(std::size_t task, const ArmState& from, const RecordSteps& record_steps);
-  void learn(const CalibrationRun& run);
-  [[nodiscard]] Performed servo(std::size_t task, const ArmState& from, const RecordSteps& record_steps);
 
   const Experiment& experiment_;
   Witness& witness_;
   Progress& progress_;
   RunWatcher* watcher_;
-  // By task: what calibrations, servos and tasks of dynamics did.
-  std::map<std::size_t, MotionPtr> performed_;
-  std::vector<DynamicsRun> dynamics_;  // In the order of tasks; the last one may not be done.
+  TaskRunners tasks_;
+  DoneTasks done_;
+  std::optional<EndedBy> ended_by_;  // A simulated task.
   Schedule schedule_;
   SafetyReport safety_;
-  std::optional<Filming> filming_;
+  std::unique_ptr<Rig> rig_;   // Null where none plays.
   std::vector<Event> events_;  // Still to be told, in the order of time.
-  std::vector<CalibrationRun> calibrations_;
-  std::vector<ServoRun> servos_;
-  RigModel believed_;                                 // By the file, or calibrations that found more.
-  bool is_rig_found_ = false;                         // By one of the default method, with mounts and lenses.
-  std::size_t dynamics_told_ = 0, samples_told_ = 0;  // Runs of dynamics in the log, samples of the next.
-  std::size_t step_ = 0;                              // The next one.
+  BelievedRig believed_;
+  std::size_t step_ = 0;  // The next one.
   Played played_;
 };
 

@@ -5,23 +5,21 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "flexura/base/node.h"
 #include "flexura/base/version.h"
 #include "flexura/camera/camera.h"
-#include "flexura/experiment/calibrate_results.h"
-#include "flexura/experiment/dynamics_results.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/experiment/player.h"
-#include "flexura/experiment/recorder.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/servo_results.h"
-#include "flexura/experiment/study_results.h"
 #include "flexura/experiment/witness.h"
+#include "flexura/log/messages.h"
+#include "flexura/log/recorder.h"
+#include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/report/report.h"
 #include "flexura/safety/violation_groups.h"
@@ -96,25 +94,27 @@ void conclude(const Played& played, RunResult& result) {
   result.reasons.insert(result.reasons.begin(), fmt::format("it was told to stop at {:.6g} s", played.time));
 }
 
-// Of each kind of task what its runs found, in the order of the summary.
-void add_results(const Player& player, const std::vector<ImageStudy>& studies, Node::Table& summary) {
-  if (!studies.empty()) summary.push_back({"studies", {}, study_nodes(studies)});
-  if (const auto& runs = player.calibrations(); !runs.empty())
-    summary.push_back({"calibrations", {}, calibration_nodes(runs)});
-  if (const auto& runs = player.servos(); !runs.empty()) summary.push_back({"servos", {}, servo_nodes(runs)});
-  if (const auto& runs = player.dynamics(); !runs.empty())
-    summary.push_back({"dynamics", {}, dynamics_nodes(runs)});
+// Of each kind of task what came of those of it, in the order of the kinds.
+void add_results(const Experiment& experiment, const TaskRunners& tasks, Node::Table& summary) {
+  for (std::size_t kind = 0; kind < std::variant_size_v<TaskConfig>; ++kind) {
+    Node::Array list;
+    std::string name;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      if (experiment.task[i].index() != kind) continue;
+      name = tasks[i]->summary_list();
+      if (auto entry = tasks[i]->summary()) list.push_back(std::move(*entry));
+    }
+    if (!list.empty()) summary.push_back({name, {}, {std::move(list), {}}});
+  }
 }
 
-void add_chapters(const Player& player, const std::vector<ImageStudy>& studies,
-                  std::vector<Chapter>& chapters) {
-  const auto add = [&](const auto& runs, auto&& chapter) {
-    for (std::size_t i = 0; i < runs.size(); ++i) chapters.push_back(chapter(runs[i], i));
-  };
-  add(player.calibrations(), calibration_chapter);
-  add(player.servos(), servo_chapter);
-  add(player.dynamics(), dynamics_chapter);
-  for (const ImageStudy& study : studies) chapters.push_back(study_chapter(study));
+// In the order of the tasks.
+void add_chapters(const Experiment& experiment, const TaskRunners& tasks, std::vector<Chapter>& chapters) {
+  std::map<std::size_t, std::size_t> of_kind;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    std::size_t& number = of_kind[experiment.task[i].index()];
+    if (auto chapter = tasks[i]->chapter(number)) chapters.push_back(std::move(*chapter)), ++number;
+  }
 }
 
 void write_report(const std::filesystem::path& folder, const ReportData& data) {
@@ -142,7 +142,7 @@ const char* name_of(RunOutcome outcome) {
 }
 
 RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder, Progress& progress,
-                         RunWatcher* watcher) {
+                         RunWatcher* watcher, const RigFactory& make_rig) {
   Experiment experiment = as_read;
   experiment.flexura = version();
   if (experiment.task.empty())
@@ -154,7 +154,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   result.folder = folder;
   Witness witness(folder, arm, watcher);
   if (experiment.record.scene) witness.draw_scene(experiment);
-  Player player(experiment, witness, progress, watcher);
+  Player player(experiment, witness, progress, watcher, make_rig);
   result.reasons = violation_lines(player.safety());
   const bool is_safe = player.safety().is_safe();
   if (!is_safe) result.outcome = RunOutcome::unsafe;
@@ -166,22 +166,20 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed(played);
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
   conclude(played, result);
-  witness.event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
+  witness.log().event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
   witness.close();
   if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
 
-  const auto studies = played.is_cancelled ? std::vector<ImageStudy>{} : studies_of(experiment);
-  write_study_tables(studies, folder);
-  write_rig_files(experiment, player.calibrations(), folder);
+  for (const auto& task : player.tasks()) task->finish(folder, played.is_cancelled);
   result.summary = summary_of(experiment, arm, player, played, result);
   auto& summary = *result.summary.as<Node::Table>();
   if (experiment.record.cameras || !experiment.camera.empty())
-    summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), witness.frames())});
-  add_results(player, studies, summary);
+    summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), witness.log().frames())});
+  add_results(experiment, player.tasks(), summary);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
-    add_chapters(player, studies, data.chapters);
+    add_chapters(experiment, player.tasks(), data.chapters);
     write_report(folder, data);
   }
   return result;

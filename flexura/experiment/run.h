@@ -7,7 +7,8 @@
 #include "flexura/base/node.h"
 #include "flexura/base/progress.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/run_watcher.h"
+#include "flexura/log/run_watcher.h"
+#include "flexura/rig/rig.h"
 
 namespace flexura {
 
@@ -33,9 +34,11 @@ struct RunResult {
 /// Runs an experiment and writes its results into `folder`, which exists and is empty: the experiment as run,
 /// the log, the summary, the report and its figures (docs/results.md). The same experiment writes the same
 /// bytes, whether it is watched or not. A run that is cancelled writes what it has come to: all files but the
-/// report, its figures and tables. Throws InputError when there is no task; std::runtime_error when a file
+/// report, its figures and tables. `make_rig` is asked for the rig that plays where cameras are recorded or a
+/// task is done by one. Throws InputError when there is no task; std::runtime_error when a file
 /// cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
-                                       Progress& progress, RunWatcher* watcher = nullptr);
+                                       Progress& progress, RunWatcher* watcher = nullptr,
+                                       const RigFactory& make_rig = simulated_rig);
 
 }  // namespace flexura

@@ -11,9 +11,10 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/base/source.h"
-#include "flexura/experiment/export_csv.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/log/export_csv.h"
 #include "flexura/model/backbone.h"
+#include "flexura/tasks/task_kinds.h"
 #include "tests/support/checkout.h"
 #include "tests/support/runs.h"
 
@@ -283,7 +284,7 @@ TEST_F(Run, MovesFromTaskToTaskWithoutAJump) {
 
 TEST_F(Run, ExportsATableOfStatesAndOneOfEvents) {
   const RunResult result = run(load_experiment(paper_arm));
-  const ExportResult exported = export_csv(result.folder);
+  const ExportResult exported = export_csv(result.folder, task_tables());
   EXPECT_FALSE(exported.truncated);
   std::istringstream states(read_text_file(exported.folder / "states.csv", 1 << 24));
   std::string line;
@@ -316,13 +317,15 @@ TEST_F(Run, ExportsWhatACutLogStillHolds) {
   const RunResult result = run(load_experiment(paper_arm));
   const auto log = result.folder / log_file_name;
   std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
-  const ExportResult exported = export_csv(result.folder);
+  const ExportResult exported = export_csv(result.folder, task_tables());
   EXPECT_TRUE(exported.truncated);
   const std::string states = read_text_file(exported.folder / "states.csv", 1 << 24);
   EXPECT_GT(std::ranges::count(states, '\n'), 50);
 }
 
-TEST_F(Run, ExportSaysWhenThereIsNoLog) { EXPECT_THROW((void)export_csv(folder_.path()), InputError); }
+TEST_F(Run, ExportSaysWhenThereIsNoLog) {
+  EXPECT_THROW((void)export_csv(folder_.path(), task_tables()), InputError);
+}
 
 TEST(DefaultResultsFolder, IsNamedAfterTheExperiment) {
   EXPECT_EQ(default_results_folder("a/my_arm.toml"), "results/my_arm");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "flexura/base/node.h"
-#include "flexura/experiment/messages.h"
+#include "flexura/log/messages.h"
 #include "flexura/safety/violation_groups.h"
 
 namespace flexura {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/scene_messages.h"
+#include "flexura/log/scene_messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 

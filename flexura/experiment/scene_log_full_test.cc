@@ -8,8 +8,8 @@
 #include <string>
 
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
+#include "flexura/log/results.h"
 #include "flexura/store/json.h"
 #include "tests/support/checkout.h"
 #include "tests/support/quiet.h"

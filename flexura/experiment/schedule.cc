@@ -4,35 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "flexura/kinematics/shape.h"
-#include "flexura/math/arrays.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
+#include "flexura/tasks/task_runner.h"
 
 namespace flexura {
-namespace {
 
-// A tip that comes so near to its target, as a part of the arm's length, is there.
-constexpr double target_tolerance = 1e-6;
+TaskRunners task_runners(const Experiment& experiment) {
+  TaskRunners tasks;
+  tasks.reserve(experiment.task.size());
+  for (std::size_t i = 0; i < experiment.task.size(); ++i)
+    tasks.push_back(task_runner(experiment.task[i], experiment, i));
+  return tasks;
+}
 
-}  // namespace
+Schedule::Schedule(const Experiment& experiment) : Schedule(experiment, task_runners(experiment), {}) {}
 
-Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed)
+Schedule::Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done)
     : model_(experiment.arm.model()),
       initial_(arm_state(model_.driven(), experiment.arm.initial)),
       obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {
   if (experiment.drive) drive_ = experiment.drive->drive();
-  for (std::size_t i = 0; i < experiment.task.size(); ++i) {
-    const auto known = performed.find(i);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const auto known = done.find(i);
     const ArmState from = legs_.empty() ? initial_ : legs_.back().motion->at(legs_.back().motion->duration());
-    const MotionPtr motion = known != performed.end() ? known->second : nullptr;
-    if (const auto* servo = std::get_if<ServoTask>(&experiment.task[i])) {
-      add_servo(*servo, from, motion);
-    } else {
-      add(experiment.task[i], motion ? motion : task_motion(experiment.task[i], model_, from));
-    }
+    const TaskPlan plan = tasks[i]->plan(from, known != done.end() ? known->second : nullptr);
+    legs_.push_back({.name = tasks[i]->name(),
+                     .kind = std::string(task_kind(experiment.task[i])),
+                     .start = duration_,
+                     .motion = plan.motion,
+                     .is_steered = plan.is_steered,
+                     .is_foreseen = plan.is_foreseen});
+    duration_ += plan.motion->duration();
+    for (const MissedTarget& missed : plan.missed) add_missed(missed);
   }
   if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
   // A duration of a whole number of steps, but for rounding, takes just that many.
@@ -40,39 +48,17 @@ Schedule::Schedule(const Experiment& experiment, const std::map<std::size_t, Mot
   steps_ = static_cast<std::size_t>(std::max(0.0, std::ceil(duration_ / step_ - rounding)));
 }
 
-void Schedule::add(const TaskConfig& task, const MotionPtr& motion) {
-  legs_.push_back({task_name(task), std::string(task_kind(task)), duration_, motion});
-  duration_ += motion->duration();
-  const auto target = tip_target(task);
-  if (!target) return;
-  const double missed = (model_.backbone(motion->at(motion->duration())).tip().position - *target).norm();
-  if (missed > target_tolerance * model_.driven().length()) add_missed(missed, target);
-}
-
 // Of the last task.
-void Schedule::add_missed(double missed, const std::optional<Eigen::Vector3d>& target) {
+void Schedule::add_missed(const MissedTarget& missed) {
+  const Leg& leg = legs_.back();
   missed_targets_.push_back({.hazard = Hazard::workspace,
-                             .start = legs_.back().start,
+                             .start = leg.start,
                              .end = duration_,
                              .worst_time = duration_,
-                             .name = legs_.back().name,
-                             .value = missed,
-                             .target = target});
-}
-
-// With those of its targets of which the nearest shape of the arm stays farther away than it may.
-void Schedule::add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known) {
-  const auto shapes = servo_target_shapes(servo, model_, from);
-  add(servo, known ? known : servo_motion(shapes, model_.driven(), from));
-  legs_.back().is_steered = true, legs_.back().is_foreseen = known != nullptr;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (!shapes[i] || shapes[i]->missed <= servo.tolerance) continue;
-    const auto& position = servo.target[i].position;
-    add_missed(shapes[i]->missed * model_.driven().length(),
-               position ? std::optional(vector(*position)) : std::nullopt);
-    missed_targets_.back().name += fmt::format(": target[{}]", i);
-    missed_targets_.back().limit = servo.tolerance * model_.driven().length();
-  }
+                             .name = missed.place.empty() ? leg.name : leg.name + ": " + missed.place,
+                             .value = missed.distance,
+                             .limit = missed.limit,
+                             .target = missed.position});
 }
 
 double Schedule::time_of_step(std::size_t step) const {
@@ -131,6 +117,56 @@ SafetyReport Schedule::check(Progress* progress) const {
   }
   report.sort();
   return report;
+}
+
+std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks, DoneTasks& done,
+                                      Progress& progress) {
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (done.contains(i)) continue;
+    if (tasks[i]->way() == TaskWay::by_rig) return std::nullopt;
+    if (tasks[i]->way() == TaskWay::known) continue;
+    const Leg leg = Schedule(experiment, tasks, done).legs()[i];
+    const ArmState from = leg.motion->at(0);
+    if (!is_possible(from)) return std::nullopt;  // The run ends before.
+    TaskEnd end = tasks[i]->simulate(from, leg.start, progress);
+    done[i] = end.motion;
+    if (!end.failure.empty()) return EndedBy{i, std::move(end.failure)};
+  }
+  return std::nullopt;
+}
+
+SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
+                     const std::optional<EndedBy>& ended_by, Progress* progress) {
+  SafetyReport report = schedule.check(progress);
+  const std::string last = ended_by ? tasks[ended_by->task]->name() : "";
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    tasks[i]->add_caveats(schedule.legs()[i].motion->at(0), last, report);
+  return report;
+}
+
+SafetyReport check_experiment_safety(const Experiment& experiment, Progress& progress) {
+  const TaskRunners tasks = task_runners(experiment);
+  DoneTasks done;
+  const auto ended_by = simulate_tasks(experiment, tasks, done, progress);
+  const Schedule schedule(experiment, tasks, done);
+  SafetyReport report = checked(schedule, tasks, ended_by, &progress);
+  if (ended_by)
+    report.notes.insert(report.notes.begin(),
+                        fmt::format("{}: {}", tasks[ended_by->task]->name(), ended_by->failure));
+  return report;
+}
+
+double play_unfilmed(double until, const Schedule& schedule, Rig& rig) {
+  double played = 0;
+  for (std::size_t step = 0; step <= schedule.steps(); ++step) {
+    const double time = schedule.time_of_step(step);
+    const ArmState state = schedule.state_at(time);
+    if (!is_possible(state)) break;
+    rig.pass_to(time, state);
+    played = time;
+    if (time >= until) break;
+  }
+  return played;
 }
 
 }  // namespace flexura

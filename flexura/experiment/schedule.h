@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@
 
 namespace flexura {
 
+class Rig;
+class TaskRunner;
+struct MissedTarget;
+
 /// One task, placed in time.
 struct Leg {
   std::string name;         ///< The task's; its kind where it has none (task_name).
@@ -28,12 +33,21 @@ struct Leg {
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };
 
+/// The runners of an experiment's tasks, in their order. The experiment outlives them.
+using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
+[[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
+
+/// What tasks did whose motion is decided on the way or simulated before (TaskWay), by their numbers.
+using DoneTasks = std::map<std::size_t, MotionPtr>;
+
 /// What an experiment is going to do: the arm's state at every time, known before anything moves.
 class Schedule {
  public:
-  /// `performed` has what tasks did whose motion is decided on the way or followed before (calibrations,
-  /// servos, dynamics), by their numbers; those that are left out are taken to do everything that they may.
-  explicit Schedule(const Experiment& experiment, const std::map<std::size_t, MotionPtr>& performed = {});
+  /// Before anything was done: tasks are taken to do everything that they may.
+  explicit Schedule(const Experiment& experiment);
+  /// `tasks` are its runners; those that are not among the `done` ones are taken to do everything that they
+  /// may.
+  Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done);
 
   /// At least one: without tasks, a hold of no duration.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
@@ -54,9 +68,7 @@ class Schedule {
   [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;
 
  private:
-  void add(const TaskConfig& task, const MotionPtr& motion);
-  void add_servo(const ServoTask& servo, const ArmState& from, const MotionPtr& known);
-  void add_missed(double missed, const std::optional<Eigen::Vector3d>& target);
+  void add_missed(const MissedTarget& missed);
 
   ArmModel model_;
   std::optional<Drive> drive_;
@@ -68,5 +80,27 @@ class Schedule {
   std::size_t steps_ = 0;
   std::vector<Leg> legs_;
 };
+
+/// Simulates every task that is simulated and whose start is known: those before the first that the rig is
+/// yet to do, or before one with which the run ends. Adds what they did to `done`. Returns the number of the
+/// task with which the run ends, and why; none where it ends with none of them.
+struct EndedBy {
+  std::size_t task = 0;
+  std::string failure;
+};
+[[nodiscard]] std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks,
+                                                    DoneTasks& done, Progress& progress);
+
+/// What the motions of this schedule of these tasks would harm (Schedule::check), with what each task adds.
+[[nodiscard]] SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
+                                   const std::optional<EndedBy>& ended_by, Progress* progress = nullptr);
+
+/// The same of an experiment as it stands, with the tasks simulated that can be. Why the run ends with one of
+/// them is a note, the first one.
+[[nodiscard]] SafetyReport check_experiment_safety(const Experiment& experiment, Progress& progress);
+
+/// Plays the schedule on the rig from its start to its first step at `until` s or later, to its end, or to
+/// the last step before a state that no arm can take, and films nothing. Returns the time of that step, s.
+[[nodiscard]] double play_unfilmed(double until, const Schedule& schedule, Rig& rig);
 
 }  // namespace flexura

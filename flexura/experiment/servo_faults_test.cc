@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "flexura/experiment/task_config.h"
+#include "flexura/experiment/schedule.h"
 #include "tests/support/servo_bench.h"
 
 namespace flexura {
@@ -46,6 +46,47 @@ class SlowCamera : public CameraPort {
   ClockPort& clock_;
   double takes_;
   int every_, asked_ = 0;
+};
+
+// An arm that says from a time on that it is where it is at no time.
+class TimelessArm : public ArmPort {
+ public:
+  TimelessArm(ArmPort& arm, ClockPort& clock, double from) : arm_(arm), clock_(clock), from_(from) {}
+  CommandOutcome command(const ArmState& state, double duration) override {
+    return arm_.command(state, duration);
+  }
+  CommandOutcome halt() override { return arm_.halt(); }
+  Outcome<ArmReading> read() override {
+    ArmReading reading = arm_.read().value();
+    if (clock_.now() >= from_) reading.time = none;
+    return reading;
+  }
+
+ private:
+  ArmPort& arm_;
+  ClockPort& clock_;
+  double from_;
+};
+
+// A camera whose pictures tell from one time to another that they were taken at none.
+class TimelessCamera : public CameraPort {
+ public:
+  TimelessCamera(CameraPort& camera, ClockPort& clock, double from, double to)
+      : camera_(camera), clock_(clock), from_(from), to_(to) {}
+  Outcome<std::optional<Frame>> newest() override { return without_time(camera_.newest()); }
+  Outcome<std::optional<Frame>> wait(double timeout) override { return without_time(camera_.wait(timeout)); }
+
+ private:
+  Outcome<std::optional<Frame>> without_time(Outcome<std::optional<Frame>> outcome) {
+    if (clock_.now() < from_ || clock_.now() >= to_ || outcome.fault() || !outcome.value()) return outcome;
+    Frame frame = *outcome.value();
+    frame.time = none;
+    return std::optional(frame);
+  }
+
+  CameraPort& camera_;
+  ClockPort& clock_;
+  double from_, to_;
 };
 
 TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
@@ -212,7 +253,7 @@ TEST(ServoFaults, SlowSectionsAreNotUnsafe) {
   rig.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 5";
   ServoBench bench(servo_file(servo_target, rig));
   const Arm arm = bench.experiment().arm.arm();
-  const MotionPtr motion = task_motion(bench.experiment().task.front(), ArmModel(arm), ArmState::straight(3));
+  const MotionPtr motion = Schedule(bench.experiment()).legs().front().motion;
   constexpr double step = 0.01;
   for (double time = 0; time < motion->duration(); time += step)
     for (std::size_t i = 0; i < 3; ++i)
@@ -267,6 +308,38 @@ TEST(ServoFaults, AWatcherThatFailsLeavesTheArmAtRestAndIsTheReason) {
   const auto before = bends();
   bench.rig().clock().wait_until(bench.rig().clock().now() + 1);
   EXPECT_EQ(bends(), before);
+}
+
+TEST(ServoFaults, AnArmThatTellsNoTimeIsStopped) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  TimelessArm timeless(*ports.arm, *ports.clock, 0.4);
+  ports.arm = &timeless;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  EXPECT_FALSE(result.is_done);
+  EXPECT_NE(result.reason.find("the arm tells of no time"), std::string::npos) << result.reason;
+  ASSERT_TRUE(result.fault);
+  bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
+  EXPECT_FALSE(bench.ports().arm->read().value().moving);
+}
+
+TEST(ServoFaults, PicturesOfNoTimeAreNoPictures) {
+  ServoBench bench(servo_file(servo_target));
+  RigPorts ports = bench.ports();
+  TimelessCamera timeless(*ports.cameras[1].camera, *ports.clock, 0.3, 1.3);
+  ports.cameras[1].camera = &timeless;
+  ServoNotes notes;
+  const ServoResult result = bench.servo(ports, notes);
+  ASSERT_TRUE(result.is_done) << result.reason;
+  EXPECT_TRUE(notes.has("camera side: its picture tells of no time"));
+  EXPECT_TRUE(notes.has("the arm is seen again"));
+  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  for (const ServoStep& step : result.steps) {
+    if (!step.seen_at) continue;
+    EXPECT_TRUE(std::isfinite(*step.seen_at));
+    EXPECT_TRUE(std::isfinite(step.error->rms));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/tasks/servo/servo_messages.h"
 #include "tests/support/runs.h"
 #include "tests/support/servo_files.h"
 

@@ -1,5 +1,5 @@
 // What a task of a file asks of a session.
-#include "flexura/experiment/servo_run.h"
+#include "flexura/tasks/servo/servo_run.h"
 
 #include <gtest/gtest.h>
 

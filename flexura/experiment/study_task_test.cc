@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/study_results.h"
 #include "flexura/store/csv_reader.h"
+#include "flexura/study/image_study.h"
 #include "tests/support/checkout.h"
 #include "tests/support/experiment_files.h"
 #include "tests/support/runs.h"
@@ -42,6 +42,12 @@ target.radius = 0.4
 
 std::string study_with(const std::string& from, const std::string& to) {
   return replaced(good_study, from, to);
+}
+
+// What the first task, a study, finds.
+ImageStudy images_of(const Experiment& experiment) {
+  return study_images(std::get<StudyTask>(experiment.task.front()), experiment.cameras(),
+                      static_cast<std::uint64_t>(experiment.seed));
 }
 
 class Study : public ::testing::Test, public Runs {
@@ -97,7 +103,7 @@ TEST_F(Study, TakesTheDefaultCamerasToo) {
   std::string text = replaced(good_study, "camera = \"front\"\n", "");
   text.erase(text.find("[[camera]]"), text.find("[[task]]") - text.find("[[camera]]"));
   const Experiment experiment = parse_experiment(text, "x.toml");
-  EXPECT_EQ(studies_of(experiment).at(0).camera, "front");
+  EXPECT_EQ(images_of(experiment).camera, "front");
   EXPECT_EQ(error_of_file(replaced(text, "points", "camera = \"side\"\npoints")), "no error");
 }
 
@@ -141,9 +147,10 @@ TEST_F(Study, NamesItsFilesSafelyAndEachOnce) {
     std::get<StudyTask>(experiment.task.back()).name = name;
   }
   std::vector<std::string> names;
-  for (const ImageStudy& one : studies_of(experiment)) names.push_back(one.name);
-  EXPECT_THAT(names, ElementsAre("study", "study-2", "-.-a-b", "-.", "--t--", "A.1"));
   const RunResult result = run(experiment);
+  for (const Node& one : *result.summary.find("studies")->as<Node::Array>())
+    names.push_back(*one.find("name")->as<std::string>());
+  EXPECT_THAT(names, ElementsAre("study", "study-2", "-.-a-b", "-.", "--t--", "A.1"));
   EXPECT_TRUE(std::filesystem::exists(result.folder / "tables" / "study-2.csv"));
 }
 
@@ -161,7 +168,7 @@ TEST_F(Study, MeasuresInTheNoiseOfTheExperimentsSeed) {
   const std::string noisy = replaced(study_with("points = 5", "points = 2\nmeasure = true"),
                                      "name = \"front\"", "name = \"front\"\nsensor = { read_noise = 2 }");
   const auto measured = [](const std::string& text) {
-    return studies_of(parse_experiment(text, "x.toml")).at(0).columns.at(2).features;
+    return images_of(parse_experiment(text, "x.toml")).columns.at(2).features;
   };
   const auto first = measured("seed = 1\n" + noisy);
   EXPECT_EQ(measured("seed = 1\n" + noisy), first);

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/export_csv.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/experiment/run.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/messages.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/task_kinds.h"
 #include "tests/support/checkout.h"
 #include "tests/support/quiet.h"
 #include "tests/support/servo_bench.h"
@@ -98,7 +99,7 @@ TEST(UnevenArmExample, FindsHowItsSectionsBend) {
     const std::array shall = {(1 + truth[i]) / 3, 1.0 / 3, (1 - truth[i]) / 3};
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(profile[k], shall[k], 0.06) << i << ", " << k;
   }
-  const ExportResult exported = export_csv(folder.path());
+  const ExportResult exported = export_csv(folder.path(), task_tables());
   const std::string table = read_text_file(exported.folder / "truth.csv", 1 << 26);
   EXPECT_TRUE(table.starts_with("time,arc_1_x,arc_1_y,arc_1_z,arc_2_x"));
   EXPECT_EQ(std::ranges::count(table.substr(0, table.find('\n')), ','), 3 * 10 + 4);

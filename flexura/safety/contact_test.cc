@@ -204,6 +204,21 @@ TEST(Contact, AStraightArmOfSectionsThickAndThinTouchesNothingOfItself) {
   EXPECT_GT(ContactWatch(arm).contact(bent(6, 0.1)).clearance, 0);
 }
 
+TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
+  const Arm arm = even_arm(1, 0.02);
+  const Obstacle wall =
+      obstacles({PlaneConfig{.name = "wall", .point = {0.4, 0, 0}, .normal = {-1, 0, 0}}}).front();
+  // The tip swings out and back within half a second.
+  const MotionPtr swing = sine_motion(bent(1, 0), {{1, 0}}, {0}, 1, 0.5);
+  const SafetyReport report = check_motions(arm, {wall}, bent(1, 0), {{swing, 0}}, 0.5);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::obstacle);
+  EXPECT_EQ(report.violations[0].name, "wall");
+  EXPECT_NEAR(report.violations[0].value, 1 - std::cos(1) + 0.02 - 0.4, 1e-4);
+  EXPECT_GT(report.violations[0].start, 0.1);
+  EXPECT_LT(report.violations[0].end, 0.4);
+}
+
 TEST(Contact, OfAnArmThatHardlyMovesIsDecidedSoon) {
   // 1e-9 rad in a day, so near to a ball that no step of time is short enough to tell.
   const Arm arm = even_arm(1, 0.02);

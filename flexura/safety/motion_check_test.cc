@@ -283,5 +283,37 @@ TEST(MotionCheck, ASingularPoseIsANoteOnly) {
               testing::ElementsAre("0 s: singular pose: the tip can set out in 1 of 2 dimensions"));
 }
 
+TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {
+  Arm arm = short_section();
+  arm.sections[0].max_bend = 1;
+  const SafetyReport report =
+      check(arm, point_to_point_motion(bent(0), bent(1 + 1e-8), {Profile::linear(1)}));
+  ASSERT_EQ(report.violations.size(), 1U);
+  EXPECT_THAT(report.violations[0].text(),
+              testing::MatchesRegex("0\\.999999[0-9]+ s to 1 s: section 1: bend .*"));
+}
+
+TEST(MotionCheck, FindsAPeakBetweenTwoSamplesOfTheClock) {
+  Arm arm = short_section();
+  arm.sections[0].max_bend = 0.999;
+  const MotionPtr swing = sine_motion(bent(0), {{1, 0}}, {0}, 4, 2);  // above the limit for 57 ms
+  const SafetyReport report = check(arm, swing, 0.7);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_NEAR(report.violations[0].start, std::asin(0.999) * 2 / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(report.violations[0].value, 1, 1e-4);
+}
+
+TEST(MotionCheck, FindsATooFastPieceOfAMicrosecond) {
+  Arm arm = short_section();
+  arm.sections[0].max_bend_rate = 1;
+  const auto keyframes =
+      keyframe_motion({0, 5, 5 + 1e-6, 10}, {bent(0), bent(0), bent(1e-5), bent(0)}, Interpolation::linear);
+  const SafetyReport report = check(arm, keyframes);
+  ASSERT_EQ(report.violations.size(), 1u);
+  EXPECT_EQ(report.violations[0].hazard, Hazard::bend_rate);
+  EXPECT_NEAR(report.violations[0].start, 5, 1e-6);
+  EXPECT_NEAR(report.violations[0].value, 10, 1e-4);
+}
+
 }  // namespace
 }  // namespace flexura

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "flexura/base/node.h"
-#include "flexura/experiment/messages.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/log/messages.h"
 #include "flexura/model/backbone.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/session.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "flexura/experiment/messages.h"
+#include "flexura/tasks/calibrate/calibration_messages.h"
 #include "flexura/view/extras.h"
 
 namespace flexura {

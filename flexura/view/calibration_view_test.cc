@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/results.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/results.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
+#include "flexura/tasks/calibrate/calibration_messages.h"
 #include "flexura/view/calibration_extras.h"
 #include "flexura/view/live_session.h"
 #include "flexura/view/recording_session.h"
@@ -33,13 +35,11 @@ using ::testing::SizeIs;
 class SeenCalibration : public RunLink {
  public:
   std::function<void()> look = [] {};
-  void calibration_saw(const CalibrationSightingMessage& sighting) override {
-    RunLink::calibration_saw(sighting);
-    look();
-  }
-  void calibration_decided(const CalibrationDecisionMessage& decision) override {
-    RunLink::calibration_decided(decision);
-    look();
+  void logged(const LoggedMessage& message) override {
+    RunLink::logged(message);
+    if (message.as<CalibrationSightingMessage>() != nullptr ||
+        message.as<CalibrationDecisionMessage>() != nullptr)
+      look();
   }
 };
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
+#include "flexura/log/messages.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/render/scene_maker.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "flexura/base/node.h"
-#include "flexura/experiment/results.h"
+#include "flexura/log/results.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
 

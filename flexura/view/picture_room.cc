@@ -5,8 +5,8 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/experiment/photographer.h"
 #include "flexura/picture/image_file.h"
+#include "flexura/rig/photographer.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/state_message.h"
 #include "flexura/vision/eight_bits.h"

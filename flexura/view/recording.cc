@@ -9,12 +9,14 @@
 
 #include "flexura/base/source.h"
 #include "flexura/base/table.h"
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/results_log.h"
+#include "flexura/log/messages.h"
+#include "flexura/log/results.h"
+#include "flexura/log/results_log.h"
 #include "flexura/math/median.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/calibrate/calibration_messages.h"
+#include "flexura/tasks/servo/servo_messages.h"
 
 namespace flexura {
 namespace {

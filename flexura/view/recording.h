@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "flexura/store/mcap_reader.h"
+#include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/calibration_extras.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/servo_extras.h"

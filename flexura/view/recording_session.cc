@@ -9,7 +9,7 @@
 
 #include "flexura/base/node.h"
 #include "flexura/base/source.h"
-#include "flexura/experiment/results.h"
+#include "flexura/log/results.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"

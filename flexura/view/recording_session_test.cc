@@ -6,10 +6,10 @@
 #include <fstream>
 #include <limits>
 
-#include "flexura/experiment/recorder.h"
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/log/recorder.h"
+#include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/picture/image_file.h"
 #include "flexura/port/motion_ports.h"

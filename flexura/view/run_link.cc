@@ -4,6 +4,10 @@
 #include <exception>
 #include <utility>
 
+#include "flexura/log/logged_message.h"
+#include "flexura/tasks/calibrate/calibration_messages.h"
+#include "flexura/tasks/servo/servo_messages.h"
+
 namespace flexura {
 namespace {
 
@@ -51,39 +55,39 @@ std::vector<RunLink::Event> RunLink::take_events(std::size_t most) {
   return taken;
 }
 
-void RunLink::calibration_saw(const CalibrationSightingMessage& sighting) {
-  const std::lock_guard lock(mutex_);
-  if (!news_.calibration) news_.calibration.emplace();
-  keep(news_.calibration->pictures, sighting);
-  ++news_.changes;
-}
-
-void RunLink::calibration_decided(const CalibrationDecisionMessage& decision) {
-  const std::lock_guard lock(mutex_);
+void RunLink::decided(const CalibrationDecisionMessage& decision) {
   if (decision.ended.value_or(false)) {
     news_.calibration.reset();
   } else {
     if (!news_.calibration) news_.calibration.emplace();
     news_.calibration->decision = decision;
   }
+}
+
+void RunLink::logged(const LoggedMessage& message) {
+  const std::lock_guard lock(mutex_);
+  if (const auto* sighting = message.as<ServoSightingMessage>()) {
+    keep(pictures_, *sighting);
+    return;
+  }
+  if (const auto* step = message.as<ServoStepMessage>()) {
+    news_.servo = ShownServo{*step, pictures_};
+  } else if (const auto* seen = message.as<CalibrationSightingMessage>()) {
+    if (!news_.calibration) news_.calibration.emplace();
+    keep(news_.calibration->pictures, *seen);
+  } else if (const auto* decision = message.as<CalibrationDecisionMessage>()) {
+    decided(*decision);
+  } else {
+    return;
+  }
   ++news_.changes;
 }
 
-void RunLink::servo_saw(const ServoSightingMessage& sighting) {
-  const std::lock_guard lock(mutex_);
-  keep(pictures_, sighting);
-}
-
-void RunLink::servo_stepped(const ServoStepMessage& step) {
-  const std::lock_guard lock(mutex_);
-  news_.servo = ShownServo{step, pictures_};
-  ++news_.changes;
-}
-
-void RunLink::servo_ended() {
+void RunLink::task_ended() {
   const std::lock_guard lock(mutex_);
   pictures_.clear();
   news_.servo.reset();
+  news_.calibration.reset();
   ++news_.changes;
 }
 

@@ -56,11 +56,8 @@ class RunLink : public Progress, public RunWatcher {
 
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
-  void calibration_saw(const CalibrationSightingMessage& sighting) override;
-  void calibration_decided(const CalibrationDecisionMessage& decision) override;
-  void servo_stepped(const ServoStepMessage& step) override;
-  void servo_saw(const ServoSightingMessage& sighting) override;
-  void servo_ended() override;
+  void logged(const LoggedMessage& message) override;
+  void task_ended() override;
 
   void cancel() { cancelled_ = true; }
   void finish(End end);
@@ -69,6 +66,8 @@ class RunLink : public Progress, public RunWatcher {
   [[nodiscard]] std::vector<Event> take_events(std::size_t most);
 
  private:
+  void decided(const CalibrationDecisionMessage& decision);
+
   Progress* also_;
   std::atomic<bool> cancelled_ = false;
   mutable std::mutex mutex_;

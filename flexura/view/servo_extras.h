@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/experiment/messages.h"
+#include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/extras.h"
 #include "flexura/view/viewed_rig.h"

@@ -11,11 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "flexura/experiment/results.h"
 #include "flexura/experiment/run.h"
 #include "flexura/kinematics/spatial.h"
+#include "flexura/log/results.h"
 #include "flexura/servo/servo_session.h"
 #include "flexura/store/text_file.h"
+#include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/live_session.h"
 #include "flexura/view/recording_session.h"
 #include "flexura/view/servo_extras.h"

@@ -9,7 +9,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/run_watcher.h"
+#include "flexura/log/run_watcher.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"

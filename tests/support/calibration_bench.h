@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "flexura/calibrate/rig_aim.h"
-#include "flexura/experiment/calibrate_config.h"
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/ideal_picture.h"
+#include "flexura/rig/ideal_picture.h"
+#include "flexura/tasks/calibrate/calibrate_config.h"
 #include "tests/support/odd_ports.h"
 #include "tests/support/rig_bench.h"
 

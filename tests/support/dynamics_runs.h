@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "flexura/experiment/dynamics_run.h"
+#include "flexura/tasks/dynamics/dynamics_messages.h"
+#include "flexura/tasks/dynamics/dynamics_run.h"
 #include "tests/support/runs.h"
 
 namespace flexura {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "flexura/experiment/experiment.h"
-#include "flexura/experiment/photographer.h"
+#include "flexura/rig/photographer.h"
 #include "flexura/sim/simulated_rig.h"
 
 namespace flexura {

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "flexura/experiment/messages.h"
-#include "flexura/experiment/results.h"
-#include "flexura/experiment/results_log.h"
 #include "flexura/experiment/run.h"
+#include "flexura/log/messages.h"
+#include "flexura/log/results.h"
+#include "flexura/log/results_log.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"
 #include "tests/support/quiet.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/experiment/servo_run.h"
 #include "flexura/servo/servo_session.h"
+#include "flexura/tasks/servo/servo_run.h"
 #include "tests/support/odd_ports.h"
 #include "tests/support/rig_bench.h"
 #include "tests/support/servo_files.h"

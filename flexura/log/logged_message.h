@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string_view>
+#include <typeinfo>
+
+#include "flexura/base/field.h"
+#include "flexura/base/node.h"
+#include "flexura/base/table.h"
+
+namespace flexura {
+
+/// A message on its way into a log, whatever its type, which has a table of fields. It refers to the message
+/// and to its topic.
+class LoggedMessage {
+ public:
+  /// `time`: the log's, s since the experiment's start.
+  template <HasFields M>
+  LoggedMessage(std::string_view topic, double time, const M& message)
+      : topic_(topic),
+        time_(time),
+        message_(&message),
+        type_(typeid(M)),
+        schema_(fields_of(&message).info()),
+        write_([](const void* value) { return Codec<M>::write(*static_cast<const M*>(value)); }) {}
+
+  [[nodiscard]] std::string_view topic() const { return topic_; }
+  [[nodiscard]] double time() const { return time_; }
+  [[nodiscard]] const TableInfo& schema() const { return schema_; }
+  /// As it is written.
+  [[nodiscard]] Node node() const { return write_(message_); }
+  /// The message, where it is an M; else null.
+  template <class M>
+  [[nodiscard]] const M* as() const {
+    return type_ == typeid(M) ? static_cast<const M*>(message_) : nullptr;
+  }
+
+ private:
+  std::string_view topic_;
+  double time_;
+  const void* message_;
+  const std::type_info& type_;
+  const TableInfo& schema_;
+  Node (*write_)(const void*);
+};
+
+}  // namespace flexura

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "flexura/base/image.h"
+#include "flexura/log/messages.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/port/motion_ports.h"
+
+namespace flexura {
+
+class LoggedMessage;
+
+/// What logs have of a camera's frame: an ImageMessage as JSON.
+[[nodiscard]] std::string logged_image(const std::string& camera, const Frame& frame);
+
+/// Writes a run's log.mcap: the arm's state, the poses of its sections, events (docs/log-format.md), and
+/// whatever else has a table of fields. Times are the experiment's, in s from its start. The first message of
+/// a topic opens its channel.
+class Recorder {
+ public:
+  /// Starts a new log; std::runtime_error when the file exists or cannot be written.
+  Recorder(const std::filesystem::path& file, const Arm& arm);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void state(double time, const ArmState& state, const Backbone& backbone);
+  enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< foxglove.Log's numbers.
+  void event(double time, Level level, std::string_view source, std::string_view text);
+
+  /// Anything else.
+  void write(const LoggedMessage& message);
+
+  /// The arm as it truly is, where a rig plays that knows it.
+  void truth(double time, const Backbone& backbone);
+
+  /// What a rig's devices say of themselves.
+  void reading(const ArmReading& reading);
+  void reading(const std::string& camera, const HeadReading& reading);
+  void reading(const std::string& camera, const StageReading& reading);
+
+  /// A frame; `message` is its logged_image, which takes longest and needs no log.
+  void image(const std::string& camera, const Frame& frame, std::string_view message);
+  /// A picture that no camera took.
+  void picture(const std::string& topic, double time, const Picture& picture);
+
+  /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
+  void close();
+
+ private:
+  struct Channels;
+  std::unique_ptr<Channels> channels_;
+  Arm arm_;
+};
+
+}  // namespace flexura

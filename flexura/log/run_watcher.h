@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "flexura/camera/head.h"
+#include "flexura/camera/mount.h"
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+class LoggedMessage;
+
+/// Where a camera's head and stage say that they stand.
+struct CameraReading {
+  HeadState head;
+  StageState stage;
+};
+
+/// Sees a run as it plays, on the run's thread. What it does with that changes nothing of the run.
+class RunWatcher {
+ public:
+  virtual ~RunWatcher() = default;
+  RunWatcher() = default;
+  RunWatcher(const RunWatcher&) = delete;
+  RunWatcher& operator=(const RunWatcher&) = delete;
+
+  /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
+  /// of none where the run plays no rig, whose cameras stand still.
+  virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
+  /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
+  virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
+                        const std::string& /*text*/) {}
+  /// What a task tells of its work, as the log has it: LoggedMessage::as tells which message it is.
+  virtual void logged(const LoggedMessage& /*message*/) {}
+  /// A task that was done by the rig has ended.
+  virtual void task_ended() {}
+};
+
+}  // namespace flexura

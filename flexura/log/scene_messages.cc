@@ -1,0 +1,103 @@
+#include "flexura/log/scene_messages.h"
+
+#include "flexura/base/table.h"
+
+namespace flexura {
+
+const Table<DurationMessage>& fields_of(const DurationMessage*) {
+  static const auto table =
+      Table<DurationMessage>("foxglove.Duration", "A time span.")
+          .field("sec", &DurationMessage::sec, {.meaning = "Whole seconds."})
+          .field("nsec", &DurationMessage::nsec, {.meaning = "Nanoseconds beyond them."});
+  return table;
+}
+
+const Table<ColorMessage>& fields_of(const ColorMessage*) {
+  static const auto table = Table<ColorMessage>("foxglove.Color", "Shares of light, from 0 to 1.")
+                                .field("r", &ColorMessage::r, {})
+                                .field("g", &ColorMessage::g, {})
+                                .field("b", &ColorMessage::b, {})
+                                .field("a", &ColorMessage::a, {});
+  return table;
+}
+
+const Table<CubeMessage>& fields_of(const CubeMessage*) {
+  static const auto table = Table<CubeMessage>("foxglove.CubePrimitive", "A box.")
+                                .field("pose", &CubeMessage::pose, {.meaning = "Of its middle."})
+                                .field("size", &CubeMessage::size, {.meaning = "Its sides, m."})
+                                .field("color", &CubeMessage::color, {});
+  return table;
+}
+
+const Table<SphereMessage>& fields_of(const SphereMessage*) {
+  static const auto table = Table<SphereMessage>("foxglove.SpherePrimitive", "A ball.")
+                                .field("pose", &SphereMessage::pose, {.meaning = "Of its middle."})
+                                .field("size", &SphereMessage::size, {.meaning = "Its diameters, m."})
+                                .field("color", &SphereMessage::color, {});
+  return table;
+}
+
+const Table<CylinderMessage>& fields_of(const CylinderMessage*) {
+  static const auto table =
+      Table<CylinderMessage>("foxglove.CylinderPrimitive", "A cylinder along z.")
+          .field("pose", &CylinderMessage::pose, {.meaning = "Of its middle."})
+          .field("size", &CylinderMessage::size, {.meaning = "Its diameters and its length, m."})
+          .field("bottom_scale", &CylinderMessage::bottom_scale, {})
+          .field("top_scale", &CylinderMessage::top_scale, {})
+          .field("color", &CylinderMessage::color, {});
+  return table;
+}
+
+const Table<LineMessage>& fields_of(const LineMessage*) {
+  static const auto table =
+      Table<LineMessage>("foxglove.LinePrimitive", "A line through points.")
+          .field("type", &LineMessage::type, {.meaning = "0: a strip."})
+          .field("pose", &LineMessage::pose, {.meaning = "Of the points' frame."})
+          .field("thickness", &LineMessage::thickness, {.meaning = "m"})
+          .field("scale_invariant", &LineMessage::scale_invariant, {.meaning = "The thickness is in pixels."})
+          .field("points", &LineMessage::points, {.meaning = "m"})
+          .field("color", &LineMessage::color, {})
+          .field("colors", &LineMessage::colors, {.meaning = "One a point; none: the color."})
+          .field("indices", &LineMessage::indices, {.meaning = "Into the points; none: their order."});
+  return table;
+}
+
+const Table<EntityMessage>& fields_of(const EntityMessage*) {
+  static const auto table =
+      Table<EntityMessage>("foxglove.SceneEntity", "A thing in the scene.")
+          .field("timestamp", &EntityMessage::timestamp, {})
+          .field("frame_id", &EntityMessage::frame_id, {.meaning = "The frame it stands in."})
+          .field("id", &EntityMessage::id, {.meaning = "It replaces the thing of the same name."})
+          .field("lifetime", &EntityMessage::lifetime, {.meaning = "0: until it is replaced."})
+          .field("frame_locked", &EntityMessage::frame_locked, {})
+          .field("cubes", &EntityMessage::cubes, {})
+          .field("spheres", &EntityMessage::spheres, {})
+          .field("cylinders", &EntityMessage::cylinders, {})
+          .field("lines", &EntityMessage::lines, {});
+  return table;
+}
+
+const Table<SceneMessage>& fields_of(const SceneMessage*) {
+  static const auto table = Table<SceneMessage>("foxglove.SceneUpdate", "What has changed in the scene.")
+                                .field("entities", &SceneMessage::entities, {});
+  return table;
+}
+
+const Table<FrameMessage>& fields_of(const FrameMessage*) {
+  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Where a frame stands in another.")
+                                .field("timestamp", &FrameMessage::timestamp, {})
+                                .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
+                                .field("child_frame_id", &FrameMessage::child_frame_id, {})
+                                .field("translation", &FrameMessage::translation, {.meaning = "m"})
+                                .field("rotation", &FrameMessage::rotation, {});
+  return table;
+}
+
+const Table<FramesMessage>& fields_of(const FramesMessage*) {
+  static const auto table =
+      Table<FramesMessage>("foxglove.FrameTransforms", "Where the arm's base and the cameras stand.")
+          .field("transforms", &FramesMessage::transforms, {});
+  return table;
+}
+
+}  // namespace flexura

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flexura/base/fields.h"
+#include "flexura/log/messages.h"
+
+// What stands there and where, for programs that draw logs: laid out as the foxglove.* schemas have it.
+namespace flexura {
+
+/// foxglove.Duration.
+struct DurationMessage {
+  std::int64_t sec = 0;
+  std::int64_t nsec = 0;
+};
+
+struct ColorMessage {
+  double r = 0, g = 0, b = 0, a = 1;
+};
+
+/// foxglove.CubePrimitive: centred in its pose.
+struct CubeMessage {
+  PoseMessage pose;
+  VectorMessage size;  ///< m
+  ColorMessage color;
+};
+
+/// foxglove.SpherePrimitive.
+struct SphereMessage {
+  PoseMessage pose;
+  VectorMessage size;  ///< m: diameters.
+  ColorMessage color;
+};
+
+/// foxglove.CylinderPrimitive: centred in its pose, along its z.
+struct CylinderMessage {
+  PoseMessage pose;
+  VectorMessage size;  ///< m: two diameters and the length.
+  double bottom_scale = 1, top_scale = 1;
+  ColorMessage color;
+};
+
+/// foxglove.LinePrimitive: a strip.
+struct LineMessage {
+  std::int64_t type = 0;  ///< 0: a strip.
+  PoseMessage pose;
+  double thickness = 0;  ///< m
+  bool scale_invariant = false;
+  std::vector<VectorMessage> points;
+  ColorMessage color;
+  std::vector<ColorMessage> colors;
+  std::vector<std::int64_t> indices;
+};
+
+/// foxglove.SceneEntity: replaces the one of the same `id`.
+struct EntityMessage {
+  TimeMessage timestamp;
+  std::string frame_id = "world";
+  std::string id;
+  DurationMessage lifetime;  ///< 0: until it is replaced.
+  bool frame_locked = false;
+  std::vector<CubeMessage> cubes;
+  std::vector<SphereMessage> spheres;
+  std::vector<CylinderMessage> cylinders;
+  std::vector<LineMessage> lines;
+};
+
+/// foxglove.SceneUpdate, on /scene.
+struct SceneMessage {
+  std::vector<EntityMessage> entities;
+};
+
+/// foxglove.FrameTransform.
+struct FrameMessage {
+  TimeMessage timestamp;
+  std::string parent_frame_id = "world";
+  std::string child_frame_id;
+  VectorMessage translation;  ///< m
+  QuaternionMessage rotation;
+};
+
+/// foxglove.FrameTransforms, on /frames.
+struct FramesMessage {
+  std::vector<FrameMessage> transforms;
+};
+
+inline constexpr std::string_view scene_topic = "/scene";
+inline constexpr std::string_view frames_topic = "/frames";
+
+const Table<DurationMessage>& fields_of(const DurationMessage*);
+const Table<ColorMessage>& fields_of(const ColorMessage*);
+const Table<CubeMessage>& fields_of(const CubeMessage*);
+const Table<SphereMessage>& fields_of(const SphereMessage*);
+const Table<CylinderMessage>& fields_of(const CylinderMessage*);
+const Table<LineMessage>& fields_of(const LineMessage*);
+const Table<EntityMessage>& fields_of(const EntityMessage*);
+const Table<SceneMessage>& fields_of(const SceneMessage*);
+const Table<FrameMessage>& fields_of(const FrameMessage*);
+const Table<FramesMessage>& fields_of(const FramesMessage*);
+
+}  // namespace flexura

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "flexura/base/image.h"
+#include "flexura/camera/view.h"
+#include "flexura/model/arm.h"
+#include "flexura/rig/setup.h"
+
+namespace flexura {
+
+/// The simulator's pictures of the arm as the file believes it, gray and without noise: the paper's ideal
+/// images (section 2).
+[[nodiscard]] std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(
+    const Setup& setup);
+
+}  // namespace flexura

@@ -1,0 +1,85 @@
+#include "flexura/rig/photographer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <variant>
+
+#include "flexura/camera/sensor.h"
+#include "flexura/rig/image_motion.h"
+
+namespace flexura {
+namespace {
+
+// How many instants an exposure is made of: enough that between two of them nothing moves by more than half a
+// pixel, as far as that is no more than `most`.
+int instants_of(double pixels) {
+  constexpr double largest_step = 0.5;  // px
+  constexpr int most = 64;
+  constexpr double rounding = 1e-9;
+  return static_cast<int>(
+      std::clamp(std::ceil(pixels / largest_step - rounding), 1.0, static_cast<double>(most)));
+}
+
+// What row v alone of a view sees.
+View row_view(const View& view, int v) {
+  Intrinsics lens = view.lens.intrinsics();
+  lens.cy -= v;
+  return {Lens(lens), view.X_WC, view.width, 1};
+}
+
+}  // namespace
+
+Photographer::Photographer(const Setup& setup)
+    : maker_(setup.true_rig().arm.arm(), setup.true_rig().arm.look, setup.true_stand(), setup.obstacle) {}
+
+const Sensor& Photographer::sensor(const Shot& shot) {
+  const auto found = sensors_.find(shot.camera);
+  return found != sensors_.end() ? found->second : sensors_.emplace(shot.camera, *shot.sensor).first->second;
+}
+
+void Photographer::draw(const Shot& shot, double time, const Rows& rows, Image<float>& light) {
+  const View view = shot.view(time);
+  const bool is_one_row = rows.last == rows.first + 1;
+  renderer_.render(maker_.scene(shot.backbone(time)), is_one_row ? row_view(view, rows.first) : view,
+                   shot.sensor->pixels, instant_);
+  for (int v = rows.first; v < rows.last; v += rows.step)
+    std::ranges::copy(instant_.light.row(is_one_row ? 0 : v), light.row(v).begin());
+}
+
+// The light of a shot, in light_.
+void Photographer::gather(const Shot& shot) {
+  // Nobody sees so little, and all rows and instants have one picture.
+  constexpr double is_still = 1e-3;  // px
+  SensorConfig sensor = *shot.sensor;
+  if (shot.is_covered) {
+    light_ = Image<float>(static_cast<int>(sensor.width), static_cast<int>(sensor.height), sensor.channels());
+    return;
+  }
+  double start = shot.start;
+  const double speed = fastest_image_motion(shot, maker_.stand());
+  if (speed * (sensor.exposure + last_row_delay(sensor)) <= is_still) {
+    start = times_of_frame_at(sensor, start).middle;
+    sensor.readout = Readout::global;
+    sensor.exposure = 0;
+  }
+  const DrawLight draw_rows = [&](double time, const Rows& rows, Image<float>& light) {
+    draw(shot, time, rows, light);
+  };
+  gather_light(sensor, start, instants_of(speed * sensor.exposure), draw_rows, light_, scratch_);
+}
+
+Picture Photographer::take(const Shot& shot) {
+  gather(shot);
+  const SensorConfig& config = *shot.sensor;
+  const NoiseStream stream{shot.seed, shot.camera, static_cast<std::uint64_t>(shot.frame)};
+  const auto read = [&]<typename Value>(Image<Value> image) -> Picture {
+    sensor(shot).read(light_, stream, rows_, image);
+    return image;
+  };
+  const auto width = static_cast<int>(config.width), height = static_cast<int>(config.height);
+  if (config.bits <= 8) return read(Image<std::uint8_t>(width, height, light_.channels()));
+  return read(Image<std::uint16_t>(width, height, light_.channels()));
+}
+
+}  // namespace flexura

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+
+#include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/render/renderer.h"
+#include "flexura/render/scene_maker.h"
+#include "flexura/render/sensor_image.h"
+#include "flexura/render/sensor_light.h"
+#include "flexura/rig/setup.h"
+#include "flexura/sim/simulated_camera.h"
+
+namespace flexura {
+
+/// Makes the pictures that an experiment's cameras take: the scene as it truly stands, its light, the
+/// sensor's numbers. The same shot gives the same picture, whatever was taken before.
+class Photographer {
+ public:
+  explicit Photographer(const Setup& setup);
+
+  [[nodiscard]] Picture take(const Shot& shot);
+
+  /// All that stands there with the arm along `backbone`.
+  [[nodiscard]] Scene scene(const Backbone& backbone) const { return maker_.scene(backbone); }
+
+ private:
+  [[nodiscard]] const Sensor& sensor(const Shot& shot);
+  void gather(const Shot& shot);
+  void draw(const Shot& shot, double time, const Rows& rows, Image<float>& light);
+
+  SceneMaker maker_;
+  Renderer renderer_;
+  LightImage instant_;
+  Image<float> light_, scratch_;
+  SensorRows rows_;
+  std::map<std::size_t, Sensor> sensors_;  // by camera
+};
+
+}  // namespace flexura

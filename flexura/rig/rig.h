@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flexura/log/run_watcher.h"
+#include "flexura/model/backbone.h"
+#include "flexura/port/camera_port.h"
+#include "flexura/port/rig_model.h"
+#include "flexura/port/rig_ports.h"
+#include "flexura/rig/setup.h"
+
+namespace flexura {
+
+/// A frame that was filmed.
+struct FilmedFrame {
+  std::string camera;
+  Frame frame;
+  std::string message;  ///< Its logged_image.
+};
+
+/// What is true of a rig, as nothing at its ports tells: not for algorithms.
+class RigTruth {
+ public:
+  virtual ~RigTruth() = default;
+  RigTruth() = default;
+  RigTruth(const RigTruth&) = delete;
+  RigTruth& operator=(const RigTruth&) = delete;
+
+  /// Where a camera truly stands now.
+  [[nodiscard]] virtual RigStance stance(std::size_t camera) = 0;
+  /// How the arm truly lay at a time not long ago, s.
+  [[nodiscard]] virtual Backbone backbone(double time) = 0;
+};
+
+/// A rig on which an experiment is played, simulated or real: its ports, and how its time passes.
+class Rig {
+ public:
+  virtual ~Rig() = default;
+  Rig() = default;
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
+
+  /// Valid as long as the rig.
+  [[nodiscard]] virtual RigPorts ports() = 0;
+  /// Null where nobody knows it: of equipment.
+  [[nodiscard]] virtual RigTruth* truth() { return nullptr; }
+
+  using TakeFrame = std::function<void(const FilmedFrame&)>;
+  /// Commands the arm to be in `state` at `time` s, not before the call's before, waits until then, and gives
+  /// every frame received on the way, in the order of time and then of the cameras.
+  virtual void play_to(double time, const ArmState& state, const TakeFrame& take) = 0;
+  /// The same, and no frame is taken on the way.
+  virtual void pass_to(double time, const ArmState& state) = 0;
+  /// Frames received up to now are not handed out any more.
+  virtual void skip_to_now() = 0;
+};
+
+/// Makes the rig of an experiment, which outlives it.
+using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
+
+/// The factory of simulated rigs (rig/filming.h).
+[[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
+
+/// Where the cameras of a rig say that they stand now. std::runtime_error with what is wrong where one does
+/// not say.
+[[nodiscard]] std::vector<CameraReading> camera_readings(const RigPorts& ports);
+
+}  // namespace flexura

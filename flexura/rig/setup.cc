@@ -1,0 +1,143 @@
+#include "flexura/rig/setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+
+#include "flexura/base/table.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/rig/setup_fields.h"
+
+namespace flexura {
+namespace {
+
+// The default cameras look at the arm's base; far from the origin a small distance from it is rounded away.
+void check_default_cameras(const Setup& setup, Reader& reader) {
+  for (const CameraConfig& camera : setup.cameras()) {
+    if (camera.mount.look_at != camera.mount.position) continue;
+    reader.problem_at("stand.camera_distances",
+                      fmt::format("puts camera \"{}\" where the arm's base is: expected distances that the "
+                                  "base's coordinates can tell",
+                                  camera.name));
+  }
+}
+
+void check_obstacle_names(const std::vector<ObstacleConfig>& configs, Reader& reader) {
+  const std::vector<Obstacle> all = obstacles(configs);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (names.insert(all[i].name).second) continue;
+    reader.problem_at(fmt::format("obstacle[{}].name", i),
+                      fmt::format("\"{}\" is the name of another obstacle", all[i].name));
+  }
+}
+
+}  // namespace
+
+void check_setup(const Setup& setup, Reader& reader) {
+  check_bends(setup.arm.arm(), setup.arm.initial, "arm.initial", reader);
+  check_obstacle_names(setup.obstacle, reader);
+  if (setup.camera.empty()) check_default_cameras(setup, reader);
+  if (setup.drive) check_drive(*setup.drive, setup.arm, "drive", reader);
+  check_cameras(setup.camera, "camera", reader);
+  if (setup.stand.camera_distances && !setup.camera.empty())
+    reader.problem_at("stand.camera_distances",
+                      "is for the default cameras: expected no [[camera]] beside it");
+  if (setup.truth && setup.truth->stand &&
+      setup.truth->stand->camera_distances != setup.stand.camera_distances) {
+    reader.problem_at("truth.stand.camera_distances",
+                      "moves no camera: expected a mount.position in [[truth.camera]]");
+  }
+  if (setup.truth) {
+    const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());
+    if (!problem.empty()) reader.problem_at("truth", problem);
+  }
+}
+
+const Table<ClockConfig>& fields_of(const ClockConfig*) {
+  static const auto table = Table<ClockConfig>("clock", "How time runs in the experiment.")
+                                .field("step", &ClockConfig::step,
+                                       {.meaning = "Time between two states of the experiment.",
+                                        .unit = Unit::second,
+                                        .range = between(1e-6, 1e3)});
+  return table;
+}
+
+const std::vector<std::string>& names_of(const CurveKind*) {
+  static const std::vector<std::string> names = {"arcs", "catmull_rom", "bezier"};
+  return names;
+}
+
+const Table<RecordConfig>& fields_of(const RecordConfig*) {
+  static const auto table =
+      Table<RecordConfig>("record", "What is kept of a run.")
+          .field("every", &RecordConfig::every,
+                 {.meaning = "Steps from one state in the log to the next; the last one is always kept.",
+                  .range = between(1, 1e9)})
+          .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."})
+          .field("cameras", &RecordConfig::cameras, {.meaning = "Keep the cameras' images in the log."})
+          .field(
+              "scene", &RecordConfig::scene,
+              {.meaning = "Keep in the log, for programs that draw it, what stands around the arm, and ten "
+                          "times a second how the arm lies."})
+          .field(
+              "curve", &RecordConfig::curve,
+              {.meaning =
+                   "The line drawn along the arm in the report: its exact arcs (the arm itself), the paper's "
+                   "Catmull-Rom spline through the sections' base points (eq. 11), or one Bezier a section "
+                   "with exact tangents."})
+          .field("tension", &RecordConfig::tension,
+                 {.meaning = "Tension of the Catmull-Rom spline.", .range = between(0, 1)});
+  return table;
+}
+
+const Table<TruthConfig>& fields_of(const TruthConfig*) {
+  static const auto table =
+      Table<TruthConfig>(
+          "truth",
+          "The simulated world, where it differs from what the rest of the file says and the tasks "
+          "believe: parts of the same tables, laid upon them. Cameras are told apart by their names, "
+          "sections and tendons by their places.")
+          .field("arm", &TruthConfig::arm,
+                 {.meaning = "The arm as it is.", .partial = true, .default_text = "as believed"})
+          .field("drive", &TruthConfig::drive,
+                 {.meaning = "What moves it.", .partial = true, .default_text = "as believed"})
+          .field("camera", &TruthConfig::camera,
+                 {.meaning = "The cameras as they are.",
+                  .count = {0, max_cameras},
+                  .partial = true,
+                  .default_text = "as believed"})
+          .field("stand", &TruthConfig::stand,
+                 {.meaning = "What stands around the arm.", .partial = true, .default_text = "as believed"});
+  return table;
+}
+
+RigConfig Setup::model_rig() const { return {arm, drive, cameras()}; }
+
+RigConfig Setup::true_rig() const {
+  RigConfig rig = model_rig();
+  if (!truth) return rig;
+  if (truth->arm) rig.arm = *truth->arm;
+  if (truth->drive) rig.drive = truth->drive;
+  if (!truth->camera.empty()) rig.cameras = truth->camera;
+  return rig;
+}
+
+StandConfig Setup::true_stand() const {
+  StandConfig shown = truth && truth->stand ? *truth->stand : stand;
+  if (!shown.screen) shown.screen = default_screens(arm.arm().length(), arm.base.position);
+  return shown;
+}
+
+std::vector<CameraConfig> Setup::cameras() const {
+  if (!camera.empty()) return camera;
+  if (stand.camera_distances) return cameras_at(*stand.camera_distances, arm.base.position);
+  double reach = 0;
+  for (const Section& section : arm.section)
+    reach += section.length * std::max(1.0, section.stretch_limits[1]);
+  return default_cameras(reach, arm.base.position);
+}
+
+}  // namespace flexura

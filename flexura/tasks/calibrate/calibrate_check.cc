@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "flexura/base/degree.h"
+#include "flexura/base/reader.h"
+#include "flexura/calibrate/etalon_figure.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/rig/setup.h"
+#include "flexura/tasks/calibrate/calibrate_config.h"
+#include "flexura/tasks/camera_names.h"
+
+namespace flexura {
+namespace {
+
+bool is_plain_file(const std::string& name) {
+  const bool is_plain = std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  });
+  return is_plain && name.size() > 5 && name.ends_with(".toml") && name.front() != '.';
+}
+
+void check_markers(const ArmConfig& arm, const std::string& path, Reader& reader) {
+  constexpr std::size_t fewest = 4;
+  if (arm.look.markers(arm.arm()).size() < fewest)
+    reader.problem_at(path,
+                      fmt::format("needs at least {} markers to recognise places along the arm: expected "
+                                  "arm.look.bands or arm.look.marker",
+                                  fewest));
+}
+
+// The cylinder stands there alone, and upright.
+void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std::string& path,
+                  Reader& reader) {
+  if (!stand.etalon) {
+    reader.problem_at(path, "needs the calibration cylinder: expected [stand.etalon]");
+    return;
+  }
+  if (stand.arm) reader.problem_at(path, "needs the cylinder alone: expected stand.arm = false");
+  constexpr double upright = 0.01;  // m, of half a height of 1 m.
+  EtalonConfig unit = *stand.etalon;
+  unit.position = {0, 0, 0}, unit.height = 2;
+  if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
+    reader.problem_at(path, "needs a cylinder that stands upright: expected a stand.etalon.rotation about Y");
+  if (!is_loop(task)) {
+    if (!task.pose.empty() || task.zooms != CalibrateTask{}.zooms)
+      reader.problem_at(path, "has no pose and no zooms with this method: expected none of these keys");
+  } else if (!task.pose.empty() || task.target || !task.stages) {
+    reader.problem_at(
+        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+  }
+}
+
+void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  constexpr std::size_t arcs = 4;
+  if (calibration_poses(task, arm.arm()).size() < arcs)
+    reader.problem_at(
+        path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
+                          "spatial one that stands upright, or a smaller loop.arc",
+                          arc_bend(task) / degree));
+  if (!task.pose.empty() || task.target || !task.stages)
+    reader.problem_at(
+        path, "has no pose, no target and moves stages with this method: expected none of these keys");
+}
+
+// What is told for another method would be told for nothing.
+void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
+  const auto refuse = [&](const char* key, bool is_told, const char* whose) {
+    if (is_told)
+      reader.problem_at(path + key, fmt::format("counts with {} alone: expected no such key", whose));
+  };
+  const CalibrateTask usual;
+  const CalibrateLoopConfig &loop = task.loop, &loop_usual = usual.loop;
+  const bool is_counting = task.method == CalibrateMethod::etalon_paper;
+  refuse(".loop.turn", !is_counting && loop.turn != loop_usual.turn, "etalon-paper");
+  refuse(".loop.slide", !is_counting && loop.slide != loop_usual.slide, "etalon-paper");
+  refuse(".loop.zoom_step", !is_counting && loop.zoom_step != loop_usual.zoom_step, "etalon-paper");
+  refuse(".loop.arc", is_before_etalon(task) && loop.arc.has_value(), "arcs and arcs-paper");
+  refuse(".zooms", task.zooms != usual.zooms, "bundle");
+  if (task.method != CalibrateMethod::arcs) return;
+  constexpr const char* bundles = "bundle and bundle-etalon";
+  refuse(".guess.focal", task.guess.focal != usual.guess.focal, bundles);
+  refuse(".guess.principal_point", task.guess.principal_point != usual.guess.principal_point, bundles);
+  refuse(".guess.zero", task.guess.zero != usual.guess.zero, bundles);
+}
+
+// All that needs no shape of the arm.
+void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
+                       const std::vector<CameraConfig>& cameras, const StandConfig& stand,
+                       const std::string& path, Reader& reader) {
+  check_two_cameras(task.cameras, cameras, path, reader);
+  for (std::size_t i = 0; i < task.pose.size(); ++i)
+    check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
+  const bool is_bundle = !is_loop(task);
+  if (!is_bundle && task.wanted != CalibrateWantedConfig{})
+    reader.problem_at(path + ".wanted",
+                      "is what the methods bundle and bundle-etalon stop by: expected no such key");
+  if (!is_bundle && task.method != CalibrateMethod::arcs && task.guess != CalibrateGuessConfig{})
+    reader.problem_at(path + ".guess",
+                      "is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+  if (is_bundle && task.loop != CalibrateLoopConfig{})
+    reader.problem_at(path + ".loop",
+                      "is how the paper's methods go about it, bundle and bundle-etalon do not: expected no "
+                      "such key");
+  if (!is_bundle) check_idle_keys(task, path, reader);
+  if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
+    check_markers(arm, path, reader);
+  if (is_loop(task) && !is_before_etalon(task)) check_arcs(task, arm, path, reader);
+  if (is_before_etalon(task)) check_etalon(task, stand, path, reader);
+  if (!task.save.empty() && !is_plain_file(task.save))
+    reader.problem_at(
+        path + ".save",
+        fmt::format("{}: expected a file's name of letters, digits, -, _ and ., ending in .toml",
+                    Node{task.save, {}}.brief()));
+}
+
+}  // namespace
+
+void check_keys(const CalibrateTask& task, const Setup& setup, const std::string& path, Reader& reader) {
+  const std::size_t before = reader.problems().size();
+  check_calibration(task, setup.arm, setup.cameras(), setup.stand, path, reader);
+  if (reader.problems().size() > before) return;  // Poses fit the arm from here on.
+  const Arm arm = setup.arm.arm();
+  for (std::size_t i = 0; i < task.pose.size(); ++i)
+    check_bends(arm, task.pose[i], fmt::format("{}.pose[{}]", path, i), reader);
+}
+
+}  // namespace flexura

@@ -1,0 +1,318 @@
+#include "flexura/tasks/calibrate/calibrate_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "flexura/base/degree.h"
+#include "flexura/base/table.h"
+#include "flexura/calibrate/arc_plan.h"
+#include "flexura/calibrate/etalon_figure.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/math/arrays.h"
+#include "flexura/tasks/camera_names.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::int64_t image_limit = 1000;
+constexpr double longest = 1e4;  // s
+
+// Bends of the arm's lower, middle and upper third, rad: mild ones first, of which rough guesses recognise
+// the markers; then such as bend every part to every side.
+constexpr std::array<std::array<double, 6>, 6> patterns = {{{0.5, 0, 0.5, 0, 0.5, 0},
+                                                            {0, 0.5, 0, 0.5, 0, 0.5},
+                                                            {-0.6, 0.3, 0.7, 0.1, 0.5, -0.8},
+                                                            {0.4, -0.7, -0.3, -0.4, 0.9, 0.2},
+                                                            {1, 0.2, 0.8, -0.3, -1, 0.4},
+                                                            {-0.3, 1, 0.2, -1, -0.4, 1}}};
+
+// The bends of a pattern, shared out among the sections of each third by their lengths.
+ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
+  std::vector<std::size_t> third_of;
+  std::array<double, 3> lengths = {0, 0, 0};
+  double s = 0;
+  for (const Section& section : arm.sections) {
+    const double middle = (s + 0.5 * section.length) / arm.length();
+    third_of.push_back(std::min<std::size_t>(2, static_cast<std::size_t>(3 * middle)));
+    lengths[third_of.back()] += section.length, s += section.length;
+  }
+  ArmState state = ArmState::straight(arm.sections.size());
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+    const std::size_t third = third_of[i];
+    const double share = arm.sections[i].length / lengths[third];
+    Eigen::Vector2d& bend = state.bends[i];
+    bend = share * Eigen::Vector2d(pattern[2 * third], pattern[2 * third + 1]);
+    if (arm.kind == ArmKind::planar) bend = {bend.x() + 0.5 * bend.y(), 0};
+    constexpr double within = 0.9;  // Of what the section takes.
+    const double most = within * arm.sections[i].max_bend;
+    if (bend.norm() > most) bend *= most / bend.norm();
+    const auto& [least, longest_stretch] = arm.sections[i].stretch_limits;
+    state.stretches[i] = std::clamp(1.0, least, longest_stretch);
+  }
+  return state;
+}
+
+// As the file has them, from the base on.
+std::vector<KnownMarker> known_markers(const ArmConfig& arm) {
+  std::vector<KnownMarker> markers;
+  for (const Marker& marker : arm.look.markers(arm.arm()))
+    markers.push_back({.s = marker.at, .color = vector(marker.color)});
+  return markers;
+}
+
+}  // namespace
+
+const std::vector<std::string>& names_of(const CalibrateMethod*) {
+  static const std::vector<std::string> names = {"bundle",       "bundle-etalon", "etalon",
+                                                 "etalon-paper", "arcs",          "arcs-paper"};
+  return names;
+}
+
+const Table<CalibrateWantedConfig>& fields_of(const CalibrateWantedConfig*) {
+  static const auto table =
+      Table<CalibrateWantedConfig>("wanted", "How well the rig shall be known: standard deviations.")
+          .field("angle", &CalibrateWantedConfig::angle,
+                 {.meaning = "Of the angle between the optical axes.",
+                  .unit = Unit::radian,
+                  .range = above_up_to(0, 1)})
+          .field("focal", &CalibrateWantedConfig::focal,
+                 {.meaning = "Of each focal length, a share.", .range = above_up_to(0, 1)})
+          .field("zoom_ratio", &CalibrateWantedConfig::zoom_ratio,
+                 {.meaning = "Of how much larger one camera shows the arm than the other, a share.",
+                  .range = above_up_to(0, 1)});
+  return table;
+}
+
+const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
+  static const auto table =
+      Table<CalibrateGuessConfig>(
+          "guess", "How wrong the file's description of the cameras may be: standard deviations.")
+          .field("rotation", &CalibrateGuessConfig::rotation,
+                 {.meaning = "Of how a mount is turned, about each axis.",
+                  .unit = Unit::radian,
+                  .range = above_up_to(0, 1)})
+          .field("distance", &CalibrateGuessConfig::distance,
+                 {.meaning = "Of where a mount is, in each direction, as a share of its distance from the "
+                             "arm's base, or from the cylinder before which it is calibrated.",
+                  .range = above_up_to(0, 1)})
+          .field("focal", &CalibrateGuessConfig::focal,
+                 {.meaning = "Of the focal length, a share.", .range = between(0, 1)})
+          .field("principal_point", &CalibrateGuessConfig::principal_point,
+                 {.meaning = "Of the principal point, in each direction, px.", .range = between(0, 1000)})
+          .field(
+              "zero", &CalibrateGuessConfig::zero,
+              {.meaning = "Of where a head's axes stand when it says 0; a pan's counts where a stage moves.",
+               .unit = Unit::radian,
+               .range = between(0, 1)})
+          .field("exact_heads", &CalibrateGuessConfig::exact_heads,
+                 {.meaning = "Heads stand where they count, not somewhere within half a step of it."});
+  return table;
+}
+
+const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
+  static const auto table =
+      Table<CalibrateLoopConfig>("loop", "How the paper's methods go about it.")
+          .field("accepted", &CalibrateLoopConfig::accepted,
+                 {.meaning = "What is accepted of every offset in a picture, px.",
+                  .range = above_up_to(0, 1000),
+                  .default_text = "0.05 with etalon, 0.5 with arcs, 3 as printed"})
+          .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
+                 {.meaning = "Share by which the cameras may show the target unlike.",
+                  .range = above_up_to(0, 1),
+                  .default_text = "0.001; 0.01 as printed"})
+          .field("turn", &CalibrateLoopConfig::turn,
+                 {.meaning = "As printed: every turn of a head.",
+                  .unit = Unit::radian,
+                  .range = above_up_to(0, 1)})
+          .field("slide", &CalibrateLoopConfig::slide,
+                 {.meaning = "As printed: every way of a stage.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 10)})
+          .field("zoom_step", &CalibrateLoopConfig::zoom_step,
+                 {.meaning = "As printed: every change of a zoom, a share.", .range = above_up_to(0, 1)})
+          .field("arc", &CalibrateLoopConfig::arc,
+                 {.meaning = "By how much the arm is bent into an arc.",
+                  .unit = Unit::radian,
+                  .range = between(0.2, 6),
+                  .default_text = "90 degrees with arcs, 120 as printed"});
+  return table;
+}
+
+const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
+  static const auto table =
+      Table<CalibrateTask>("calibrate",
+                           "Two cameras find out how they stand, and are sent to where both look at the arm "
+                           "along orthogonal axes with equal zoom. The arm shows some poses, going from one "
+                           "to the next by way of the shape in which it is; heads, stages and zooms are "
+                           "moved as well. It takes as long as it takes.")
+          .field("name", &CalibrateTask::name,
+                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
+          .field("method", &CalibrateTask::method,
+                 {.meaning =
+                      "How: bundle is by least squares over everything at once, from pictures of the arm, "
+                      "bundle-etalon from pictures of the calibration cylinder; etalon is the paper's loop "
+                      "before the calibration cylinder, corrected, and etalon-paper the same as printed; "
+                      "arcs is the paper's loop with arcs of the arm in two planes, corrected, and "
+                      "arcs-paper the same as printed."})
+          .field("cameras", &CalibrateTask::cameras,
+                 {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+          .field(
+              "pose", &CalibrateTask::pose,
+              {.meaning =
+                   "What the arm shows, as `pose = [{ bends = ... }, ...]`. The cameras are to look at the "
+                   "middle of the first one.",
+               .count = {1, 100},
+               .default_text = "six, that bend every part of the arm to every side"})
+          .field("images", &CalibrateTask::images,
+                 {.meaning = "Pictures a camera, at most; with bundle and bundle-etalon the last one "
+                             "verifies, and those of a search come on top.",
+                  .range = between(3, image_limit),
+                  .default_text = "12 with both bundles, 60 with etalon and arcs, 400 as printed"})
+          .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
+          .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
+          .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})
+          .field("target", &CalibrateTask::target,
+                 {.meaning = "What the cameras shall look at in the end.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .default_text = "the middle of the arm in its first pose"})
+          .field("stages", &CalibrateTask::stages, {.meaning = "Stages may be moved, as far as they travel."})
+          .field("zooms", &CalibrateTask::zooms,
+                 {.meaning = "Focal lengths to look with, as factors on that at the start.",
+                  .range = between(0.1, 100),
+                  .count = {1, 10}})
+          .field("move_duration", &CalibrateTask::move_duration,
+                 {.meaning = "Time of the arm's way to a pose, or back.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field("settle_timeout", &CalibrateTask::settle_timeout,
+                 {.meaning = "How long motions may take before something is taken to be stuck.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field("frame_timeout", &CalibrateTask::frame_timeout,
+                 {.meaning = "How long to wait for a picture.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest)})
+          .field(
+              "save", &CalibrateTask::save,
+              {.meaning = "A file (.toml) in this file's folder for the rig as found, which experiments can "
+                          "include. One that is there already is kept, under another name.",
+               .default_text = "none; the results have it as rig.toml"});
+  return table;
+}
+
+bool is_loop(const CalibrateTask& task) {
+  return task.method != CalibrateMethod::bundle && task.method != CalibrateMethod::bundle_etalon;
+}
+
+bool is_as_printed(const CalibrateTask& task) {
+  return task.method == CalibrateMethod::etalon_paper || task.method == CalibrateMethod::arcs_paper;
+}
+
+bool is_before_etalon(const CalibrateTask& task) {
+  return task.method == CalibrateMethod::etalon || task.method == CalibrateMethod::etalon_paper ||
+         task.method == CalibrateMethod::bundle_etalon;
+}
+
+double arc_bend(const CalibrateTask& task) {
+  constexpr double printed = 120 * degree;
+  return task.loop.arc.value_or(is_as_printed(task) ? printed : LoopConfig{}.arc);
+}
+
+std::size_t most_images(const CalibrateTask& task) {
+  if (task.images) return static_cast<std::size_t>(*task.images);
+  constexpr std::size_t printed = 400;
+  if (!is_loop(task)) return RigSessionConfig{}.images;
+  return is_as_printed(task) ? printed : LoopConfig{}.images;
+}
+
+std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& arm) {
+  std::vector<ArmState> poses;
+  if (is_before_etalon(task)) return poses;
+  if (is_loop(task)) {
+    // To which sides, depends on where the cameras stand.
+    for (const double side : {1.0, -1.0})
+      for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
+        if (auto arc = arc_state(arm, arc_bend(task), side * axis)) poses.push_back(std::move(*arc));
+    return poses;
+  }
+  poses.reserve(std::max(task.pose.size(), patterns.size()));
+  for (const ShapeConfig& shape : task.pose) poses.push_back(arm_state(arm, shape));
+  if (!poses.empty()) return poses;
+  for (const auto& pattern : patterns) poses.push_back(patterned(arm, pattern));
+  return poses;
+}
+
+std::array<std::size_t, 2> calibrated_cameras(const CalibrateTask& task,
+                                              const std::vector<CameraConfig>& cameras) {
+  return two_cameras(task.cameras, cameras);
+}
+
+RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
+                                const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
+  RigSessionConfig config;
+  config.cameras = calibrated_cameras(task, cameras);
+  config.poses = calibration_poses(task, arm.arm());
+  config.picture.markers = known_markers(arm);
+  config.images = most_images(task);
+  config.first = std::min<std::size_t>(3, config.images - 1);
+  config.fewest = std::min<std::size_t>(5, config.picture.markers.size());
+  if (task.method == CalibrateMethod::bundle_etalon) {
+    config.etalon = stand.etalon.value_or(EtalonConfig{});
+    config.screens = stand.screen.value_or(default_screens(arm.arm().length(), arm.base.position));
+    config.poses = {arm_state(arm.arm(), arm.initial)};
+    // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
+    config.first = 1, config.fewest = 2;
+  }
+  config.wanted = {task.wanted.angle, {task.wanted.focal, task.wanted.focal}, task.wanted.zoom_ratio};
+  if (task.target) config.target = vector(*task.target);
+  config.may_use_stages = task.stages;
+  config.zooms = task.zooms;
+  config.move_duration = task.move_duration;
+  config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
+  return config;
+}
+
+LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
+                       const std::vector<CameraConfig>& cameras, const StandConfig& stand) {
+  constexpr std::array<LoopMethod, 6> methods = {LoopMethod::etalon, LoopMethod::etalon,
+                                                 LoopMethod::etalon, LoopMethod::etalon_paper,
+                                                 LoopMethod::arcs,   LoopMethod::arcs_paper};
+  LoopConfig config;
+  config.method = methods.at(static_cast<std::size_t>(task.method));
+  config.cameras = calibrated_cameras(task, cameras);
+  config.images = most_images(task);
+  constexpr double printed = 3, printed_zoom = 0.01, of_arcs = 0.5;
+  const bool is_printed = is_as_printed(task);
+  const double corrected = is_before_etalon(task) ? config.accepted : of_arcs;
+  config.accepted = task.loop.accepted.value_or(is_printed ? printed : corrected);
+  config.zoom_accepted = task.loop.zoom_accepted.value_or(is_printed ? printed_zoom : config.zoom_accepted);
+  config.turn = task.loop.turn, config.slide = task.loop.slide, config.zoom_step = task.loop.zoom_step;
+  config.arc = arc_bend(task);
+  config.picture.markers = known_markers(arm);
+  config.prior = session_prior(task, rig_model(arm.arm(), cameras), stand);
+  config.etalon = stand.etalon.value_or(EtalonConfig{});
+  config.move_duration = task.move_duration;
+  config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
+  return config;
+}
+
+RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, const StandConfig& stand) {
+  std::optional<Eigen::Vector3d> seen;
+  if (is_before_etalon(task)) seen = EtalonFigure(stand.etalon.value_or(EtalonConfig{})).middle();
+  RigPrior prior = rough_prior(believed, task.guess.distance, seen);
+  // The cylinder tells nothing of the arm.
+  if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
+  for (CameraPrior& camera : prior.cameras) {
+    if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.guess.zero : 0;
+    camera.tilt_zero = task.guess.zero;
+    camera.rotation = task.guess.rotation, camera.focal = task.guess.focal;
+    camera.principal_point = task.guess.principal_point;
+    if (task.guess.exact_heads) camera.steps = 0;
+  }
+  return prior;
+}
+
+}  // namespace flexura

@@ -1,0 +1,184 @@
+#include "flexura/tasks/dynamics/dynamics_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "flexura/base/degree.h"
+#include "flexura/base/node.h"
+
+namespace flexura {
+namespace {
+
+double lyapunov_value(const DynamicsSample& sample) {
+  return sample.energies.kinetic + sample.energies.potential;
+}
+
+// The shares and reasons are those of a law with exact angles.
+Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
+  Node::Table members{{"monotone", {}, {verdict.is_monotone, {}}},
+                      {"balanced", {}, {verdict.is_balanced, {}}},
+                      {"settled", {}, {verdict.is_settled, {}}},
+                      {"largest_rise", {}, number_node(verdict.largest_rise)},
+                      {"imbalance", {}, number_node(verdict.imbalance)}};
+  if (!is_measured) {
+    members.push_back({"gravity_share", {}, number_node(verdict.gravity_share)});
+    members.push_back({"elastic_share", {}, number_node(verdict.elastic_share)});
+    members.push_back({"potential_share", {}, number_node(verdict.potential_share)});
+    members.push_back({"reasons", {}, texts_node(verdict.reasons)});
+  }
+  return {std::move(members), {}};
+}
+
+// No more samples than a picture shows, with the first and the last one.
+std::vector<DynamicsSampleMessage> shown_samples(const DynamicsRun& run) {
+  constexpr std::size_t most = 2000;
+  const std::size_t every = run.samples.size() / most + 1;
+  std::vector<DynamicsSampleMessage> shown;
+  for (std::size_t i = 0; i + 1 < run.samples.size(); i += every)
+    shown.push_back(run.message(run.samples[i]));
+  shown.push_back(run.message(run.samples.back()));
+  return shown;
+}
+
+using Value = std::function<double(const DynamicsSampleMessage&)>;
+
+std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number) {
+  const std::vector<DynamicsSampleMessage> samples = shown_samples(run);
+  std::vector<ReportFigure> figures;
+  const auto draw = [&](const char* name, const char* heading, const char* label, double least,
+                        const std::vector<std::pair<std::string, Value>>& lines) {
+    LineChart chart{
+        .heading = heading, .x_label = "time in the task (s)", .value_label = label, .least = least};
+    for (const auto& [line, value] : lines) chart.series.push_back({line, {}});
+    for (const DynamicsSampleMessage& sample : samples) {
+      chart.x.push_back(sample.time - run.start);
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        chart.series[i].values.push_back(lines[i].second(sample));
+    }
+    figures.push_back({fmt::format("dynamics-{}-{}", number + 1, name), std::move(chart)});
+  };
+  using Shown = DynamicsSampleMessage;
+  constexpr double least_joule = 1e-9;
+  std::vector<std::pair<std::string, Value>> lines = {
+      {"W", &Shown::lyapunov}, {"T", &Shown::kinetic_energy}, {"Pi", &Shown::potential}};
+  draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule, lines);
+  for (auto& [line, value] : lines)
+    value = [=](const Shown& at) { return std::log10(std::max(value(at), least_joule)); };
+  draw("lyapunov-powers", "the same", "J, power of ten", 1, lines);
+  draw("energies", "the arm's energies, and what damping took", "J", least_joule,
+       {{"gravity", &Shown::gravity_energy},
+        {"elastic", &Shown::elastic_energy},
+        {"law's damping", &Shown::taken_by_law},
+        {"own damping", &Shown::taken_by_medium}});
+  draw("errors", "angles off the target, rms along the arm", "deg", 1e-3,
+       {{"spatial", [](const Shown& at) { return at.spatial_error / degree; }},
+        {"theta", [](const Shown& at) { return at.azimuth_error / degree; }},
+        {"q", [](const Shown& at) { return at.elevation_error / degree; }}});
+  return figures;
+}
+
+const char* yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
+
+std::vector<std::string> findings_of(const DynamicsRun& run) {
+  std::vector<std::string> points;
+  points.reserve(run.violations.size());
+  for (const std::string& violation : run.violations)
+    points.push_back("A condition of the theory does not hold: " + violation + ".");
+  if (!run.stopped.empty()) points.push_back("It ended early: " + run.stopped + ".");
+  if (run.verdict) {
+    const LyapunovVerdict& verdict = *run.verdict;
+    points.push_back(fmt::format(
+        "W falls all the way: {} (its largest rise is {:.2g} J). It falls by what damping takes, and by that "
+        "alone: {} (the largest difference is {:.2g} J). It has settled in the end: {}.",
+        yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
+        verdict.imbalance, yes_or_no(verdict.is_settled)));
+    if (run.is_measured) {
+      points.emplace_back(
+          "The law had measured angles: late, noisy or held for a while. The theory's balance is that of "
+          "exact ones, so what it finds missing here is theirs.");
+    } else {
+      for (const std::string& reason : verdict.reasons)
+        points.push_back("The energies tell: " + reason + ".");
+    }
+  }
+  if (run.triangulated > 0)
+    points.push_back(
+        fmt::format("Of all points of the arm that were looked at {:.3g} % were within 10 deg of a quarter "
+                    "turn, or across one from where they are to be: there both pictures were triangulated.",
+                    100 * run.triangulated));
+  constexpr double little = 1e-9;
+  if (run.left_over > little)
+    points.push_back(fmt::format(
+        "Up to {:.3g} % of the largest force that the law asked for is what the drives cannot give.",
+        100 * run.left_over));
+  points.push_back(fmt::format(
+      "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
+      "{:.3g} mm.",
+      run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
+  const double off = std::max(run.plant.start_off(), run.plant.target_off());
+  constexpr double shows = 1e-3;  // rad
+  if (off > shows)
+    points.push_back(fmt::format(
+        "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
+        "target as it was said, root mean square along the arm.",
+        run.plant.start_off() / degree, run.plant.target_off() / degree));
+  points.push_back(fmt::format(
+      "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "
+      "{:.2g} mm from theirs.",
+      1e3 * run.apart));
+  return points;
+}
+
+}  // namespace
+
+Node dynamics_node(const DynamicsRun& run) {
+  const DynamicsSample& last = run.samples.back();
+  Node::Table members{
+      {"name", {}, {run.name, {}}},
+      {"done", {}, {run.is_done(), {}}},
+      {"reasons", {}, texts_node(run.reasons)},
+      {"start", {}, number_node(run.start)},
+      {"duration", {}, number_node(last.energies.time)},
+      {"measured", {}, {run.is_measured, {}}},
+      {"violations", {}, texts_node(run.violations)},
+      {"lyapunov",
+       {},
+       {Node::Array{number_node(lyapunov_value(run.samples.front())), number_node(lyapunov_value(last))},
+        {}}}};
+  if (run.verdict) members.push_back({"verdict", {}, verdict_node(*run.verdict, run.is_measured)});
+  members.push_back({"remaining",
+                     {},
+                     {Node::Table{{"azimuth", {}, number_node(run.remaining.azimuth)},
+                                  {"elevation", {}, number_node(run.remaining.elevation)},
+                                  {"spatial", {}, number_node(run.remaining.spatial)},
+                                  {"tip", {}, number_node(run.remaining.tip)}},
+                      {}}});
+  members.push_back({"start_off", {}, number_node(run.plant.start_off())});
+  members.push_back({"target_off", {}, number_node(run.plant.target_off())});
+  members.push_back({"left_over", {}, number_node(run.left_over)});
+  if (run.is_measured) members.push_back({"triangulated", {}, number_node(run.triangulated)});
+  members.push_back({"arcs_apart", {}, number_node(run.apart)});
+  return {std::move(members), {}};
+}
+
+Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
+  const double from = lyapunov_value(run.samples.front()), to = lyapunov_value(run.samples.back());
+  const std::string course = fmt::format("Lyapunov's function W went from {:.3g} J to {:.3g} J in {:.4g} s.",
+                                         from, to, run.samples.back().energies.time);
+  std::string text = fmt::format("Not as the theory has it: {}. {}", run.reason(), course);
+  if (run.is_done())
+    text = run.is_measured ? "The arm came to the target by measured angles. " + course
+                           : "The arm came to the target as the theory has it: W fell all the way, by what "
+                             "damping took. " +
+                                 course;
+  Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
+  if (run.samples.size() > 1) chapter.figures = figures_of(run, number);
+  return chapter;
+}
+
+}  // namespace flexura

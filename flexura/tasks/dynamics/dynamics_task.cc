@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/base/table.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/safety/motion_check.h"
+#include "flexura/store/csv.h"
+#include "flexura/tasks/dynamics/dynamics_messages.h"
+#include "flexura/tasks/dynamics/dynamics_results.h"
+#include "flexura/tasks/dynamics/dynamics_run.h"
+#include "flexura/tasks/dynamics/dynamics_task_config.h"
+#include "flexura/tasks/task_runner.h"
+
+namespace flexura {
+namespace {
+
+// What is to be expected before it is simulated: the straight way to its target.
+MotionPtr straight_way(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
+  if (!is_possible(from)) return hold_motion(from, task.duration);
+  const DynamicsPlant plant(task, arm, from);
+  return keyframe_motion({0, task.duration}, {from, plant.state(plant.target(), from)},
+                         Interpolation::linear);
+}
+
+// The thickest of an arm's sections, m.
+double thickness_of(const Arm& arm) {
+  double thickness = 0;
+  for (const Section& section : arm.sections)
+    thickness = std::max({thickness, 2 * section.radius[0], 2 * section.radius[1]});
+  return thickness;
+}
+
+class DynamicsRunner : public TaskRunner {
+ public:
+  DynamicsRunner(const DynamicsTask& task, const Setup& setup, TaskLabel label)
+      : TaskRunner(setup, std::move(label)), task_(task) {}
+
+  [[nodiscard]] TaskWay way() const override { return TaskWay::simulated; }
+  [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
+    return {.motion = done ? done : straight_way(task_, setup().arm.arm(), from)};
+  }
+  [[nodiscard]] TaskEnd simulate(const ArmState& from, double start, Progress& progress) override {
+    run_ = run_dynamics(task_, label(), setup(), from, start, progress);
+    return {run_->motion, run_->is_done() ? "" : run_->reason()};
+  }
+
+  // Where the arcs that are judged are farther from the arm than it is thick; of a task that was not
+  // simulated, why. Which conditions of the theory that one violates is known all the same.
+  void add_caveats(const ArmState& from, const std::string& ended_by, SafetyReport& report) const override {
+    const Arm arm = setup().arm.arm();
+    if (run_) {
+      if (run_->apart > thickness_of(arm))
+        report.caveats.push_back(
+            fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend "
+                        "so far out of a plane are no arcs",
+                        name(), run_->apart));
+      return;
+    }
+    report.caveats.push_back(fmt::format(
+        "{}: judged by the straight way only: {}", name(),
+        ended_by.empty() ? "it is simulated when the tasks before it are done"
+                         : fmt::format("it is not simulated, for the run ends with {}", ended_by)));
+    if (!is_possible(from)) return;
+    const DynamicsPlant plant(task_, arm, from);
+    for (const std::string& violation : theory_violations(task_, plant, potential_law_of(task_, plant)))
+      report.notes.push_back(fmt::format("{}: {}", name(), violation));
+  }
+
+  // What it began and ended with, and what it had come to at each time of the log.
+  void tell_up_to(double time, RunLog& log) override {
+    if (!run_) return;
+    const std::size_t count = run_->samples.size();
+    const auto is_past = [&](std::size_t i) {
+      constexpr double same_time = 1e-9;  // s
+      return run_->start + run_->samples[i].energies.time <= time + same_time;
+    };
+    for (; told_ < count && is_past(told_); ++told_) {
+      const bool is_end = told_ == 0 || told_ + 1 == count;
+      if (!is_end && is_past(told_ + 1)) continue;
+      const DynamicsSampleMessage message = run_->message(run_->samples[told_]);
+      log.tell({dynamics_samples_topic, message.time, message});
+    }
+  }
+
+  [[nodiscard]] std::string_view summary_list() const override { return "dynamics"; }
+  [[nodiscard]] std::optional<Node> summary() const override {
+    return run_ ? std::optional(dynamics_node(*run_)) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<Chapter> chapter(std::size_t number) const override {
+    return run_ ? std::optional(dynamics_chapter(*run_, number)) : std::nullopt;
+  }
+
+ private:
+  const DynamicsTask& task_;
+  std::optional<DynamicsRun> run_;
+  std::size_t told_ = 0;  // Of its samples.
+};
+
+// Where the arm is along itself is the log's to tell.
+class DynamicsTable : public LogTable {
+ public:
+  [[nodiscard]] std::string file_name() const override { return "dynamics.csv"; }
+  [[nodiscard]] bool takes(std::string_view topic) const override { return topic == dynamics_samples_topic; }
+  void add(std::string_view /*topic*/, double /*time*/, const Node& message) override {
+    const auto sample = read_as<DynamicsSampleMessage>(message);
+    if (csv_.text().empty()) name_columns();
+    csv_.cells(std::array{sample.time, sample.kinetic_energy, sample.gravity_energy, sample.elastic_energy,
+                          sample.potential, sample.lyapunov, sample.taken_by_law, sample.taken_by_medium,
+                          sample.azimuth_error, sample.elevation_error, sample.spatial_error,
+                          sample.tip_error});
+    if (sample.points.empty())
+      throw std::runtime_error(
+          fmt::format("the log's sample of dynamics at {} s has no points", sample.time));
+    csv_.cells(sample.points.back());
+    csv_.end_row();
+  }
+  [[nodiscard]] std::string text() const override { return csv_.text(); }
+
+ private:
+  void name_columns() {
+    for (const char* title : {"time", "kinetic_energy", "gravity_energy", "elastic_energy", "potential",
+                              "lyapunov", "taken_by_law", "taken_by_medium", "azimuth_error",
+                              "elevation_error", "spatial_error", "tip_error", "tip_x", "tip_y", "tip_z"})
+      csv_.cell(std::string_view(title));
+    csv_.end_row();
+  }
+  CsvText csv_;
+};
+
+}  // namespace
+
+std::unique_ptr<TaskRunner> runner_of(const DynamicsTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<DynamicsRunner>(task, setup, std::move(label));
+}
+
+LogTables log_tables(const DynamicsTask*) {
+  LogTables tables;
+  tables.push_back(std::make_unique<DynamicsTable>());
+  return tables;
+}
+
+}  // namespace flexura

@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "flexura/kinematics/cord_motion.h"
+#include "flexura/kinematics/expression.h"
+#include "flexura/kinematics/inverse.h"
+#include "flexura/kinematics/shape.h"
+#include "flexura/math/arrays.h"
+#include "flexura/model/arm_model.h"
+#include "flexura/tasks/motion/keyframes.h"
+#include "flexura/tasks/motion/motion_task_config.h"
+#include "flexura/tasks/task_runner.h"
+
+namespace flexura {
+namespace {
+
+// One value for all sections, or one each.
+template <class T>
+const T& of_section(const std::vector<T>& values, std::size_t section) {
+  return values.size() == 1 ? values.front() : values[section];
+}
+
+// How far a section goes: rad of bend, and stretch as if 1 were 1 rad.
+double distance(const ArmState& from, const ArmState& to, std::size_t section) {
+  return std::max((to.bends[section] - from.bends[section]).norm(),
+                  std::abs(to.stretches[section] - from.stretches[section]));
+}
+
+// The fastest trapezoid, one for all sections, with which none exceeds its own rate and acceleration; none
+// where there is no way to go.
+std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& from, const ArmState& to) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  double rate = unlimited;  // of the whole way, 1/s
+  double acceleration = unlimited;
+  for (std::size_t i = 0; i < from.bends.size(); ++i) {
+    const double way = distance(from, to, i);
+    if (way == 0) continue;
+    rate = std::min(rate, of_section(*task.max_rate, i) / way);
+    acceleration = std::min(acceleration, of_section(*task.max_acceleration, i) / way);
+  }
+  if (rate == unlimited) return std::nullopt;
+  // A formula may leave the arm nowhere; the way from there takes longer than a run may.
+  constexpr double least = 1e-300;
+  return Profile::trapezoid(1.0, std::max(rate, least), std::max(acceleration, least));
+}
+
+MotionPtr motion_of(const HoldTask& task, const ArmModel&, const ArmState& from) {
+  return hold_motion(from, task.duration);
+}
+
+// Where the tip shall be after it, m, when it says so.
+std::optional<Eigen::Vector3d> tip_target(const MoveTask& task) {
+  if (!task.to.position) return std::nullopt;
+  return vector(*task.to.position);
+}
+
+// The shape that a move goes to. The search for one starts from where the arm is.
+ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmState& from) {
+  const auto tip = tip_target(task);
+  if (!tip) return arm_state(arm.driven(), task.to);
+  InverseConfig config;
+  config.start = from;
+  return solve_inverse(arm, TipTarget{.position = *tip}, config).state;
+}
+
+// Of the laws that take the task's duration. Without a default, so that the compiler asks for a new law's.
+Profile profile_of(MoveLaw law, double duration) {
+  switch (law) {
+    case MoveLaw::linear:
+      return Profile::linear(duration);
+    case MoveLaw::minimum_jerk:
+      return Profile::minimum_jerk(duration);
+    case MoveLaw::trapezoid:
+      break;
+  }
+  throw std::logic_error("a trapezoid finds its own duration");
+}
+
+MotionPtr motion_of(const MoveTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
+  const ArmState to = state_to_reach(task, model, from);
+  if (task.law.front() == MoveLaw::trapezoid) {
+    const auto trapezoid = shared_trapezoid(task, from, to);
+    if (!trapezoid) return hold_motion(from, 0);
+    return point_to_point_motion(from, to, std::vector<Profile>(arm.sections.size(), *trapezoid));
+  }
+  std::vector<Profile> profiles;
+  profiles.reserve(arm.sections.size());
+  for (std::size_t i = 0; i < arm.sections.size(); ++i)
+    profiles.push_back(profile_of(of_section(task.law, i), task.duration.value_or(1.0)));
+  // With one law for all, cords and bends both go on straight lines.
+  if (task.to.cord_angles && task.law.size() > 1) {
+    std::vector<double> changes = *task.to.cord_angles;
+    const std::vector<double> first = cord_angles(arm, from);
+    for (std::size_t i = 0; i < changes.size(); ++i) changes[i] -= first[i];
+    return cord_point_to_point_motion(from, to, std::move(changes), std::move(profiles));
+  }
+  return point_to_point_motion(from, to, std::move(profiles));
+}
+
+MotionPtr motion_of(const SineTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
+  std::vector<double> phases;
+  phases.reserve(arm.sections.size());
+  for (std::size_t i = 0; i < arm.sections.size(); ++i) phases.push_back(of_section(task.phase, i));
+  if (task.amplitude.cord_angles)
+    return cord_sine_motion(from, *task.amplitude.cord_angles, phases, task.period, task.duration);
+  return sine_motion(from, arm_state(arm, task.amplitude).bends, std::move(phases), task.period,
+                     task.duration);
+}
+
+MotionPtr motion_of(const KeyframesTask& task, const ArmModel& model, const ArmState&) {
+  const Arm& arm = model.driven();
+  return keyframes_task_motion(task, arm);
+}
+
+// The formulas of one quantity, one for all sections or one each.
+class Formulas {
+ public:
+  explicit Formulas(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) formulas_.emplace_back(text);
+  }
+  [[nodiscard]] double value(double t, double T, std::size_t section) const {
+    return of_section(formulas_, section).value(t, T, section + 1);
+  }
+
+ private:
+  std::vector<Expression> formulas_;
+};
+
+std::vector<double> values_of(const Formulas& formulas, double t, double T, std::size_t sections) {
+  std::vector<double> values;
+  values.reserve(sections);
+  for (std::size_t i = 0; i < sections; ++i) values.push_back(formulas.value(t, T, i));
+  return values;
+}
+
+MotionPtr motion_of(const ExpressionTask& task, const ArmModel& model, const ArmState& from) {
+  const Arm& arm = model.driven();
+  struct Law {
+    std::optional<Formulas> cord_angles, archings, bends_x, bends_y, stretches;
+  };
+  auto law = std::make_shared<Law>();
+  if (task.cord_angles) law->cord_angles.emplace(*task.cord_angles);
+  if (task.archings) law->archings.emplace(*task.archings);
+  if (task.stretches) law->stretches.emplace(*task.stretches);
+  if (task.bends) {
+    std::vector<std::string> x;
+    std::vector<std::string> y;
+    for (const auto& [bend_x, bend_y] : *task.bends) {
+      x.push_back(bend_x);
+      y.push_back(bend_y);
+    }
+    law->bends_x.emplace(x);
+    law->bends_y.emplace(y);
+  }
+  return function_motion(task.duration, [law, arm, from, T = task.duration](double t) {
+    const std::size_t n = arm.sections.size();
+    ShapeConfig shape;
+    if (law->cord_angles) shape.cord_angles = values_of(*law->cord_angles, t, T, n);
+    if (law->archings) shape.archings = values_of(*law->archings, t, T, n);
+    ArmState state = shape.cord_angles || shape.archings ? arm_state(arm, shape) : from;
+    state.stretches = from.stretches;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (law->bends_x) state.bends[i] = {law->bends_x->value(t, T, i), law->bends_y->value(t, T, i)};
+      if (law->stretches) state.stretches[i] = law->stretches->value(t, T, i);
+    }
+    return state;
+  });
+}
+
+// A task whose motion is known from where it starts.
+template <class Task>
+class MotionRunner : public TaskRunner {
+ public:
+  MotionRunner(const Task& task, const Setup& setup, TaskLabel label)
+      : TaskRunner(setup, std::move(label)), task_(task) {}
+
+  [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& /*done*/) const override {
+    const ArmModel arm = setup().arm.model();
+    TaskPlan plan{.motion = motion_of(task_, arm, from)};
+    if constexpr (std::is_same_v<Task, MoveTask>) add_missed(arm, plan);
+    return plan;
+  }
+
+ private:
+  void add_missed(const ArmModel& arm, TaskPlan& plan) const {
+    // A tip that comes so near to its target, as a part of the arm's length, is there.
+    constexpr double tolerance = 1e-6;
+    const auto target = tip_target(task_);
+    if (!target) return;
+    const Motion& motion = *plan.motion;
+    const double missed = (arm.backbone(motion.at(motion.duration())).tip().position - *target).norm();
+    if (missed > tolerance * arm.driven().length())
+      plan.missed.push_back({.place = "", .distance = missed, .limit = 0, .position = target});
+  }
+
+  const Task& task_;
+};
+
+}  // namespace
+
+std::unique_ptr<TaskRunner> runner_of(const MoveTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<MotionRunner<MoveTask>>(task, setup, std::move(label));
+}
+
+std::unique_ptr<TaskRunner> runner_of(const HoldTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<MotionRunner<HoldTask>>(task, setup, std::move(label));
+}
+
+std::unique_ptr<TaskRunner> runner_of(const SineTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<MotionRunner<SineTask>>(task, setup, std::move(label));
+}
+
+std::unique_ptr<TaskRunner> runner_of(const KeyframesTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<MotionRunner<KeyframesTask>>(task, setup, std::move(label));
+}
+
+std::unique_ptr<TaskRunner> runner_of(const ExpressionTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<MotionRunner<ExpressionTask>>(task, setup, std::move(label));
+}
+
+}  // namespace flexura

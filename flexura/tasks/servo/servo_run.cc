@@ -1,0 +1,196 @@
+#include "flexura/tasks/servo/servo_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "flexura/estimate/backbone_pixels.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/run_log.h"
+#include "flexura/rig/commanded_motion.h"
+#include "flexura/servo/feature_marks.h"
+#include "flexura/tasks/servo/servo_messages.h"
+#include "flexura/tasks/servo/servo_target.h"
+
+namespace flexura {
+namespace {
+
+// Tells the log of everything, and compares with the truth.
+class LoggedServo : public ServoWatcher {
+ public:
+  LoggedServo(const Setup& setup, const ServoConfig& session, ServoRun& run, TaskStage& stage,
+              CommandedMotion& motion)
+      : keeps_images_(setup.record.cameras),
+        run_(run),
+        stage_(stage),
+        log_(stage.log),
+        motion_(motion),
+        marker_(session.law, run.believed.arm, session.points) {}
+
+  void arm_sent(double time, const ArmState& state, double duration) override {
+    motion_.send(time, state, duration);
+  }
+  void seen(const ServoSight& sight) override {
+    const auto marks = marker_.of(sight);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (keeps_images_)
+        log_.image(run_.cameras[i], sight.frames[i], logged_image(run_.cameras[i], sight.frames[i]));
+      ServoSightingMessage message;
+      message.time = sight.frames[i].time, message.camera = run_.cameras[i];
+      message.frame = sight.frames[i].number;
+      if (!sight.estimate.is_found && !sight.reasons[i].empty()) message.reason = sight.reasons[i];
+      const Sighting few = thinned(sight.seen[i], most_points);
+      for (const CurvePoint& point : few.points)
+        message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
+      for (const Eigen::Vector2d& pixel :
+           backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))
+        message.wanted.push_back(to_hundredths(pixel));
+      if (!marks[i].empty()) message.features.emplace();
+      for (const FeatureMark& mark : marks[i])
+        message.features->push_back({to_hundredths(mark.seen), to_hundredths(mark.wanted)});
+      log_.tell({servo_sightings_topic, sight.frames[i].received, message});
+    }
+  }
+  void stepped(const ServoStep& step) override {
+    ServoStepMessage message;
+    message.time = step.time, message.seen_at = step.seen_at;
+    message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
+    if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
+    message.sent = bends_of(step.sent), message.sent_stretches = step.sent.stretches;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!step.heads[i]) continue;
+      if (!message.heads) message.heads.emplace();
+      message.heads->push_back(
+          {run_.cameras[i], step.heads[i]->pan, step.heads[i]->tilt, step.heads[i]->zoom});
+    }
+    if (step.error)
+      message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
+    message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
+    if (!step.limited.empty()) message.limited = step.limited;
+    for (const Section& section : run_.believed.arm.sections) message.lengths.push_back(section.length);
+    RigTruth* truth = stage_.rig.truth();
+    run_.truth.push_back(step.seen_at && truth != nullptr ? std::optional(add_truth(step, *truth, message))
+                                                          : std::nullopt);
+    log_.tell({servo_steps_topic, message.time, message});
+    stage_.progress.update(
+        0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
+                        : run_.name);
+  }
+  void told(double time, const std::string& what) override {
+    log_.event(time, Recorder::Level::warning, run_.name, what);
+  }
+  bool is_cancelled() override { return stage_.progress.is_cancelled(); }
+
+ private:
+  static constexpr std::size_t most_points = 60;  // Of an axis in the log.
+  static constexpr int wanted_points = 40;        // Of the wanted shape's image.
+
+  static std::array<double, 2> to_hundredths(const Eigen::Vector2d& pixel) {
+    return {std::round(100 * pixel.x()) / 100, std::round(100 * pixel.y()) / 100};
+  }
+  static std::vector<std::array<double, 2>> to_hundredths(const std::vector<Eigen::Vector2d>& pixels) {
+    std::vector<std::array<double, 2>> rounded;
+    rounded.reserve(pixels.size());
+    for (const Eigen::Vector2d& pixel : pixels) rounded.push_back(to_hundredths(pixel));
+    return rounded;
+  }
+
+  // Of the time of the step's pictures.
+  [[nodiscard]] ServoError add_truth(const ServoStep& step, RigTruth& truth, ServoStepMessage& message) {
+    const Arm& arm = run_.believed.arm;
+    const Backbone shape = truth.backbone(*step.seen_at);
+    auto& bends = message.truth.emplace();
+    auto& lengths = message.true_lengths.emplace();
+    for (const Arc& arc : shape.arcs())
+      bends.push_back({arc.bend.x(), arc.bend.y()}), lengths.push_back(arc.length);
+    const ServoError error = servo_error(shape, Backbone(arm, step.desired), arm.length());
+    message.true_rms = error.rms, message.true_most = error.most, message.true_tip = error.tip;
+    return error;
+  }
+
+  bool keeps_images_;
+  ServoRun& run_;
+  TaskStage& stage_;
+  RunLog& log_;
+  CommandedMotion& motion_;
+  FeatureMarker marker_;
+};
+
+void add_true_remaining(ServoRun& run) {
+  LateErrors late(run.settle);
+  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
+    const ServoStep& step = run.result.steps[i];
+    if (step.is_fresh && run.truth[i]) late.add(*step.seen_at, *run.truth[i]);
+  }
+  run.true_remaining = late.mean();
+}
+
+}  // namespace
+
+std::vector<double> band_places(const Setup& setup, const Arm& believed) {
+  const ArmModel model = setup.arm.model();
+  const Arm& arm = model.shaped();
+  std::vector<double> places;
+  for (const Marker& marker : setup.arm.look.markers(model.driven())) {
+    const ArmState straight = ArmState::straight(believed.sections.size());
+    places.push_back(arc_length_of(believed, straight, material_point(arm, marker.at)));
+  }
+  return places;
+}
+
+ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& believed,
+                         const ArmState& from) {
+  const std::vector<CameraConfig> cameras = setup.cameras();
+  ServoConfig config;
+  config.cameras = servo_cameras(task, cameras);
+  const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
+  const ArmModel arm = believed.arm_model();
+  ArmState state = from;
+  for (const ServoTargetConfig& target : task.target) {
+    if (!target.pictures.empty()) {
+      config.goals.push_back({target.time, recorded_views(target, {first, second}, setup.folder)});
+      continue;
+    }
+    const ServoTargetShape shape = servo_target_shape(target, arm, state);
+    state = shape.state;
+    config.goals.push_back({target.time, arm.actuation().shape(shape.state), shape.missed});
+  }
+  config.law = task.law, config.jacobian = task.jacobian;
+  config.measure = task.measure, config.anchor = task.anchor;
+  config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
+  config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
+  config.follows = task.follow;
+  config.camera_doubt = {.turn = task.doubt.turn, .focal = task.doubt.focal};
+  const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
+  if (is_colored) config.markers = band_places(setup, believed.arm);
+  config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
+  if (setup.drive) config.drive = setup.drive->drive();
+  config.list_step = setup.clock.step;
+  config.obstacles = obstacles(setup.obstacle);
+  config.patience = servo_patience(task, cameras);
+  return config;
+}
+
+ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& setup, const ArmState& from,
+                   TaskStage& stage) {
+  RecordedPorts recorded(stage.rig.ports(), from, stage.record_steps);
+  ServoRun run;
+  run.name = name, run.believed = stage.believed.model;
+  ServoConfig session = servo_config(setup, task, run.believed, from);
+  session.sent = from;
+  run.settle = task.settle;
+  for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
+  LoggedServo log(setup, session, run, stage, recorded.motion());
+  run.result = servo_in_session(recorded.ports(), run.believed, session, log);
+  const double end = recorded.finish();
+  run.motion = recorded.motion().motion(end);
+  add_true_remaining(run);
+  stage.log.event(end, run.result.is_done ? Recorder::Level::info : Recorder::Level::error, run.name,
+                  run.result.is_done ? "there" : run.result.reason);
+  return run;
+}
+
+}  // namespace flexura

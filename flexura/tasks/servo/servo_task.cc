@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/kinematics/motion.h"
+#include "flexura/math/arrays.h"
+#include "flexura/model/arm_model.h"
+#include "flexura/rig/setup.h"
+#include "flexura/store/csv.h"
+#include "flexura/tasks/servo/servo_messages.h"
+#include "flexura/tasks/servo/servo_results.h"
+#include "flexura/tasks/servo/servo_run.h"
+#include "flexura/tasks/servo/servo_target.h"
+#include "flexura/tasks/servo/servo_task_config.h"
+#include "flexura/tasks/task_runner.h"
+
+namespace flexura {
+namespace {
+
+// The straight way to each target, slowly.
+MotionPtr way_to(const std::vector<std::optional<ServoTargetShape>>& shapes, const Arm& arm,
+                 const ArmState& from) {
+  // s a target, and more where sections are slower: the limiter obeys their rates. A smooth way is at most
+  // three times as fast as its mean.
+  constexpr double slow = 10, faster = 3;
+  const auto lasts = [&](const ArmState& a, const ArmState& b) {
+    double duration = slow;
+    for (std::size_t i = 0; i < arm.sections.size(); ++i) {
+      const double bending = (b.bends[i] - a.bends[i]).norm(),
+                   stretching = std::abs(b.stretches[i] - a.stretches[i]);
+      duration = std::max({duration, faster * bending / arm.sections[i].max_bend_rate,
+                           faster * stretching / arm.sections[i].max_stretch_rate});
+    }
+    return duration;
+  };
+  std::vector<double> times = {0};
+  std::vector<ArmState> states = {from};
+  for (const auto& shape : shapes) {
+    if (!shape) continue;  // Nobody knows yet.
+    times.push_back(times.back() + lasts(states.back(), shape->state));
+    states.push_back(shape->state);
+  }
+  if (times.size() < 2) return hold_motion(from, 0);
+  return keyframe_motion(std::move(times), states, Interpolation::smooth);
+}
+
+class ServoRunner : public TaskRunner {
+ public:
+  ServoRunner(const ServoTask& task, const Setup& setup, TaskLabel label)
+      : TaskRunner(setup, std::move(label)), task_(task) {}
+
+  [[nodiscard]] TaskWay way() const override { return TaskWay::by_rig; }
+
+  // With those of its targets of which the nearest shape of the arm stays farther away than it may.
+  [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
+    const ArmModel arm = setup().arm.model();
+    const auto shapes = servo_target_shapes(task_, arm, from);
+    TaskPlan plan{.motion = done ? done : way_to(shapes, arm.driven(), from),
+                  .is_steered = true,
+                  .is_foreseen = done != nullptr};
+    const double length = arm.driven().length();
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      if (!shapes[i] || shapes[i]->missed <= task_.tolerance) continue;
+      const auto& position = task_.target[i].position;
+      plan.missed.push_back({.place = fmt::format("target[{}]", i),
+                             .distance = shapes[i]->missed * length,
+                             .limit = task_.tolerance * length,
+                             .position = position ? std::optional(vector(*position)) : std::nullopt});
+    }
+    return plan;
+  }
+
+  [[nodiscard]] TaskEnd perform(const ArmState& from, TaskStage& stage) override {
+    run_ = run_servo(task_, name(), setup(), from, stage);
+    return {run_->motion, run_->result.is_done ? "" : run_->result.reason};
+  }
+
+  [[nodiscard]] std::string_view summary_list() const override { return "servos"; }
+  [[nodiscard]] std::optional<Node> summary() const override {
+    return run_ ? std::optional(servo_node(*run_)) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<Chapter> chapter(std::size_t number) const override {
+    return run_ ? std::optional(servo_chapter(*run_, number)) : std::nullopt;
+  }
+
+ private:
+  const ServoTask& task_;
+  std::optional<ServoRun> run_;
+};
+
+// The shapes themselves are the log's to tell.
+class ServoTable : public LogTable {
+ public:
+  [[nodiscard]] std::string file_name() const override { return "servo.csv"; }
+  [[nodiscard]] bool takes(std::string_view topic) const override { return topic == servo_steps_topic; }
+  void add(std::string_view /*topic*/, double /*time*/, const Node& message) override {
+    const auto step = read_as<ServoStepMessage>(message);
+    if (csv_.text().empty()) name_columns();
+    csv_.cell(step.time);
+    for (const auto& value :
+         {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most, step.true_tip}) {
+      if (value)
+        csv_.cell(*value);
+      else
+        csv_.cell(std::string_view());
+    }
+    csv_.cell(step.potential);
+    csv_.cell(step.limited ? std::string_view(*step.limited) : std::string_view());
+    csv_.end_row();
+  }
+  [[nodiscard]] std::string text() const override { return csv_.text(); }
+
+ private:
+  void name_columns() {
+    for (const char* title : {"time", "seen_at", "rms", "most", "tip", "true_rms", "true_most", "true_tip",
+                              "potential", "limited"})
+      csv_.cell(std::string_view(title));
+    csv_.end_row();
+  }
+  CsvText csv_;
+};
+
+}  // namespace
+
+void read_files(ServoTask& task, const Setup& setup, const Node& written, const std::string& path,
+                std::vector<Problem>& problems) {
+  const std::vector<CameraConfig> cameras = setup.cameras();
+  const auto [first, second] = servo_cameras(task, cameras);
+  for (std::size_t i = 0; i < task.target.size(); ++i) {
+    if (task.target[i].pictures.empty()) continue;
+    try {
+      (void)recorded_views(task.target[i], {cameras[first], cameras[second]}, setup.folder);
+    } catch (const InputError& error) {
+      const Node& target = written.find("target")->as<Node::Array>()->at(i);
+      for (const Problem& problem : error.problems())
+        problems.push_back(
+            {target.find("pictures")->where,
+             fmt::format("{}.target[{}].pictures: {}{}", path, i,
+                         problem.where.source ? *problem.where.source + ": " : "", problem.what)});
+    }
+  }
+}
+
+std::unique_ptr<TaskRunner> runner_of(const ServoTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<ServoRunner>(task, setup, std::move(label));
+}
+
+LogTables log_tables(const ServoTask*) {
+  LogTables tables;
+  tables.push_back(std::make_unique<ServoTable>());
+  return tables;
+}
+
+}  // namespace flexura

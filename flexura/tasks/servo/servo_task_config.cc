@@ -1,0 +1,299 @@
+#include "flexura/tasks/servo/servo_task_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "flexura/base/table.h"
+#include "flexura/camera/camera.h"
+#include "flexura/camera/sensor.h"
+#include "flexura/rig/setup.h"
+#include "flexura/servo/servo_session.h"
+#include "flexura/tasks/camera_names.h"
+#include "flexura/tasks/servo/servo_target.h"
+#include "flexura/tasks/shape_fields.h"
+
+namespace flexura {
+namespace {
+
+constexpr double longest_time = 1e4;                       // s
+constexpr double shortest_step = 1e-4, longest_step = 10;  // s
+constexpr std::size_t most_targets = 10000, most_points = 10000;
+
+// The curve lies along the whole arm: its length is about the arm's.
+void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfig& arm,
+                 const std::string& path, Reader& reader) {
+  const double length = curve_length(curve);
+  double least = 0, most = 0;
+  for (const Section& section : arm.section) {
+    least += section.length * section.stretch_limits[0];
+    most += section.length * section.stretch_limits[1];
+  }
+  constexpr double about = 0.05;
+  if (!(length > 0))
+    reader.problem_at(path, "has no length: expected points that differ");
+  else if (length < (1 - about) * least || length > (1 + about) * most)
+    reader.problem_at(path,
+                      fmt::format("is {:.4g} m long: expected the length of the arm, {}, but for 5 %", length,
+                                  least < most ? fmt::format("{:.4g} m to {:.4g} m", least, most)
+                                               : fmt::format("{:.4g} m", most)));
+}
+
+}  // namespace
+
+const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
+  using Target = ServoTargetConfig;
+  static const auto table =
+      with_shape_fields(
+          Table<Target>("target",
+                        "A wanted shape, said in one way: by its bends; by a place for the tip; as a curve "
+                        "in space, along which the whole backbone shall lie; by the angles of its "
+                        "direction; or by two pictures of the arm in it.")
+              .field("time", &Target::time,
+                     {.meaning = "When it is wanted, from the task's start; in between, what is wanted goes "
+                                 "from one target to the next in straight lines.",
+                      .unit = Unit::second,
+                      .range = between(0, longest_time)}))
+          .field("position", &Target::position,
+                 {.meaning = "Where the tip shall be in the world.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .default_text = "not set"})
+          .field("curve", &Target::curve,
+                 {.meaning = "Points of the backbone in the world, from the base on to the tip. How far the "
+                             "nearest shape may be from the smooth curve through them is `tolerance`.",
+                  .unit = Unit::metre,
+                  .range = between(-1e6, 1e6),
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field("azimuths", &Target::azimuths,
+                 {.meaning =
+                      "The direction's angle from +Y towards +X, at equal shares of the length, from base to "
+                      "tip.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field("elevations", &Target::elevations,
+                 {.meaning = "Its angle from the plane XOY towards +Z, at the same places.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .count = {2, most_points},
+                  .default_text = "not set"})
+          .field(
+              "pictures", &Target::pictures,
+              {.meaning =
+                   "Two picture files in this file's folder or below, of the task's cameras in this order, "
+                   "as they stand when the task begins.",
+               .count = {2, 2},
+               .default_text = "not set"});
+  return table;
+}
+
+const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*) {
+  static const auto table = Table<ServoDoubtConfig>("doubt",
+                                                    "How wrong the cameras may be, as they are believed to "
+                                                    "stand: standard deviations. What is wrong is "
+                                                    "estimated with the arm's shape; 0: nothing is.")
+                                .field("turn", &ServoDoubtConfig::turn,
+                                       {.meaning = "Of how a camera is turned, about each axis of its view.",
+                                        .unit = Unit::radian,
+                                        .range = between(0, 1)})
+                                .field("focal", &ServoDoubtConfig::focal,
+                                       {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
+  return table;
+}
+
+const Table<ServoTask>& fields_of(const ServoTask*) {
+  using T = ServoTask;
+  static const auto table =
+      Table<T>("servo",
+               "The arm is steered by two cameras until its shape is the wanted one. It takes as long as it "
+               "takes.")
+          .field("name", &T::name,
+                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
+          .field("law", &T::law,
+                 {.meaning =
+                      "What drives it: shape is the shape that both images tell, less the wanted one; "
+                      "points, chords and moments compare features of the images, silhouettes their edges; "
+                      "potential is the paper's artificial potential on the errors in two image planes (the "
+                      "first camera's XOY, the second one's ZOY)."})
+          .field("measure", &T::measure,
+                 {.meaning = "Where chords and potential have their angles from: each picture by itself, or "
+                             "the flow from the picture before, drawn back to each picture."})
+          .field("anchor", &T::anchor,
+                 {.meaning = "Angles that flow carries are drawn back as exp(-t/anchor).",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_time)})
+          .field(
+              "jacobian", &T::jacobian,
+              {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
+                          "Broyden's update or by recursive least squares."})
+          .field("cameras", &T::cameras,
+                 {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+          .field("target", &T::target,
+                 {.meaning = "The wanted shapes, as `[[task.target]]`, in the order of their times.",
+                  .count = {1, most_targets},
+                  .required = true})
+          .field("points", &T::points,
+                 {.meaning = "Of points, chords, potential and silhouettes: places along the arm.",
+                  .range = between(1, 200)})
+          .field("rate", &T::rate,
+                 {.meaning = "Errors fall as exp(-rate t), 1/s.", .range = above_up_to(0, 1000)})
+          .field("damping", &T::damping,
+                 {.meaning =
+                      "Of the least squares, a share of the derivatives' root mean square; none with shape.",
+                  .range = between(0, 10)})
+          .field("predict", &T::predict,
+                 {.meaning = "What was sent after a picture was taken is counted as done."})
+          .field(
+              "tolerance", &T::tolerance,
+              {.meaning =
+                   "The arm is there when it is so near, root mean square along it, a share of its length.",
+               .range = above_up_to(0, 1)})
+          .field("settle", &T::settle,
+                 {.meaning = "And stays so near for this time.",
+                  .unit = Unit::second,
+                  .range = between(0, longest_time)})
+          .field("timeout", &T::timeout,
+                 {.meaning = "How long to go on after the last target's time.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_time)})
+          .field("blind", &T::blind,
+                 {.meaning = "Unseen for so long, the arm stops and waits.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_time)})
+          .field("lost", &T::lost,
+                 {.meaning = "Unseen for so long, the task is given up.",
+                  .unit = Unit::second,
+                  .range = above_up_to(0, longest_time)})
+          .field(
+              "follow", &T::follow,
+              {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})
+          .field("doubt", &T::doubt, {.meaning = "How wrong the cameras may be."})
+          .field("step", &T::step,
+                 {.meaning = "Time from one command to the next.",
+                  .unit = Unit::second,
+                  .range = between(shortest_step, longest_step),
+                  .default_text = "a frame of the slower camera"});
+  return table;
+}
+
+std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
+  return two_cameras(task.cameras, cameras);
+}
+
+ServoPatience servo_patience(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
+  const double blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
+  return {.blind = blind, .lost = std::max(task.lost, 2 * blind), .timeout = task.timeout};
+}
+
+namespace {
+
+// The paper's law reads one picture as the plane XOY and the other one as ZOY.
+void check_planes(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
+                  Reader& reader) {
+  if (task.law != ServoLawKind::potential || cameras.size() < 2) return;
+  const auto [front, side] = servo_cameras(task, cameras);
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  try {
+    const Camera one(cameras[front]), other(cameras[side]);
+    if (stand_for_planes(one.pose(one.initial_stance()), other.pose(other.initial_stance()))) return;
+  } catch (const std::exception&) {
+    return;  // A camera that is none is told where it stands.
+  }
+  reader.problem_at(
+      path + ".law",
+      fmt::format("\"potential\" reads camera {} as the plane XOY and {} as ZOY: expected cameras that "
+                  "look along Z and along X, in this order",
+                  cameras[front].name, cameras[side].name));
+}
+
+// Steps that follow the cameras, and pictures that come before the servo is given up.
+void check_frames(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
+                  Reader& reader) {
+  if (cameras.size() < 2) return;
+  const auto [front, side] = servo_cameras(task, cameras);
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  const double frame = 1 / slower_frame_rate(cameras, {front, side});
+  if (!task.step && (frame < shortest_step || frame > longest_step))
+    reader.problem_at(path + ".step",
+                      fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
+                                  "step from {} s to {} s",
+                                  frame, shortest_step, longest_step));
+  const double lost = servo_patience(task, cameras).lost;
+  for (const std::size_t i : {front, side}) {
+    const double late = times_of_frame_at(cameras[i].sensor, 0).received;
+    const std::string when =
+        fmt::format("the {:.6g} s after which a picture of camera {} comes", late, cameras[i].name);
+    if (late >= lost) {
+      reader.problem_at(path + ".lost", fmt::format("{} s: expected more than {}", task.lost, when));
+      return;
+    }
+    if (late > longest_delay) {
+      reader.problem_at(
+          path, fmt::format("has pictures that are too old: expected less than {}, at most {} s", when,
+                            longest_delay));
+      return;
+    }
+  }
+}
+
+void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const std::string& path,
+                  Reader& reader) {
+  check_shape(target, arm.kind, arm.section.size(), path, reader);
+  const bool has_shape = target.cord_angles || target.archings || target.bends || target.stretches;
+  const int ways = (has_shape ? 1 : 0) + (target.position ? 1 : 0) + (target.curve ? 1 : 0) +
+                   (target.azimuths || target.elevations ? 1 : 0) + (target.pictures.empty() ? 0 : 1);
+  if (ways != 1)
+    reader.problem_at(path,
+                      fmt::format("says {}: expected a shape in one way, as bends, position, curve, azimuths "
+                                  "and elevations, or pictures",
+                                  ways == 0 ? "nothing" : "a shape in more than one way"));
+  if (target.azimuths.has_value() != target.elevations.has_value() ||
+      (target.azimuths && target.azimuths->size() != target.elevations->size()))
+    reader.problem_at(path,
+                      "has azimuths and elevations that do not belong together: expected as many of each");
+  if (target.curve) check_curve(*target.curve, arm, path + ".curve", reader);
+}
+
+// All that needs no shape of the arm.
+void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
+                 const std::string& path, Reader& reader) {
+  check_two_cameras(task.cameras, cameras, path, reader);
+  if (!(task.lost > task.blind))
+    reader.problem_at(path + ".lost",
+                      fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
+  if (!(task.timeout > task.settle))
+    reader.problem_at(path + ".timeout",
+                      fmt::format("{} s: expected more than settle, {} s", task.timeout, task.settle));
+  check_planes(task, cameras, path, reader);
+  check_frames(task, cameras, path, reader);
+  if (task.measure == ServoMeasure::flow && !has_chords(task.law))
+    reader.problem_at(path + ".measure",
+                      "\"flow\" carries the angles of chords: expected the law chords or potential");
+  for (std::size_t i = 0; i < task.target.size(); ++i) {
+    const std::string place = fmt::format("{}.target[{}]", path, i);
+    check_target(task.target[i], arm, place, reader);
+    if (i > 0 && !(task.target[i].time > task.target[i - 1].time))
+      reader.problem_at(place + ".time",
+                        fmt::format("{} s: expected more than the target before it has, {} s",
+                                    task.target[i].time, task.target[i - 1].time));
+  }
+}
+
+}  // namespace
+
+void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader) {
+  const std::size_t before = reader.problems().size();
+  check_servo(task, setup.arm, setup.cameras(), path, reader);
+  if (reader.problems().size() > before) return;  // Shapes fit the arm from here on.
+  const Arm arm = setup.arm.arm();
+  for (std::size_t i = 0; i < task.target.size(); ++i)
+    check_bends(arm, task.target[i], fmt::format("{}.target[{}]", path, i), reader);
+}
+
+}  // namespace flexura

@@ -1,0 +1,54 @@
+#include "flexura/tasks/study/study_task.h"
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "flexura/kinematics/motion.h"
+#include "flexura/study/image_study.h"
+#include "flexura/tasks/study/study_results.h"
+#include "flexura/tasks/task_runner.h"
+
+namespace flexura {
+namespace {
+
+// No time passes and nothing moves: it is worked out when the run is over.
+class StudyRunner : public TaskRunner {
+ public:
+  StudyRunner(const StudyTask& task, const Setup& setup, TaskLabel label)
+      : TaskRunner(setup, std::move(label)), task_(task) {}
+
+  [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& /*done*/) const override {
+    return {.motion = hold_motion(from, 0)};
+  }
+
+  void finish(const std::filesystem::path& results, bool is_cancelled) override {
+    if (is_cancelled) return;
+    study_ = study_images(task_, setup().cameras(), static_cast<std::uint64_t>(setup().seed));
+    write_study_table(*study_, results);
+  }
+
+  [[nodiscard]] std::string_view summary_list() const override { return "studies"; }
+  [[nodiscard]] std::optional<Node> summary() const override {
+    return study_ ? std::optional(study_node(*study_)) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<Chapter> chapter(std::size_t /*number*/) const override {
+    return study_ ? std::optional(study_chapter(*study_)) : std::nullopt;
+  }
+
+ private:
+  const StudyTask& task_;
+  std::optional<ImageStudy> study_;
+};
+
+}  // namespace
+
+void check_keys(const StudyTask& task, const Setup& setup, const std::string& path, Reader& reader) {
+  check_study(task, setup.cameras(), path, reader);
+}
+
+std::unique_ptr<TaskRunner> runner_of(const StudyTask& task, const Setup& setup, TaskLabel label) {
+  return std::make_unique<StudyRunner>(task, setup, std::move(label));
+}
+
+}  // namespace flexura

@@ -5,7 +5,8 @@ links just those that it includes.
 usage: check_includes.py [ROOT]
 
 ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
-an include or a link that goes up or sideways or past the list, an include of a folder that is not
+an include or a link that goes up or sideways or past the list, one from a folder within a folder
+to another one there, an include of a folder that is not
 linked, a link to one that nothing includes, a folder that the list lacks, a folder of the list
 without its flexura_folder(NAME ...), and a type that two headers define: the compiler sees no two of
 them at once, and the linker joins what it should not. Also what is wrong in
@@ -56,6 +57,18 @@ def check_source(root, floors, folder, source):
         elif not may_lean_on(floors, folder, parts[1]):
             yield (f"{where}: {folder} (floor {floors[folder]}) may not include "
                    f"{parts[1]} (floor {floors[parts[1]]})")
+
+
+def check_rooms(root, folder, source):
+    """A folder in a folder of flexura/ is a room: it includes none beside it."""
+    parts = source.relative_to(root / "flexura" / folder).parts
+    if len(parts) < 2:
+        return
+    for number, line in enumerate(source.read_text().splitlines(), 1):
+        match = re.match(rf'\s*#\s*include\s*"flexura/{folder}/(\w+)/', line)
+        if match and match[1] != parts[0]:
+            yield (f"{source.relative_to(root)}:{number}: {folder}/{parts[0]} may not include "
+                   f"{folder}/{match[1]}: each is a room of its own")
 
 
 def included_folders(root, floors, folder):
@@ -136,6 +149,7 @@ def problems(root):
         for source in sorted((root / "flexura" / folder).rglob("*")):
             if source.suffix in (".cc", ".h"):
                 yield from check_source(root, floors, folder, source)
+                yield from check_rooms(root, folder, source)
     yield from check_types(root)
     yield from check_public(root)
 

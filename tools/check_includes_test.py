@@ -41,6 +41,14 @@ class CheckIncludes(unittest.TestCase):
         self.assertEqual(
             self.problems(), ["flexura/left/deep/d.h:1: left (floor 1) may not include right (floor 1)"])
 
+    def test_an_include_of_a_room_beside_is_found_but_not_one_of_its_own_or_of_what_they_share(self):
+        self.write("flexura/left/kitchen/k.h", '#include "flexura/left/b.h"\n#include "flexura/left/kitchen/l.h"\n')
+        self.write("flexura/left/all.h", '#include "flexura/left/kitchen/k.h"\n')
+        self.assertEqual(self.problems(), [])
+        self.write("flexura/left/hall/h.h", '#include "flexura/left/kitchen/k.h"\n')
+        self.assertEqual(self.problems(), [
+            "flexura/left/hall/h.h:1: left/hall may not include left/kitchen: each is a room of its own"])
+
     def test_an_include_relative_to_the_file_is_found(self):
         self.write("flexura/left/b.cc", '#include "../right/e.h"\n#include "flexura/base/a.h"\n')
         self.assertEqual(

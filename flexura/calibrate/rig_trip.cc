@@ -15,6 +15,8 @@ RigTrip::RigTrip(const RigPorts& ports, const RigModel& believed, const std::arr
 }
 
 RigTrip::Trouble RigTrip::begin() {
+  for (const std::size_t camera : cameras_)
+    if (auto trouble = hands_.must_move(camera)) return *trouble + ", which a calibration does";
   if (auto trouble = hands_.settle()) return trouble;
   const auto arm = hands_.arm();
   if (const auto* why = std::get_if<std::string>(&arm)) return *why;

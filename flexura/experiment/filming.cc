@@ -8,6 +8,7 @@
 #include <string>
 
 #include "flexura/experiment/recorder.h"
+#include "flexura/port/camera_moves.h"
 #include "flexura/safety/motion_check.h"
 #include "flexura/sim/simulated_camera.h"
 
@@ -95,8 +96,11 @@ RigStance Filming::true_stance(std::size_t camera) {
 
 std::vector<CameraReading> Filming::camera_readings() {
   std::vector<CameraReading> readings;
-  for (const CameraPorts& camera : ports().cameras)
-    readings.push_back({camera.head->read().value().state, camera.stage->read().value().state});
+  const RigPorts ports = rig_.ports();
+  for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
+    const CameraStance said = said_stance(ports.cameras[i], rig_.camera(i).description()).value();
+    readings.push_back({said.head, said.stage});
+  }
   return readings;
 }
 

@@ -94,8 +94,8 @@ void Witness::readings(const RigPorts& rig, const Backbone& truth) {
   recorder_.truth(rig.clock->now(), truth);
   recorder_.reading(rig.arm->read().value());
   for (const CameraPorts& camera : rig.cameras) {
-    recorder_.reading(camera.name, camera.head->read().value());
-    recorder_.reading(camera.name, camera.stage->read().value());
+    if (camera.head != nullptr) recorder_.reading(camera.name, camera.head->read().value());
+    if (camera.stage != nullptr) recorder_.reading(camera.name, camera.stage->read().value());
   }
 }
 

@@ -13,7 +13,8 @@
 // as long as one thread asks them.
 namespace flexura {
 
-/// Makes the rig's times of a device's, and never goes back where those do not.
+/// Makes the rig's times of a device's. As more is learned they do not go back where the device's do not, but
+/// where the ones before turn out to be too late.
 class MappedTime {
  public:
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}

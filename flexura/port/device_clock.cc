@@ -113,6 +113,7 @@ double DeviceClock::uncertainty(double device) const {
   }
   const double slope = quickest_slope(), line = highest(slope);
   std::vector<double> later;
+  later.reserve(seconds_.size());
   for (const Second& second : seconds_) later.push_back(second.upper.y - slope * second.upper.x - line);
   const auto middle = later.begin() + static_cast<std::ptrdiff_t>(later.size() / 2);
   std::ranges::nth_element(later, middle);

@@ -192,6 +192,16 @@ TEST(ClockedPorts, ReadingsOfADeviceWithItsOwnClockHaveTheRigsTime) {
   });
 }
 
+TEST(ClockedPorts, TimesDoNotGoBackWhereTheDevicesGoOn) {
+  DeviceClock clock;
+  MappedTime time(clock);
+  EXPECT_NEAR(time.of(500, 10, 10.2), 10.1, 1e-9);
+  // By itself it would be 10.08 s.
+  EXPECT_NEAR(time.of(500.01, 10, 10.15), 10.1, 1e-9);
+  EXPECT_NEAR(time.of(500.02, 10, 10.04), 10.03, 1e-4) << "it was too late before";
+  EXPECT_LT(time.of(499, 9, 10.05), 9.1) << "an older one";
+}
+
 // Frames come late, each by its own delay; the device's clock says when they were taken.
 class ToldCamera : public CameraPort {
  public:

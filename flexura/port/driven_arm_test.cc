@@ -158,7 +158,7 @@ TEST(DrivenArm, ACommandThatWasNotTakenLeavesNothingBehind) {
   DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
   DrivenArm undisturbed(other, one_section(), drive, ArmState::straight(1));
   port.fault = PortFault{FaultKind::link_lost, "gone"};
-  EXPECT_EQ(arm.command(bent(-0.5, 0), 0).fault()->what, "gone");
+  EXPECT_EQ(arm.command(bent(0.5, 0), 0).fault()->what, "gone");
   EXPECT_EQ(arm.halt().fault()->what, "gone");
   EXPECT_EQ(arm.read().fault()->what, "gone");
   port.fault.reset();

@@ -40,12 +40,14 @@ void DriveMotors::halt(double time) {
 
 std::vector<double> DriveMotors::positions(double time) const {
   std::vector<double> result;
+  result.reserve(motions_.size());
   for (std::size_t i = 0; i < motions_.size(); ++i) result.push_back(senses_[i] * motions_[i].motor(time));
   return result;
 }
 
 std::vector<double> DriveMotors::carried(double time) const {
   std::vector<double> result;
+  result.reserve(motions_.size());
   for (std::size_t i = 0; i < motions_.size(); ++i) result.push_back(senses_[i] * motions_[i].position(time));
   return result;
 }

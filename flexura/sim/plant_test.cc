@@ -26,7 +26,7 @@ class SwingingRod : public Plant {
         << "the rig's time comes before what is sent in it";
     u_ = u, commanded.push_back(u);
   }
-  void halt(double /*time*/) override { u_ = x_; }
+  void halt(double /*time*/) override { u_ = x_, ++halts; }
   void advance(double time) override {
     const double passed = time - (advanced.empty() ? 0 : advanced.back());
     if (x_.size() == 0) x_ = started;
@@ -35,7 +35,7 @@ class SwingingRod : public Plant {
   }
   [[nodiscard]] Backbone backbone(double /*time*/) const override { return Backbone::through(samples()); }
 
-  // A cubic, by Hermite's rule: curvature rises from base to tip.
+  // A cubic curve, which bends the more the nearer to the tip.
   [[nodiscard]] static Eigen::Vector3d point(double t, double aside) {
     return {aside * t * t * t, 0.5 * t, 0.3 * aside * t * t};
   }
@@ -44,6 +44,7 @@ class SwingingRod : public Plant {
   Eigen::VectorXd started;
   std::vector<Eigen::VectorXd> commanded;
   std::vector<double> advanced;
+  int halts = 0;
 
  private:
   [[nodiscard]] std::vector<BackboneSample> samples() const {
@@ -137,6 +138,12 @@ TEST(Plant, OfWhichALostLinkKeepsCommandsAway) {
     EXPECT_EQ(rod.rig.ports().arm->command(half_bent(), 0).fault()->kind, FaultKind::link_lost);
     EXPECT_EQ(rod.rig.ports().arm->halt().fault()->kind, FaultKind::link_lost);
     EXPECT_TRUE(rod.rod->commanded.empty());
+    EXPECT_EQ(rod.rod->halts, 0);
+    rod.rig.clock().wait_until(2);
+    EXPECT_TRUE(rod.rig.ports().arm->command(half_bent(), 0));
+    EXPECT_TRUE(rod.rig.ports().arm->halt());
+    EXPECT_EQ(rod.rod->commanded.size(), 1U);
+    EXPECT_EQ(rod.rod->halts, 1);
   }
 }
 

@@ -53,6 +53,20 @@ TEST_F(Program, PrintsALineOfEachThingWhateverItIsCalled) {
   EXPECT_THAT(unsafe.out, HasSubstr("bend\\xc2\\x9b2J\\xe2\\x80\\xa8: target outside the workspace"));
 }
 
+TEST_F(Program, TasksThatNeedTwoCamerasSaySoInOneLine) {
+  const std::string rig =
+      "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\n[[camera]]\nname = \"only\"\nmount = { "
+      "position = [0, 0.5, 2], look_at = [0, 0.5, 0] }\n[[task]]\nkind = ";
+  write_new_file(path("servo.toml"), rig + "\"servo\"\n[[task.target]]\nbends = [[0.8, 0.3]]\n");
+  const Ended servo = run("run servo.toml");
+  EXPECT_EQ(servo.status, 2);
+  EXPECT_EQ(servo.err, "servo.toml:8:1: task[0]: needs two cameras: expected a second [[camera]]\n");
+  write_new_file(path("calibrate.toml"), rig + "\"calibrate\"\nmethod = \"arcs\"\n");
+  const Ended calibrate = run("check calibrate.toml");
+  EXPECT_EQ(calibrate.status, 2);
+  EXPECT_THAT(calibrate.err, HasSubstr("task[0]: needs two cameras: expected a second [[camera]]\n"));
+}
+
 TEST_F(Program, PrintsOneJsonDocumentWhenAsked) {
   const Ended ended = run("run " + paper_file + " --json --out elsewhere --seed 5");
   EXPECT_EQ(ended.status, 0);

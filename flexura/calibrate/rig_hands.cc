@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "flexura/camera/sensor.h"
+#include "flexura/port/camera_moves.h"
 #include "flexura/port/rig_readings.h"
 
 namespace flexura {
@@ -33,7 +34,7 @@ std::variant<ArmState, std::string> RigHands::arm() const {
 }
 
 std::variant<RigStance, std::string> RigHands::stance(std::size_t camera) const {
-  auto reading = read_camera(ports_.cameras[camera], camera, cameras_[camera]);
+  auto reading = read_camera(ports_, camera, cameras_[camera]);
   if (auto* why = std::get_if<std::string>(&reading)) return std::move(*why);
   return std::get<StanceReading>(reading).stance;
 }
@@ -44,10 +45,18 @@ RigHands::Trouble RigHands::bend(const ArmState& state, double duration) {
   return std::nullopt;
 }
 
+RigHands::Trouble RigHands::must_move(std::size_t camera) const {
+  const CameraPorts& ports = ports_.cameras[camera];
+  for (const std::string& why : {missing_head(ports), missing_stage(ports, cameras_[camera])})
+    if (!why.empty()) return why;
+  return std::nullopt;
+}
+
 RigHands::Trouble RigHands::go(const RigStance& stance) {
   const CameraPorts& camera = ports_.cameras[stance.camera];
-  if (const auto fault = camera.head->command(stance.head).fault()) return text(*fault);
-  if (const auto fault = camera.stage->command(stance.stage).fault()) return text(*fault);
+  const Camera& optics = cameras_[stance.camera];
+  if (const auto fault = command_head(camera, optics, stance.head).fault()) return text(*fault);
+  if (const auto fault = command_stage(camera, optics, stance.stage).fault()) return text(*fault);
   sent_[stance.camera] = stance;
   return std::nullopt;
 }
@@ -57,7 +66,7 @@ std::variant<bool, std::string> RigHands::is_moving() const {
   if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
   bool is_moving = std::get<ArmReading>(arm).moving;
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
-    auto camera = read_camera(ports_.cameras[i], i, cameras_[i]);
+    auto camera = read_camera(ports_, i, cameras_[i]);
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
     is_moving = is_moving || std::get<StanceReading>(camera).moving;
   }

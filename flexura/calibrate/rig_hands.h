@@ -34,6 +34,9 @@ class RigHands {
   [[nodiscard]] std::variant<ArmState, std::string> arm() const;
   [[nodiscard]] std::variant<RigStance, std::string> stance(std::size_t camera) const;
 
+  /// Why a camera cannot be moved as the model has it: it has no head, or no stage.
+  [[nodiscard]] Trouble must_move(std::size_t camera) const;
+
   /// Commands, which return at once.
   [[nodiscard]] Trouble bend(const ArmState& state, double duration);
   [[nodiscard]] Trouble go(const RigStance& stance);

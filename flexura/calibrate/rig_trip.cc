@@ -1,5 +1,6 @@
 #include "flexura/calibrate/rig_trip.h"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -10,11 +11,14 @@ namespace flexura {
 RigTrip::RigTrip(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
                  const RigPatience& patience, double move_duration, RigSessionWatcher& watcher)
     : hands_(ports, believed, patience), watcher_(watcher), cameras_(cameras), move_duration_(move_duration) {
-  if (ports.cameras.size() != believed.cameras.size() || cameras[0] == cameras[1])
+  if (ports.cameras.size() != believed.cameras.size() || cameras[0] == cameras[1] ||
+      std::max(cameras[0], cameras[1]) >= ports.cameras.size())
     throw std::invalid_argument("a calibration needs the ports of two cameras of the model");
 }
 
 RigTrip::Trouble RigTrip::begin() {
+  for (const std::size_t camera : cameras_)
+    if (auto trouble = hands_.must_move(camera)) return "cannot calibrate: " + *trouble;
   if (auto trouble = hands_.settle()) return trouble;
   const auto arm = hands_.arm();
   if (const auto* why = std::get_if<std::string>(&arm)) return *why;

@@ -45,6 +45,8 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       played_{0, 0, schedule_.initial(), false, ""} {
   const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
   if (experiment.record.cameras || std::ranges::any_of(tasks_, is_by_rig)) rig_ = make_rig(experiment);
+  if (rig_ && watcher_ != nullptr)
+    for (const CameraConfig& camera : experiment.cameras()) optics_.emplace_back(camera);
   plan(0);
 }
 
@@ -128,7 +130,8 @@ void Player::step(double time, const ArmState& state) {
   }
   witness_.command(time, state);
   if (watcher_ != nullptr)
-    watcher_->state(time, state, rig_ ? camera_readings(rig_->ports()) : std::vector<CameraReading>());
+    watcher_->state(time, state,
+                    rig_ ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
 }

@@ -69,8 +69,9 @@ class Player {
   std::optional<EndedBy> ended_by_;  // A simulated task.
   Schedule schedule_;
   SafetyReport safety_;
-  std::unique_ptr<Rig> rig_;   // Null where none plays.
-  std::vector<Event> events_;  // Still to be told, in the order of time.
+  std::unique_ptr<Rig> rig_;    // Null where none plays.
+  std::vector<Camera> optics_;  // Its cameras, as they are believed to be.
+  std::vector<Event> events_;   // Still to be told, in the order of time.
   BelievedRig believed_;
   std::size_t step_ = 0;  // The next one.
   Played played_;

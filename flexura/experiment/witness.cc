@@ -56,8 +56,8 @@ void Witness::readings(Rig& rig) {
   if (RigTruth* truth = rig.truth()) recorder.truth(now, truth->backbone(now));
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
-    recorder.reading(camera.name, camera.head->read().value());
-    recorder.reading(camera.name, camera.stage->read().value());
+    if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
+    if (camera.stage != nullptr) recorder.reading(camera.name, camera.stage->read().value());
   }
 }
 

@@ -19,6 +19,19 @@ bool is_finite(const HeadReading& head) {
          std::isfinite(head.state.zoom);
 }
 
+// Of a camera without one: where it starts, since ever, as `now` says or the stage.
+Outcome<StageReading> stage_reading(const CameraPorts& ports, const Camera& optics, double now) {
+  if (ports.stage != nullptr) return ports.stage->read();
+  return StageReading{now, optics.initial_stage(), false};
+}
+
+Outcome<HeadReading> head_reading(const CameraPorts& ports, const Camera& optics,
+                                  const Outcome<StageReading>& stage) {
+  if (ports.head != nullptr) return ports.head->read();
+  if (const auto fault = stage.fault()) return HeadReading{0, optics.initial_head(), false};
+  return HeadReading{stage.value().time, optics.initial_head(), false};
+}
+
 }  // namespace
 
 std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections) {
@@ -33,12 +46,13 @@ std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t section
   return reading;
 }
 
-std::variant<StanceReading, std::string> read_camera(const CameraPorts& ports, std::size_t camera,
+std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                      const Camera& optics) {
-  const auto head = ports.head->read();
+  const CameraPorts& ports = rig.cameras[camera];
+  const auto stage = stage_reading(ports, optics, rig.clock->now());
+  const auto head = head_reading(ports, optics, stage);
   if (const auto fault = head.fault())
     return fmt::format("the head of camera {}: {}", ports.name, text(*fault));
-  const auto stage = ports.stage->read();
   if (const auto fault = stage.fault())
     return fmt::format("the stage of camera {}: {}", ports.name, text(*fault));
   if (!is_finite(head.value()) || !std::isfinite(stage.value().time) ||

@@ -12,7 +12,7 @@ namespace flexura {
 
 /// Where a camera's head and stage say that it stands.
 struct StanceReading {
-  double time = 0;  ///< s, of the head's.
+  double time = 0;  ///< s, of the head's; without one of the stage's, without either of the clock's.
   RigStance stance;
   bool moving = false;  ///< One of them.
 };
@@ -23,8 +23,9 @@ struct StanceReading {
 
 /// What the head and the stage of the rig's camera number `camera` say; or in words why that tells no view of
 /// it: a fault, a number that is none, a zoom beyond the ends of what is known of the lens. A zoom within a
-/// step of an end is that end. `optics` are of that camera as it is believed to be.
-[[nodiscard]] std::variant<StanceReading, std::string> read_camera(const CameraPorts& ports,
-                                                                   std::size_t camera, const Camera& optics);
+/// step of an end is that end. `optics` are of that camera as it is believed to be: where it starts, it
+/// stands without a head or a stage.
+[[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
+                                                                   const Camera& optics);
 
 }  // namespace flexura

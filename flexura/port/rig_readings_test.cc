@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/support/said_ports.h"
 
 namespace flexura {
 namespace {
@@ -15,43 +16,10 @@ using ::testing::HasSubstr;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Devices that say what they are told to.
-class SaidArm : public ArmPort {
- public:
-  ArmReading says{1, {{{0.1, 0.2}, {0, 0}}, {1, 1}}, {}, false};
-  std::optional<PortFault> fault;
-  CommandOutcome command(const ArmState&, double) override { return Accepted{}; }
-  CommandOutcome halt() override { return Accepted{}; }
-  Outcome<ArmReading> read() override {
-    if (fault) return *fault;
-    return says;
-  }
-};
-class SaidHead : public HeadPort {
- public:
-  HeadReading says{2, {0.1, 0.2, 1}, false};
-  std::optional<PortFault> fault;
-  CommandOutcome command(const HeadState&) override { return Accepted{}; }
-  CommandOutcome halt() override { return Accepted{}; }
-  Outcome<HeadReading> read() override {
-    if (fault) return *fault;
-    return says;
-  }
-};
-class SaidStage : public StagePort {
- public:
-  StageReading says{2, {{0.1, 0, -0.1}}, false};
-  std::optional<PortFault> fault;
-  CommandOutcome command(const StageState&) override { return Accepted{}; }
-  CommandOutcome halt() override { return Accepted{}; }
-  Outcome<StageReading> read() override {
-    if (fault) return *fault;
-    return says;
-  }
-};
-
 struct SaidCamera {
   CameraConfig config;
+  StoppedClock clock;
+  bool has_head = true, has_stage = true;
   SaidHead head;
   SaidStage stage;
 
@@ -61,7 +29,11 @@ struct SaidCamera {
     config.head.zoom.resolution = 0.01;
   }
   std::variant<StanceReading, std::string> read() {
-    return read_camera({"side", nullptr, &head, &stage}, 1, Camera(config));
+    return read_camera(
+        {&clock,
+         nullptr,
+         {{"front"}, {"side", nullptr, has_head ? &head : nullptr, has_stage ? &stage : nullptr}}},
+        1, Camera(config));
   }
   std::string trouble() {
     auto reading = read();
@@ -109,6 +81,29 @@ TEST(RigReadings, ACameraStandsAsItsHeadAndStageSay) {
   EXPECT_EQ(reading.stance.head.tilt, 0.2);
   EXPECT_EQ(reading.stance.stage.offset.x(), 0.1);
   EXPECT_TRUE(reading.moving);
+}
+
+TEST(RigReadings, WithoutAHeadOrAStageACameraStandsWhereItStarts) {
+  SaidCamera camera;
+  camera.config.initial = {.pan = -0.3, .tilt = 0.15, .zoom = 2, .stage = {0.2, 0, 0}};
+  camera.has_head = false;
+  auto reading = std::get<StanceReading>(camera.read());
+  EXPECT_EQ(reading.stance.head, (HeadState{-0.3, 0.15, 2}));
+  EXPECT_EQ(reading.stance.stage, camera.stage.says.state);
+  EXPECT_EQ(reading.time, 2) << "the stage's";
+  camera.has_stage = false, camera.has_head = true;
+  reading = std::get<StanceReading>(camera.read());
+  EXPECT_EQ(reading.stance.head, camera.head.says.state);
+  EXPECT_EQ(reading.stance.stage.offset, Eigen::Vector3d(0.2, 0, 0));
+  camera.has_head = false;
+  reading = std::get<StanceReading>(camera.read());
+  EXPECT_EQ(reading.stance.stance(), Camera(camera.config).initial_stance());
+  EXPECT_EQ(reading.time, 3) << "the clock's";
+  EXPECT_FALSE(reading.moving);
+  // Of what is there a fault counts as before.
+  camera.has_stage = true;
+  camera.stage.fault = PortFault{FaultKind::link_lost, "gone"};
+  EXPECT_EQ(camera.trouble(), "the stage of camera side: link lost: gone");
 }
 
 TEST(RigReadings, ACameraThatTellsNoViewIsToldInWords) {

@@ -1,11 +1,15 @@
 #include "flexura/rig/rig.h"
 
+#include "flexura/port/camera_moves.h"
+
 namespace flexura {
 
-std::vector<CameraReading> camera_readings(const RigPorts& ports) {
+std::vector<CameraReading> camera_readings(const RigPorts& ports, const std::vector<Camera>& optics) {
   std::vector<CameraReading> readings;
-  for (const CameraPorts& camera : ports.cameras)
-    readings.push_back({camera.head->read().value().state, camera.stage->read().value().state});
+  for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
+    const CameraStance said = said_stance(ports.cameras[i], optics.at(i)).value();
+    readings.push_back({said.head, said.stage});
+  }
   return readings;
 }
 

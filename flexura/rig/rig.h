@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/camera/camera.h"
 #include "flexura/log/run_watcher.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
@@ -65,8 +66,9 @@ using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 /// The factory of simulated rigs (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
-/// Where the cameras of a rig say that they stand now. std::runtime_error with what is wrong where one does
-/// not say.
-[[nodiscard]] std::vector<CameraReading> camera_readings(const RigPorts& ports);
+/// Where the cameras of a rig say that they stand now, and where `optics`, these cameras as they are believed
+/// to be, start those without heads or stages. std::runtime_error with what is wrong where one does not say.
+[[nodiscard]] std::vector<CameraReading> camera_readings(const RigPorts& ports,
+                                                         const std::vector<Camera>& optics);
 
 }  // namespace flexura

@@ -36,7 +36,7 @@ ServoRig::Trouble ServoRig::read() {
   if (auto why = odd_time("the arm", said.time)) return why;
   arm_.add(said.time, said.state);
   for (std::size_t i = 0; i < 2; ++i) {
-    auto camera = read_camera(ports_.cameras[cameras_[i]], cameras_[i], optics_[i]);
+    auto camera = read_camera(ports_, cameras_[i], optics_[i]);
     if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
     const auto& stands = std::get<StanceReading>(camera);
     if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;

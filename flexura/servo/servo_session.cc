@@ -12,6 +12,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/port/camera_moves.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
 #include "flexura/servo/servo_judge.h"
@@ -92,6 +93,9 @@ class Session {
   }
 
   ServoRig::Trouble begin() {
+    for (std::size_t i = 0; config_.follows && i < 2; ++i)
+      if (const std::string why = missing_head(rig_.ports().cameras[rig_.camera(i)]); !why.empty())
+        return why + ", and this servo follows the arm with both cameras";
     if (auto trouble = rig_.read()) return trouble;
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < config_.goals.size(); ++i) {

@@ -1,70 +1,72 @@
 #pragma once
 
+#include <memory>
 #include <optional>
-#include <variant>
-#include <vector>
 
-#include "flexura/kinematics/motors.h"
-#include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
+#include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
-#include "flexura/sim/axis_motion.h"
 #include "flexura/sim/bend_motion.h"
+#include "flexura/sim/plant.h"
 #include "flexura/sim/rig_config.h"
+#include "flexura/sim/simulated_drive.h"
 #include "flexura/sim/simulated_link.h"
 
 namespace flexura {
 
-/// The motors of a simulated drive. Commands and readings go by what the model believes of tendons and
-/// spools, the arm by what is true: its motors' rates, its play, its tendons.
-class SimulatedDrive {
+/// An arm without drives, which sends its sections to shapes and says how they stand by their rates alone.
+class SimulatedBends : public ArmPort {
  public:
-  /// Both arms stand in their initial shapes when the motors are where the model puts its own. The truth is
-  /// known back to `horizon` s before the last command. Both setups have a drive, of as many axes.
-  SimulatedDrive(const ArmSetup& model, const ArmSetup& truth, double horizon);
+  /// As SimulatedArm says. The plant outlives it.
+  SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Plant& plant, const ClockPort& clock,
+                 double horizon);
 
-  /// At `time` s: to this shape of the model's within `duration` s, or as soon after that as each motor can.
-  /// False when a motor's position could not be counted; nothing moves then.
-  [[nodiscard]] bool command(double time, const ArmState& state, double duration);
-  /// The motors brake as fast as they can.
-  void halt(double time);
-  /// What the model makes of the motors.
-  [[nodiscard]] ArmReading reading(double time) const;
-  /// The shape of the true arm, known back to the horizon: not for algorithms.
-  [[nodiscard]] ArmState truth(double time) const;
+  CommandOutcome command(const ArmState& state, double duration) override;
+  CommandOutcome halt() override;
+  Outcome<ArmReading> read() override;
+  /// What connects it: it can be lost for a time.
+  [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
-  ArmSetup model_, truth_;
-  MotorCommander commander_;
-  // In microsteps pulled in, of the believed and the true spool; the same motors.
-  std::vector<AxisMotion> believed_, true_;
-  // Displacements where the motors are at 0, m.
-  std::vector<double> believed_zero_, true_zero_;
+  SimulatedLink link_;
+  Arm arm_;
+  BendMotion bends_;
+  ArmState offset_;  // true bends and stretches less believed ones
+  Plant& plant_;
 };
 
-/// An arm that follows commands as its drives can, or, where it has none, as its sections' bend rates allow.
+/// The arm of a simulated world with what moves it: a drive's controller with what is believed of it
+/// (DrivenArm), or, where there is no drive, its sections' own rates.
 class SimulatedArm : public ArmPort {
  public:
-  /// std::invalid_argument when the truth is another arm (truth_problem).
-  SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon);
+  /// Both arms stand in their initial shapes when the motors are where the model puts its own. The truth is
+  /// known back to `horizon` s before the last command. std::invalid_argument when the truth is another arm
+  /// (truth_problem).
+  SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon,
+               const MakePlant& make_plant = arc_plant);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
   /// What the true arm is commanded to by its drives as they are, from `horizon` s before the last command
-  /// on: not for algorithms.
+  /// on: not for algorithms. std::logic_error: the plant is no chain of arcs.
   [[nodiscard]] ArmState truth(double time) const;
   /// The true arm's; not for algorithms.
-  [[nodiscard]] Backbone backbone(double time) const { return arm_.backbone(truth(time)); }
+  [[nodiscard]] Backbone backbone(double time) const { return plant_->backbone(time); }
+  /// The arm as it truly is: likewise.
+  [[nodiscard]] Plant& plant() { return *plant_; }
   /// What connects the arm: it can be lost for a time.
-  [[nodiscard]] SimulatedLink& link() { return link_; }
+  [[nodiscard]] SimulatedLink& link() { return drive_ ? drive_->link() : bends_->link(); }
+  /// The controller of its drive, below its port; null without a drive.
+  [[nodiscard]] SimulatedDrive* drive() { return drive_ ? &*drive_ : nullptr; }
 
  private:
-  SimulatedLink link_;
-  ArmModel arm_;     // as it is
-  ArmState offset_;  // without drives: true bends and stretches less believed ones
-  std::variant<SimulatedDrive, BendMotion> moved_by_;
+  std::unique_ptr<Plant> plant_;
+  std::optional<SimulatedDrive> drive_;
+  std::optional<DrivenArm> driven_;
+  std::optional<SimulatedBends> bends_;
+  ArmPort* port_ = nullptr;  // one of the two
 };
 
 }  // namespace flexura

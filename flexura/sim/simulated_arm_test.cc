@@ -57,6 +57,22 @@ TEST(SimulatedArm, StartsInItsTrueInitialShape) {
   EXPECT_FALSE(reading.moving);
 }
 
+TEST(SimulatedArm, StartsBentWithItsMotorsWhereTheModelHasThem) {
+  RigConfig rig = two_section_rig();
+  rig.arm.initial.bends = {{0.4, -0.1}, {-0.3, 0.2}};
+  SimulatedClock clock;
+  SimulatedArm arm(ArmSetup{rig}, ArmSetup{rig}, clock, forever);
+  EXPECT_LE(difference(arm.truth(0), ArmSetup{rig}.initial), 1e-12);
+  const ArmReading reading = arm.read().value();
+  EXPECT_LE(difference(reading.state, ArmSetup{rig}.initial), 1e-12);
+  const ArmSetup setup(rig);
+  EXPECT_EQ(reading.positions, believed_positions(setup.arm, *setup.drive, setup.initial));
+  EXPECT_GT(std::abs(reading.positions[0]), 100);
+  ASSERT_TRUE(arm.command(ArmState::straight(2), 0));
+  clock.wait_until(20);
+  EXPECT_LE(difference(arm.truth(20), ArmState::straight(2)), rounding(rig));
+}
+
 TEST(SimulatedArm, GoesWhereItIsToldThroughPlayAndSteps) {
   for_random_cases(30, [](TestRandom& random) {
     const RigConfig rig = two_section_rig();

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
+#include <utility>
 
 #include "flexura/port/clock_port.h"
 
@@ -15,11 +17,16 @@ class SimulatedClock : public ClockPort {
   void wait_until(double time) override {
     if (!std::isfinite(time))
       throw std::invalid_argument("a clock cannot wait for a time that is not finite");
-    now_ = std::max(now_, time);
+    if (!(time > now_)) return;
+    now_ = time;
+    if (passed_) passed_(now_);
   }
+  /// Calls `passed` with the time whenever some has passed: for the world that goes on with it.
+  void when_passed(std::function<void(double)> passed) { passed_ = std::move(passed); }
 
  private:
   double now_ = 0;
+  std::function<void(double)> passed_;
 };
 
 }  // namespace flexura

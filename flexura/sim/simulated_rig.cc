@@ -37,8 +37,9 @@ SimulatedView::SimulatedView(const CameraConfig& believed, const CameraConfig& c
               take_picture, clock) {}
 
 SimulatedRig::SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
-                           std::uint64_t seed)
-    : arm_(ArmSetup(model), true_arm(model, truth), clock_, horizon_of(truth.cameras)) {
+                           std::uint64_t seed, const MakePlant& make_plant)
+    : arm_(ArmSetup(model), true_arm(model, truth), clock_, horizon_of(truth.cameras), make_plant) {
+  clock_.when_passed([this](double now) { arm_.plant().advance(now); });
   for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
     Shot shot;
     shot.camera = i;

@@ -8,6 +8,7 @@
 
 #include "flexura/base/node.h"
 #include "flexura/log/results.h"
+#include "flexura/port/camera_moves.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
 
@@ -29,12 +30,14 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const HeadRequest& head) const {
     session.require_free();
-    HeadPort& port = *session.rig_.ports().cameras.at(session.place_of(head.camera)).head;
-    HeadState target = session.head_targets_.at(session.place_of(head.camera));
+    const std::size_t place = session.place_of(head.camera);
+    HeadState target = session.head_targets_.at(place);
     target = {head.pan.value_or(target.pan), head.tilt.value_or(target.tilt),
               head.zoom.value_or(target.zoom)};
-    if (const auto fault = port.command(target).fault()) throw ViewRefusal(text(*fault));
-    session.head_targets_.at(session.place_of(head.camera)) = target;
+    const CameraPorts camera = session.rig_.ports().cameras.at(place);
+    if (const auto fault = command_head(camera, session.viewed()->cameras[place], target).fault())
+      throw ViewRefusal(text(*fault));
+    session.head_targets_.at(place) = target;
     done();
   }
   void operator()(const StageRequest& stage) const {
@@ -44,7 +47,8 @@ struct LiveSession::Taker : PictureSession::Taker {
     StageState target = session.stage_targets_.at(place);
     target.offset = {stage.x.value_or(target.offset.x()), stage.y.value_or(target.offset.y()),
                      stage.z.value_or(target.offset.z())};
-    if (const auto fault = session.rig_.ports().cameras.at(place).stage->command(target).fault())
+    const CameraPorts camera = session.rig_.ports().cameras.at(place);
+    if (const auto fault = command_stage(camera, session.viewed()->cameras[place], target).fault())
       throw ViewRefusal(text(*fault));
     session.stage_targets_.at(place) = target;
     done();
@@ -223,10 +227,9 @@ void LiveSession::halt() {
   // The simulated rig has no links that are lost: a fault here is a fault of the program.
   (void)ports.arm->halt().value();
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
-    (void)ports.cameras[i].head->halt().value();
-    (void)ports.cameras[i].stage->halt().value();
-    head_targets_[i] = ports.cameras[i].head->read().value().state;
-    stage_targets_[i] = ports.cameras[i].stage->read().value().state;
+    (void)halt_camera(ports.cameras[i]).value();
+    const CameraStance stands = said_stance(ports.cameras[i], viewed()->cameras[i]).value();
+    head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
   }
 }
 

@@ -278,6 +278,44 @@ TEST_F(MisplacedArm, StopsBeforeItTouches) {
   EXPECT_EQ(pass(0.1).arm.bends[0].norm(), 0);
 }
 
+// A rig of one camera, and one of three.
+std::string of_cameras(int count) {
+  const std::size_t side = viewed_text.find("[[camera]]\nname = \"side\""),
+                    task = viewed_text.find("[[task]]");
+  std::string more;
+  if (count == 3) {
+    more = viewed_text.substr(side, task - side);
+    more.replace(more.find("side"), 4, "behind");
+  }
+  return viewed_text.substr(0, side) + (count == 1 ? "" : viewed_text.substr(side, task - side)) + more +
+         viewed_text.substr(task);
+}
+class OneCamera : public LiveSessionTest {
+ protected:
+  OneCamera() : LiveSessionTest(of_cameras(1)) {}
+};
+class ThreeCameras : public LiveSessionTest {
+ protected:
+  ThreeCameras() : LiveSessionTest(of_cameras(3)) {}
+};
+
+TEST_F(OneCamera, IsTurnedHaltedAndRunAsTwoAre) {
+  EXPECT_EQ(ask(HeadRequest{"front", 0.2, {}, {}}).error, "");
+  EXPECT_NEAR(pass(2).cameras.at(0).head.pan, 0.2, 1e-6);
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  EXPECT_NE(ask(HeadRequest{"side", 0.2, {}, {}}).error, "");
+  EXPECT_EQ(ask(RunRequest{}).error, "");
+  EXPECT_EQ(pass(2).cameras.size(), 1U);
+}
+
+TEST_F(ThreeCameras, AreTurnedHaltedAndRunAsTwoAre) {
+  EXPECT_EQ(ask(HeadRequest{"behind", 0.2, {}, {}}).error, "");
+  EXPECT_NEAR(pass(2).cameras.at(2).head.pan, 0.2, 1e-6);
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  EXPECT_EQ(ask(RunRequest{}).error, "");
+  EXPECT_EQ(pass(2).cameras.size(), 3U);
+}
+
 class LaboratoryArm : public LiveSessionTest {
  protected:
   LaboratoryArm()

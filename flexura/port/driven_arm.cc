@@ -1,0 +1,142 @@
+#include "flexura/port/driven_arm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/kinematics/tendons.h"
+
+namespace flexura {
+namespace {
+
+// Positive is pulling in; a reversed motor counts the other way.
+double sense_of(const Axis& axis) { return axis.reversed ? -1 : 1; }
+
+bool is_shape_of(const Arm& arm, const ArmState& state) {
+  return state.bends.size() == arm.sections.size() && state.stretches.size() == arm.sections.size() &&
+         std::ranges::all_of(state.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }) &&
+         std::ranges::all_of(state.stretches, [](double stretch) { return stretch > 0 && stretch < 1e6; });
+}
+
+PortFault arm_refuses(const std::string& why) { return {FaultKind::refused, "the arm: " + why}; }
+
+bool all_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+std::string command_problem(const Arm& arm, const ArmState& state, double duration) {
+  if (!is_shape_of(arm, state)) return "the shape is not one of this arm";
+  if (!std::isfinite(duration) || duration < 0) return fmt::format("a motion cannot take {} s", duration);
+  return "";
+}
+
+std::vector<std::int64_t> believed_positions(const Arm& arm, const Drive& drive, const ArmState& state) {
+  return MotorCommander(drive, tendon_displacements(arm, drive, state)).positions();
+}
+
+std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive, const ArmState& state,
+                                          const std::vector<std::int64_t>& positions) {
+  std::vector<double> result = tendon_displacements(arm, drive, state).pulled;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Axis& axis = drive.axes.at(i);
+    result[i] -= sense_of(axis) * static_cast<double>(positions.at(i)) / axis.microsteps_a_metre();
+  }
+  return result;
+}
+
+ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
+                       const std::vector<double>& carried) {
+  if (zero.size() != drive.axes.size() || carried.size() != drive.axes.size())
+    throw std::invalid_argument(
+        fmt::format("{} positions for a drive of {} axes", carried.size(), drive.axes.size()));
+  TendonDisplacements displacements;
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    const double pulled = sense_of(drive.axes[i]) * carried[i] / drive.axes[i].microsteps_a_metre();
+    displacements.pulled.push_back(zero[i] + pulled);
+  }
+  return fit_state(arm, drive, displacements).state;
+}
+
+DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial)
+    : port_(port),
+      arm_(arm),
+      drive_(drive),
+      commander_(drive, tendon_displacements(arm, drive, initial)),
+      zero_(displacements_at_zero(arm, drive, initial, commander_.positions())) {
+  if (port.quantity() == DriveQuantity::tendon_tensions)
+    throw std::invalid_argument(
+        "a drive of tensions cannot move this arm: which shape tensions make is a matter of statics, and "
+        "nothing is known of it; expected a drive of motor positions or of tendon displacements");
+  if (port.axes() != drive.axes.size())
+    throw std::invalid_argument(fmt::format("the controller has {} axes: expected {}, as the arm's drive",
+                                            port.axes(), drive.axes.size()));
+  for (std::size_t i = 0; i < drive.axes.size(); ++i)
+    followed_.push_back(sense_of(drive.axes[i]) * static_cast<double>(commander_.positions()[i]));
+}
+
+CommandOutcome DrivenArm::command(const ArmState& state, double duration) {
+  if (const std::string problem = command_problem(arm_, state, duration); !problem.empty())
+    return arm_refuses(problem);
+  const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
+  if (!counts_motors()) return port_.command(wanted.pulled, duration);
+  constexpr double most_microsteps = 1e15;
+  for (std::size_t i = 0; i < wanted.pulled.size(); ++i)
+    if (!(std::abs(wanted.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
+      return arm_refuses("a motor cannot count so far");
+  // What the controller does not take leaves the play on the side where it is.
+  MotorCommander next = commander_;
+  next.follow(wanted);
+  const std::vector<double> targets(next.positions().begin(), next.positions().end());
+  auto outcome = port_.command(targets, duration);
+  if (outcome) commander_ = std::move(next);
+  return outcome;
+}
+
+std::string DrivenArm::problem_of(const DriveReading& reading) const {
+  if (reading.values.size() != drive_.axes.size() ||
+      (!reading.carried.empty() && reading.carried.size() != drive_.axes.size()))
+    return fmt::format("its drive tells of {} axes and {} behind their play, it has {}",
+                       reading.values.size(), reading.carried.size(), drive_.axes.size());
+  // Beyond that no integer of 64 bits counts.
+  const auto is_counted = [](double value) { return std::abs(value) < 9e18; };
+  if (!all_finite(reading.values) || !all_finite(reading.carried) ||
+      !std::ranges::all_of(reading.values, is_counted))
+    return "its drive tells of positions that are no numbers";
+  return "";
+}
+
+std::vector<double> DrivenArm::carried(const DriveReading& reading) {
+  if (!reading.carried.empty()) return reading.carried;
+  std::vector<double> result;
+  for (std::size_t i = 0; i < drive_.axes.size(); ++i) {
+    const double motor = sense_of(drive_.axes[i]) * reading.values[i];
+    followed_[i] = std::clamp(followed_[i], motor, motor + drive_.axes[i].play());
+    result.push_back(sense_of(drive_.axes[i]) * followed_[i]);
+  }
+  return result;
+}
+
+Outcome<ArmReading> DrivenArm::read() {
+  const auto outcome = port_.read();
+  if (const auto fault = outcome.fault()) return *fault;
+  const DriveReading& said = outcome.value();
+  if (const std::string problem = problem_of(said); !problem.empty()) return arm_refuses(problem);
+  ArmReading reading;
+  reading.time = said.time;
+  reading.moving = said.moving;
+  if (!counts_motors()) {
+    reading.state = fit_state(arm_, drive_, {said.values}).state;
+    return reading;
+  }
+  reading.state = shape_carried(arm_, drive_, zero_, carried(said));
+  for (const double position : said.values) reading.positions.push_back(std::llround(position));
+  return reading;
+}
+
+}  // namespace flexura

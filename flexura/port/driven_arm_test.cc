@@ -1,0 +1,201 @@
+#include "flexura/port/driven_arm.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "flexura/kinematics/tendons.h"
+#include "flexura/model/drive_config.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+// A controller that is where it was sent, at once.
+class SentDrive : public DrivePort {
+ public:
+  DriveQuantity takes = DriveQuantity::motor_positions;
+  std::vector<double> at = std::vector<double>(3, 0), carried;
+  double lasts = -1;
+  std::optional<PortFault> fault;
+  std::size_t count = 3;
+
+  [[nodiscard]] DriveQuantity quantity() const override { return takes; }
+  [[nodiscard]] std::size_t axes() const override { return count; }
+  CommandOutcome command(std::span<const double> targets, double duration) override {
+    if (fault) return *fault;
+    at.assign(targets.begin(), targets.end()), lasts = duration;
+    return Accepted{};
+  }
+  CommandOutcome halt() override {
+    if (fault) return *fault;
+    return Accepted{};
+  }
+  Outcome<DriveReading> read() override {
+    if (fault) return *fault;
+    return DriveReading{7, at, carried, true};
+  }
+};
+
+Arm one_section() {
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  arm.sections.resize(1);
+  arm.sections[0].length = 0.3;
+  return arm;
+}
+
+Drive three_tendons(double backlash = 0) {
+  DriveConfig config;
+  config.spool.backlash = backlash;
+  for (int i = 0; i < 3; ++i) {
+    TendonConfig& tendon = config.tendon.emplace_back();
+    tendon.angle = 2 * std::numbers::pi * i / 3;
+    tendon.reversed = i == 1;
+  }
+  return config.drive();
+}
+
+ArmState bent(double x, double y) { return {{{x, y}}, {1}}; }
+
+double off(DrivenArm& arm, const ArmState& wanted) {
+  return (arm.read().value().state.bends[0] - wanted.bends[0]).norm();
+}
+
+// The bend of half a microstep of each tendon.
+double half_step(const Drive& drive) {
+  return 2 * 0.5 / (drive.axes[0].microsteps_a_metre() * drive.tendons[0].radius);
+}
+
+TEST(DrivenArm, MakesMicrostepsOfShapesAndShapesOfMicrosteps) {
+  const Drive drive = three_tendons();
+  for_random_cases(30, [&](TestRandom& random) {
+    SentDrive port;
+    DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+    EXPECT_EQ(arm.read().value().positions, std::vector<std::int64_t>(3, 0));
+    const ArmState wanted = bent(random.uniform(-1, 1), random.uniform(-1, 1));
+    ASSERT_TRUE(arm.command(wanted, 0.25));
+    EXPECT_EQ(port.lasts, 0.25);
+    const auto exact = motor_positions(drive, tendon_displacements(one_section(), drive, wanted));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(port.at[i], std::round(exact[i]));
+    const ArmReading reading = arm.read().value();
+    EXPECT_LE(off(arm, wanted), half_step(drive));
+    EXPECT_EQ(reading.positions[1], std::llround(exact[1]));
+    EXPECT_EQ(reading.time, 7);
+    EXPECT_TRUE(reading.moving);
+  });
+}
+
+TEST(DrivenArm, SendsADriveOfDisplacementsWhatItsTendonsNeed) {
+  const Drive drive = three_tendons(0.1);  // play is the controller's own affair
+  SentDrive port;
+  port.takes = DriveQuantity::tendon_displacements;
+  DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+  for (const ArmState& wanted : {bent(0.4, -0.3), bent(-0.2, 0.1)}) {
+    ASSERT_TRUE(arm.command(wanted, 0));
+    EXPECT_EQ(port.at, tendon_displacements(one_section(), drive, wanted).pulled);
+    EXPECT_LE(off(arm, wanted), 1e-12);
+    EXPECT_TRUE(arm.read().value().positions.empty());
+  }
+}
+
+TEST(DrivenArm, TellsADriveOfTensionsThatStaticsAreMissing) {
+  SentDrive port;
+  port.takes = DriveQuantity::tendon_tensions;
+  try {
+    DrivenArm(port, one_section(), three_tendons(), ArmState::straight(1));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a drive of tensions cannot move this arm"));
+  }
+}
+
+TEST(DrivenArm, RefusesAControllerOfOtherAxes) {
+  SentDrive port;
+  port.count = 4;
+  EXPECT_THROW(DrivenArm(port, one_section(), three_tendons(), ArmState::straight(1)), std::invalid_argument);
+}
+
+// The motors go on by the play where they turn, and what is read is where the tendons are.
+TEST(DrivenArm, TakesUpThePlayAndFollowsItInWhatIsRead) {
+  const Drive drive = three_tendons(0.1);
+  ASSERT_GT(drive.axes[0].play(), 40);
+  for_random_cases(30, [&](TestRandom& random) {
+    SentDrive port;
+    DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+    for (int i = 0; i < 8; ++i) {
+      const ArmState wanted = bent(random.uniform(-1, 1), random.uniform(-1, 1));
+      ASSERT_TRUE(arm.command(wanted, 0));
+      EXPECT_LE(off(arm, wanted), half_step(drive));
+    }
+  });
+}
+
+TEST(DrivenArm, BelievesADriveThatFollowsItsPlay) {
+  const Drive drive = three_tendons(0.1);
+  SentDrive port;
+  DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+  port.carried = motor_positions(drive, tendon_displacements(one_section(), drive, bent(0.2, 0.3)));
+  EXPECT_LE(off(arm, bent(0.2, 0.3)), 1e-12);
+  EXPECT_EQ(arm.read().value().positions, std::vector<std::int64_t>(3, 0));
+}
+
+// What did not arrive has taken up no play: the same command, sent again, goes to the same positions.
+TEST(DrivenArm, ACommandThatWasNotTakenLeavesNothingBehind) {
+  const Drive drive = three_tendons(0.1);
+  SentDrive port, other;
+  DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
+  DrivenArm undisturbed(other, one_section(), drive, ArmState::straight(1));
+  port.fault = PortFault{FaultKind::link_lost, "gone"};
+  EXPECT_EQ(arm.command(bent(0.5, 0), 0).fault()->what, "gone");
+  EXPECT_EQ(arm.halt().fault()->what, "gone");
+  EXPECT_EQ(arm.read().fault()->what, "gone");
+  port.fault.reset();
+  for (DrivenArm* one : {&arm, &undisturbed}) {
+    ASSERT_TRUE(one->command(bent(0.001, 0), 0));
+    ASSERT_TRUE(one->halt());
+  }
+  EXPECT_EQ(port.at, other.at);
+}
+
+TEST(DrivenArm, RefusesWhatIsNoCommandAndSendsNothing) {
+  SentDrive port;
+  DrivenArm arm(port, one_section(), three_tendons(), ArmState::straight(1));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [state, duration] : {std::pair{bent(nan, 0), 0.0},
+                                        {ArmState::straight(2), 0.0},
+                                        {bent(0.1, 0), -1.0},
+                                        {bent(0.1, 0), nan},
+                                        {bent(1e15, 0), 0.0}}) {
+    const auto fault = arm.command(state, duration).fault();
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->kind, FaultKind::refused);
+    EXPECT_THAT(fault->what, HasSubstr("the arm: "));
+  }
+  EXPECT_EQ(port.lasts, -1);
+}
+
+TEST(DrivenArm, OfAControllerThatTellsNonsenseNothingIsBelieved) {
+  SentDrive port;
+  DrivenArm arm(port, one_section(), three_tendons(), ArmState::straight(1));
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 1e19}) {
+    port.at[2] = bad;
+    EXPECT_THAT(arm.read().fault()->what, HasSubstr("positions that are no numbers"));
+  }
+  port.at.pop_back();
+  EXPECT_THAT(arm.read().fault()->what, HasSubstr("tells of 2 axes"));
+}
+
+}  // namespace
+}  // namespace flexura

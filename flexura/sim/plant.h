@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "flexura/model/arm_model.h"
+#include "flexura/model/backbone.h"
+#include "flexura/sim/bend_motion.h"
+#include "flexura/sim/drive_motors.h"
+#include "flexura/sim/rig_config.h"
+
+namespace flexura {
+
+/// The arm of the simulated world, as it truly is: what commands make of it over time.
+///
+/// A command u has, for an arm behind a drive, a position for each motor (microsteps, in its own sense), else
+/// for each section its (bend_x, bend_y, stretch). What a plant makes of it is its own affair: it is no port
+/// and tells the truth, which is not for algorithms.
+class Plant {
+ public:
+  virtual ~Plant() = default;
+  Plant() = default;
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
+
+  /// At `time` s, not before the last command: goes to u within `duration` s, or as soon after that as it
+  /// can.
+  virtual void command(double time, const Eigen::VectorXd& u, double duration) = 0;
+  /// Stops as fast as it can. Times likewise.
+  virtual void halt(double time) = 0;
+  /// The rig's time has come to `time` s: what follows from step to step goes on up to there. A plant that is
+  /// a function of time and its commands has nothing to do.
+  virtual void advance(double /*time*/) {}
+  /// How the arm stands, back to the horizon (PlantSetup) before the rig's time, and up to that time. Asking
+  /// changes nothing. Several threads may ask at once, while nobody commands or advances.
+  [[nodiscard]] virtual Backbone backbone(double time) const = 0;
+};
+
+/// What a plant begins with.
+struct PlantSetup {
+  const ArmSetup& truth;  ///< The arm as it truly is, which stands in `initial`,
+  Eigen::VectorXd start;  ///< at this u.
+  double horizon = 0;     ///< How far back it is asked for, s.
+};
+
+/// Makes the arm of a simulated world.
+using MakePlant = std::function<std::unique_ptr<Plant>(const PlantSetup&)>;
+
+/// An arm that is a chain of arcs: what drives bend, it follows without inertia or gravity.
+class ArcPlant : public Plant {
+ public:
+  explicit ArcPlant(const Arm& driven) : arm_(driven) {}
+
+  /// What its sections are bent to, as the drives see it; known in what is to come too, as far as commanded.
+  [[nodiscard]] virtual ArmState state(double time) const = 0;
+  [[nodiscard]] Backbone backbone(double time) const override { return arm_.backbone(state(time)); }
+
+ private:
+  ArmModel arm_;
+};
+
+/// Such an arm behind true motors, spools, play and tendons.
+class DrivenPlant : public ArcPlant {
+ public:
+  /// The truth has a drive.
+  explicit DrivenPlant(const PlantSetup& setup);
+
+  void command(double time, const Eigen::VectorXd& u, double duration) override;
+  void halt(double time) override { motors_.halt(time); }
+  [[nodiscard]] ArmState state(double time) const override;
+
+ private:
+  Arm arm_;
+  Drive drive_;
+  DriveMotors motors_;
+  std::vector<double> zero_;  // displacements where the motors are at 0, m
+};
+
+/// Such an arm whose sections bend by themselves, as their rates allow.
+class BendPlant : public ArcPlant {
+ public:
+  explicit BendPlant(const PlantSetup& setup)
+      : ArcPlant(setup.truth.arm), bends_(setup.truth.arm, setup.truth.initial, setup.horizon) {}
+
+  void command(double time, const Eigen::VectorXd& u, double duration) override;
+  void halt(double time) override { bends_.halt(time); }
+  [[nodiscard]] ArmState state(double time) const override { return bends_.at(time); }
+
+ private:
+  BendMotion bends_;
+};
+
+/// The one of the two that the setup's truth is.
+[[nodiscard]] std::unique_ptr<Plant> arc_plant(const PlantSetup& setup);
+
+/// (bend_x, bend_y, stretch) of each section, and back.
+[[nodiscard]] Eigen::VectorXd plant_command(const ArmState& state);
+[[nodiscard]] ArmState commanded_state(const Eigen::VectorXd& u);
+
+}  // namespace flexura

@@ -19,6 +19,7 @@
 #include "bench/loop_eye.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/servo/servo_error.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_law.h"
 

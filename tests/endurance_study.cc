@@ -49,7 +49,7 @@ struct Hour {
 };
 
 // Counts as the servo goes on, and keeps a row an hour, made before it begins.
-class Logbook : public ServoWatcher {
+class Logbook : public ServoSessionWatcher {
  public:
   Logbook(SimulatedRig& rig, const Arm& arm, double hour) : rig_(rig), arm_(arm), hour_(hour) {
     hours.resize(slices);

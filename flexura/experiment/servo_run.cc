@@ -15,7 +15,7 @@ namespace flexura {
 namespace {
 
 // Tells the log of everything, and compares with the truth.
-class LoggedServo : public ServoWatcher {
+class LoggedServo : public ServoSessionWatcher {
  public:
   LoggedServo(const Experiment& experiment, const ServoConfig& session, ServoRun& run, Filming& filming,
               Witness& witness, Progress& progress, CommandedMotion& motion)
@@ -39,8 +39,7 @@ class LoggedServo : public ServoWatcher {
       message.time = sight.frames[i].time, message.camera = run_.cameras[i];
       message.frame = sight.frames[i].number;
       if (!sight.estimate.is_found && !sight.reasons[i].empty()) message.reason = sight.reasons[i];
-      const Sighting few = thinned(sight.seen[i], most_points);
-      for (const CurvePoint& point : few.points)
+      for (const CurvePoint& point : thinned(sight.seen[i].points, most_points))
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
       for (const Eigen::Vector2d& pixel :
            backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))

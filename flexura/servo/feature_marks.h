@@ -8,7 +8,7 @@
 #include "flexura/model/arm.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
 
 namespace flexura {
 

@@ -10,7 +10,7 @@
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
 
 namespace flexura {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 

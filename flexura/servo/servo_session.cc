@@ -11,7 +11,6 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
-#include "flexura/kinematics/shape.h"
 #include "flexura/servo/picture_meter.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_features.h"
@@ -46,7 +45,7 @@ class Session {
         meter_(believed, config),
         observer_(rig_, believed, config),
         features_(servo_features(config, believed)),
-        law_(believed, config, *features_),
+        law_(believed_arm_, config, *features_),
         keeper_(believed, config.cameras) {}
 
   ServoResult run() {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/kinematics/plus_way.h"
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 namespace {
@@ -104,7 +104,7 @@ ShapeEstimate ShapeObserver::as_believed(const ServoSight& sight, const std::arr
 }
 
 ArmState ShapeObserver::expected(ArmState driven) const {
-  return last_ ? plus_way(std::move(driven), rig_.believed(last_->time), last_->estimate.shape.state)
+  return last_ ? plus(std::move(driven), minus(last_->estimate.shape.state, rig_.believed(last_->time)))
                : driven;
 }
 

@@ -75,16 +75,6 @@ std::variant<SimulatedDrive, BendMotion> moved_by(const ArmSetup& model, const A
   return BendMotion(truth.arm, truth.initial, horizon);
 }
 
-// a + factor * b
-ArmState sum(const ArmState& a, double factor, const ArmState& b) {
-  ArmState result = a;
-  for (std::size_t i = 0; i < a.bends.size(); ++i) {
-    result.bends[i] += factor * b.bends[i];
-    result.stretches[i] += factor * b.stretches[i];
-  }
-  return result;
-}
-
 }  // namespace
 
 SimulatedDrive::SimulatedDrive(const ArmSetup& model, const ArmSetup& truth, double horizon)
@@ -133,7 +123,7 @@ ArmState SimulatedDrive::truth(double time) const { return shape(truth_, true_, 
 SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock,
                            double horizon)
     : link_("the arm", clock), arm_(truth.arm), moved_by_(moved_by(model, truth, horizon)) {
-  offset_ = sum(truth.initial, -1, model.initial);
+  offset_ = minus(truth.initial, model.initial);
 }
 
 CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
@@ -144,7 +134,7 @@ CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   if (auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) {
     if (!drive->command(link_.now(), state, duration)) return link_.refusal("a motor cannot count so far");
   } else {
-    std::get<BendMotion>(moved_by_).command(link_.now(), sum(state, 1, offset_), duration);
+    std::get<BendMotion>(moved_by_).command(link_.now(), plus(state, offset_), duration);
   }
   return Accepted{};
 }
@@ -160,7 +150,7 @@ Outcome<ArmReading> SimulatedArm::read() {
   const double now = link_.now();
   if (const auto* drive = std::get_if<SimulatedDrive>(&moved_by_)) return drive->reading(now);
   const auto& bends = std::get<BendMotion>(moved_by_);
-  return ArmReading{now, sum(bends.at(now), -1, offset_), {}, bends.is_moving(now)};
+  return ArmReading{now, plus(bends.at(now), offset_, -1), {}, bends.is_moving(now)};
 }
 
 ArmState SimulatedArm::truth(double time) const {

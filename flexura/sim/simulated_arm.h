@@ -6,6 +6,7 @@
 
 #include "flexura/kinematics/motors.h"
 #include "flexura/model/arm_model.h"
+#include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/motion_ports.h"
 #include "flexura/sim/axis_motion.h"
@@ -62,8 +63,8 @@ class SimulatedArm : public ArmPort {
 
  private:
   SimulatedLink link_;
-  ArmModel arm_;     // as it is
-  ArmState offset_;  // without drives: true bends and stretches less believed ones
+  ArmModel arm_;   // as it is
+  ArmWay offset_;  // without drives: true bends and stretches less believed ones
   std::variant<SimulatedDrive, BendMotion> moved_by_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "flexura/experiment/messages.h"
 #include "flexura/experiment/results.h"
 #include "flexura/experiment/results_log.h"
+#include "flexura/servo/servo_step.h"
 #include "flexura/store/csv.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
@@ -116,17 +118,24 @@ void name_servo_columns(CsvText& csv) {
 }
 
 // How far a servo's arm was from what is wanted; the shapes themselves are the log's to tell.
-void add_row(CsvText& csv, const ServoStepMessage& step) {
+void add_row(CsvText& csv, const ServoStep& step) {
+  const auto add_cells = [&](const auto& numbers, bool are_known) {
+    for (const double number : numbers) {
+      if (are_known)
+        csv.cell(number);
+      else
+        csv.cell(std::string_view());
+    }
+  };
+  const auto add_error = [&](const ServoError& error, bool is_known) {
+    add_cells(std::array{error.rms, error.most, error.tip}, is_known);
+  };
   csv.cell(step.time);
-  for (const auto& value :
-       {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most, step.true_tip}) {
-    if (value)
-      csv.cell(*value);
-    else
-      csv.cell(std::string_view());
-  }
+  add_cells(std::array{step.seen_at.value_or(0)}, step.seen_at.has_value());
+  add_error(step.error.value_or(ServoError{}), step.error.has_value());
+  add_error(step.truth ? step.truth->error : ServoError{}, step.truth.has_value());
   csv.cell(step.potential);
-  csv.cell(step.limited ? std::string_view(*step.limited) : std::string_view());
+  csv.cell(std::string_view(step.limited));
   csv.end_row();
 }
 
@@ -165,7 +174,7 @@ Tables tables_of(const McapReader& log, const std::string& name) {
       add_row(*tables.dynamics, read_as<DynamicsSampleMessage>(parse_json(message.text(), name)));
     } else if (topic == servo_steps_topic) {
       if (!tables.servo) name_servo_columns(tables.servo.emplace());
-      add_row(*tables.servo, read_as<ServoStepMessage>(parse_json(message.text(), name)));
+      add_row(*tables.servo, read_as<ServoStep>(parse_json(message.text(), name)));
     } else if (topic == events_topic) {
       const auto event = read_as<EventMessage>(parse_json(message.text(), name));
       tables.events.cell(static_cast<double>(message.log_time) * 1e-9);

@@ -175,8 +175,8 @@ void Recorder::calibration(const CalibrationDecisionMessage& message) {
   channels_->write(channels_->calibration_decisions, calibration_decisions_topic, message.time, message);
 }
 
-void Recorder::servo(const ServoStepMessage& message) {
-  channels_->write(channels_->servo_steps, servo_steps_topic, message.time, message);
+void Recorder::servo(const ServoStep& step) {
+  channels_->write(channels_->servo_steps, servo_steps_topic, step.time, step);
 }
 
 void Recorder::servo(const ServoSightingMessage& message, double received) {

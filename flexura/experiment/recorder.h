@@ -13,6 +13,7 @@
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/motion_ports.h"
+#include "flexura/servo/servo_step.h"
 
 namespace flexura {
 
@@ -55,7 +56,7 @@ class Recorder {
   void calibration(const CalibrationDecisionMessage& message);
 
   /// What a servo sends and sees. Likewise.
-  void servo(const ServoStepMessage& message);
+  void servo(const ServoStep& step);
   void servo(const ServoSightingMessage& message, double received);
 
   /// What a distributed arm does. Likewise.

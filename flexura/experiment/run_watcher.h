@@ -7,6 +7,7 @@
 #include "flexura/camera/mount.h"
 #include "flexura/experiment/messages.h"
 #include "flexura/model/arm.h"
+#include "flexura/servo/servo_step.h"
 
 namespace flexura {
 
@@ -37,7 +38,7 @@ class RunWatcher {
   /// What a calibration decides, likewise; the last decision ends it.
   virtual void calibration_decided(const CalibrationDecisionMessage& /*decision*/) {}
   /// What a servo sends, as the log has it.
-  virtual void servo_stepped(const ServoStepMessage& /*step*/) {}
+  virtual void servo_stepped(const ServoStep& /*step*/) {}
   /// What a servo sees in a picture, likewise.
   virtual void servo_saw(const ServoSightingMessage& /*sighting*/) {}
   /// A servo has ended.

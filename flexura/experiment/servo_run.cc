@@ -51,24 +51,10 @@ class LoggedServo : public ServoSessionWatcher {
     }
   }
   void stepped(const ServoStep& step) override {
-    ServoStepMessage message;
-    message.time = step.time, message.seen_at = step.seen_at;
-    message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
-    if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
-    message.sent = bends_of(step.sent), message.sent_stretches = step.sent.stretches;
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (!step.heads[i]) continue;
-      if (!message.heads) message.heads.emplace();
-      message.heads->push_back(
-          {run_.cameras[i], step.heads[i]->pan, step.heads[i]->tilt, step.heads[i]->zoom});
-    }
-    if (step.error)
-      message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
-    message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
-    if (!step.limited.empty()) message.limited = step.limited;
-    for (const Section& section : run_.believed.arm.sections) message.lengths.push_back(section.length);
-    run_.truth.push_back(step.seen_at ? std::optional(add_truth(step, message)) : std::nullopt);
-    witness_.servo(message);
+    ServoStep logged = step;
+    if (step.seen_at) logged.truth = true_shape(step);
+    witness_.servo(logged);
+    truth_.push_back(std::move(logged.truth));
     progress_.update(
         0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
                         : run_.name);
@@ -77,6 +63,11 @@ class LoggedServo : public ServoSessionWatcher {
     witness_.event(time, Recorder::Level::warning, run_.name, what);
   }
   bool is_cancelled() override { return progress_.is_cancelled(); }
+
+  /// To the steps of a result, which are those that were told.
+  void add_truth(std::vector<ServoStep>& steps) {
+    for (std::size_t i = 0; i < steps.size(); ++i) steps[i].truth = std::move(truth_[i]);
+  }
 
  private:
   static constexpr std::size_t most_points = 60;  // Of an axis in the log.
@@ -92,17 +83,14 @@ class LoggedServo : public ServoSessionWatcher {
     return rounded;
   }
 
-  // Of the time of the step's pictures.
-  [[nodiscard]] ServoError add_truth(const ServoStep& step, ServoStepMessage& message) {
+  // At the time of the step's pictures.
+  [[nodiscard]] TrueShape true_shape(const ServoStep& step) const {
     const Arm& arm = run_.believed.arm;
     const Backbone shape = filming_.true_backbone(*step.seen_at);
-    auto& bends = message.truth.emplace();
-    auto& lengths = message.true_lengths.emplace();
-    for (const Arc& arc : shape.arcs())
-      bends.push_back({arc.bend.x(), arc.bend.y()}), lengths.push_back(arc.length);
-    const ServoError error = servo_error(shape, Backbone(arm, step.desired), arm.length());
-    message.true_rms = error.rms, message.true_most = error.most, message.true_tip = error.tip;
-    return error;
+    TrueShape truth;
+    for (const Arc& arc : shape.arcs()) truth.bends.push_back(arc.bend), truth.lengths.push_back(arc.length);
+    truth.error = servo_error(shape, Backbone(arm, step.desired), arm.length());
+    return truth;
   }
 
   bool keeps_images_;
@@ -112,14 +100,13 @@ class LoggedServo : public ServoSessionWatcher {
   Progress& progress_;
   CommandedMotion& motion_;
   FeatureMarker marker_;
+  std::vector<std::optional<TrueShape>> truth_;  // Of each step.
 };
 
 void add_true_remaining(ServoRun& run) {
   LateErrors late(run.settle);
-  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
-    const ServoStep& step = run.result.steps[i];
-    if (step.is_fresh && run.truth[i]) late.add(*step.seen_at, *run.truth[i]);
-  }
+  for (const ServoStep& step : run.result.steps)
+    if (step.is_fresh && step.truth) late.add(*step.seen_at, step.truth->error);
   run.true_remaining = late.mean();
 }
 
@@ -182,6 +169,7 @@ ServoRun run_servo(const Experiment& experiment, std::size_t task, const RigMode
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
   LoggedServo log(experiment, session, run, filming, witness, progress, recorded.motion());
   run.result = servo_in_session(recorded.ports(), run.believed, session, log);
+  log.add_truth(run.result.steps);
   const double end = recorded.finish();
   run.motion = recorded.motion().motion(end);
   add_true_remaining(run);

@@ -72,9 +72,9 @@ void Witness::calibration(const CalibrationDecisionMessage& message) {
   if (watcher_ != nullptr) watcher_->calibration_decided(message);
 }
 
-void Witness::servo(const ServoStepMessage& message) {
-  recorder_.servo(message);
-  if (watcher_ != nullptr) watcher_->servo_stepped(message);
+void Witness::servo(const ServoStep& step) {
+  recorder_.servo(step);
+  if (watcher_ != nullptr) watcher_->servo_stepped(step);
 }
 
 void Witness::servo(const ServoSightingMessage& message, double received) {

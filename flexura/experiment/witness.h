@@ -45,7 +45,7 @@ class Witness {
   void calibration(const CalibrationSightingMessage& message, double received);
   void calibration(const CalibrationDecisionMessage& message);
   /// What a servo sends, what it sees in a picture that came at `received` s, and that it has ended.
-  void servo(const ServoStepMessage& message);
+  void servo(const ServoStep& step);
   void servo(const ServoSightingMessage& message, double received);
   void servo_ended();
   /// What a distributed arm does.

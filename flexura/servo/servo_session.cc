@@ -278,7 +278,7 @@ class Session {
         fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
         return;
       }
-      step.heads[i] = *head;
+      step.heads.push_back({rig_.name(i), head->pan, head->tilt, head->zoom});
     }
   }
 
@@ -300,6 +300,7 @@ class Session {
     if (!is_deaf_) tell_arm(now, state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
     step.sent = std::move(state);
+    for (const Section& section : model_.arm.sections) step.lengths.push_back(section.length);
     watcher_.stepped(step);
     judge_->add(step);
     tally_->add(step);

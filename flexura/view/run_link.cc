@@ -74,7 +74,7 @@ void RunLink::servo_saw(const ServoSightingMessage& sighting) {
   keep(pictures_, sighting);
 }
 
-void RunLink::servo_stepped(const ServoStepMessage& step) {
+void RunLink::servo_stepped(const ServoStep& step) {
   const std::lock_guard lock(mutex_);
   news_.servo = ShownServo{step, pictures_};
   ++news_.changes;

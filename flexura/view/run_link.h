@@ -58,7 +58,7 @@ class RunLink : public Progress, public RunWatcher {
                 const std::string& text) override;
   void calibration_saw(const CalibrationSightingMessage& sighting) override;
   void calibration_decided(const CalibrationDecisionMessage& decision) override;
-  void servo_stepped(const ServoStepMessage& step) override;
+  void servo_stepped(const ServoStep& step) override;
   void servo_saw(const ServoSightingMessage& sighting) override;
   void servo_ended() override;
 

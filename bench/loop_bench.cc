@@ -73,7 +73,7 @@ class Loop {
     config_.law = ServoLawKind::points;
     config_.goals = {{0, goals_[0].state}};
     features_ = servo_features(config_.law, arm_, config_.points);
-    law_.emplace(rig_model(arm_, {}), config_, *features_);
+    law_.emplace(ArmModel(arm_), config_, *features_);
   }
 
   void turn() {

@@ -127,6 +127,7 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
                          const ArmState& from) {
   const std::vector<CameraConfig> cameras = experiment.cameras();
   ServoConfig config;
+  static_cast<ServoSettings&>(config) = servo_settings(task, cameras);
   config.cameras = servo_cameras(task, cameras);
   const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
   const ArmModel arm = believed.arm_model();
@@ -140,19 +141,12 @@ ServoConfig servo_config(const Experiment& experiment, const ServoTask& task, co
     state = shape.state;
     config.goals.push_back({target.time, arm.actuation().shape(shape.state), shape.missed});
   }
-  config.law = task.law, config.jacobian = task.jacobian;
-  config.measure = task.measure, config.anchor = task.anchor;
-  config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
-  config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
-  config.follows = task.follow;
-  config.camera_doubt = {.turn = task.doubt.turn, .focal = task.doubt.focal};
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
   if (is_colored) config.markers = band_places(experiment, believed.arm);
   config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
   if (experiment.drive) config.drive = experiment.drive->drive();
   config.list_step = experiment.clock.step;
   config.obstacles = obstacles(experiment.obstacle);
-  config.patience = servo_patience(task, cameras);
   return config;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct FeatureMark {
 /// moments; of `shape`, which compares no images, nothing.
 class FeatureMarker {
  public:
-  FeatureMarker(ServoLawKind law, Arm arm, int points);
+  FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
   /// In both pictures of a sight, at its time; none where it tells no shape. Chords are as measured in these
   /// pictures, also where the law has their angles from the flow.

@@ -90,7 +90,7 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
     by_variables(is_.by_state, J_);
   }
   // What was sent since the pictures were taken is on its way.
-  if (config_.predicts) {
+  if (config_.predict) {
     law_.variables().pack(input.sent, x_), law_.variables().pack(input.said, y_);
     x_ -= y_;
     is_.error.noalias() += J_ * x_;

@@ -41,7 +41,7 @@ class Session {
         rig_(ports, believed, config.cameras,
              {.span = longest_delay,
               .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
-              .silent = config.patience.blind}),
+              .silent = config.blind}),
         meter_(believed, config),
         observer_(rig_, believed, config),
         features_(servo_features(config, believed)),
@@ -190,7 +190,7 @@ class Session {
     return true;
   }
 
-  [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.patience.blind; }
+  [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.blind; }
 
   // Why pictures tell none.
   [[nodiscard]] std::string no_shape(const ServoSight& sight) const {
@@ -213,7 +213,7 @@ class Session {
     if (!limiter_->fault() && look(now)) {
       step.is_fresh = true;
       limiter_->observe(observer_.last()->estimate.shape.state);
-      if (config_.follows) follow(step);
+      if (config_.follow) follow(step);
     }
     LimitedCommand command;
     if (!observer_.last() || is_blind(now) || limiter_->fault()) {
@@ -224,7 +224,7 @@ class Session {
       if (command.reason.empty()) command.reason = at_its_limit(wish);
       if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
     }
-    if (observer_.blind_for(now) > config_.patience.lost)
+    if (observer_.blind_for(now) > config_.lost)
       result_.reason = "out of view: " +
                        (unseen_because_.empty() ? rig_.no_pair(observer_.seen_since()) : unseen_because_);
     step.limited = command.reason;
@@ -318,7 +318,7 @@ class Session {
       step.limited = command.reason;
       send(now, std::move(command.state), std::move(step));
     }
-    for (std::size_t i = 0; config_.follows && i < 2; ++i) (void)rig_.camera(i).head->halt();
+    for (std::size_t i = 0; config_.follow && i < 2; ++i) (void)rig_.camera(i).head->halt();
     // The last command lasts until the next one's time.
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
   }

@@ -19,6 +19,7 @@
 #include "bench/loop_eye.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "flexura/servo/servo_error.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_law.h"
 
@@ -72,7 +73,7 @@ class Loop {
     config_.law = ServoLawKind::points;
     config_.goals = {{0, goals_[0].state}};
     features_ = servo_features(config_.law, arm_, config_.points);
-    law_.emplace(rig_model(arm_, {}), config_, *features_);
+    law_.emplace(ArmModel(arm_), config_, *features_);
   }
 
   void turn() {

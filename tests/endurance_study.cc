@@ -49,7 +49,7 @@ struct Hour {
 };
 
 // Counts as the servo goes on, and keeps a row an hour, made before it begins.
-class Logbook : public ServoWatcher {
+class Logbook : public ServoSessionWatcher {
  public:
   Logbook(SimulatedRig& rig, const Arm& arm, double hour) : rig_(rig), arm_(arm), hour_(hour) {
     hours.resize(slices);
@@ -180,7 +180,7 @@ bool endure(double seconds, double step, std::uint64_t seed) {
   }
   ServoConfig config = bench.config();
   config.step = step, config.keeps_steps = false;
-  config.patience.blind = std::max(0.3, 2 * step), config.patience.lost = std::max(3.0, 10 * step);
+  config.blind = std::max(0.3, 2 * step), config.lost = std::max(3.0, 10 * step);
   config.goals = repeated(one, other, seconds);
   Logbook book(bench.rig(), bench.experiment().arm.arm(), seconds / slices);
   book.begin(bench.rig().clock().now());

@@ -206,7 +206,7 @@ class StudyRig {
     RigBench& bench = method.has_bands ? static_cast<RigBench&>(colored_) : gray_;
     ServoConfig config;
     config.law = method.law, config.jacobian = method.jacobian;
-    config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.patience.timeout = 8;
+    config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.timeout = 8;
     const Arm arm = bench.experiment().arm.arm();
     config.markers = band_places(bench.experiment(), believed_.arm);
     config.goals = {{0, target}};
@@ -227,7 +227,7 @@ class StudyRig {
     if (cameras_ == Cameras::wrong) {
       const auto truth = true_views(bench), believed = believed_views(bench);
       arrival.believing = floor_of(arm, target, truth, believed, {});
-      arrival.doubting = floor_of(arm, target, truth, believed, config.camera_doubt);
+      arrival.doubting = floor_of(arm, target, truth, believed, config.doubt);
     }
     return arrival;
   }

@@ -15,6 +15,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/base/table.h"
 #include "flexura/log/messages.h"
+#include "flexura/servo/servo_step.h"
 #include "flexura/store/json.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/store/text_file.h"
@@ -79,19 +80,17 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
   EXPECT_THAT(summary(), HasSubstr("\"reason\": \"cancelled\""));
   const McapReader log(path("long/log.mcap"));
   EXPECT_FALSE(log.truncated());
-  std::vector<ServoStepMessage> steps;
+  std::vector<ServoStep> steps;
   for (const McapMessage& message : log.messages())
     if (message.channel->topic == servo_steps_topic)
-      steps.push_back(read_as<ServoStepMessage>(parse_json(message.text(), "log")));
+      steps.push_back(read_as<ServoStep>(parse_json(message.text(), "log")));
   ASSERT_GT(steps.size(), 3u);
-  EXPECT_NE(steps[0].sent, steps[2].sent);
+  EXPECT_NE(steps[0].sent.bends, steps[2].sent.bends);
   const double rate = 90 * degree;
   // To rest along the limiter's way: no command leaps.
   for (std::size_t k = 1; k < steps.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_LT(std::hypot(steps[k].sent[i][0] - steps[k - 1].sent[i][0],
-                           steps[k].sent[i][1] - steps[k - 1].sent[i][1]),
-                rate / 30 + 1e-9);
+      EXPECT_LT((steps[k].sent.bends[i] - steps[k - 1].sent.bends[i]).norm(), rate / 30 + 1e-9);
 }
 
 TEST_F(StoppedProgram, MakesNoFilmBeforeItEnds) {

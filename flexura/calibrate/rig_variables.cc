@@ -52,8 +52,7 @@ RigVariables::RigVariables(const RigModel& guess, const RigPrior& prior, const R
   guess_.bend_gains.resize(guess_.arm.sections.size(), 1.0);
   check(prior);
   check_observations(guess_, seen);
-  for (const ArmState& pose : seen.poses)
-    commanded_.push_back(guess.actuation.arcs() == 0 ? pose : guess.actuation.shape(pose));
+  for (const ArmState& pose : seen.poses) commanded_.push_back(guess.actuation.shape(pose));
   for (CameraConfig& camera : guess_.cameras) camera.lens = spelled_out(camera);
   for (std::size_t i = 0; i < guess_.cameras.size(); ++i) add_camera(guess_.cameras[i], prior.cameras[i]);
   add_arm(prior.arm);

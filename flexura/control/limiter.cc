@@ -12,8 +12,8 @@
 #include "flexura/control/limiter_ways.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
-#include "flexura/kinematics/plus_way.h"
 #include "flexura/kinematics/tendons.h"
+#include "flexura/model/arm_way.h"
 #include "flexura/safety/motion_check.h"
 
 namespace flexura {
@@ -68,9 +68,10 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   const ArmState braked = way_to_rest_.empty() ? sent_ : way_to_rest_.front();
   double low = 0, high = 1;
   Plan best;
+  const ArmWay way = minus(wanted, braked);
   for (int i = 0; i < 40 && high - low > 1e-3 * high; ++i) {
     const double middle = 0.5 * (low + high);
-    Plan trial = plan(between(braked, wanted, middle), false);
+    Plan trial = plan(plus(braked, way, middle), false);
     (trial.is_allowed ? low : high) = middle;
     if (trial.is_allowed) best = std::move(trial);
   }
@@ -80,7 +81,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
     if (touched.empty()) break;
     reason = touched;
     low *= i < 3 ? 0.5 : 0;
-    best = low > 0 ? plan(between(braked, wanted, low), false) : Plan{};
+    best = low > 0 ? plan(plus(braked, way, low), false) : Plan{};
   }
   if (best.is_allowed) return send(std::move(best), reason, false);
   LimitedCommand command = brake();
@@ -100,7 +101,7 @@ ArmState CommandLimiter::within_braking(const ArmState& asked, double rate) cons
     const double far = std::abs(way[static_cast<Eigen::Index>(i)]);
     if (far > 0) square = std::min(square, 2 * braking * config_.step / (rate * far));
   }
-  return square < 1 ? between(sent_, asked, std::sqrt(square)) : asked;
+  return square < 1 ? plus(sent_, minus(asked, sent_), std::sqrt(square)) : asked;
 }
 
 LimitedCommand CommandLimiter::brake() {
@@ -214,7 +215,8 @@ CommandLimiter::MotorStep CommandLimiter::motor_step(const ArmState& from, const
   step.rates = (step.motors - motors_from) / config_.step;
   step.swing = Eigen::VectorXd::Zero(step.rates.size());
   if (config_.drive->disks)
-    step.swing = (step.motors + motors_from - 2 * motors_at(between(from, to, 0.5))) / (0.5 * config_.step);
+    step.swing =
+        (step.motors + motors_from - 2 * motors_at(plus(from, minus(to, from), 0.5))) / (0.5 * config_.step);
   return step;
 }
 

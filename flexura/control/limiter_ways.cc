@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "flexura/kinematics/plus_way.h"
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 
@@ -14,9 +14,10 @@ bool fits(const Arm& arm, const ArmState& state) {
 
 std::vector<ArmState> way_of(const ArmState& now, const ArmState& next, int count) {
   std::vector<ArmState> way{next};
+  const ArmWay going_on = minus(next, now);
   for (int k = 1; k < count; ++k) {
     const double share = static_cast<double>(count - k) / count;
-    way.push_back(plus_way(way.back(), now, next, share));
+    way.push_back(plus(way.back(), going_on, share));
   }
   return way;
 }

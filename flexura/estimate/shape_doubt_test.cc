@@ -72,7 +72,7 @@ TEST(ShapeWithDoubtfulViews, IsWithinItsOwnSigmas) {
     const ShapeEstimate found = estimator.estimate(cameras.seen);
     ASSERT_TRUE(found.is_found) << found.reason;
     const ShapeVariables variables(prior, cameras.seen);
-    const Eigen::VectorXd off = variables.between({prior.arm, state, cameras.errors}, found.shape);
+    const Eigen::VectorXd off = variables.minus(found.shape, {prior.arm, state, cameras.errors});
     squares += mahalanobis_square(found.covariance, off), count += static_cast<int>(off.size());
   });
   EXPECT_GT(squares, 0.5 * count);

@@ -25,12 +25,12 @@ namespace flexura {
 namespace {
 
 // The end nearer to where the base is seen comes first.
-Sighting from_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
+Sighting from_base(Sighting seen, const Eigen::Vector3d& p_WB) {
   const auto base = seen.view.project(p_WB);
   if (!base || seen.points.empty()) return seen;
   const bool is_reversed =
       (seen.points.back().pixel - *base).norm() < (seen.points.front().pixel - *base).norm();
-  return is_reversed ? reversed(seen) : seen;
+  return is_reversed ? reversed(std::move(seen)) : seen;
 }
 
 bool have_axes(std::span<const Sighting> sightings) {
@@ -175,6 +175,7 @@ ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
 
 std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
   std::vector<Sighting> result;
+  result.reserve(sightings.size());
   for (const Sighting& seen : sightings) {
     const auto is_none = [](const auto& point) {
       return !point.pixel.allFinite() || !(point.sigma > 0) || !std::isfinite(point.sigma);
@@ -192,7 +193,8 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
       return section.radius[0] > 0 || section.radius[1] > 0;
     };
     if (!std::ranges::any_of(prior_.arm.sections, has_radius)) thin.borders.clear();
-    result.push_back(prior_.is_base_position_known ? from_base(thin, prior_.arm.X_WB.position) : thin);
+    if (prior_.is_base_position_known) thin = from_base(std::move(thin), prior_.arm.X_WB.position);
+    result.push_back(std::move(thin));
   }
   return result;
 }

@@ -119,7 +119,7 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
   Shape there;
   const auto try_step = [&](double damping) -> TriedStep {
     const bool is_step = find_step(damping);
-    there = problem.variables().moved(fit.shape, step_);
+    there = problem.variables().plus(fit.shape, step_);
     if (!is_step || !problem.linearise(there)) return {};
     const auto normal = normal_.selfadjointView<Eigen::Lower>();
     return {cost_of(problem, limit), -step_.dot(2 * gradient_ + normal * step_)};

@@ -182,7 +182,7 @@ void ShapeProblem::add_doubt(std::size_t sighting, const ViewError& error) {
 
 void ShapeProblem::add_belief(const Shape& shape) {
   const Eigen::Index count = variables_.count();
-  residuals_.segment(count_, count) = belief_ * variables_.between(*believed_, shape);
+  residuals_.segment(count_, count) = belief_ * variables_.minus(shape, *believed_);
   derivatives_.middleRows(count_, count) = belief_;
   for (Eigen::Index k = 0; k < count; ++k, ++count_) {
     kinds_[static_cast<std::size_t>(count_)] = RowKind::belief;

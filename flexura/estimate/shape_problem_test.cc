@@ -34,7 +34,7 @@ TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
     }
     ShapeProblem problem(prior, seen);
     const auto residuals = [&](const Eigen::VectorXd& step) -> Eigen::VectorXd {
-      EXPECT_TRUE(problem.linearise(problem.variables().moved(shape, step)));
+      EXPECT_TRUE(problem.linearise(problem.variables().plus(shape, step)));
       return problem.residuals();
     };
     const NumericalJacobian expected =

@@ -20,7 +20,7 @@ ShapeVariables::ShapeVariables(const ShapePrior& prior, std::span<const Sighting
   for (const Sighting& seen : sightings) views_.push_back(seen.doubt.is_any() ? take(of_view) : -1);
 }
 
-Shape ShapeVariables::moved(const Shape& shape, const Eigen::VectorXd& step) const {
+Shape ShapeVariables::plus(const Shape& shape, const Eigen::VectorXd& step) const {
   Shape there = shape;
   for (Eigen::Index i = 0; i < sections_; ++i)
     there.state.bends[static_cast<std::size_t>(i)].head(bends_) += step.segment(i * bends_, bends_);
@@ -38,7 +38,7 @@ Shape ShapeVariables::moved(const Shape& shape, const Eigen::VectorXd& step) con
   return there;
 }
 
-Eigen::VectorXd ShapeVariables::between(const Shape& from, const Shape& to) const {
+Eigen::VectorXd ShapeVariables::minus(const Shape& to, const Shape& from) const {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(count_);
   for (Eigen::Index i = 0; i < sections_; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -56,10 +56,10 @@ class ShapeVariables {
   }
   /// 1 of a planar arm, 2 of a spatial one.
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }
-  /// The step from one shape to another: the inverse of moved(), to first order in turns of the base.
-  [[nodiscard]] Eigen::VectorXd between(const Shape& from, const Shape& to) const;
+  /// The step that leads to `to` from `from`: the inverse of plus(), to first order in turns of the base.
+  [[nodiscard]] Eigen::VectorXd minus(const Shape& to, const Shape& from) const;
   /// `shape` moved by `step`.
-  [[nodiscard]] Shape moved(const Shape& shape, const Eigen::VectorXd& step) const;
+  [[nodiscard]] Shape plus(const Shape& shape, const Eigen::VectorXd& step) const;
   /// From the derivatives by all bends and stretches (3 a section, as jacobian.h has them) of a point p_WP to
   /// those by the unknowns: 3 x of_shape().
   void by_unknowns(const Shape& shape, const Eigen::Vector3d& p_WP,

@@ -39,19 +39,24 @@ namespace {
 
 // At most `most` of them, evenly taken, the first and the last among them.
 template <class Value>
-void thin(std::vector<Value>& values, std::size_t most) {
+std::vector<Value> some_of(const std::vector<Value>& values, std::size_t most) {
   const std::size_t count = values.size();
-  if (count <= most || most < 2) return;
-  for (std::size_t i = 0; i < most; ++i) values[i] = values[i * (count - 1) / (most - 1)];
-  values.resize(most);
+  if (count <= most || most < 2) return values;
+  std::vector<Value> some(most);
+  for (std::size_t i = 0; i < most; ++i) some[i] = values[i * (count - 1) / (most - 1)];
+  return some;
 }
 
 }  // namespace
 
+std::vector<CurvePoint> thinned(const std::vector<CurvePoint>& points, std::size_t most) {
+  return some_of(points, most);
+}
+
 Sighting thinned(Sighting sighting, std::size_t most) {
-  thin(sighting.points, most);
-  thin(sighting.borders, most);
-  for (auto& edge : sighting.edges) thin(edge, most);
+  sighting.points = some_of(sighting.points, most);
+  sighting.borders = some_of(sighting.borders, most);
+  for (auto& edge : sighting.edges) edge = some_of(edge, most);
   return sighting;
 }
 

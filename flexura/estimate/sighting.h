@@ -91,8 +91,10 @@ struct Sighting {
 /// The same, followed from the other end.
 [[nodiscard]] Sighting reversed(Sighting sighting);
 
-/// The same with at most `most` points, evenly taken, the first and the last among them, and as many of the
-/// borders and of each edge at most.
+/// At most `most` points of a curve, evenly taken, the first and the last among them.
+[[nodiscard]] std::vector<CurvePoint> thinned(const std::vector<CurvePoint>& points, std::size_t most);
+
+/// The same sighting with so many points at most, and as many of the borders and of each edge.
 [[nodiscard]] Sighting thinned(Sighting sighting, std::size_t most);
 
 }  // namespace flexura

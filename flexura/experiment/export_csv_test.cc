@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <filesystem>
 
 #include "flexura/log/logged_message.h"
 #include "flexura/log/recorder.h"
 #include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
+#include "flexura/servo/servo_step.h"
 #include "flexura/store/text_file.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/tasks/task_kinds.h"
@@ -25,13 +25,12 @@ TEST(ExportCsv, HasTheErrorsOfAServoOverTime) {
   {
     Recorder recorder(folder.path() / log_file_name, arm);
     recorder.state(0, ArmState::straight(1), Backbone(arm, ArmState::straight(1)));
-    ServoStepMessage step;
-    step.desired = step.sent = {std::array{0.5, 0.0}};
-    step.desired_stretches = step.sent_stretches = {1.0};
+    ServoStep step;
+    step.desired = step.sent = {{{0.5, 0.0}}, {1.0}};
     step.lengths = {0.3};
     recorder.write({servo_steps_topic, step.time, step});
-    step.time = 0.25, step.seen_at = 0.125, step.rms = 0.5, step.most = 1.5, step.tip = 1;
-    step.true_rms = 0.75, step.true_most = 2, step.true_tip = 1.75, step.potential = 0.0625;
+    step.time = 0.25, step.seen_at = 0.125, step.error = {0.5, 1.5, 1};
+    step.truth = {{}, {}, {0.75, 2, 1.75}}, step.potential = 0.0625;
     step.limited = "section 1, a bend";
     recorder.write({servo_steps_topic, step.time, step});
     recorder.close();

@@ -47,7 +47,7 @@ TEST(OtherRig, DoesATaskOfWhichNobodyKnowsTheTruth) {
   Quiet quiet;
   TemporaryFolder folder;
   int passes = 0, rigs = 0;
-  const RigFactory make_rig = [&](const Setup& setup) {
+  const RigFactory make_rig = [&](const auto& setup) {
     ++rigs;
     return std::make_unique<SilentRig>(setup, passes);
   };
@@ -58,9 +58,8 @@ TEST(OtherRig, DoesATaskOfWhichNobodyKnowsTheTruth) {
   const auto counts = logged_counts(result);
   EXPECT_THAT(counts, Contains(Key(std::string(arm_reading_topic))));
   EXPECT_THAT(counts, Not(Contains(Key(std::string(arm_truth_topic)))));
-  for (const auto& step : logged<ServoStepMessage>(result, servo_steps_topic)) {
+  for (const auto& step : logged<ServoStep>(result, servo_steps_topic)) {
     EXPECT_FALSE(step.truth);
-    EXPECT_FALSE(step.true_rms);
   }
   const Node& servo = entry_of(result, "servos");
   EXPECT_NE(servo.find("remaining"), nullptr);
@@ -73,7 +72,7 @@ TEST(OtherRig, IsNotAskedForWhereNothingPlays) {
       "x.toml");
   Quiet quiet;
   TemporaryFolder folder;
-  const RigFactory none = [](const Setup&) -> std::unique_ptr<Rig> {
+  const RigFactory none = [](const auto&) -> std::unique_ptr<Rig> {
     ADD_FAILURE() << "a rig is asked for";
     return nullptr;
   };

@@ -119,7 +119,7 @@ TEST(ServoEnds, ACameraThatSendsNothingIsNamed) {
   EXPECT_EQ(result.reason, "out of view: no pictures come of camera side");
   ASSERT_TRUE(result.fault);
   EXPECT_EQ(result.fault->reason, result.reason);
-  EXPECT_NEAR(result.fault->time, bench.config().patience.lost, 0.1);
+  EXPECT_NEAR(result.fault->time, bench.config().lost, 0.1);
 }
 
 // Whatever ends it: what was seen, sent and asked for last is kept, and in the summary.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/servo/servo_step.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "tests/support/runs.h"
 #include "tests/support/servo_files.h"
@@ -28,16 +29,15 @@ TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
   EXPECT_EQ(result.outcome, RunOutcome::done);
   std::size_t steps = 0, heads = 0;
   std::vector<double> stretches;
-  for (const auto& step : logged<ServoStepMessage>(result, servo_steps_topic)) {
+  for (const auto& step : logged<ServoStep>(result, servo_steps_topic)) {
     ++steps;
-    ASSERT_EQ(step.sent_stretches.size(), 3U);
+    ASSERT_EQ(step.sent.stretches.size(), 3U);
     if (steps == 1) {
-      EXPECT_EQ(step.sent_stretches, (std::vector<double>{1, 1, 1}));
+      EXPECT_EQ(step.sent.stretches, (std::vector<double>{1, 1, 1}));
     }
-    stretches = step.sent_stretches;
-    if (!step.heads) continue;
-    heads += step.heads->size();
-    for (const HeadCommandMessage& head : *step.heads) {
+    stretches = step.sent.stretches;
+    heads += step.heads.size();
+    for (const HeadCommand& head : step.heads) {
       EXPECT_TRUE(head.camera == "front" || head.camera == "side") << head.camera;
       EXPECT_TRUE(head.pan != 0 || head.tilt != 0);
     }
@@ -80,11 +80,10 @@ TEST(ServoLog, HasWhereSomeMotionShowsInNothing) {
     const std::string task =
         fmt::format("law = \"points\"\npoints = {}\ntimeout = 1\ntolerance = 0.002\n", are_enough ? 9 : 1);
     int fresh = 0, singular = 0;
-    for (const auto& step :
-         logged<ServoStepMessage>(runs.run(servo_file(task + servo_target)), servo_steps_topic)) {
-      fresh += step.fresh ? 1 : 0, singular += step.singular ? 1 : 0;
-      if (step.fresh) {
-        EXPECT_NE(step.singular, are_enough) << "at " << step.time << " s";
+    for (const auto& step : logged<ServoStep>(runs.run(servo_file(task + servo_target)), servo_steps_topic)) {
+      fresh += step.is_fresh ? 1 : 0, singular += step.is_singular ? 1 : 0;
+      if (step.is_fresh) {
+        EXPECT_NE(step.is_singular, are_enough) << "at " << step.time << " s";
       }
     }
     EXPECT_GT(fresh, 20);

@@ -34,15 +34,15 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
   EXPECT_EQ(config.points, 7);
   EXPECT_EQ(config.rate, 3.5);
   EXPECT_EQ(config.damping, 0.023);
-  EXPECT_FALSE(config.predicts);
+  EXPECT_FALSE(config.predict);
   EXPECT_EQ(config.tolerance, 0.013);
   EXPECT_EQ(config.settle, 0.7);
-  EXPECT_EQ(config.patience.timeout, 11);
-  EXPECT_EQ(config.patience.blind, 0.4);
-  EXPECT_EQ(config.patience.lost, 2.5);
-  EXPECT_TRUE(config.follows);
-  EXPECT_EQ(config.camera_doubt.turn, 0.03);
-  EXPECT_EQ(config.camera_doubt.focal, 0.05);
+  EXPECT_EQ(config.timeout, 11);
+  EXPECT_EQ(config.blind, 0.4);
+  EXPECT_EQ(config.lost, 2.5);
+  EXPECT_TRUE(config.follow);
+  EXPECT_EQ(config.doubt.turn, 0.03);
+  EXPECT_EQ(config.doubt.focal, 0.05);
   EXPECT_EQ(config.step, 0.04);
   EXPECT_EQ(config.list_step, 0.05) << "the clock's";
   EXPECT_EQ(config.obstacles.size(), 1U);
@@ -59,8 +59,8 @@ TEST(ServoConfig, WaitsForThePicturesOfItsSlowerCamera) {
   file.replace(file.rfind("frame_rate = 30"), 15, "frame_rate = 5");
   const ServoConfig config = ServoBench(file).config();
   EXPECT_EQ(config.step, 0.2);
-  EXPECT_NEAR(config.patience.blind, 0.3, 1e-15);
-  EXPECT_NEAR(config.patience.lost, 0.6, 1e-15);
+  EXPECT_NEAR(config.blind, 0.3, 1e-15);
+  EXPECT_NEAR(config.lost, 0.6, 1e-15);
 }
 
 }  // namespace

@@ -65,15 +65,4 @@ std::vector<double> cord_angles(const Arm& arm, const ArmState& state) {
   return cord_angles_from_archings(archings(state), base_tangent_angle(arm));
 }
 
-ArmState interpolate(const ArmState& from, const ArmState& to, double fraction) {
-  if (fraction <= 0) return from;
-  if (fraction >= 1) return to;
-  ArmState state = from;
-  for (std::size_t i = 0; i < state.bends.size(); ++i) {
-    state.bends[i] = (1 - fraction) * from.bends[i] + fraction * to.bends[i];
-    state.stretches[i] = (1 - fraction) * from.stretches[i] + fraction * to.stretches[i];
-  }
-  return state;
-}
-
 }  // namespace flexura

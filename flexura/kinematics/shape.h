@@ -26,8 +26,4 @@ void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& pa
 /// Each section's cord's angle from +X of a planar arm, rad, counter-clockwise.
 [[nodiscard]] std::vector<double> cord_angles(const Arm& arm, const ArmState& state);
 
-/// The state `fraction` in [0, 1] of the way from one to another, bends and stretches changing linearly: the
-/// paper's "linear interpolation algorithm" (section 4). Exactly `from` at 0 and `to` at 1.
-[[nodiscard]] ArmState interpolate(const ArmState& from, const ArmState& to, double fraction);
-
 }  // namespace flexura

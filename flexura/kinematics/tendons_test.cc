@@ -11,6 +11,7 @@
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/derivative_check.h"
 #include "flexura/math/quadrature.h"
+#include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "tests/support/arms.h"
 #include "tests/support/drives.h"

@@ -57,7 +57,7 @@ Actuation Actuation::with_gains(const std::vector<double>& gains) const {
 }
 
 ArmState Actuation::shape(const ArmState& command) const {
-  require_fit(sections_, command);
+  if (sections_ > 0) require_fit(sections_, command);
   if (is_one_to_one()) return command;
   ArmState shape = ArmState::straight(arcs());
   for (std::size_t k = 0; k < arcs(); ++k) {
@@ -68,7 +68,7 @@ ArmState Actuation::shape(const ArmState& command) const {
 }
 
 ArmState Actuation::command(const ArmState& shape) const {
-  require_fit(arcs(), shape);
+  if (sections_ > 0) require_fit(arcs(), shape);
   if (is_one_to_one()) return shape;
   ArmState command = ArmState::straight(sections_);
   std::vector<double> squares(sections_, 0), counts(sections_, 0);
@@ -84,6 +84,10 @@ ArmState Actuation::command(const ArmState& shape) const {
 }
 
 void Actuation::by_command(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& by_command) const {
+  if (sections_ == 0) {
+    by_command = by_shape;
+    return;
+  }
   if (by_shape.cols() != 3 * static_cast<Eigen::Index>(arcs()))
     throw std::invalid_argument("a derivative by a shape has three columns an arc");
   by_command.resize(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));

@@ -13,7 +13,7 @@ namespace flexura {
 /// the bend (Section::bend_profile) and all of the stretch, so both ways are linear.
 class Actuation {
  public:
-  /// Of no arm.
+  /// The identity: shapes are commands, of however many sections (of which it counts none).
   Actuation() = default;
   /// std::invalid_argument: a profile that is empty, not finite, negative, or of zeros alone.
   explicit Actuation(const Arm& driven);

@@ -3,11 +3,11 @@
 namespace flexura {
 
 std::size_t RigModel::sections() const {
-  return actuation.arcs() == 0 ? arm.sections.size() : actuation.sections();
+  return driven.sections.empty() ? arm.sections.size() : driven.sections.size();
 }
 
 ArmState RigModel::bent(const ArmState& command) const {
-  ArmState result = actuation.arcs() == 0 ? command : actuation.shape(command);
+  ArmState result = actuation.shape(command);
   for (std::size_t i = 0; i < bend_gains.size(); ++i) result.bends.at(i) *= bend_gains[i];
   return result;
 }

@@ -20,7 +20,7 @@ struct RigModel {
   std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
   Arm driven = {};           ///< The arm as its drives see it, where a section of it is several arcs,
-  Actuation actuation = {};  ///< and what these are; of no arm: commands are shapes.
+  Actuation actuation = {};  ///< and what these are; otherwise commands are shapes.
 
   /// Sections of a command.
   [[nodiscard]] std::size_t sections() const;

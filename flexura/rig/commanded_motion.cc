@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "flexura/kinematics/plus_way.h"
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 
@@ -26,7 +26,7 @@ ArmState CommandedMotion::at(double time) const {
   if (after == times_.begin()) return states_.front();
   const auto i = static_cast<std::size_t>(after - times_.begin());
   const double share = (t - times_[i - 1]) / (times_[i] - times_[i - 1]);
-  return between(states_[i - 1], states_[i], share);
+  return plus(states_[i - 1], minus(states_[i], states_[i - 1]), share);
 }
 
 MotionPtr CommandedMotion::motion(double time) const {

@@ -41,11 +41,11 @@ Eigen::Vector2d way_in_plane(const View& view, std::size_t camera, double alpha)
 
 }  // namespace
 
-FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, int points)
+FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points)
     : law_(law),
       arm_(std::move(arm)),
       points_(points),
-      corners_(equal_shares(points)),
+      corners_(equal_shares(static_cast<int>(points))),
       features_(servo_features(law, arm_, points)) {}
 
 std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoSight& sight) {

@@ -2,13 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "flexura/model/arm.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
 
 namespace flexura {
 
@@ -23,7 +24,7 @@ struct FeatureMark {
 /// moments; of `shape`, which compares no images, nothing.
 class FeatureMarker {
  public:
-  FeatureMarker(ServoLawKind law, Arm arm, int points);
+  FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
   /// In both pictures of a sight, at its time; none where it tells no shape. Chords are as measured in these
   /// pictures, also where the law has their angles from the flow.

@@ -9,7 +9,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/servo/servo_features.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
 #include "flexura/vision/curve_flow.h"
 
 namespace flexura {

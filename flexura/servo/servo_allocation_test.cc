@@ -21,7 +21,7 @@ TEST(ServoLaw, AllocatesNothingButItsAnswer) {
     ServoConfig config;
     config.jacobian = jacobian;
     const auto features = servo_features(config.law, arm, config.points);
-    ServoLaw law(rig_model(arm, {}), config, *features);
+    ServoLaw law(ArmModel(arm), config, *features);
     ServoSight sight;
     sight.seen[0].view = servo_views()[0], sight.seen[1].view = servo_views()[1];
     sight.estimate.shape.state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};

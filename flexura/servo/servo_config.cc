@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "flexura/base/table.h"
+
 namespace flexura {
 namespace {
 
@@ -11,6 +13,20 @@ void require(bool is_so, const char* what) {
 }
 
 }  // namespace
+
+const Table<ServoDoubt>& fields_of(const ServoDoubt*) {
+  static const auto table = Table<ServoDoubt>("doubt",
+                                              "How wrong the cameras may be, as they are believed to "
+                                              "stand: standard deviations. What is wrong is "
+                                              "estimated with the arm's shape; 0: nothing is.")
+                                .field("turn", static_cast<double ServoDoubt::*>(&ServoDoubt::turn),
+                                       {.meaning = "Of how a camera is turned, about each axis of its view.",
+                                        .unit = Unit::radian,
+                                        .range = between(0, 1)})
+                                .field("focal", static_cast<double ServoDoubt::*>(&ServoDoubt::focal),
+                                       {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
+  return table;
+}
 
 const std::vector<std::string>& names_of(const ServoLawKind*) {
   static const std::vector<std::string> names = {"shape",   "points",    "chords",
@@ -39,10 +55,9 @@ void check_servo(const ServoConfig& config) {
   require(config.measure == ServoMeasure::picture || has_chords(config.law),
           "flow carries the angles of the laws chords and potential alone");
   require(config.anchor > 0, "a servo's anchor is above 0");
-  const ServoPatience& patience = config.patience;
-  require(config.settle >= 0 && patience.blind > 0 && patience.lost > patience.blind &&
-              patience.timeout > config.settle,
-          "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
+  require(
+      config.settle >= 0 && config.blind > 0 && config.lost > config.blind && config.timeout > config.settle,
+      "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step are above 0");
 }

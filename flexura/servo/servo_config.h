@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "flexura/base/fields.h"
 #include "flexura/base/image.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/view.h"
@@ -58,43 +59,48 @@ struct ServoGoal {
   double missed = 0;
 };
 
-/// Noise, faults and patience.
-struct ServoPatience {
-  double blind = 0.3;   ///< The arm goes on without being seen for so long, then stops and waits, s.
-  double lost = 3;      ///< Unseen for so long it gives up, s.
-  double timeout = 20;  ///< After the last goal's time, s.
+/// How wrong the cameras may be where nothing else is said: about where the base is seen, and how the arm
+/// goes on from it, tells what is wrong.
+struct ServoDoubt : ViewDoubt {
+  ServoDoubt() : ViewDoubt{.turn = 0.02, .focal = 0.02} {}
 };
 
-/// What a servo does.
-struct ServoConfig {
-  std::array<std::size_t, 2> cameras = {0, 1};  ///< Places among the rig's; the law `potential` takes the
-                                                ///< first for the front (XOY) and the second for the side.
-  std::vector<ServoGoal>
-      goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
+/// What whoever wants a servo settles of it, in a file or in code.
+struct ServoSettings {
   ServoLawKind law = ServoLawKind::shape;
   ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that look at chords' angles.
   double anchor = 0.1;  ///< Angles that flow carries are drawn back as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
-  int points = 12;           ///< Of the laws points, chords, potential and silhouettes: places along the arm.
+  std::int64_t points = 12;  ///< Of the laws points, chords, potential and silhouettes: places along the arm.
   double rate = 4;           ///< Errors fall as exp(-rate t), 1/s.
-  double damping = 0.01;     ///< ImageLawGains::damping
-  bool predicts = true;      ///< What was sent after a picture was taken is counted as done.
+  double damping = 0.01;     ///< ImageLawGains::damping; not with `shape`.
+  bool predict = true;       ///< What was sent after a picture was taken is counted as done.
   double tolerance = 0.005;  ///< Root mean square along the arm, share of its length: there.
   double settle = 0.5;       ///< The error has to stay below it for so long, s.
-  bool follows = false;      ///< Heads turn so that the arm stays in the middle of the pictures.
+  double timeout = 20;       ///< To go on after the last goal's time, s.
+  double blind = 0.3;        ///< The arm goes on without being seen for so long, then stops and waits, s.
+  double lost = 3;           ///< Unseen for so long it gives up, s.
+  bool follow = false;       ///< Heads turn so that the arm stays in the middle of the pictures.
+  ServoDoubt doubt;          ///< In each camera's view.
+};
+
+/// What a servo does: its settings, and what the rig and the arm make of the rest.
+struct ServoConfig : ServoSettings {
+  std::array<std::size_t, 2> cameras = {0, 1};  ///< Places among the rig's; the law `potential` takes the
+                                                ///< first for the front (XOY) and the second for the side.
+  std::vector<ServoGoal>
+      goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
   std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, rising.
-  /// In each camera's view: about where the base is seen, and how the arm goes on from it, tells what is
-  /// wrong.
-  ViewDoubt camera_doubt = {.turn = 0.02, .focal = 0.02};
-  double step = 1.0 / 30;   ///< From one command to the next, s.
+  double step = 1.0 / 30;            ///< From one command to the next, s.
   bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
   std::optional<Drive> drive = {};  ///< For the limiter (LimiterConfig),
   double list_step = 0;             ///< and its command list's step, s.
   /// Where the arm was sent before, if that is known: drives say that to their own steps alone.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
-  ServoPatience patience;
 };
+
+const Table<ServoDoubt>& fields_of(const ServoDoubt*);
 
 const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);

@@ -184,15 +184,17 @@ std::unique_ptr<ChordFeatures> chord_features(const Arm& arm, int points) {
 
 std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const RigModel& believed) {
   if (config.measure == ServoMeasure::picture) return servo_features(config.law, believed.arm, config.points);
-  auto chords = config.law == ServoLawKind::chords ? chord_features(believed.arm, config.points)
-                                                   : plane_features(believed.arm, config.points);
+  const int points = static_cast<int>(config.points);
+  auto chords = config.law == ServoLawKind::chords ? chord_features(believed.arm, points)
+                                                   : plane_features(believed.arm, points);
   std::array<int, 2> whites{};
   for (std::size_t i = 0; i < 2; ++i) whites[i] = believed.cameras.at(config.cameras[i]).sensor.white();
   return with_lengths(std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites),
                       believed.arm, config.law == ServoLawKind::chords ? stretch_px : stretch_rad);
 }
 
-std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, int points) {
+std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, std::int64_t places) {
+  const int points = static_cast<int>(places);
   switch (law) {
     case ServoLawKind::shape:
       return std::make_unique<EstimatedShape>();

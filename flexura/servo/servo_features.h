@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -78,7 +79,8 @@ class ChordFeatures : public ServoFeatures {
                                                             const RigModel& believed);
 
 /// Those of a law, along an arm that is believed to be `arm`, at `points` places.
-[[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, int points);
+[[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm,
+                                                            std::int64_t points);
 
 /// Those of the law `potential`: angles of chords in two image planes, read as parallel projections (the
 /// paper's section 2; docs/control.md, eq. 14). The error is the spatial one's parts: cos q e_theta and e_q

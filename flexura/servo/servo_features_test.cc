@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "flexura/control/plane_errors.h"
-#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_way.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_views.h"
 

@@ -7,29 +7,31 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 
-ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes,
-                       ServoFeatures& features, const std::array<View, 2>& views) {
+ServoGoals::ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, PictureMeter& meter,
+                       ShapeObserver& observer, ServoFeatures& features, const std::array<View, 2>& views) {
   for (const ServoGoal& goal : goals) {
     times_.push_back(goal.time);
     if (const auto* state = std::get_if<ArmState>(&goal.shape)) {
       shapes_.push_back({*state, {}});
     } else {
-      measure(std::get<RecordedViews>(goal.shape), arm, eyes, features, views);
-      eyes.forget();
+      const auto& pictures = std::get<RecordedViews>(goal.shape);
+      PicturePair recorded{{}, views};
+      for (std::size_t i = 0; i < 2; ++i)
+        recorded.frames[i].picture = std::make_shared<const Picture>(pictures[i]);
+      measure(recorded, arm, meter, observer, features);
     }
   }
 }
 
-void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes,
-                         ServoFeatures& features, const std::array<View, 2>& views) {
-  std::array<Frame, 2> frames;
-  for (std::size_t i = 0; i < 2; ++i) frames[i].picture = std::make_shared<const Picture>(recorded[i]);
-  const ServoSight sight = eyes.look(frames, views, std::nullopt);
-  if (problem_.empty()) problem_ = wrong_order(sight, frames, eyes, views);
+void ServoGoals::measure(const PicturePair& recorded, const Arm& arm, PictureMeter& meter,
+                         ShapeObserver& observer, ServoFeatures& features) {
+  ServoSight sight = meter.measure(recorded);
+  observer.estimate_alone(sight);
+  if (problem_.empty()) problem_ = wrong_order(sight, recorded, meter, observer);
   WantedShape& wanted = shapes_.emplace_back(WantedShape{ArmState::straight(arm.sections.size()), {}});
   for (std::size_t i = 0; i < 2; ++i)
     if (problem_.empty() && !sight.estimate.is_found && !sight.reasons[i].empty())
@@ -50,9 +52,10 @@ void ServoGoals::measure(const RecordedViews& recorded, const Arm& arm, ServoEye
 
 // Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but
 // for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order.
-std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
-                                    ServoEyes& eyes, const std::array<View, 2>& views) const {
+std::string ServoGoals::wrong_order(const ServoSight& sight, const PicturePair& recorded, PictureMeter& meter,
+                                    const ShapeObserver& observer) const {
   constexpr double noise = 1.5, far_worse = 2;  // In units of what the noise explains; times the other.
+  const auto& [frames, views] = recorded;
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
     return std::visit(
         [&](const auto& image) {
@@ -62,8 +65,8 @@ std::string ServoGoals::wrong_order(const ServoSight& sight, const std::array<Fr
   };
   if (frames[0].picture->index() != frames[1].picture->index() || !is_taken_by(0, 1) || !is_taken_by(1, 0))
     return "";
-  const ShapeEstimate given = eyes.as_believed(sight, views),
-                      other = eyes.as_believed(eyes.look({frames[1], frames[0]}, views, std::nullopt), views);
+  const ServoSight turned = meter.measure({{frames[1], frames[0]}, views});
+  const ShapeEstimate given = observer.as_believed(sight, views), other = observer.as_believed(turned, views);
   const bool is_worse = !given.is_found || given.scale >= far_worse * other.scale;
   if (!other.is_found || other.scale > noise || !is_worse) return "";
   const std::string than = given.is_found ? fmt::format(", not {:.2g} px", given.rms) : "";

@@ -8,9 +8,10 @@
 
 #include "flexura/camera/view.h"
 #include "flexura/model/arm.h"
+#include "flexura/servo/picture_meter.h"
 #include "flexura/servo/servo_config.h"
-#include "flexura/servo/servo_eyes.h"
 #include "flexura/servo/servo_features.h"
+#include "flexura/servo/shape_observer.h"
 
 namespace flexura {
 
@@ -25,8 +26,8 @@ struct WantedShape {
 class ServoGoals {
  public:
   /// `problem` says why not, "" if nothing is wrong.
-  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, ServoEyes& eyes, ServoFeatures& features,
-             const std::array<View, 2>& views);
+  ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, PictureMeter& meter,
+             ShapeObserver& observer, ServoFeatures& features, const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// s from the servo's start, when the last goal is reached by what is wanted.
@@ -35,11 +36,11 @@ class ServoGoals {
   [[nodiscard]] WantedShape at(double time) const;
 
  private:
-  void measure(const RecordedViews& recorded, const Arm& arm, ServoEyes& eyes, ServoFeatures& features,
-               const std::array<View, 2>& views);
+  void measure(const PicturePair& recorded, const Arm& arm, PictureMeter& meter, ShapeObserver& observer,
+               ServoFeatures& features);
   // Why pictures that were seen so are to be given in the other order; "" where they are not.
-  [[nodiscard]] std::string wrong_order(const ServoSight& sight, const std::array<Frame, 2>& frames,
-                                        ServoEyes& eyes, const std::array<View, 2>& views) const;
+  [[nodiscard]] std::string wrong_order(const ServoSight& sight, const PicturePair& recorded,
+                                        PictureMeter& meter, const ShapeObserver& observer) const;
 
   std::vector<double> times_;
   std::vector<WantedShape> shapes_;

@@ -18,10 +18,10 @@ void ServoJudge::add(const ServoStep& step) {
   if (step.is_fresh && step.error) {
     add_error(step);
     seen_at_ = step.time;
-  } else if (step.time - seen_at_ > config_.patience.blind) {
+  } else if (step.time - seen_at_ > config_.blind) {
     below_since_.reset();  // Nobody knows where it was meanwhile.
   }
-  if (!is_done_ && !hopeless_ && step.time > goal_time_ + config_.patience.timeout) hopeless_ = why_not();
+  if (!is_done_ && !hopeless_ && step.time > goal_time_ + config_.timeout) hopeless_ = why_not();
 }
 
 void ServoJudge::add_error(const ServoStep& step) {
@@ -56,7 +56,7 @@ void ServoJudge::add_error(const ServoStep& step) {
 
 std::string ServoJudge::why_not() const {
   const std::string off = fmt::format("still {:.3g} % of the length off {:.4g} s after the target's time",
-                                      100 * latest_, config_.patience.timeout);
+                                      100 * latest_, config_.timeout);
   constexpr double long_enough = 0.5;  // s
   if (limited_for_ > long_enough) return fmt::format("saturated: {}; {}", limited_by_, off);
   if (is_singular_) return "singular: some motion of the arm shows in nothing that is seen; " + off;

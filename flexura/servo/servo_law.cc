@@ -1,6 +1,9 @@
 #include "flexura/servo/servo_law.h"
 
 #include <array>
+#include <utility>
+
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 namespace {
@@ -12,26 +15,17 @@ ImageLawGains gains_of(const ServoConfig& config) {
   return gains;
 }
 
-// interpolate(from, to, 0.5) in place.
-void middle_of(const ArmState& from, const ArmState& to, ArmState& middle) {
-  middle = from;
-  for (std::size_t i = 0; i < middle.bends.size(); ++i) {
-    middle.bends[i] = 0.5 * (from.bends[i] + to.bends[i]);
-    middle.stretches[i] = 0.5 * (from.stretches[i] + to.stretches[i]);
-  }
-}
-
 bool is_same(const WantedShape& a, const WantedShape& b) {
   return a.state == b.state && a.offset.size() == b.offset.size() && a.offset == b.offset;
 }
 
 }  // namespace
 
-ServoLaw::ServoLaw(const RigModel& believed, const ServoConfig& config, ServoFeatures& features)
+ServoLaw::ServoLaw(const ArmModel& believed, const ServoConfig& config, ServoFeatures& features)
     : config_(config),
       features_(features),
-      actuation_(believed.arm_model().actuation()),
-      law_(believed.arm_model().driven(), gains_of(config)),
+      actuation_(believed.actuation()),
+      law_(believed.driven(), gains_of(config)),
       response_(config.jacobian, law_.variables().size()) {}
 
 void ServoLaw::pack(const ArmState& state, Eigen::VectorXd& x) const {
@@ -58,7 +52,7 @@ bool ServoLaw::find_error(const Input& input, const WantedShape& wanted, Feature
   const std::array<View, 2> views = {input.sight.seen[0].view, input.sight.seen[1].view};
   if (!features_.foreseen(wanted.state, views, desired_)) return false;
   if (wanted.offset.size() == desired_.size()) desired_ += wanted.offset;
-  middle_of(estimate, wanted.state, halfway_);
+  interpolate(estimate, wanted.state, 0.5, halfway_);
   return features_.secant(seen_, desired_, {estimate, wanted.state, halfway_}, views, result);
 }
 
@@ -72,10 +66,7 @@ void ServoLaw::go_along(const ArmState& wanted, const ArmState& next, ArmState& 
     law_.variables().state(x_ + y_, asked);
     return;
   }
-  for (std::size_t i = 0; i < asked.bends.size(); ++i) {
-    asked.bends[i] += to.bends[i] - from.bends[i];
-    asked.stretches[i] += to.stretches[i] - from.stretches[i];
-  }
+  asked = plus(std::move(asked), minus(to, from));
 }
 
 ServoLaw::Wish ServoLaw::step(const Input& input) {
@@ -99,7 +90,7 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
     by_variables(is_.by_state, J_);
   }
   // What was sent since the pictures were taken is on its way.
-  if (config_.predicts) {
+  if (config_.predict) {
     law_.variables().pack(input.sent, x_), law_.variables().pack(input.said, y_);
     x_ -= y_;
     is_.error.noalias() += J_ * x_;

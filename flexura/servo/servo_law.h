@@ -5,12 +5,12 @@
 #include "flexura/control/image_law.h"
 #include "flexura/model/actuation.h"
 #include "flexura/model/arm.h"
-#include "flexura/port/rig_model.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/servo/drive_response.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
 
 namespace flexura {
 
@@ -19,7 +19,7 @@ namespace flexura {
 class ServoLaw {
  public:
   /// `features` and `config` outlive it.
-  ServoLaw(const RigModel& believed, const ServoConfig& config, ServoFeatures& features);
+  ServoLaw(const ArmModel& believed, const ServoConfig& config, ServoFeatures& features);
 
   /// What it goes by.
   struct Input {

@@ -201,7 +201,7 @@ ServoStep step_at(double time, double rms) {
 
 TEST(ServoJudge, KnowsTheEnd) {
   ServoConfig config;
-  config.tolerance = 0.01, config.settle = 0.5, config.patience.timeout = 3;
+  config.tolerance = 0.01, config.settle = 0.5, config.timeout = 3;
   {
     // What is seen so badly, or is on its way elsewhere, is not there.
     ServoJudge doubtful(config, 0, 0), leaving(config, 0, 0);

@@ -11,14 +11,14 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
-#include "flexura/kinematics/shape.h"
 #include "flexura/port/camera_moves.h"
+#include "flexura/servo/picture_meter.h"
+#include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
 #include "flexura/servo/servo_judge.h"
 #include "flexura/servo/servo_law.h"
-#include "flexura/servo/servo_rig.h"
-#include "flexura/servo/servo_sights.h"
+#include "flexura/servo/shape_observer.h"
 #include "flexura/servo/view_keeper.h"
 
 namespace flexura {
@@ -33,7 +33,8 @@ void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& c
 
 class Session {
  public:
-  Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config, ServoWatcher& watcher)
+  Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
+          ServoSessionWatcher& watcher)
       : model_(believed),
         believed_arm_(believed.arm_model()),
         config_(config),
@@ -41,10 +42,11 @@ class Session {
         rig_(ports, believed, config.cameras,
              {.span = longest_delay,
               .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
-              .silent = config.patience.blind}),
-        sights_(rig_, believed, config, watcher),
+              .silent = config.blind}),
+        meter_(believed, config),
+        observer_(rig_, believed, config),
         features_(servo_features(config, believed)),
-        law_(believed, config, *features_),
+        law_(believed_arm_, config, *features_),
         keeper_(believed, config.cameras) {}
 
   ServoResult run() {
@@ -73,7 +75,7 @@ class Session {
     if (result_.reason.empty() && limiter_->fault()) result_.reason = limiter_->fault()->reason;
     result_.is_done = result_.reason.empty();
     result_.fault = kept_;
-    result_.first = sights_.first(), result_.last = sights_.last();
+    result_.first = observer_.first(), result_.last = observer_.last();
     if (result_.missed_steps > 0)
       watcher_.told(rig_.now(),
                     fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
@@ -92,9 +94,9 @@ class Session {
     return true;
   }
 
-  ServoRig::Trouble begin() {
-    for (std::size_t i = 0; config_.follows && i < 2; ++i)
-      if (const std::string why = missing_head(rig_.ports().cameras[rig_.camera(i)]); !why.empty())
+  RigReader::Trouble begin() {
+    for (std::size_t i = 0; config_.follow && i < 2; ++i)
+      if (const std::string why = missing_head(rig_.camera(i)); !why.empty())
         return why + ", and this servo follows the arm with both cameras";
     if (auto trouble = rig_.read()) return trouble;
     std::size_t farthest = 0;
@@ -106,7 +108,7 @@ class Session {
       return fmt::format(
           "not reachable: the nearest shape of this arm stays {:.3g} % of its length away from target {}",
           100 * result_.missed, farthest + 1);
-    goals_.emplace(config_.goals, model_.arm, sights_.eyes(), *features_, rig_.views(result_.start));
+    goals_.emplace(config_.goals, model_.arm, meter_, observer_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
     // Pictures as goals take a while to be measured, which is not the loop's.
     if (rig_.now() > result_.start) {
@@ -122,7 +124,7 @@ class Session {
     }
     judge_.emplace(config_, result_.start, goals_->last());
     tally_.emplace(model_.arm, config_, result_.start, goals_->last());
-    sights_.begin(result_.start);
+    observer_.begin(result_.start);
     return std::nullopt;
   }
 
@@ -168,19 +170,57 @@ class Session {
     keep(what);
   }
 
+  // The newest pictures to a shape; whether there are any that tell one.
+  bool look(double now) {
+    const std::optional<PicturePair> pair = rig_.newest_pair();
+    if (!pair) {
+      std::string why = rig_.silence();
+      if (why.empty() && is_blind(now)) why = rig_.no_pair(observer_.seen_since());
+      if (!why.empty()) tell_unseen(now, std::move(why));
+      return false;
+    }
+    const bool was_seen = observer_.last() != nullptr;
+    const auto sight = std::make_shared<ServoSight>(meter_.measure(*pair));
+    WantedShape wanted = goals_->at(sight->time - result_.start);
+    sight->desired = std::move(wanted.state), sight->desired_offset = std::move(wanted.offset);
+    const bool is_found = observer_.observe(sight, now);
+    watcher_.seen(*sight);
+    if (!is_found) {
+      tell_unseen(now, no_shape(*sight));
+      return false;
+    }
+    if (!unseen_because_.empty() && was_seen) watcher_.told(now, "the arm is seen again");
+    unseen_because_.clear();
+    return true;
+  }
+
+  [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.blind; }
+
+  // Why pictures tell none.
+  [[nodiscard]] std::string no_shape(const ServoSight& sight) const {
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!sight.reasons[i].empty())
+        return fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);
+    return rig_.by_name(sight.estimate.reason);
+  }
+
+  void tell_unseen(double now, std::string why) {
+    if (unseen_because_.empty()) watcher_.told(now, why);
+    unseen_because_ = std::move(why);
+  }
+
   void step() {
     wake();
     const double now = rig_.now();
     ServoStep step;
     step.time = now;
-    if (!limiter_->fault() && sights_.look(now, *goals_)) {
+    if (!limiter_->fault() && look(now)) {
       step.is_fresh = true;
-      limiter_->observe(sights_.last()->estimate.shape.state);
-      if (config_.follows) follow(step);
+      limiter_->observe(observer_.last()->estimate.shape.state);
+      if (config_.follow) follow(step);
     }
     LimitedCommand command;
-    const bool is_blind = sights_.blind_for(now) > config_.patience.blind;
-    if (!sights_.last() || is_blind || limiter_->fault()) {
+    if (!observer_.last() || is_blind(now) || limiter_->fault()) {
       command = limiter_->brake();
     } else {
       const ArmState wish = asked(now, step), slow = limiter_->within_braking(wish, config_.rate);
@@ -188,22 +228,23 @@ class Session {
       if (command.reason.empty()) command.reason = at_its_limit(wish);
       if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
     }
-    if (sights_.blind_for(now) > config_.patience.lost)
-      result_.reason = "out of view: " + sights_.unseen_because();
+    if (observer_.blind_for(now) > config_.lost)
+      result_.reason = "out of view: " +
+                       (unseen_because_.empty() ? rig_.no_pair(observer_.seen_since()) : unseen_because_);
     step.limited = command.reason;
     send(now, std::move(command.state), std::move(step));
   }
 
   // What the law asks for, by the last sight.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
-    const ServoSight& sight = *sights_.last();
+    const ServoSight& sight = *observer_.last();
     const ArmState& seen = sight.estimate.shape.state;
     step.seen_at = sight.time, step.seen = seen;
     step.desired = goals_->at(sight.time - result_.start).state;
     step.error = servo_error(model_.arm, seen, step.desired);
-    step.sigma = sights_.sigma_of(sight.estimate);
+    step.sigma = observer_.sigma();
     const double since = now - result_.start;
-    step.ahead = servo_error(model_.arm, sights_.expected(model_.bent(sent_)), goals_->at(since).state);
+    step.ahead = servo_error(model_.arm, observer_.expected(model_.bent(sent_)), goals_->at(since).state);
     const ArmState said = rig_.said(sight.time);
     const ServoLaw::Wish wish = law_.step({.sight = sight,
                                            .is_fresh = step.is_fresh,
@@ -231,17 +272,17 @@ class Session {
   }
 
   void follow(ServoStep& step) {
-    const ServoSight& sight = *sights_.last();
+    const ServoSight& sight = *observer_.last();
     for (std::size_t i = 0; i < 2; ++i) {
       const auto head =
           keeper_.turned(i, sight.estimate.shape.state, rig_.stance(i, sight.time).head, sight.seen[i].view);
       if (!head) continue;
-      const auto taken = rig_.ports().cameras[rig_.camera(i)].head->command(*head);
+      const auto taken = rig_.camera(i).head->command(*head);
       if (const auto refused = taken.fault()) {
         fault(fmt::format("the head of camera {}: {}", rig_.name(i), text(*refused)));
         return;
       }
-      step.heads[i] = *head;
+      step.heads.push_back({rig_.name(i), head->pan, head->tilt, head->zoom});
     }
   }
 
@@ -263,6 +304,7 @@ class Session {
     if (!is_deaf_) tell_arm(now, state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
     step.sent = std::move(state);
+    for (const Section& section : model_.arm.sections) step.lengths.push_back(section.length);
     watcher_.stepped(step);
     judge_->add(step);
     tally_->add(step);
@@ -280,8 +322,7 @@ class Session {
       step.limited = command.reason;
       send(now, std::move(command.state), std::move(step));
     }
-    for (std::size_t i = 0; config_.follows && i < 2; ++i)
-      (void)rig_.ports().cameras[rig_.camera(i)].head->halt();
+    for (std::size_t i = 0; config_.follow && i < 2; ++i) (void)rig_.camera(i).head->halt();
     // The last command lasts until the next one's time.
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
   }
@@ -289,9 +330,10 @@ class Session {
   const RigModel& model_;
   ArmModel believed_arm_;
   const ServoConfig& config_;
-  ServoWatcher& watcher_;
-  ServoRig rig_;
-  ServoSights sights_;
+  ServoSessionWatcher& watcher_;
+  RigReader rig_;
+  PictureMeter meter_;
+  ShapeObserver observer_;
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
   ViewKeeper keeper_;
@@ -300,7 +342,8 @@ class Session {
   std::optional<ServoJudge> judge_;
   std::optional<ServoTally> tally_;
   long ticks_ = 0;
-  bool is_deaf_ = false;  // The arm has refused a command.
+  bool is_deaf_ = false;        // The arm has refused a command.
+  std::string unseen_because_;  // "": the newest pictures told a shape.
   std::optional<LimiterFault> kept_;
   ArmState sent_;
   ServoResult result_;
@@ -309,7 +352,7 @@ class Session {
 }  // namespace
 
 ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
-                             ServoWatcher& watcher) {
+                             ServoSessionWatcher& watcher) {
   check(ports, believed, config);
   return Session(ports, believed, config, watcher).run();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,8 @@
 #include "flexura/port/rig_ports.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_error.h"
-#include "flexura/servo/servo_watcher.h"
+#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_step.h"
 
 namespace flexura {
 
@@ -30,7 +32,29 @@ struct ServoResult {
   std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
   /// What was seen, sent and asked for last before it was given up, for whatever reason; `time` since start.
   std::optional<LimiterFault> fault;
-  std::optional<ServoSight> first, last;  ///< The first of all, and the newest that told a shape.
+  /// The first of all, and the newest that told a shape; null: there was none.
+  std::shared_ptr<const ServoSight> first, last;
+};
+
+/// Is told of a session as it goes. What it does with that changes nothing of it.
+class ServoSessionWatcher {
+ public:
+  virtual ~ServoSessionWatcher() = default;
+  ServoSessionWatcher() = default;
+  ServoSessionWatcher(const ServoSessionWatcher&) = delete;
+  ServoSessionWatcher& operator=(const ServoSessionWatcher&) = delete;
+
+  /// The arm was sent to `state`, to arrive `duration` s later; at `time`, s of the rig's clock. What was
+  /// refused is not told.
+  virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
+  /// Two pictures of one instant were measured.
+  virtual void seen(const ServoSight& /*sight*/) {}
+  /// A step was done.
+  virtual void stepped(const ServoStep& /*step*/) {}
+  /// Something happened that is worth a line: "camera side does not see the arm: ...".
+  virtual void told(double /*time*/, const std::string& /*what*/) {}
+  /// Whether the servo shall end early.
+  virtual bool is_cancelled() { return false; }
 };
 
 /// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest
@@ -40,6 +64,6 @@ struct ServoResult {
 /// readings and pictures give the same result. std::invalid_argument: no goals, goals whose times do not rise
 /// from 0, numbers out of range, ports for other cameras than the model's.
 [[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
-                                           const ServoConfig& config, ServoWatcher& watcher);
+                                           const ServoConfig& config, ServoSessionWatcher& watcher);
 
 }  // namespace flexura

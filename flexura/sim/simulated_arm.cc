@@ -9,16 +9,6 @@
 namespace flexura {
 namespace {
 
-// a + factor * b
-ArmState sum(const ArmState& a, double factor, const ArmState& b) {
-  ArmState result = a;
-  for (std::size_t i = 0; i < a.bends.size(); ++i) {
-    result.bends[i] += factor * b.bends[i];
-    result.stretches[i] += factor * b.stretches[i];
-  }
-  return result;
-}
-
 void require_same_kind(const ArmSetup& model, const ArmSetup& truth) {
   if (model.arm.sections.size() != truth.arm.sections.size() ||
       model.drive.has_value() != truth.drive.has_value() ||
@@ -33,14 +23,14 @@ SimulatedBends::SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Pla
     : link_("the arm", clock),
       arm_(truth.arm),
       bends_(truth.arm, truth.initial, horizon),
-      offset_(sum(truth.initial, -1, model.initial)),
+      offset_(minus(truth.initial, model.initial)),
       plant_(plant) {}
 
 CommandOutcome SimulatedBends::command(const ArmState& state, double duration) {
   if (auto fault = link_.fault()) return *fault;
   if (const std::string problem = command_problem(arm_, state, duration); !problem.empty())
     return link_.refusal(problem);
-  const ArmState target = sum(state, 1, offset_);
+  const ArmState target = plus(state, offset_);
   bends_.command(link_.now(), target, duration);
   plant_.command(link_.now(), plant_command(target), duration);
   return Accepted{};
@@ -56,7 +46,7 @@ CommandOutcome SimulatedBends::halt() {
 Outcome<ArmReading> SimulatedBends::read() {
   if (auto fault = link_.fault()) return *fault;
   const double now = link_.now();
-  return ArmReading{now, sum(bends_.at(now), -1, offset_), {}, bends_.is_moving(now)};
+  return ArmReading{now, plus(bends_.at(now), offset_, -1), {}, bends_.is_moving(now)};
 }
 
 SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock,

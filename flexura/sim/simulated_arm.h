@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
@@ -31,7 +32,7 @@ class SimulatedBends : public ArmPort {
   SimulatedLink link_;
   Arm arm_;
   BendMotion bends_;
-  ArmState offset_;  // true bends and stretches less believed ones
+  ArmWay offset_;  // true bends and stretches less believed ones
   Plant& plant_;
 };
 

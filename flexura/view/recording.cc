@@ -188,14 +188,14 @@ Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) c
           std::move(message.data.data)};
 }
 
-std::optional<ServoStepMessage> Recording::servo_step(double time) const {
+std::optional<ServoStep> Recording::servo_step(double time) const {
   if (servo_steps_.empty()) return std::nullopt;
   const Entry& entry = servo_steps_[place_at(servo_steps_, time)];
   // A servo sends at equal intervals: after a few of them without a command it is over.
   constexpr double few = 3, least = 0.1;  // s
   const double sent = seconds(entry.time);
   if (time < sent || time > sent + std::max(least, few * servo_interval_)) return std::nullopt;
-  return message_of<ServoStepMessage>(*entry.message);
+  return message_of<ServoStep>(*entry.message);
 }
 
 // Of the picture that is shown then.

@@ -53,7 +53,7 @@ class Recording {
   /// Whether the log has a servo; and its last command at a time, s, while one steers the arm. InputError
   /// where the log holds none that can be read.
   [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
-  [[nodiscard]] std::optional<ServoStepMessage> servo_step(double time) const;
+  [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// With what it sees in the pictures that are shown then.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
   /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures

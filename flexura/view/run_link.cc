@@ -70,7 +70,7 @@ void RunLink::logged(const LoggedMessage& message) {
     keep(pictures_, *sighting);
     return;
   }
-  if (const auto* step = message.as<ServoStepMessage>()) {
+  if (const auto* step = message.as<ServoStep>()) {
     news_.servo = ShownServo{*step, pictures_};
   } else if (const auto* seen = message.as<CalibrationSightingMessage>()) {
     if (!news_.calibration) news_.calibration.emplace();

@@ -16,8 +16,6 @@
 namespace flexura {
 namespace {
 
-using Bends = std::vector<std::array<double, 2>>;
-
 // A thing that is shown in more than one place has one name and one colour there.
 struct Named {
   const char *id, *label, *color;
@@ -33,21 +31,19 @@ struct Shape {
 };
 
 // A shape of the log's; `lengths` are those of the sections without stretch. A log may say anything.
-Shape shape_of(const Arm& base, const std::vector<double>& lengths, const Bends& bends,
-               const std::vector<double>& stretches) {
-  Shape shape{base, {}};
+Shape shape_of(const Arm& base, const std::vector<double>& lengths, const ArmState& state) {
+  Shape shape{base, state};
   const std::size_t count = base.sections.size();
   constexpr double largest = 1e6;
   const auto is_size = [](double size) { return size > 1 / largest && size < largest; };
-  const auto is_bend = [](const auto& bend) { return std::hypot(bend[0], bend[1]) < largest; };
+  const auto is_bend = [](const Eigen::Vector2d& bend) { return std::hypot(bend.x(), bend.y()) < largest; };
   // Logs that do not say how long the arm is mean the file's.
-  const bool fits = (lengths.empty() || lengths.size() == count) && bends.size() == count &&
-                    stretches.size() == count && std::ranges::all_of(lengths, is_size) &&
-                    std::ranges::all_of(stretches, is_size) && std::ranges::all_of(bends, is_bend);
+  const bool fits = (lengths.empty() || lengths.size() == count) && state.bends.size() == count &&
+                    state.stretches.size() == count && std::ranges::all_of(lengths, is_size) &&
+                    std::ranges::all_of(state.stretches, is_size) &&
+                    std::ranges::all_of(state.bends, is_bend);
   if (!fits) throw input_error("the log", "a servo's shape does not fit the arm");
   for (std::size_t i = 0; i < lengths.size(); ++i) shape.arm.sections[i].length = lengths[i];
-  for (const auto& bend : bends) shape.state.bends.emplace_back(bend[0], bend[1]);
-  shape.state.stretches = stretches;
   return shape;
 }
 
@@ -56,13 +52,12 @@ struct Shapes {
   std::optional<Shape> seen, truth;
 };
 
-Shapes shapes_of(const ViewedRig& rig, const ServoStepMessage& step) {
-  Shapes shapes{shape_of(rig.model.shaped(), step.lengths, step.desired, step.desired_stretches), {}, {}};
-  if (step.seen && step.seen_stretches)
-    shapes.seen = shape_of(rig.model.shaped(), step.lengths, *step.seen, *step.seen_stretches);
-  if (step.truth && step.true_lengths)
-    shapes.truth = shape_of(rig.truth.shaped(), *step.true_lengths, *step.truth,
-                            std::vector<double>(rig.truth.shaped().sections.size(), 1));
+Shapes shapes_of(const ViewedRig& rig, const ServoStep& step) {
+  Shapes shapes{shape_of(rig.model.shaped(), step.lengths, step.desired), {}, {}};
+  if (step.seen) shapes.seen = shape_of(rig.model.shaped(), step.lengths, *step.seen);
+  if (step.truth)
+    shapes.truth = shape_of(rig.truth.shaped(), step.truth->lengths,
+                            {step.truth->bends, std::vector<double>(rig.truth.shaped().sections.size(), 1)});
   return shapes;
 }
 
@@ -127,18 +122,18 @@ PictureLayers layers_of(const ServoPicture& picture) {
   return overlay;
 }
 
-std::string said(const ServoStepMessage& step) {
-  std::string line = step.rms ? fmt::format("{:.2f} % of the length off, the tip {:.2f} %", 100 * *step.rms,
-                                            100 * step.tip.value_or(0))
-                              : "the arm is not seen";
-  if (step.limited) line += "; held back: " + *step.limited;
+std::string said(const ServoStep& step) {
+  std::string line = step.error ? fmt::format("{:.2f} % of the length off, the tip {:.2f} %",
+                                              100 * step.error->rms, 100 * step.error->tip)
+                                : "the arm is not seen";
+  if (!step.limited.empty()) line += "; held back: " + step.limited;
   return line;
 }
 
 }  // namespace
 
 Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
-  const ServoStepMessage& step = servo.step;
+  const ServoStep& step = servo.step;
   const Shapes shapes = shapes_of(rig, step);
   Extras extras;
   extras.time = step.time, extras.title = "Servo", extras.text = said(step);
@@ -168,11 +163,11 @@ std::vector<Quantity> servo_quantities() {
   return list;
 }
 
-std::vector<std::optional<double>> servo_values(const ServoStepMessage& step) {
-  const auto percent = [](const std::optional<double>& share) {
-    return share ? std::optional(100 * *share) : std::nullopt;
-  };
-  return {percent(step.rms), percent(step.tip), percent(step.true_rms), percent(step.true_tip)};
+std::vector<std::optional<double>> servo_values(const ServoStep& step) {
+  std::vector<std::optional<double>> values(4);
+  if (step.error) values[0] = 100 * step.error->rms, values[1] = 100 * step.error->tip;
+  if (step.truth) values[2] = 100 * step.truth->error.rms, values[3] = 100 * step.truth->error.tip;
+  return values;
 }
 
 }  // namespace flexura

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/servo/servo_step.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/extras.h"
@@ -22,7 +23,7 @@ struct ServoPicture {
 
 /// What a servo does at one time: its last command, and the pictures that go with that.
 struct ShownServo {
-  ServoStepMessage step;
+  ServoStep step;
   std::vector<ServoPicture> pictures;
 };
 
@@ -33,6 +34,6 @@ struct ShownServo {
 
 /// A servo's errors over time, in percent of the arm's length, and those at one command.
 [[nodiscard]] std::vector<Quantity> servo_quantities();
-[[nodiscard]] std::vector<std::optional<double>> servo_values(const ServoStepMessage& step);
+[[nodiscard]] std::vector<std::optional<double>> servo_values(const ServoStep& step);
 
 }  // namespace flexura

@@ -236,8 +236,8 @@ TEST_F(HurriedServo, SaysWhyItEndedAndLeavesARecording) {
   EXPECT_TRUE(session_.results());
 }
 
-ServoStepMessage random_step(TestRandom& random, ArmState& desired, ArmState& seen, Arm& arm) {
-  ServoStepMessage step;
+ServoStep random_step(TestRandom& random, ArmState& desired, ArmState& seen, Arm& arm) {
+  ServoStep step;
   const auto fill = [&](ArmState& state) {
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       const Eigen::Vector2d bend = random.vector<2>(-1, 1);
@@ -246,8 +246,7 @@ ServoStepMessage random_step(TestRandom& random, ArmState& desired, ArmState& se
   };
   for (Section& section : arm.sections) step.lengths.push_back(section.length = random.uniform(0.2, 0.4));
   fill(desired), fill(seen);
-  step.desired = bends_of(desired), step.desired_stretches = desired.stretches;
-  step.seen = bends_of(seen), step.seen_stretches = seen.stretches;
+  step.desired = desired, step.seen = seen;
   return step;
 }
 
@@ -299,18 +298,18 @@ TEST(ServoExtras, RefuseShapesOfAnotherArm) {
   TestRandom random(case_seed(0));
   Arm arm = rig->model.driven();
   ArmState desired, seen;
-  const ServoStepMessage good = random_step(random, desired, seen, arm);
-  const auto refuses = [&](const std::function<void(ServoStepMessage&)>& damage) {
-    ServoStepMessage step = good;
+  const ServoStep good = random_step(random, desired, seen, arm);
+  const auto refuses = [&](const std::function<void(ServoStep&)>& damage) {
+    ServoStep step = good;
     damage(step);
     EXPECT_THROW((void)servo_extras(*rig, {step, {}}), InputError);
   };
   (void)servo_extras(*rig, {good, {}});
-  refuses([](ServoStepMessage& step) { step.desired.pop_back(); });
-  refuses([](ServoStepMessage& step) { step.seen->front()[0] = 1e300; });
-  refuses([](ServoStepMessage& step) { step.lengths.front() = 0; });
-  refuses([](ServoStepMessage& step) { step.lengths.pop_back(); });
-  refuses([](ServoStepMessage& step) { step.desired_stretches.front() = -1; });
+  refuses([](ServoStep& step) { step.desired.bends.pop_back(); });
+  refuses([](ServoStep& step) { step.seen->bends.front().x() = 1e300; });
+  refuses([](ServoStep& step) { step.lengths.front() = 0; });
+  refuses([](ServoStep& step) { step.lengths.pop_back(); });
+  refuses([](ServoStep& step) { step.desired.stretches.front() = -1; });
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/rig_config.h"
 

@@ -66,7 +66,7 @@ struct ExactLoop {
     config.law = kind;
     auto features = servo_features(kind, arm, config.points);
     if (!has_secants) features = std::make_unique<WithoutSecants>(std::move(features));
-    ServoLaw law(rig_model(arm, {}), config, *features);
+    ServoLaw law(ArmModel(arm), config, *features);
     CommandLimiter limiter(arm, {.step = config.step, .looks_ahead = false}, start);
     std::deque<ArmState> sent(late + 1, start);
     const WantedShape wanted{target, {}};

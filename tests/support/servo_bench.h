@@ -17,7 +17,7 @@
 namespace flexura {
 
 /// Keeps what a servo tells.
-class ServoNotes : public ServoWatcher {
+class ServoNotes : public ServoSessionWatcher {
  public:
   std::vector<std::pair<double, std::string>> lines;
   std::vector<std::pair<double, ArmState>> sent;

@@ -7,7 +7,7 @@
 namespace flexura {
 
 /// What a servo sees on its way, with the arm's true shape at the time.
-class SightKeeper : public ServoWatcher {
+class SightKeeper : public ServoSessionWatcher {
  public:
   explicit SightKeeper(ServoBench& bench) : bench_(bench) {}
   void arm_sent(double, const ArmState&, double) override {}

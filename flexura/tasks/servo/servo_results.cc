@@ -60,14 +60,13 @@ std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t numb
                       .x_label = errors.x_label,
                       .value_label = "power of ten",
                       .series = {{"potential", {}}}};
-  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
-    const ServoStep& step = run.result.steps[i];
+  for (const ServoStep& step : run.result.steps) {
     if (!step.is_fresh || !step.error) continue;
     errors.x.push_back(*step.seen_at - run.result.start);
     errors.series[0].values.push_back(power(step.error->rms, least_share));
     errors.series[1].values.push_back(power(step.error->tip, least_share));
-    errors.series[2].values.push_back(run.truth[i] ? power(run.truth[i]->rms, least_share)
-                                                   : std::numeric_limits<double>::quiet_NaN());
+    errors.series[2].values.push_back(step.truth ? power(step.truth->error.rms, least_share)
+                                                 : std::numeric_limits<double>::quiet_NaN());
     potential.series[0].values.push_back(power(step.potential, least_potential));
   }
   potential.x = errors.x;

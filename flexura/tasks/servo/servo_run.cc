@@ -19,7 +19,7 @@ namespace flexura {
 namespace {
 
 // Tells the log of everything, and compares with the truth.
-class LoggedServo : public ServoWatcher {
+class LoggedServo : public ServoSessionWatcher {
  public:
   LoggedServo(const Setup& setup, const ServoConfig& session, ServoRun& run, TaskStage& stage,
               CommandedMotion& motion)
@@ -42,8 +42,7 @@ class LoggedServo : public ServoWatcher {
       message.time = sight.frames[i].time, message.camera = run_.cameras[i];
       message.frame = sight.frames[i].number;
       if (!sight.estimate.is_found && !sight.reasons[i].empty()) message.reason = sight.reasons[i];
-      const Sighting few = thinned(sight.seen[i], most_points);
-      for (const CurvePoint& point : few.points)
+      for (const CurvePoint& point : thinned(sight.seen[i].points, most_points))
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
       for (const Eigen::Vector2d& pixel :
            backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))
@@ -55,26 +54,11 @@ class LoggedServo : public ServoWatcher {
     }
   }
   void stepped(const ServoStep& step) override {
-    ServoStepMessage message;
-    message.time = step.time, message.seen_at = step.seen_at;
-    message.desired = bends_of(step.desired), message.desired_stretches = step.desired.stretches;
-    if (step.seen) message.seen = bends_of(*step.seen), message.seen_stretches = step.seen->stretches;
-    message.sent = bends_of(step.sent), message.sent_stretches = step.sent.stretches;
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (!step.heads[i]) continue;
-      if (!message.heads) message.heads.emplace();
-      message.heads->push_back(
-          {run_.cameras[i], step.heads[i]->pan, step.heads[i]->tilt, step.heads[i]->zoom});
-    }
-    if (step.error)
-      message.rms = step.error->rms, message.most = step.error->most, message.tip = step.error->tip;
-    message.potential = step.potential, message.fresh = step.is_fresh, message.singular = step.is_singular;
-    if (!step.limited.empty()) message.limited = step.limited;
-    for (const Section& section : run_.believed.arm.sections) message.lengths.push_back(section.length);
-    RigTruth* truth = stage_.rig.truth();
-    run_.truth.push_back(step.seen_at && truth != nullptr ? std::optional(add_truth(step, *truth, message))
-                                                          : std::nullopt);
-    log_.tell({servo_steps_topic, message.time, message});
+    ServoStep logged = step;
+    if (RigTruth* truth = stage_.rig.truth(); truth != nullptr && step.seen_at)
+      logged.truth = true_shape(step, *truth);
+    log_.tell({servo_steps_topic, logged.time, logged});
+    truth_.push_back(std::move(logged.truth));
     stage_.progress.update(
         0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
                         : run_.name);
@@ -83,6 +67,11 @@ class LoggedServo : public ServoWatcher {
     log_.event(time, Recorder::Level::warning, run_.name, what);
   }
   bool is_cancelled() override { return stage_.progress.is_cancelled(); }
+
+  /// To the steps of a result, which are those that were told.
+  void add_truth(std::vector<ServoStep>& steps) {
+    for (std::size_t i = 0; i < steps.size(); ++i) steps[i].truth = std::move(truth_[i]);
+  }
 
  private:
   static constexpr std::size_t most_points = 60;  // Of an axis in the log.
@@ -98,17 +87,14 @@ class LoggedServo : public ServoWatcher {
     return rounded;
   }
 
-  // Of the time of the step's pictures.
-  [[nodiscard]] ServoError add_truth(const ServoStep& step, RigTruth& truth, ServoStepMessage& message) {
+  // At the time of the step's pictures.
+  [[nodiscard]] TrueShape true_shape(const ServoStep& step, RigTruth& truth) const {
     const Arm& arm = run_.believed.arm;
     const Backbone shape = truth.backbone(*step.seen_at);
-    auto& bends = message.truth.emplace();
-    auto& lengths = message.true_lengths.emplace();
-    for (const Arc& arc : shape.arcs())
-      bends.push_back({arc.bend.x(), arc.bend.y()}), lengths.push_back(arc.length);
-    const ServoError error = servo_error(shape, Backbone(arm, step.desired), arm.length());
-    message.true_rms = error.rms, message.true_most = error.most, message.true_tip = error.tip;
-    return error;
+    TrueShape found;
+    for (const Arc& arc : shape.arcs()) found.bends.push_back(arc.bend), found.lengths.push_back(arc.length);
+    found.error = servo_error(shape, Backbone(arm, step.desired), arm.length());
+    return found;
   }
 
   bool keeps_images_;
@@ -117,14 +103,13 @@ class LoggedServo : public ServoWatcher {
   RunLog& log_;
   CommandedMotion& motion_;
   FeatureMarker marker_;
+  std::vector<std::optional<TrueShape>> truth_;  // Of each step.
 };
 
 void add_true_remaining(ServoRun& run) {
   LateErrors late(run.settle);
-  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
-    const ServoStep& step = run.result.steps[i];
-    if (step.is_fresh && run.truth[i]) late.add(*step.seen_at, *run.truth[i]);
-  }
+  for (const ServoStep& step : run.result.steps)
+    if (step.is_fresh && step.truth) late.add(*step.seen_at, step.truth->error);
   run.true_remaining = late.mean();
 }
 
@@ -145,6 +130,7 @@ ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigMod
                          const ArmState& from) {
   const std::vector<CameraConfig> cameras = setup.cameras();
   ServoConfig config;
+  static_cast<ServoSettings&>(config) = servo_settings(task, cameras);
   config.cameras = servo_cameras(task, cameras);
   const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
   const ArmModel arm = believed.arm_model();
@@ -158,19 +144,12 @@ ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigMod
     state = shape.state;
     config.goals.push_back({target.time, arm.actuation().shape(shape.state), shape.missed});
   }
-  config.law = task.law, config.jacobian = task.jacobian;
-  config.measure = task.measure, config.anchor = task.anchor;
-  config.points = static_cast<int>(task.points), config.rate = task.rate, config.damping = task.damping;
-  config.predicts = task.predict, config.tolerance = task.tolerance, config.settle = task.settle;
-  config.follows = task.follow;
-  config.camera_doubt = {.turn = task.doubt.turn, .focal = task.doubt.focal};
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
   if (is_colored) config.markers = band_places(setup, believed.arm);
   config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
   if (setup.drive) config.drive = setup.drive->drive();
   config.list_step = setup.clock.step;
   config.obstacles = obstacles(setup.obstacle);
-  config.patience = servo_patience(task, cameras);
   return config;
 }
 
@@ -185,6 +164,7 @@ ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& 
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
   LoggedServo log(setup, session, run, stage, recorded.motion());
   run.result = servo_in_session(recorded.ports(), run.believed, session, log);
+  log.add_truth(run.result.steps);
   const double end = recorded.finish();
   run.motion = recorded.motion().motion(end);
   add_true_remaining(run);

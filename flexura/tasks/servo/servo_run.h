@@ -20,10 +20,9 @@ struct ServoRun {
   std::array<std::string, 2> cameras;  ///< Their names.
   RigModel believed;
   double settle = 0;  ///< As the task has it, s.
+  /// Its steps with the simulated truth, of which the session knows nothing. Where pictures are the target,
+  /// truth is compared with the shape that they seemed to show.
   ServoResult result;
-  /// Of the simulated truth from what was desired, one a step of the result; of which the session knows
-  /// nothing. Where pictures are the target, from the shape that they seemed to show.
-  std::vector<std::optional<ServoError>> truth;
   std::optional<ServoError> true_remaining;  ///< Mean over the last `settle` s.
   MotionPtr motion;                          ///< Of the arm, as commanded, from the task's start.
 };

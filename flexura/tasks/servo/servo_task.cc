@@ -11,6 +11,7 @@
 #include "flexura/math/arrays.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/rig/setup.h"
+#include "flexura/servo/servo_step.h"
 #include "flexura/store/csv.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/tasks/servo/servo_results.h"
@@ -99,18 +100,14 @@ class ServoTable : public LogTable {
   [[nodiscard]] std::string file_name() const override { return "servo.csv"; }
   [[nodiscard]] bool takes(std::string_view topic) const override { return topic == servo_steps_topic; }
   void add(std::string_view /*topic*/, double /*time*/, const Node& message) override {
-    const auto step = read_as<ServoStepMessage>(message);
+    const auto step = read_as<ServoStep>(message);
     if (csv_.text().empty()) name_columns();
     csv_.cell(step.time);
-    for (const auto& value :
-         {step.seen_at, step.rms, step.most, step.tip, step.true_rms, step.true_most, step.true_tip}) {
-      if (value)
-        csv_.cell(*value);
-      else
-        csv_.cell(std::string_view());
-    }
+    add_cells(std::array{step.seen_at.value_or(0)}, step.seen_at.has_value());
+    add_error(step.error);
+    add_error(step.truth ? std::optional(step.truth->error) : std::nullopt);
     csv_.cell(step.potential);
-    csv_.cell(step.limited ? std::string_view(*step.limited) : std::string_view());
+    csv_.cell(std::string_view(step.limited));
     csv_.end_row();
   }
   [[nodiscard]] std::string text() const override { return csv_.text(); }
@@ -121,6 +118,14 @@ class ServoTable : public LogTable {
                               "potential", "limited"})
       csv_.cell(std::string_view(title));
     csv_.end_row();
+  }
+  template <std::size_t Count>
+  void add_cells(const std::array<double, Count>& numbers, bool are_known) {
+    for (const double number : numbers) are_known ? csv_.cell(number) : csv_.cell(std::string_view());
+  }
+  void add_error(const std::optional<ServoError>& error) {
+    const ServoError known = error.value_or(ServoError{});
+    add_cells(std::array{known.rms, known.most, known.tip}, error.has_value());
   }
   CsvText csv_;
 };

@@ -42,6 +42,12 @@ void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfi
                                                : fmt::format("{:.4g} m", most)));
 }
 
+// A setting as a member of the task.
+template <class M>
+M ServoTask::* of_task(M ServoSettings::* setting) {
+  return setting;
+}
+
 }  // namespace
 
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
@@ -93,20 +99,6 @@ const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   return table;
 }
 
-const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*) {
-  static const auto table = Table<ServoDoubtConfig>("doubt",
-                                                    "How wrong the cameras may be, as they are believed to "
-                                                    "stand: standard deviations. What is wrong is "
-                                                    "estimated with the arm's shape; 0: nothing is.")
-                                .field("turn", &ServoDoubtConfig::turn,
-                                       {.meaning = "Of how a camera is turned, about each axis of its view.",
-                                        .unit = Unit::radian,
-                                        .range = between(0, 1)})
-                                .field("focal", &ServoDoubtConfig::focal,
-                                       {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
-  return table;
-}
-
 const Table<ServoTask>& fields_of(const ServoTask*) {
   using T = ServoTask;
   static const auto table =
@@ -115,21 +107,21 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                "takes.")
           .field("name", &T::name,
                  {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field("law", &T::law,
+          .field("law", of_task(&T::law),
                  {.meaning =
                       "What drives it: shape is the shape that both images tell, less the wanted one; "
                       "points, chords and moments compare features of the images, silhouettes their edges; "
                       "potential is the paper's artificial potential on the errors in two image planes (the "
                       "first camera's XOY, the second one's ZOY)."})
-          .field("measure", &T::measure,
+          .field("measure", of_task(&T::measure),
                  {.meaning = "Where chords and potential have their angles from: each picture by itself, or "
                              "the flow from the picture before, drawn back to each picture."})
-          .field("anchor", &T::anchor,
+          .field("anchor", of_task(&T::anchor),
                  {.meaning = "Angles that flow carries are drawn back as exp(-t/anchor).",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
           .field(
-              "jacobian", &T::jacobian,
+              "jacobian", of_task(&T::jacobian),
               {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
                           "Broyden's update or by recursive least squares."})
           .field("cameras", &T::cameras,
@@ -138,42 +130,42 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "The wanted shapes, as `[[task.target]]`, in the order of their times.",
                   .count = {1, most_targets},
                   .required = true})
-          .field("points", &T::points,
+          .field("points", of_task(&T::points),
                  {.meaning = "Of points, chords, potential and silhouettes: places along the arm.",
                   .range = between(1, 200)})
-          .field("rate", &T::rate,
+          .field("rate", of_task(&T::rate),
                  {.meaning = "Errors fall as exp(-rate t), 1/s.", .range = above_up_to(0, 1000)})
-          .field("damping", &T::damping,
+          .field("damping", of_task(&T::damping),
                  {.meaning =
                       "Of the least squares, a share of the derivatives' root mean square; none with shape.",
                   .range = between(0, 10)})
-          .field("predict", &T::predict,
+          .field("predict", of_task(&T::predict),
                  {.meaning = "What was sent after a picture was taken is counted as done."})
           .field(
-              "tolerance", &T::tolerance,
+              "tolerance", of_task(&T::tolerance),
               {.meaning =
                    "The arm is there when it is so near, root mean square along it, a share of its length.",
                .range = above_up_to(0, 1)})
-          .field("settle", &T::settle,
+          .field("settle", of_task(&T::settle),
                  {.meaning = "And stays so near for this time.",
                   .unit = Unit::second,
                   .range = between(0, longest_time)})
-          .field("timeout", &T::timeout,
+          .field("timeout", of_task(&T::timeout),
                  {.meaning = "How long to go on after the last target's time.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field("blind", &T::blind,
+          .field("blind", of_task(&T::blind),
                  {.meaning = "Unseen for so long, the arm stops and waits.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field("lost", &T::lost,
+          .field("lost", of_task(&T::lost),
                  {.meaning = "Unseen for so long, the task is given up.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
           .field(
-              "follow", &T::follow,
+              "follow", of_task(&T::follow),
               {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})
-          .field("doubt", &T::doubt, {.meaning = "How wrong the cameras may be."})
+          .field("doubt", of_task(&T::doubt), {.meaning = "How wrong the cameras may be."})
           .field("step", &T::step,
                  {.meaning = "Time from one command to the next.",
                   .unit = Unit::second,
@@ -186,9 +178,11 @@ std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vecto
   return two_cameras(task.cameras, cameras);
 }
 
-ServoPatience servo_patience(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
-  const double blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
-  return {.blind = blind, .lost = std::max(task.lost, 2 * blind), .timeout = task.timeout};
+ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
+  ServoSettings settings = task;
+  settings.blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
+  settings.lost = std::max(task.lost, 2 * settings.blind);
+  return settings;
 }
 
 namespace {
@@ -224,7 +218,7 @@ void check_frames(const ServoTask& task, const std::vector<CameraConfig>& camera
                       fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
                                   "step from {} s to {} s",
                                   frame, shortest_step, longest_step));
-  const double lost = servo_patience(task, cameras).lost;
+  const double lost = servo_settings(task, cameras).lost;
   for (const std::size_t i : {front, side}) {
     const double late = times_of_frame_at(cameras[i].sensor, 0).received;
     const std::string when =

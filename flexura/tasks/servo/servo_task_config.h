@@ -29,46 +29,24 @@ struct ServoTargetConfig : ShapeConfig {
   std::vector<std::string> pictures;  ///< Two files, of the task's cameras in this order.
 };
 
-/// How wrong the cameras may be, as the task believes them: standard deviations of a view's turn about each
-/// axis, rad, and of its focal length, a share (ViewDoubt).
-struct ServoDoubtConfig {
-  double turn = 0.02;
-  double focal = 0.02;
-};
-
-/// `kind = "servo"`: the arm is steered by two cameras until its shape is the wanted one.
-struct ServoTask {
+/// `kind = "servo"`: the arm is steered by two cameras until its shape is the wanted one. Beside the settings
+/// there is what needs the arm, the cameras and the file's folder to be understood.
+struct ServoTask : ServoSettings {
   std::string name;
-  ServoLawKind law = ServoLawKind::shape;
-  ServoMeasure measure = ServoMeasure::picture;
-  double anchor = 0.1;  ///< s
-  ServoJacobian jacobian = ServoJacobian::model;
   std::vector<std::string> cameras;       ///< Two names; empty: the first two.
   std::vector<ServoTargetConfig> target;  ///< At least one.
-  std::int64_t points = 12;  ///< Of the laws points, chords, potential and silhouettes: places along the arm.
-  double rate = 4;           ///< 1/s
-  double damping = 0.01;     ///< ImageLawGains::damping; not with `shape`.
-  bool predict = true;       ///< What was sent after a picture was taken is counted as done.
-  double tolerance = 0.005;  ///< Share of the arm's length.
-  double settle = 0.5;       ///< s
-  double timeout = 20;       ///< s
-  double blind = 0.3;        ///< s
-  double lost = 3;           ///< s
-  bool follow = false;       ///< Heads turn so that the arm stays in their pictures.
-  ServoDoubtConfig doubt;
-  std::optional<double> step;  ///< s; a frame of the slower camera.
+  std::optional<double> step;             ///< s; a frame of the slower camera.
 };
 
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*);
-const Table<ServoDoubtConfig>& fields_of(const ServoDoubtConfig*);
 const Table<ServoTask>& fields_of(const ServoTask*);
 
 /// The two cameras of a task that was checked: places among `cameras`.
 [[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
                                                        const std::vector<CameraConfig>& cameras);
 
-/// Of a task that names two of these cameras: between two pictures of a slow one nobody is blind.
-[[nodiscard]] ServoPatience servo_patience(const ServoTask& task, const std::vector<CameraConfig>& cameras);
+/// Those of a task that names two of these cameras: between two pictures of a slow one nobody is blind.
+[[nodiscard]] ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras);
 
 /// Reports what keeps the servo at `path` ("task[2]") from being tried with this setup.
 void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader);

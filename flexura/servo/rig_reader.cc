@@ -1,4 +1,4 @@
-#include "flexura/servo/servo_rig.h"
+#include "flexura/servo/rig_reader.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/kinematics/shape.h"
+#include "flexura/model/arm_way.h"
 #include "flexura/port/rig_readings.h"
 
 namespace flexura {
@@ -18,8 +18,8 @@ constexpr double ahead = 0.1;
 
 }  // namespace
 
-ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
-                   const Times& times)
+RigReader::RigReader(const RigPorts& ports, const RigModel& believed,
+                     const std::array<std::size_t, 2>& cameras, const Times& times)
     : ports_(ports),
       model_(believed),
       cameras_(cameras),
@@ -29,30 +29,30 @@ ServoRig::ServoRig(const RigPorts& ports, const RigModel& believed, const std::a
       stances_{MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate),
                MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate)} {}
 
-ServoRig::Trouble ServoRig::read() {
+RigReader::Trouble RigReader::read() {
   auto arm = read_arm(*ports_.arm, model_.sections());
   if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
   const auto& said = std::get<ArmReading>(arm);
   if (auto why = odd_time("the arm", said.time)) return why;
   arm_.add(said.time, said.state);
   for (std::size_t i = 0; i < 2; ++i) {
-    auto camera = read_camera(ports_, cameras_[i], optics_[i]);
-    if (auto* why = std::get_if<std::string>(&camera)) return std::move(*why);
-    const auto& stands = std::get<StanceReading>(camera);
+    auto stance = read_camera(ports_, cameras_[i], optics_[i]);
+    if (auto* why = std::get_if<std::string>(&stance)) return std::move(*why);
+    const auto& stands = std::get<StanceReading>(stance);
     if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;
     stances_[i].add(stands.time, stands.stance.stance());
   }
   return std::nullopt;
 }
 
-ServoRig::Trouble ServoRig::odd_time(const std::string& device, double time) const {
+RigReader::Trouble RigReader::odd_time(const std::string& device, double time) const {
   const double age = now() - time;
   if (age < -ahead) return fmt::format("{} tells of a time that is {:.4g} s from now", device, -age);
   if (age > times_.silent) return fmt::format("{} tells of nothing since {:.4g} s ago", device, age);
   return std::nullopt;
 }
 
-std::string ServoRig::odd_time(const Frame& frame, const std::deque<Frame>& before) const {
+std::string RigReader::odd_time(const Frame& frame, const std::deque<Frame>& before) const {
   if (!std::isfinite(frame.time) || !std::isfinite(frame.received))
     return "its picture tells of no time: a number is none";
   if (frame.time > now() + ahead)
@@ -62,10 +62,10 @@ std::string ServoRig::odd_time(const Frame& frame, const std::deque<Frame>& befo
   return "";
 }
 
-bool ServoRig::look() {
+void RigReader::take_newest() {
   constexpr std::size_t kept = 64;  // Of each camera: one may be seconds later than the other.
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto frame = ports_.cameras[cameras_[i]].camera->newest();
+    const auto frame = camera(i).camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
     if (frame.fault() || !frame.value()) continue;
     silence_[i] = odd_time(*frame.value(), recent_[i]);
@@ -73,9 +73,13 @@ bool ServoRig::look() {
     recent_[i].push_back(*frame.value());
     if (recent_[i].size() > kept) recent_[i].pop_front();
   }
+}
+
+std::optional<PicturePair> RigReader::newest_pair() {
+  take_newest();
   // The newest of the second camera for which the first one has one of its own, the nearest in time.
   for (auto second = recent_[1].rbegin(); second != recent_[1].rend(); ++second) {
-    if (!(second->time > paired_at_[1])) return false;
+    if (!(second->time > paired_at_[1])) break;
     const Frame* nearest = nullptr;
     for (const Frame& first : recent_[0]) {
       const double apart = std::abs(first.time - second->time);
@@ -84,13 +88,28 @@ bool ServoRig::look() {
         nearest = &first;
     }
     if (nearest == nullptr || nearest->time < arm_.since()) continue;
-    pair_ = {*nearest, *second}, paired_at_ = {nearest->time, second->time};
-    return true;
+    paired_at_ = {nearest->time, second->time};
+    return PicturePair{{*nearest, *second}, {view(0, nearest->time), view(1, second->time)}};
   }
-  return false;
+  return std::nullopt;
 }
 
-std::string ServoRig::by_name(std::string reason) const {
+std::string RigReader::silence() const {
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!silence_[i].empty()) return fmt::format("camera {}: {}", name(i), silence_[i]);
+  return "";
+}
+
+std::string RigReader::no_pair(double since) const {
+  std::string whose;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool has_come = !recent_[i].empty() && recent_[i].back().received > since;
+    if (!has_come) whose += (whose.empty() ? "camera " : " and ") + name(i);
+  }
+  return whose.empty() ? "no pictures come that belong together" : "no pictures come of " + whose;
+}
+
+std::string RigReader::by_name(std::string reason) const {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string number = fmt::format("picture {} ", i + 1);
     if (const std::size_t at = reason.find(number); at != std::string::npos)

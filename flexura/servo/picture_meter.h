@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "flexura/camera/view.h"
+#include "flexura/port/rig_model.h"
+#include "flexura/servo/rig_reader.h"
+#include "flexura/servo/servo_config.h"
+#include "flexura/servo/servo_sight.h"
+#include "flexura/vision/arm_finder.h"
+
+namespace flexura {
+
+/// Measures the pictures of two cameras: where each shows the arm.
+class PictureMeter {
+ public:
+  PictureMeter(const RigModel& believed, const ServoConfig& config);
+
+  /// A sight without a shape: what each picture shows of the arm, or the reason why it shows none.
+  [[nodiscard]] ServoSight measure(const PicturePair& pair);
+
+ private:
+  [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
+                                  std::string& reason);
+
+  Eigen::Vector3d base_;            // p_WB
+  std::array<int, 2> whites_ = {};  // The largest value of each camera's pictures.
+  bool has_markers_;
+  ViewDoubt doubt_;
+  struct Finder {
+    Eigen::Vector2d base;
+    ArmFinder finder;
+  };
+  std::array<std::optional<Finder>, 2> finders_;
+};
+
+}  // namespace flexura

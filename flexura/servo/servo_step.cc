@@ -1,0 +1,197 @@
+#include "flexura/servo/servo_step.h"
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include "flexura/base/table.h"
+
+namespace flexura {
+namespace {
+
+// A table whose fields may be parts of members: `Part` has functions `get`, the value of a step, and `set`,
+// which puts a value into one.
+class StepTable : public Table<ServoStep> {
+ public:
+  using Table::Table;
+
+  template <class M>
+  StepTable& field(std::string name, M ServoStep::* member, Spec spec) {
+    Table::field(std::move(name), member, std::move(spec));
+    return *this;
+  }
+
+  template <class Part>
+  StepTable& part(std::string name, Spec spec) {
+    using Value = decltype(Part::get(ServoStep{}));
+    static constexpr ValueCodec codec = {
+        [](const Node& node, const Spec& said, Reader& reader, void* step) {
+          Value value{};
+          if (!Codec<Value>::read(node, said, reader, value)) return false;
+          Part::set(*static_cast<ServoStep*>(step), std::move(value));
+          return true;
+        },
+        [](const void* step) { return Codec<Value>::write(Part::get(*static_cast<const ServoStep*>(step))); },
+        [] { return Codec<Value>::type(); }};
+    static const ServoStep defaults;
+    add(std::move(name), 0, codec, &defaults, std::move(spec));
+    return *this;
+  }
+};
+
+using Bends = std::vector<std::array<double, 2>>;
+using Numbers = std::vector<double>;
+
+Bends bends_of_log(const std::vector<Eigen::Vector2d>& bends) {
+  Bends list;
+  list.reserve(bends.size());
+  for (const Eigen::Vector2d& bend : bends) list.push_back({bend.x(), bend.y()});
+  return list;
+}
+
+std::vector<Eigen::Vector2d> bends_from_log(const Bends& list) {
+  std::vector<Eigen::Vector2d> bends;
+  bends.reserve(list.size());
+  for (const auto& bend : list) bends.emplace_back(bend[0], bend[1]);
+  return bends;
+}
+
+// What a member that may be none has there, made where it is none.
+template <class Value>
+Value& made(std::optional<Value>& member) {
+  return member ? *member : member.emplace();
+}
+
+template <ArmState ServoStep::* state>
+struct BendsOf {
+  static Bends get(const ServoStep& step) { return bends_of_log((step.*state).bends); }
+  static void set(ServoStep& step, const Bends& list) { (step.*state).bends = bends_from_log(list); }
+};
+template <ArmState ServoStep::* state>
+struct StretchesOf {
+  static Numbers get(const ServoStep& step) { return (step.*state).stretches; }
+  static void set(ServoStep& step, Numbers list) { (step.*state).stretches = std::move(list); }
+};
+
+struct SeenBends {
+  static std::optional<Bends> get(const ServoStep& step) {
+    return step.seen ? std::optional(bends_of_log(step.seen->bends)) : std::nullopt;
+  }
+  static void set(ServoStep& step, const std::optional<Bends>& list) {
+    made(step.seen).bends = bends_from_log(*list);
+  }
+};
+struct SeenStretches {
+  static std::optional<Numbers> get(const ServoStep& step) {
+    return step.seen ? std::optional(step.seen->stretches) : std::nullopt;
+  }
+  static void set(ServoStep& step, std::optional<Numbers> list) {
+    made(step.seen).stretches = std::move(*list);
+  }
+};
+struct TrueBends {
+  static std::optional<Bends> get(const ServoStep& step) {
+    return step.truth ? std::optional(bends_of_log(step.truth->bends)) : std::nullopt;
+  }
+  static void set(ServoStep& step, const std::optional<Bends>& list) {
+    made(step.truth).bends = bends_from_log(*list);
+  }
+};
+struct TrueLengths {
+  static std::optional<Numbers> get(const ServoStep& step) {
+    return step.truth ? std::optional(step.truth->lengths) : std::nullopt;
+  }
+  static void set(ServoStep& step, std::optional<Numbers> list) {
+    made(step.truth).lengths = std::move(*list);
+  }
+};
+
+template <double ServoError::* number>
+struct SeenError {
+  static std::optional<double> get(const ServoStep& step) {
+    return step.error ? std::optional((*step.error).*number) : std::nullopt;
+  }
+  static void set(ServoStep& step, std::optional<double> value) { made(step.error).*number = *value; }
+};
+template <double ServoError::* number>
+struct TrueError {
+  static std::optional<double> get(const ServoStep& step) {
+    return step.truth ? std::optional(step.truth->error.*number) : std::nullopt;
+  }
+  static void set(ServoStep& step, std::optional<double> value) { made(step.truth).error.*number = *value; }
+};
+
+// Left out where there is nothing.
+struct Heads {
+  static std::optional<std::vector<HeadCommand>> get(const ServoStep& step) {
+    return step.heads.empty() ? std::nullopt : std::optional(step.heads);
+  }
+  static void set(ServoStep& step, std::optional<std::vector<HeadCommand>> heads) {
+    step.heads = std::move(*heads);
+  }
+};
+struct Limited {
+  static std::optional<std::string> get(const ServoStep& step) {
+    return step.limited.empty() ? std::nullopt : std::optional(step.limited);
+  }
+  static void set(ServoStep& step, std::optional<std::string> why) { step.limited = std::move(*why); }
+};
+
+}  // namespace
+
+const Table<HeadCommand>& fields_of(const HeadCommand*) {
+  using M = HeadCommand;
+  static const auto table = Table<M>("flexura.HeadCommand", "Where a camera's head was sent to.")
+                                .field("camera", &M::camera, {.meaning = "The camera's name."})
+                                .field("pan", &M::pan, {.meaning = "rad, to the camera's left."})
+                                .field("tilt", &M::tilt, {.meaning = "rad, upwards."})
+                                .field("zoom", &M::zoom, {.meaning = "A ratio or a motor count."});
+  return table;
+}
+
+const Table<ServoStep>& fields_of(const ServoStep*) {
+  using S = ServoStep;
+  using E = ServoError;
+  static const auto table =
+      StepTable("flexura.ServoStep", "A command of a servo, and what it was made of.")
+          .field("time", &S::time, {.meaning = "When it was sent, since the experiment's start, s."})
+          .field("seen_at", &S::seen_at, {.meaning = "Middle of the exposure of the pictures it goes by, s."})
+          .part<BendsOf<&S::desired>>("desired",
+                                      {.meaning = "Each section's bend wanted at their time, rad."})
+          .part<StretchesOf<&S::desired>>("desired_stretches",
+                                          {.meaning = "Each section's stretch wanted then."})
+          .part<SeenBends>("seen", {.meaning = "Each section's bend as seen in them, rad."})
+          .part<SeenStretches>("seen_stretches", {.meaning = "Each section's stretch as seen."})
+          .part<BendsOf<&S::sent>>("sent", {.meaning = "Each section's bend as commanded, rad."})
+          .part<StretchesOf<&S::sent>>("sent_stretches", {.meaning = "Each section's stretch as commanded."})
+          .part<Heads>("heads",
+                       {.meaning = "Where heads that follow the arm were sent to with this command."})
+          .field("lengths", &S::lengths,
+                 {.meaning = "Each section's length without stretch, as it is believed to be, m."})
+          .part<TrueBends>(
+              "truth",
+              {.meaning = "Each section's bend in the simulated truth, at the time of the pictures, rad."})
+          .part<TrueLengths>(
+              "true_lengths",
+              {.meaning = "Each section's length in the simulated truth then, with its stretch, m."})
+          .part<SeenError<&E::rms>>(
+              "rms",
+              {.meaning =
+                   "Distance along the arm from seen to desired, root mean square, share of its length."})
+          .part<SeenError<&E::most>>("most", {.meaning = "Likewise, the largest."})
+          .part<SeenError<&E::tip>>("tip", {.meaning = "Likewise, of the tip."})
+          .part<TrueError<&E::rms>>("true_rms", {.meaning = "As rms, from the simulated truth to desired."})
+          .part<TrueError<&E::most>>("true_most", {.meaning = "Likewise, the largest."})
+          .part<TrueError<&E::tip>>("true_tip", {.meaning = "Likewise, of the tip."})
+          .field("potential", &S::potential,
+                 {.meaning =
+                      "Half the square of the law's error: rad^2 for shape and potential, px^2 otherwise."})
+          .field("fresh", &S::is_fresh, {.meaning = "Whether the pictures are new."})
+          .field("singular", &S::is_singular,
+                 {.meaning = "Whether some motion shows in nothing that is seen."})
+          .part<Limited>("limited", {.meaning = "What held the law back."});
+  return table;
+}
+
+}  // namespace flexura

@@ -17,6 +17,7 @@ namespace flexura {
 /// where the ones before turn out to be too late.
 class MappedTime {
  public:
+  /// The clock outlives this.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
   /// Of an answer, as DeviceClock::add has it; as the device says, where nothing can be learned of it.
@@ -43,8 +44,11 @@ class ClockedDevice : public Port {
   ClockedDevice(Port& port, const ClockPort& rig, DeviceClock& clock, double age = 0)
       : port_(port), rig_(rig), time_(clock), age_(age) {}
 
+  /// As the device's own.
   CommandOutcome command(const State& state, Way... way) override { return port_.command(state, way...); }
+  /// Likewise.
   CommandOutcome halt() override { return port_.halt(); }
+  /// What the device says, at the rig's time.
   Outcome<Reading> read() override {
     const double asked = rig_.now();
     auto outcome = port_.read();

@@ -51,6 +51,7 @@ using MakePlant = std::function<std::unique_ptr<Plant>(const PlantSetup&)>;
 /// An arm that is a chain of arcs: what drives bend, it follows without inertia or gravity.
 class ArcPlant : public Plant {
  public:
+  /// The arm as its drives see it. Errors as Actuation's.
   explicit ArcPlant(const Arm& driven) : arm_(driven) {}
 
   /// What its sections are bent to, as the drives see it; known in what is to come too, as far as commanded.
@@ -81,6 +82,7 @@ class DrivenPlant : public ArcPlant {
 /// Such an arm whose sections bend by themselves, as their rates allow.
 class BendPlant : public ArcPlant {
  public:
+  /// Its sections obey the limits and rates of the truth's.
   explicit BendPlant(const PlantSetup& setup)
       : ArcPlant(setup.truth.arm), bends_(setup.truth.arm, setup.truth.initial, setup.horizon) {}
 
@@ -95,8 +97,9 @@ class BendPlant : public ArcPlant {
 /// The one of the two that the setup's truth is.
 [[nodiscard]] std::unique_ptr<Plant> arc_plant(const PlantSetup& setup);
 
-/// (bend_x, bend_y, stretch) of each section, and back.
+/// (bend_x, bend_y, stretch) of each section.
 [[nodiscard]] Eigen::VectorXd plant_command(const ArmState& state);
+/// The state of such a command.
 [[nodiscard]] ArmState commanded_state(const Eigen::VectorXd& u);
 
 }  // namespace flexura

@@ -157,5 +157,15 @@ TEST(Actuation, RefusesWhatIsNoProfile) {
   EXPECT_THROW(actuation.by_command(Eigen::MatrixXd::Zero(2, 9), out), std::invalid_argument);
 }
 
+TEST(Actuation, OfNothingIsTheIdentity) {
+  const ArmState state{{{0.1, 0.2}, {0.3, 0.4}}, {1, 1.5}};
+  EXPECT_EQ(Actuation().shape(state), state);
+  EXPECT_EQ(Actuation().command(state), state);
+  const Eigen::MatrixXd by_shape = Eigen::MatrixXd::Random(2, 6);
+  Eigen::MatrixXd by_command;
+  Actuation().by_command(by_shape, by_command);
+  EXPECT_EQ(by_command, by_shape);
+}
+
 }  // namespace
 }  // namespace flexura

@@ -179,7 +179,7 @@ std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vecto
 }
 
 ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
-  ServoSettings settings = task;
+  auto settings = static_cast<const ServoSettings&>(task);
   settings.blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
   settings.lost = std::max(task.lost, 2 * settings.blind);
   return settings;

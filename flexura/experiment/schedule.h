@@ -33,8 +33,8 @@ struct Leg {
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
 };
 
-/// The runners of an experiment's tasks, in their order. The experiment outlives them.
 using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
+/// The runners of an experiment's tasks, in their order. The experiment outlives them.
 [[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
 
 /// What tasks did whose motion is decided on the way or simulated before (TaskWay), by their numbers.
@@ -81,13 +81,13 @@ class Schedule {
   std::vector<Leg> legs_;
 };
 
-/// Simulates every task that is simulated and whose start is known: those before the first that the rig is
-/// yet to do, or before one with which the run ends. Adds what they did to `done`. Returns the number of the
-/// task with which the run ends, and why; none where it ends with none of them.
+/// The task with which a run ends, and why.
 struct EndedBy {
-  std::size_t task = 0;
+  std::size_t task = 0;  ///< Its number.
   std::string failure;
 };
+/// Simulates every task that is simulated and whose start is known: those before the first that the rig is
+/// yet to do, or before one with which the run ends, which is answered. Adds what they did to `done`.
 [[nodiscard]] std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks,
                                                     DoneTasks& done, Progress& progress);
 

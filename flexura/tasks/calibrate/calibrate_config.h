@@ -119,6 +119,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// Reports what keeps the calibration at `path` ("task[2]") from being made with this setup.
 void check_keys(const CalibrateTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// What does such a task. Both outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const CalibrateTask& task, const Setup& setup,
                                                     TaskLabel label);
 

@@ -77,6 +77,7 @@ const Table<DynamicsTask>& fields_of(const DynamicsTask*);
 
 /// Reports what keeps the task at `path` ("task[2]") from being tried with this setup.
 void check_keys(const DynamicsTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// What does such a task. Both outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const DynamicsTask& task, const Setup& setup,
                                                     TaskLabel label);
 /// dynamics.csv: energies and errors, a row a sample.

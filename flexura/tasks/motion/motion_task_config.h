@@ -80,24 +80,34 @@ const Table<SineTask>& fields_of(const SineTask*);
 const Table<KeyframesTask>& fields_of(const KeyframesTask*);
 const Table<ExpressionTask>& fields_of(const ExpressionTask*);
 
+/// Reports what keeps the task at `path` ("task[2]") from fitting the setup.
 void check_keys(const MoveTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// Likewise.
 void check_keys(const HoldTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// Likewise.
 void check_keys(const SineTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// Likewise.
 void check_keys(const KeyframesTask& task, const Setup& setup, const std::string& path, Reader& reader);
+/// Likewise.
 void check_keys(const ExpressionTask& task, const Setup& setup, const std::string& path, Reader& reader);
 
 /// The rows of its CSV file. InputError where they are wrong, with their lines in the file.
 void read_files(KeyframesTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
 
+/// What does such a task. Both outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const MoveTask& task, const Setup& setup,
                                                     TaskLabel label);
+/// Likewise.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const HoldTask& task, const Setup& setup,
                                                     TaskLabel label);
+/// Likewise.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const SineTask& task, const Setup& setup,
                                                     TaskLabel label);
+/// Likewise.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const KeyframesTask& task, const Setup& setup,
                                                     TaskLabel label);
+/// Likewise.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ExpressionTask& task, const Setup& setup,
                                                     TaskLabel label);
 

@@ -53,6 +53,7 @@ void check_keys(const ServoTask& task, const Setup& setup, const std::string& pa
 /// Looks at its targets' pictures, which are read again when they are wanted.
 void read_files(ServoTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
+/// What does such a task. Both outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ServoTask& task, const Setup& setup,
                                                     TaskLabel label);
 /// servo.csv: how far the arm was from what is wanted, a row a command.

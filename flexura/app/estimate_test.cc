@@ -37,6 +37,23 @@ TEST_F(Estimate, OfAKnownArmIsRightToATenthOfAMillimetreOrTwo) {
   EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 3u);
 }
 
+// Sections that bend more near their bases, as no model of one arc a section does.
+TEST_F(Estimate, OfAnUnevenArmIsRightWithTheModelOfItsArcs) {
+  std::string uneven = photographed_arm;
+  for (std::size_t at = 0; (at = uneven.find("radius = 0.018\n", at)) != std::string::npos; at += 30)
+    uneven.insert(at, "bend_profile = [1.3, 1, 0.7]\n");
+  write_new_file(folder_.path() / "uneven.toml", uneven);
+  arguments_.images = {photographed("uneven", "front"), photographed("uneven", "side")};
+  arguments_.arm = (folder_.path() / "uneven.toml").string();
+  const Node found = answer(exit_done);
+  EXPECT_LT(error(found, "uneven"), 1e-3);
+  EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 9U) << "one an arc";
+  arguments_.arm = (folder_.path() / "arm.toml").string();
+  std::ostringstream out;
+  (void)estimate_command(arguments_, out);
+  EXPECT_GT(error(parse_json(out.str(), "answer"), "uneven"), 0.01) << "one arc a section";
+}
+
 TEST_F(Estimate, OfAnUnknownArmNeedsNothingButTheCameras) {
   arguments_.base = {0, 0, 0};
   arguments_.length = 1;

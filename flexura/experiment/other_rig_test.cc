@@ -27,6 +27,7 @@ class SilentRig : public Rig {
 
   [[nodiscard]] RigPorts ports() override { return rig_->ports(); }
   void play_to(double time, const ArmState& state, const TakeFrame& take) override {
+    ++passes_;
     rig_->play_to(time, state, take);
   }
   void pass_to(double time, const ArmState& state) override {
@@ -64,6 +65,28 @@ TEST(OtherRig, DoesATaskOfWhichNobodyKnowsTheTruth) {
   const Node& servo = entry_of(result, "servos");
   EXPECT_NE(servo.find("remaining"), nullptr);
   EXPECT_EQ(servo.find("remaining_in_truth"), nullptr);
+}
+
+// What would harm it is looked at without it.
+TEST(OtherRig, DoesNotMoveWhereTheMotionIsUnsafe) {
+  const std::string unsafe = "[[task]]\nkind = \"move\"\nto = { bends = [[3, 0], [0, 0], [0, 0]] }\n";
+  for (const bool has_servo : {false, true}) {
+    std::string text = servo_file(servo_target) + unsafe;
+    if (!has_servo) text = "[record]\ncameras = true\n" + text.erase(text.find("[[task]]")) + unsafe;
+    Quiet quiet;
+    TemporaryFolder folder;
+    int passes = 0;
+    const RigFactory make_rig = [&](const auto& setup) { return std::make_unique<SilentRig>(setup, passes); };
+    const RunResult result =
+        run_experiment(parse_experiment(text, "x.toml"), folder.path(), quiet, nullptr, make_rig);
+    EXPECT_EQ(result.outcome, RunOutcome::unsafe);
+    EXPECT_EQ(passes, 0);
+    EXPECT_EQ(logged_counts(result).count(std::string(arm_reading_topic)), 0U);
+    // A simulated one shows what would happen.
+    TemporaryFolder other;
+    EXPECT_EQ(run_experiment(parse_experiment(text, "x.toml"), other.path(), quiet).outcome,
+              RunOutcome::unsafe);
+  }
 }
 
 TEST(OtherRig, IsNotAskedForWhereNothingPlays) {

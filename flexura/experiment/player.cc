@@ -43,6 +43,8 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       safety_(judged()),
       believed_{.model = rig_model(experiment.arm.arm(), experiment.cameras())},
       played_{0, 0, schedule_.initial(), false, ""} {
+  for (const auto& task : tasks_)
+    if (task->way() == TaskWay::simulated) telling_.push_back(task.get());
   const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
   if (experiment.record.cameras || std::ranges::any_of(tasks_, is_by_rig)) rig_ = make_rig(experiment);
   if (rig_ && watcher_ != nullptr)
@@ -111,11 +113,16 @@ Played Player::play() {
   return played_;
 }
 
+// What is unsafe is looked at by simulation alone.
+bool Player::is_rig_played() const { return rig_ && (safety_.is_safe() || rig_->is_simulated()); }
+
 void Player::play_to(double time, const ArmState& state) {
-  if (!rig_) return;
+  if (!is_rig_played()) return;
   if (experiment_.record.cameras) {
     rig_->play_to(time, state, [this](const FilmedFrame& filmed) {
-      witness_.log().image(filmed.camera, filmed.frame, filmed.message);
+      witness_.log().image(
+          filmed.camera, filmed.frame,
+          filmed.message.empty() ? logged_image(filmed.camera, filmed.frame) : filmed.message);
     });
   } else {
     rig_->pass_to(time, state);
@@ -126,18 +133,18 @@ void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
     witness_.state(step_, time, state);
     tell_tasks(time);
-    if (rig_) witness_.readings(*rig_);
+    if (is_rig_played()) witness_.readings(*rig_);
   }
   witness_.command(time, state);
   if (watcher_ != nullptr)
     watcher_->state(time, state,
-                    rig_ ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
+                    is_rig_played() ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
   ++step_;
   played_ = {step_, time, state, false, ""};
 }
 
 void Player::tell_tasks(double time) {
-  for (const auto& task : tasks_) task->tell_up_to(time, witness_.log());
+  for (TaskRunner* task : telling_) task->tell_up_to(time, witness_.log());
 }
 
 // Whether the simulated task with which the run ends is over.
@@ -156,7 +163,7 @@ void Player::stop_after(const Leg& leg, const std::string& failure) {
   witness_.expect(step_);
   witness_.state(step_, leg.end(), played_.last);
   tell_tasks(leg.end());
-  if (rig_) witness_.readings(*rig_);
+  if (is_rig_played()) witness_.readings(*rig_);
 }
 
 // The task for the rig that begins at `time` or before, if it was not done yet and may be done.
@@ -192,12 +199,12 @@ bool Player::perform(std::size_t task) {
   witness_.log().task_ended();
   done_[task] = end.motion;
   const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
-  schedule_ = end.failure.empty() ? scheduled(played) : Schedule(experiment_, tasks_, done_);
+  schedule_ = !end.failure ? scheduled(played) : Schedule(experiment_, tasks_, done_);
   safety_ = checked(schedule_, tasks_, ended_by_);
   plan(schedule_.legs()[task].end());
   rig_->skip_to_now();
-  if (end.failure.empty()) return true;
-  stop_after(schedule_.legs()[task], fmt::format("{}: {}", leg.name, end.failure));
+  if (!end.failure) return true;
+  stop_after(schedule_.legs()[task], fmt::format("{}: {}", leg.name, *end.failure));
   return false;
 }
 

@@ -28,8 +28,9 @@ struct Played {
 /// Plays an experiment's schedule, step by step, before the eyes of a witness.
 class Player {
  public:
-  /// Nothing that is unsafe is done by rigs: then tasks that they would do are only gone through. `make_rig`
-  /// is asked for a rig where cameras are recorded or a task is done by one.
+  /// Nothing that is unsafe is done by rigs: then tasks that they would do are only gone through, and none
+  /// but a simulated one moves. `make_rig` is asked for a rig where cameras are recorded or a task is done by
+  /// one.
   Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 
@@ -53,6 +54,7 @@ class Player {
   void plan(double from);
   void tell_up_to(double time);
   void step(double time, const ArmState& state);
+  [[nodiscard]] bool is_rig_played() const;
   void play_to(double time, const ArmState& state);
   void tell_tasks(double time);
   [[nodiscard]] bool ends_with_simulated(double time);
@@ -65,6 +67,7 @@ class Player {
   Progress& progress_;
   RunWatcher* watcher_;
   TaskRunners tasks_;
+  std::vector<TaskRunner*> telling_;  // Of these: who tells the log on the way.
   DoneTasks done_;
   std::optional<EndedBy> ended_by_;  // A simulated task.
   Schedule schedule_;

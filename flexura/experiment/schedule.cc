@@ -98,12 +98,6 @@ SafetyReport Schedule::check(Progress* progress) const {
   for (const Leg& leg : legs_) motions.push_back({leg.motion, leg.start, leg.name});
   SafetyReport report = check_motions(model_, obstacles_, initial_, motions, step_, progress);
   report.violations.insert(report.violations.end(), missed_targets_.begin(), missed_targets_.end());
-  for (const Leg& leg : legs_)
-    if (!leg.is_foreseen)
-      report.caveats.push_back(fmt::format(
-          "{}: judged by a slow and straight way to the shapes that it is told: which way it goes is decided "
-          "while it is steered, within all limits, and judged then",
-          leg.name));
   if (drive_ && report.is_complete) {
     std::vector<double> times;
     times.reserve(steps_ + 1);
@@ -130,7 +124,7 @@ std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRu
     if (!is_possible(from)) return std::nullopt;  // The run ends before.
     TaskEnd end = tasks[i]->simulate(from, leg.start, progress);
     done[i] = end.motion;
-    if (!end.failure.empty()) return EndedBy{i, std::move(end.failure)};
+    if (end.failure) return EndedBy{i, std::move(*end.failure)};
   }
   return std::nullopt;
 }

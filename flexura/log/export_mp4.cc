@@ -14,7 +14,6 @@
 #include "flexura/log/messages.h"
 #include "flexura/log/results.h"
 #include "flexura/log/results_log.h"
-#include "flexura/sim/simulated_camera.h"
 #include "flexura/store/child_process.h"
 #include "flexura/store/json.h"
 

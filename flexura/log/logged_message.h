@@ -10,7 +10,7 @@
 namespace flexura {
 
 /// A message on its way into a log, whatever its type, which has a table of fields. It refers to the message
-/// and to its topic.
+/// and to its topic: for one call.
 class LoggedMessage {
  public:
   /// `time`: the log's, s since the experiment's start.

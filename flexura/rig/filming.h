@@ -25,6 +25,7 @@ class Filming : public Rig, private RigTruth {
   /// The clock is at the last call's time.
   [[nodiscard]] RigPorts ports() override { return rig_.ports(); }
   [[nodiscard]] RigTruth* truth() override { return this; }
+  [[nodiscard]] bool is_simulated() const override { return true; }
   /// Frames that cameras deliver during one call are drawn at the same time.
   void play_to(double time, const ArmState& state, const TakeFrame& take) override;
   void pass_to(double time, const ArmState& state) override;

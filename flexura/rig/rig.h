@@ -20,7 +20,7 @@ namespace flexura {
 struct FilmedFrame {
   std::string camera;
   Frame frame;
-  std::string message;  ///< Its logged_image.
+  std::string message = {};  ///< Its logged_image, where that was made on the way; "": the log makes it.
 };
 
 /// What is true of a rig, as nothing at its ports tells: not for algorithms.
@@ -49,6 +49,8 @@ class Rig {
   [[nodiscard]] virtual RigPorts ports() = 0;
   /// Null where nobody knows it: of equipment.
   [[nodiscard]] virtual RigTruth* truth() { return nullptr; }
+  /// Nothing comes to harm: then it is played through motions that are unsafe, too, to be looked at.
+  [[nodiscard]] virtual bool is_simulated() const { return false; }
 
   using TakeFrame = std::function<void(const FilmedFrame&)>;
   /// Commands the arm to be in `state` at `time` s, not before the call's before, waits until then, and gives

@@ -64,7 +64,7 @@ struct TaskStage {
 /// How a task ended.
 struct TaskEnd {
   MotionPtr motion;     ///< What the arm did, as commanded, from the task's start. Never null.
-  std::string failure;  ///< Why the run ends with it; "": it goes on.
+  std::optional<std::string> failure;  ///< Why the run ends with it; none: it goes on.
 };
 
 /// When a task's motion is known.
@@ -105,7 +105,8 @@ class TaskRunner {
   virtual void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                            SafetyReport& /*report*/) const {}
 
-  /// Tells the log what came of it up to `time` s, when the run has played up to there.
+  /// Of tasks that are simulated: tells the log what came of it up to `time` s, when the run has played up to
+  /// there.
   virtual void tell_up_to(double /*time*/, RunLog& /*log*/) {}
 
   /// Writes its files into the results. `is_cancelled`: the run was, and has no time for what is yet to be

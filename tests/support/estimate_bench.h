@@ -104,8 +104,8 @@ class EstimateBench : public testing::Test {
   }
   /// The largest distance of the printed backbone from the arm's, at equal shares of their lengths, m.
   double error(const Node& answer, const std::string& experiment = "arm") {
-    const ArmSetup arm(load_experiment(folder_.path() / (experiment + ".toml")).model_rig());
-    const Backbone truth(arm.arm, arm.initial);
+    const RigConfig rig = load_experiment(folder_.path() / (experiment + ".toml")).model_rig();
+    const Backbone truth = rig.arm.model().backbone(ArmSetup(rig).initial);
     const auto& points = *answer.find("backbone")->as<Node::Array>();
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -51,7 +51,7 @@ class CalibrateRunner : public TaskRunner {
   [[nodiscard]] TaskEnd perform(const ArmState& from, TaskStage& stage) override {
     run_ = run_calibration(task_, name(), setup(), from, stage);
     if (run_->is_done()) learn(*run_, stage.believed);
-    return {run_->motion, run_->is_done() ? "" : run_->reason()};
+    return {run_->motion, run_->is_done() ? std::nullopt : std::optional(run_->reason())};
   }
 
   void finish(const std::filesystem::path& results, bool /*is_cancelled*/) override {

@@ -48,7 +48,7 @@ class DynamicsRunner : public TaskRunner {
   }
   [[nodiscard]] TaskEnd simulate(const ArmState& from, double start, Progress& progress) override {
     run_ = run_dynamics(task_, label(), setup(), from, start, progress);
-    return {run_->motion, run_->is_done() ? "" : run_->reason()};
+    return {run_->motion, run_->is_done() ? std::nullopt : std::optional(run_->reason())};
   }
 
   // Where the arcs that are judged are farther from the arm than it is thick; of a task that was not

@@ -78,7 +78,16 @@ class ServoRunner : public TaskRunner {
 
   [[nodiscard]] TaskEnd perform(const ArmState& from, TaskStage& stage) override {
     run_ = run_servo(task_, name(), setup(), from, stage);
-    return {run_->motion, run_->result.is_done ? "" : run_->result.reason};
+    return {run_->motion, run_->result.is_done ? std::nullopt : std::optional(run_->result.reason)};
+  }
+
+  void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
+                   SafetyReport& report) const override {
+    if (!run_)
+      report.caveats.push_back(fmt::format(
+          "{}: judged by a slow and straight way to the shapes that it is told: which way it goes is decided "
+          "while it is steered, within all limits, and judged then",
+          name()));
   }
 
   [[nodiscard]] std::string_view summary_list() const override { return "servos"; }

@@ -55,6 +55,7 @@ namespace flexura::embedded {
 std::span<const Asset> page();
 }  // namespace flexura::embedded\n")
   target_sources(${target} PRIVATE ${source})
-  set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  # By itself, so that the others are compiled once, with the page or without.
+  set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()

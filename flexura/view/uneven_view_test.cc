@@ -38,7 +38,7 @@ TEST_F(UnevenView, DrawsTheArmAsItIsAndSaysWhatItsDrivesSay) {
 TEST(UnevenRecording, ReplaysWhatWasRunOnIt) {
   TemporaryFolder folder;
   Quiet quiet;
-  const Experiment experiment = parse_experiment("[record]\ncameras = true\n" + uneven_text, "x.toml");
+  const Experiment experiment = parse_experiment(uneven_text + "[record]\ncameras = true\n", "x.toml");
   EXPECT_EQ(run_experiment(experiment, folder.path(), quiet).outcome, RunOutcome::done);
   FakeMessenger messenger;
   FakeBackground background;

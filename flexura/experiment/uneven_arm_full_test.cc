@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "flexura/experiment/run.h"
 #include "flexura/log/export_csv.h"
 #include "flexura/log/messages.h"
+#include "flexura/log/results.h"
 #include "flexura/store/text_file.h"
 #include "flexura/tasks/task_kinds.h"
 #include "tests/support/checkout.h"
@@ -104,6 +106,20 @@ TEST(UnevenArmExample, FindsHowItsSectionsBend) {
   EXPECT_TRUE(table.starts_with("time,arc_1_x,arc_1_y,arc_1_z,arc_2_x"));
   EXPECT_EQ(std::ranges::count(table.substr(0, table.find('\n')), ','), 3 * 10 + 4);
   EXPECT_GT(std::ranges::count(table, '\n'), 500);
+}
+
+// Believed to be one arc a section: what it sees then has no explanation, and no rig is made up.
+TEST(UnevenArmExample, IsNotCalibratedAsAnArmOfOneArcASection) {
+  Experiment experiment = load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml"),
+                                          {{"task.0.images=5", "record.report=false"}, {}});
+  for (Section& section : experiment.arm.section) section.bend_profile.reset();
+  const TemporaryFolder folder;
+  Quiet quiet;
+  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  EXPECT_EQ(result.outcome, RunOutcome::failed);
+  EXPECT_NE(result.reasons.front().find("no rig explains what was seen"), std::string::npos)
+      << result.reasons.front();
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / rig_file_name));
 }
 
 }  // namespace

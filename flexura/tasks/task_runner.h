@@ -63,7 +63,7 @@ struct TaskStage {
 
 /// How a task ended.
 struct TaskEnd {
-  MotionPtr motion;     ///< What the arm did, as commanded, from the task's start. Never null.
+  MotionPtr motion;                    ///< What the arm did, as commanded, from the task's start. Never null.
   std::optional<std::string> failure;  ///< Why the run ends with it; none: it goes on.
 };
 

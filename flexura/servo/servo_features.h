@@ -78,9 +78,9 @@ class ChordFeatures : public ServoFeatures {
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config,
                                                             const RigModel& believed);
 
-/// Those of a law, along an arm that is believed to be `arm`, at `points` places.
+/// Those of a law, along an arm that is believed to be `arm`, at `places` places.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm,
-                                                            std::int64_t points);
+                                                            std::int64_t places);
 
 /// Those of the law `potential`: angles of chords in two image planes, read as parallel projections (the
 /// paper's section 2; docs/control.md, eq. 14). The error is the spatial one's parts: cos q e_theta and e_q

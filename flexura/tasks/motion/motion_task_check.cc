@@ -5,6 +5,7 @@
 
 #include "flexura/base/reader.h"
 #include "flexura/kinematics/expression.h"
+#include "flexura/kinematics/shape.h"
 #include "flexura/rig/setup.h"
 #include "flexura/tasks/motion/keyframes.h"
 #include "flexura/tasks/motion/motion_task_config.h"

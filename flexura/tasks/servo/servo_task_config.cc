@@ -10,6 +10,7 @@
 #include "flexura/base/table.h"
 #include "flexura/camera/camera.h"
 #include "flexura/camera/sensor.h"
+#include "flexura/kinematics/shape.h"
 #include "flexura/rig/setup.h"
 #include "flexura/servo/servo_session.h"
 #include "flexura/tasks/camera_names.h"

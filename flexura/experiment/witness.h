@@ -20,7 +20,7 @@ namespace flexura {
 /// Everything that a run leaves behind while it plays: the log, and what the report will show.
 class Witness {
  public:
-  /// `watcher` is told what happens and what tasks tell; may be null.
+  /// `watcher` gets the events and the messages of tasks; may be null.
   Witness(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher = nullptr);
 
   /// Which step of the clock is the last one, as far as it is known: a task may take its own time.

@@ -21,7 +21,7 @@ class LogTable {
   /// Whether messages of this topic go into it.
   [[nodiscard]] virtual bool takes(std::string_view topic) const = 0;
   /// A message of such a topic, in the order of the log: its topic, its time in the log, s, and its text.
-  /// InputError or std::runtime_error where it is none.
+  /// InputError or std::runtime_error where it is no such message.
   virtual void add(std::string_view topic, double time, const Node& message) = 0;
   /// The file's text; empty: no file.
   [[nodiscard]] virtual std::string text() const = 0;

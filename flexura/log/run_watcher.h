@@ -31,7 +31,7 @@ class RunWatcher {
   /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}
-  /// What a task tells of its work, as the log has it: LoggedMessage::as tells which message it is.
+  /// A message of a task, as the log has it: LoggedMessage::as says of which type.
   virtual void logged(const LoggedMessage& /*message*/) {}
   /// A task that was done by the rig has ended.
   virtual void task_ended() {}

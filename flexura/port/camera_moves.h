@@ -7,8 +7,8 @@
 #include "flexura/port/outcome.h"
 #include "flexura/port/rig_ports.h"
 
-// What cameras are told that may have no head or no stage: one that is missing stands where the camera's
-// configuration starts it, `optics` being the camera as it is believed to be.
+// Commands and readings of cameras that may have no head or no stage: one that is missing stands where the
+// camera's configuration starts it, `optics` being the camera as it is believed to be.
 namespace flexura {
 
 /// Sends the head. Of a camera without one: taken where it stands there anyway, else refused, by its name.

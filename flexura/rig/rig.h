@@ -23,7 +23,7 @@ struct FilmedFrame {
   std::string message = {};  ///< Its logged_image, where that was made on the way; "": the log makes it.
 };
 
-/// What is true of a rig, as nothing at its ports tells: not for algorithms.
+/// The true state of a rig, which its ports do not give: not for algorithms.
 class RigTruth {
  public:
   virtual ~RigTruth() = default;

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-// What a calibration tells (log/messages.h).
+// The messages of a calibration (log/messages.h).
 
 /// flexura.CalibrationMove, on /calibration/moves: a command of a calibration.
 struct CalibrationMoveMessage {

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-// What a servo tells (log/messages.h) beside its steps (servo/servo_step.h).
+// The messages of a servo (log/messages.h) beside its steps (servo/servo_step.h).
 
 /// Something that a servo's law compares in a picture: a pixel, or a line of some, px.
 struct FeatureMarkMessage {

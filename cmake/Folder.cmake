@@ -1,4 +1,4 @@
-# flexura_folder(NAME [THREADS] [LIGHT] [BUSY_TESTS] [SHARDS n] [LINKS targets...] [PRIVATE_LINKS targets...])
+# flexura_folder(NAME [THREADS] [LIGHT] [BUSY_TESTS] [LIGHT_TESTS] [SHARDS n] [LINKS targets...] [PRIVATE_LINKS targets...])
 #
 # Makes the library flexura::NAME from the current folder: every *.cc and *.h in it and in its rooms (the folders in it),
 # but for
@@ -9,10 +9,11 @@
 # LIGHT says that its code does no long arithmetic: it is compiled with -O1, its tests with -O0, which takes less time
 # than -O3. Not for folders that compile kernels of Eigen: the linker may take theirs for the whole program.
 # BUSY_TESTS says that its tests compute much themselves (they draw boards, for one): -O1 for them all the same.
+# LIGHT_TESTS says that its tests compute little themselves, though its code does: -O0 for them.
 # SHARDS: each test executable runs as so many ctests, NAME.1 and so on, so that one folder does not keep the rest waiting.
 # LINKS is the law of the architecture: what is not listed there cannot be included.
 function(flexura_folder name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;LIGHT;BUSY_TESTS" "SHARDS" "LINKS;PRIVATE_LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;LIGHT;BUSY_TESTS;LIGHT_TESTS" "SHARDS" "LINKS;PRIVATE_LINKS")
   file(GLOB sources CONFIGURE_DEPENDS *.cc *.h */*.cc */*.h)
   set(tests ${sources})
   set(fuzzers ${sources})
@@ -45,7 +46,7 @@ function(flexura_folder name)
     list(FILTER tests EXCLUDE REGEX "_full_test[.]cc$")
     list(FILTER full_tests INCLUDE REGEX "_full_test[.]cc$")
     set(light "")
-    if(arg_LIGHT AND NOT arg_BUSY_TESTS)
+    if(arg_LIGHT_TESTS OR (arg_LIGHT AND NOT arg_BUSY_TESTS))
       set(light LIGHT)
     endif()
     flexura_test(${name}_test ${name} quick ${name} ${tests} SHARDS ${arg_SHARDS} ${light})

@@ -8,13 +8,15 @@
 namespace flexura {
 namespace {
 
-struct Legendre {
+// P_n and P_(n-1) at x.
+struct LegendrePair {
   double value;
-  double slope;
+  double before;
 };
 
-// P_n and P_n' at x in (-1, 1), by the three-term recurrence.
-Legendre legendre(int n, double x) {
+// By the three-term recurrence.
+LegendrePair legendre_pair(int n, double x) {
+  if (n == 0) return {1, 0};
   double before = 1.0;
   double value = x;
   for (int k = 2; k <= n; ++k) {
@@ -22,7 +24,13 @@ Legendre legendre(int n, double x) {
     before = value;
     value = next;
   }
-  return {value, n * (before - x * value) / (1.0 - x * x)};
+  return {value, before};
+}
+
+// P_n' at x in (-1, 1).
+double legendre_slope(int n, double x) {
+  const LegendrePair p = legendre_pair(n, x);
+  return n * (p.before - x * p.value) / (1.0 - x * x);
 }
 
 }  // namespace
@@ -36,14 +44,36 @@ Quadrature gauss_legendre(int points) {
     // Tricomi's estimate of the root is good enough for Newton's method to settle in a few steps.
     double x = std::cos(std::numbers::pi * (i - 0.25) / (points + 0.5));
     for (int step = 0; step < 6; ++step) {
-      const Legendre p = legendre(points, x);
-      x -= p.value / p.slope;
+      x -= legendre_pair(points, x).value / legendre_slope(points, x);
     }
-    const double slope = legendre(points, x).slope;
+    const double slope = legendre_slope(points, x);
     rule.nodes.push_back(x);
     rule.weights.push_back(2.0 / ((1.0 - x * x) * slope * slope));
   }
   return rule;
 }
+
+Quadrature gauss_lobatto(int points) {
+  if (points < 2) {
+    throw std::invalid_argument("a Gauss-Lobatto rule cannot have " + std::to_string(points) + " points");
+  }
+  // Inside, the nodes are the roots of P_n', n = points - 1.
+  const int n = points - 1;
+  Quadrature rule;
+  for (int i = n; i >= 0; --i) {
+    double x = std::cos(std::numbers::pi * i / n);
+    for (int step = 0; step < 8 && i > 0 && i < n; ++step) {
+      // P_n'' by Legendre's equation.
+      const double slope = legendre_slope(n, x), value = legendre_pair(n, x).value;
+      x -= slope * (1 - x * x) / (2 * x * slope - n * (n + 1) * value);
+    }
+    const double value = legendre_pair(n, x).value;
+    rule.nodes.push_back(x);
+    rule.weights.push_back(2.0 / (n * (n + 1) * value * value));
+  }
+  return rule;
+}
+
+double legendre(int degree, double x) { return legendre_pair(degree, x).value; }
 
 }  // namespace flexura

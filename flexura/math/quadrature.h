@@ -7,13 +7,20 @@ namespace flexura {
 
 /// Nodes and weights of a rule on [-1, 1].
 struct Quadrature {
-  std::vector<double> nodes;    ///< Rising, within (-1, 1).
+  std::vector<double> nodes;    ///< Rising, within [-1, 1].
   std::vector<double> weights;  ///< One a node; their sum is 2.
 };
 
 /// The Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1;
 /// std::invalid_argument for fewer than one.
 [[nodiscard]] Quadrature gauss_legendre(int points);
+
+/// The Gauss-Lobatto rule of `points` >= 2 nodes, the ends among them, exact for polynomials of degree 2
+/// points - 3; std::invalid_argument for fewer than two.
+[[nodiscard]] Quadrature gauss_lobatto(int points);
+
+/// P_degree(x) of Legendre, for x in [-1, 1].
+[[nodiscard]] double legendre(int degree, double x);
 
 /// The integral of f over [a, b], cut into `panels` >= 1 equal parts with `rule` in each. f takes a double
 /// and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).

@@ -24,6 +24,33 @@ TEST(Quadrature, IsExactForPolynomialsUpToItsDegreeAndNotBeyond) {
   }
 }
 
+TEST(Quadrature, OfLobattoHasTheEndsAndIsExactUpToItsDegree) {
+  for (const int points : {2, 3, 4, 6, 11, 20}) {
+    const Quadrature rule = gauss_lobatto(points);
+    EXPECT_EQ(rule.nodes.front(), -1);
+    EXPECT_EQ(rule.nodes.back(), 1);
+    const auto monomial_integral = [&](int degree) {
+      return integrate(rule, [degree](double x) { return std::pow(x, degree); }, 0.0, 1.0);
+    };
+    const int top = 2 * points - 3;
+    EXPECT_NEAR(monomial_integral(top), 1.0 / (top + 1), 1e-15);
+    if (points <= 6) EXPECT_GT(std::abs(monomial_integral(top + 1) - 1.0 / (top + 2)), 1e-8);
+  }
+  EXPECT_THROW(gauss_lobatto(1), std::invalid_argument);
+}
+
+TEST(Quadrature, PolynomialsOfLegendreAreSquareToEachOther) {
+  const Quadrature rule = gauss_legendre(12);
+  for (int m = 0; m < 10; ++m) {
+    EXPECT_EQ(legendre(m, 1), 1);
+    for (int n = 0; n < 10; ++n) {
+      const double product =
+          integrate(rule, [&](double x) { return legendre(m, x) * legendre(n, x); }, -1.0, 1.0);
+      EXPECT_NEAR(product, m == n ? 2.0 / (2 * n + 1) : 0, 1e-14);
+    }
+  }
+}
+
 TEST(Quadrature, IntegratesVectorsOverPanels) {
   const Quadrature rule = gauss_legendre(10);
   const auto circle = [](double t) { return Eigen::Vector2d(std::cos(t), std::sin(t)); };

@@ -1,0 +1,189 @@
+#include "flexura/mechanics/rod_chain.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace flexura {
+namespace {
+
+bool is_none(const RodLoads& loads) {
+  return loads.gravity.isZero(0) && loads.per_length.isZero(0) && loads.ends.empty();
+}
+
+// Whether loads are the gradient of an energy.
+bool is_conservative(const RodLoads& loads) {
+  return std::ranges::all_of(loads.ends,
+                             [](const EndLoad& end) { return !end.following && end.moment.isZero(0); });
+}
+
+}  // namespace
+
+RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(rod)) {
+  const std::vector<std::string> problems = rod_problems(rod_);
+  if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "; ")));
+  for (const RodPlace& place : places)
+    if (place.section >= rod_.sections.size() || !(place.at >= 0 && place.at <= 1))
+      throw std::invalid_argument("a place outside the rod");
+  double s = 0;
+  std::vector<double> at;
+  for (std::size_t i = 0; i < rod_.sections.size(); ++i) {
+    at.clear();
+    for (const RodPlace& place : places)
+      if (place.section == i) at.push_back(place.at);
+    const RodElement& element = elements_.emplace_back(rod_.sections[i], rod_.tendons, i, s, at);
+    s += rod_.sections[i].length;
+    first_.push_back(size_);
+    size_ += element.size();
+    has_chords_ = has_chords_ || element.has_chords();
+  }
+  scales_.setOnes(size_);
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const RodGrid& grid = elements_[i].grid();
+    for (std::size_t c = 3; c < 6; ++c)
+      scales_.segment(first_[i] + grid.first[c], grid.count[c]).setConstant(elements_[i].length());
+  }
+  residual_.setZero(size_);
+  load_slope_.setZero(size_);
+  const auto count = static_cast<Eigen::Index>(tendons());
+  lengths_.setZero(count);
+  slopes_.setZero(size_, count);
+  pivots_.resize(elements_.size());
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const auto n = static_cast<Eigen::Index>(elements_[i].size());
+    pivots_[i].matrix.setZero(n, n);
+    pivots_[i].by_base.setZero(n, 6);
+    pivots_[i].wrench_by_modes.setZero(6, n);
+  }
+}
+
+void RodChain::place(const Eigen::VectorXd& q) {
+  Pose X;
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    elements_[i].set_modes(q.segment(first_[i], elements_[i].size()));
+    elements_[i].place(X);
+    X = elements_[i].poses().back();
+  }
+}
+
+void RodChain::place_with_columns(const Eigen::VectorXd& q) {
+  Pose X;
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    elements_[i].set_modes(q.segment(first_[i], elements_[i].size()));
+    elements_[i].place_with_columns(X);
+    X = elements_[i].poses().back();
+  }
+}
+
+void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
+                       double share) {
+  is_loaded_ = !is_none(loads);
+  is_symmetric_ = is_conservative(loads);
+  if (is_loaded_ || has_chords_) {
+    place_with_columns(q);
+  } else {
+    for (std::size_t i = 0; i < elements_.size(); ++i)
+      elements_[i].set_modes(q.segment(first_[i], elements_[i].size()));
+  }
+  lengths_.setZero();
+  Vector6d beyond = Vector6d::Zero();
+  for (std::size_t i = elements_.size(); i-- > 0;) {
+    RodElement& element = elements_[i];
+    element.stress(tensions);
+    if (is_loaded_) element.load(loads, share, beyond);
+    beyond += element.wrench;
+    residual_.segment(first_[i], element.size()) = element.residual;
+    load_slope_.segment(first_[i], element.size()) = element.by_share;
+    lengths_ += element.tendon_lengths;
+    slopes_.middleRows(first_[i], element.size()) = element.length_slopes;
+  }
+}
+
+double RodChain::strain_energy() const {
+  double sum = 0;
+  for (const RodElement& element : elements_) sum += element.strain_energy;
+  return sum;
+}
+
+bool RodChain::factor() {
+  negative_ = 0;
+  Matrix6d beyond = Matrix6d::Zero();  // The wrench of all sections after, by the twist of where they begin.
+  for (std::size_t i = elements_.size(); i-- > 0;) {
+    const RodElement& element = elements_[i];
+    Pivot& pivot = pivots_[i];
+    if (element.size() == 0) {
+      if (is_loaded_) beyond += element.wrench_by_base;
+      continue;
+    }
+    pivot.matrix = element.tangent;
+    if (is_loaded_) {
+      const RodElement::Columns& A = element.columns().back();
+      pivot.wrench_by_modes = element.wrench_by_modes;
+      pivot.by_base = element.by_base;
+      pivot.by_base.noalias() += A.transpose().lazyProduct(beyond);
+      const RodElement::Columns carried = beyond * A;
+      pivot.wrench_by_modes += carried;
+      pivot.matrix.noalias() -= A.transpose().lazyProduct(carried);
+    }
+    if (!pivot.matrix.allFinite()) return false;
+    pivot.is_definite = false;
+    if (is_symmetric_) {
+      pivot.cholesky.compute(pivot.matrix);
+      pivot.is_definite = pivot.cholesky.info() == Eigen::Success;
+    }
+    if (!pivot.is_definite) {
+      pivot.lu.compute(pivot.matrix);
+      const Eigen::MatrixXd symmetric = 0.5 * (pivot.matrix + pivot.matrix.transpose());
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric, Eigen::EigenvaluesOnly);
+      negative_ += static_cast<int>((eigen.eigenvalues().array() < 0).count());
+    }
+    if (is_loaded_) {
+      solve_pivot(pivot, pivot.by_base);
+      beyond += element.wrench_by_base;
+      beyond.noalias() += pivot.wrench_by_modes * pivot.by_base;
+    }
+  }
+  return true;
+}
+
+void RodChain::solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) const {
+  if (pivot.is_definite) {
+    pivot.cholesky.solveInPlace(rhs);
+  } else {
+    rhs = pivot.lu.solve(rhs);
+  }
+}
+
+void RodChain::solve(Eigen::Ref<Eigen::MatrixXd> rhs) {
+  RodElement::Columns along = RodElement::Columns::Zero(6, rhs.cols());
+  for (std::size_t i = elements_.size(); i-- > 0;) {
+    if (elements_[i].size() == 0) continue;
+    auto part = rhs.middleRows(first_[i], elements_[i].size());
+    if (is_loaded_) part.noalias() += elements_[i].columns().back().transpose() * along;
+    solve_pivot(pivots_[i], part);
+    if (is_loaded_) along.noalias() += pivots_[i].wrench_by_modes * part;
+  }
+  if (!is_loaded_) return;
+  along.setZero();
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    if (elements_[i].size() == 0) continue;
+    auto part = rhs.middleRows(first_[i], elements_[i].size());
+    part.noalias() += pivots_[i].by_base * along;
+    along.noalias() += elements_[i].columns().back() * part;
+  }
+}
+
+void RodChain::columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const {
+  J.setZero();
+  for (std::size_t i = 0; i <= element; ++i) {
+    const std::size_t last = i == element ? node : elements_[i].columns().size() - 1;
+    J.middleCols(first_[i], elements_[i].size()) = elements_[i].columns()[last];
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "flexura/math/pose.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_element.h"
+
+namespace flexura {
+
+/// A place on a rod: a part, from 0 to 1, of one of its sections.
+struct RodPlace {
+  std::size_t section = 0;
+  double at = 1;
+};
+
+/// A rod's sections joined: what its modes q make of it, the balance r(q) of all that pulls, and linear
+/// systems with r's derivative, at a cost that grows with the number of sections alone. For r = 0 the rod is
+/// in equilibrium; r is then the gradient of the total energy, if loads have one. In the frame of the base.
+///
+/// A section feels of those before it only the twist of its base, and of those after it only a wrench; so
+/// from the tip to the base each section's modes are eliminated, as in the articulated-body algorithm (R.
+/// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
+class RodChain {
+ public:
+  /// `places` are nodes, so that their poses are known without interpolation. std::invalid_argument: the
+  /// problems of the rod, or a place outside it.
+  explicit RodChain(Rod rod, std::span<const RodPlace> places = {});
+
+  [[nodiscard]] const Rod& rod() const { return rod_; }
+  /// Of q.
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  [[nodiscard]] std::size_t tendons() const { return rod_.tendons.size(); }
+  /// Of each mode: what makes it a number without a unit. A section's length for bends and twists, which
+  /// become radians, 1 for stretch and shear.
+  [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
+  [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
+  /// q of element i starts here.
+  [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
+
+  /// Balances the rod at q under tensions, N, and a share of the loads.
+  void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
+               double share);
+  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons().
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+  [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
+  [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
+  /// r by the share of the loads, size().
+  [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
+  [[nodiscard]] double strain_energy() const;
+
+  /// Factors the derivative of r at the last balance. False: it has no inverse.
+  bool factor();
+  /// How many negative eigenvalues its symmetric part has, as the elimination counts them; 0: the rod is
+  /// stable while tensions and loads stay.
+  [[nodiscard]] int negative_count() const { return negative_; }
+  /// rhs becomes what the derivative makes to rhs; size() x columns.
+  void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
+
+  /// Poses of all nodes at q, and how they move. Balance does this only where loads or chords need it.
+  void place(const Eigen::VectorXd& q);
+  void place_with_columns(const Eigen::VectorXd& q);
+  [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
+  /// The twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An Eigen::Ref is
+  /// written through.
+  void columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const;
+
+ private:
+  struct Pivot {
+    Eigen::LLT<Eigen::MatrixXd> cholesky;
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+    bool is_definite = false;
+    Eigen::MatrixXd matrix;                          // Condensed.
+    Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
+    RodElement::Columns wrench_by_modes;             // Of all from this section on.
+  };
+  void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) const;
+
+  Rod rod_;
+  std::vector<RodElement> elements_;
+  std::vector<Eigen::Index> first_;
+  Eigen::Index size_ = 0;
+  Eigen::VectorXd scales_, residual_, load_slope_, lengths_;
+  Eigen::MatrixXd slopes_;
+  bool is_loaded_ = false, is_symmetric_ = true, has_chords_ = false;
+  int negative_ = 0;
+  std::vector<Pivot> pivots_;
+};
+
+}  // namespace flexura

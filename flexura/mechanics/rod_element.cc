@@ -1,0 +1,256 @@
+#include "flexura/mechanics/rod_element.h"
+
+#include <cmath>
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+// The wrench of a force f at p, and of a moment.
+Vector6d wrench_at(const Eigen::Vector3d& p, const Eigen::Vector3d& f, const Eigen::Vector3d& moment) {
+  Vector6d W;
+  W << f, p.cross(f) + moment;
+  return W;
+}
+
+// Of a force that keeps its direction, by a twist of the body at whose point p it pulls.
+Matrix6d dead_force_slope(const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
+  Matrix6d D = Matrix6d::Zero();
+  const Eigen::Matrix3d F = skew(f);
+  D.bottomLeftCorner<3, 3>() = -F;
+  D.bottomRightCorner<3, 3>() = F * skew(p);
+  return D;
+}
+
+// Of a wrench that turns with the body.
+Matrix6d following_slope(const Vector6d& W) { return -bracket_form(W).transpose(); }
+
+}  // namespace
+
+RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
+                       double s_base, std::span<const double> at)
+    : grid_(section, at), length_(section.length), index_(index), masses_(section.masses) {
+  for (std::size_t i = 0; i < tendons.size(); ++i) {
+    if (tendons[i].section < index) continue;
+    tendons_.push_back(i);
+    std::vector<Passage>& passages = passages_.emplace_back();
+    for (const double t : grid_.t) {
+      const TendonRoute::Offset offset = tendons[i].at(s_base + t * length_);
+      passages.push_back({offset.value, offset.slope});
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(size());
+  const std::size_t nodes = grid_.t.size();
+  const auto count = static_cast<Eigen::Index>(tendons.size());
+  residual = by_share = q_ = Eigen::VectorXd::Zero(n);
+  tangent = Eigen::MatrixXd::Zero(n, n);
+  by_base = Eigen::MatrixXd::Zero(n, 6);
+  wrench_by_modes = step_ = moved_ = Columns::Zero(6, n);
+  tendon_lengths = Eigen::VectorXd::Zero(count);
+  length_slopes = Eigen::MatrixXd::Zero(n, count);
+  strain_ = grid_.rest;
+  X_.resize(nodes);
+  A_.resize(nodes, Columns::Zero(6, n));
+  exp_.resize(nodes - 1, TwistExponential(Vector6d::Zero()));
+  const Vector6d still = Vector6d::Zero();
+  twist_.resize(nodes - 1, MagnusStep({still, still, still}));
+  by_moments_.resize(nodes - 1);
+  F_.resize(nodes, Vector6d::Zero());
+  D_.resize(nodes, Matrix6d::Zero());
+}
+
+void RodElement::set_modes(const Eigen::Ref<const Eigen::VectorXd>& q) {
+  q_ = q;
+  for (std::size_t k = 0; k < strain_.size(); ++k)
+    strain_[k] = grid_.strain(grid_.rest[k], q_, grid_.at_node.col(static_cast<Eigen::Index>(k)));
+}
+
+MagnusStep::Moments RodElement::moments_of(std::size_t interval) const {
+  MagnusStep::Moments moments;
+  for (std::size_t m = 0; m < 3; ++m) {
+    moments[m] = grid_.strain(grid_.rest_moments[interval][m], q_,
+                              grid_.moments[m].col(static_cast<Eigen::Index>(interval)));
+  }
+  return moments;
+}
+
+void RodElement::place(const Pose& X_BS) {
+  X_[0] = X_BS;
+  for (std::size_t i = 0; i < exp_.size(); ++i) X_[i + 1] = X_[i] * se3_exp(MagnusStep(moments_of(i)).twist());
+}
+
+void RodElement::place_with_columns(const Pose& X_BS) {
+  X_[0] = X_BS;
+  for (std::size_t i = 0; i < exp_.size(); ++i) {
+    twist_[i] = MagnusStep(moments_of(i));
+    by_moments_[i] = twist_[i].slopes();
+    exp_[i] = TwistExponential(twist_[i].twist());
+    X_[i + 1] = X_[i] * exp_[i].pose;
+    // How the interval's end moves by the moments of its strain.
+    const Matrix6d moves = adjoint(X_[i]) * exp_[i].jacobian;
+    A_[i + 1] = A_[i];
+    for (std::size_t m = 0; m < 3; ++m) {
+      const Matrix6d by_moment = moves * by_moments_[i][m];
+      const auto modes = grid_.moments[m].col(static_cast<Eigen::Index>(i));
+      grid_.for_modes([&](int c, int j) { A_[i + 1].col(j) += modes[j] * by_moment.col(c); });
+    }
+  }
+}
+
+void RodElement::add_block(const Matrix6d& block, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
+                           std::size_t column, double factor) {
+  const auto at = static_cast<Eigen::Index>(column);
+  grid_.for_modes([&](int b, int l) {
+    const double by = factor * right(l, at);
+    grid_.for_modes([&](int a, int j) { tangent(j, l) += block(a, b) * by * left(j, at); });
+  });
+}
+
+void RodElement::stress(std::span<const double> tension) {
+  residual.setZero();
+  tangent.setZero();
+  tendon_lengths.setZero();
+  length_slopes.setZero();
+  strain_energy = 0;
+  for (std::size_t k = 0; k < grid_.t.size(); ++k) {
+    const double weight = grid_.weight[k] * length_;
+    if (weight == 0) continue;
+    const Vector6d& strain = strain_[k];
+    Vector6d force = grid_.stiffness[k].cwiseProduct(strain - grid_.rest[k]);
+    strain_energy += 0.5 * weight * force.dot(strain - grid_.rest[k]);
+    Matrix6d by_strain = grid_.stiffness[k].asDiagonal();
+    const auto column = static_cast<Eigen::Index>(k);
+    for (std::size_t i = 0; i < tendons_.size() && !has_chords(); ++i) {
+      const Eigen::Vector3d& d = passages_[i][k].offset;
+      const Eigen::Vector3d way = strain.head<3>() + strain.tail<3>().cross(d) + passages_[i][k].slope;
+      const double stretch = way.norm();
+      const Eigen::Vector3d u = way / stretch;
+      Vector6d slope;
+      slope << u, d.cross(u);
+      const auto place = static_cast<Eigen::Index>(tendons_[i]);
+      tendon_lengths[place] += weight * stretch;
+      grid_.for_modes(
+          [&](int c, int j) { length_slopes(j, place) += weight * slope[c] * grid_.at_node(j, column); });
+      const double pull = tension[tendons_[i]];
+      if (pull == 0) continue;
+      force += pull * slope;
+      const Eigen::Matrix3d across = pull / stretch * (Eigen::Matrix3d::Identity() - u * u.transpose());
+      const Eigen::Matrix3d cross = skew(d), mixed = across * cross;
+      by_strain.topLeftCorner<3, 3>() += across;
+      by_strain.topRightCorner<3, 3>() -= mixed;
+      by_strain.bottomLeftCorner<3, 3>() -= mixed.transpose();
+      by_strain.bottomRightCorner<3, 3>() -= cross * mixed;
+    }
+    grid_.for_modes([&](int c, int j) { residual[j] += weight * force[c] * grid_.at_node(j, column); });
+    add_block(by_strain, grid_.at_node, grid_.at_node, k, weight);
+  }
+  for (std::size_t i = 0; i < tendons_.size() && has_chords(); ++i) {
+    for (std::size_t piece = 0; piece + 1 < grid_.disks.size(); ++piece)
+      add_chord(i, grid_.disks[piece], grid_.disks[piece + 1], tension[tendons_[i]]);
+  }
+  by_share.setZero();
+  by_base.setZero();
+  wrench_by_modes.setZero();
+  wrench_by_base.setZero();
+  wrench.setZero();
+}
+
+// A wrench W that pulls at all that lies beyond an interval turns with what lies before it, from the node
+// `from` on, and the interval's twist does not add up: factor times both.
+void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor) {
+  step_.noalias() = A_[interval + 1] - A_[interval];
+  if (interval > from) {
+    moved_.noalias() = A_[interval] - A_[from];
+    const Columns turned = bracket_form(W).transpose() * moved_;
+    tangent.noalias() += factor * step_.transpose().lazyProduct(turned);
+  }
+  const Vector6d local = adjoint(X_[interval]).transpose() * W;
+  const Matrix6d form = exp_[interval].jacobian_form(local).transpose();
+  MagnusStep::Form second = twist_[interval].form(exp_[interval].jacobian.transpose() * local);
+  const MagnusStep::Slopes& by = by_moments_[interval];
+  for (std::size_t b = 0; b < 3; ++b) {
+    const Matrix6d turned = form * by[b];
+    for (std::size_t a = 0; a < 3; ++a) {
+      second[a][b] += by[a].transpose() * turned;
+      add_block(second[a][b], grid_.moments[a], grid_.moments[b], interval, factor);
+    }
+  }
+}
+
+// The energy of a straight piece is its tension times its length.
+void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension) {
+  const Eigen::Vector3d a = X_[from] * passages_[tendon][from].offset,
+                        b = X_[to] * passages_[tendon][to].offset;
+  const double distance = (b - a).norm();
+  const Eigen::Vector3d u = (b - a) / distance;
+  const Vector6d W = wrench_at(a, u, Eigen::Vector3d::Zero());
+  const auto place = static_cast<Eigen::Index>(tendons_[tendon]);
+  tendon_lengths[place] += distance;
+  moved_.noalias() = A_[to] - A_[from];
+  length_slopes.col(place).noalias() += moved_.transpose().lazyProduct(W);
+  if (tension == 0) return;
+  residual.noalias() += tension * moved_.transpose().lazyProduct(W);
+  // The end b moves, as seen from a.
+  Eigen::Matrix<double, 3, 6> point;
+  point << Eigen::Matrix3d::Identity(), -skew(b);
+  const Eigen::Matrix<double, 3, 6> across =
+      tension / distance * (Eigen::Matrix3d::Identity() - u * u.transpose()) * point;
+  Matrix6d turned;
+  turned << across, skew(a) * across;
+  const Columns change = turned * moved_;
+  tangent.noalias() += moved_.transpose().lazyProduct(change);
+  for (std::size_t interval = from; interval < to; ++interval) add_geometry(interval, W, from, tension);
+}
+
+// What all of the loads do at each node.
+void RodElement::find_forces(const RodLoads& loads) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < grid_.t.size(); ++k) {
+    const Eigen::Vector3d f =
+        grid_.weight[k] * length_ * (grid_.mass_per_length[k] * loads.gravity + loads.per_length);
+    F_[k] = wrench_at(X_[k].position, f, none);
+    D_[k] = dead_force_slope(X_[k].position, f);
+  }
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    const std::size_t node = grid_.mass_nodes[i];
+    const Eigen::Vector3d f = masses_[i].mass * loads.gravity, p = X_[node] * masses_[i].offset;
+    F_[node] += wrench_at(p, f, none);
+    D_[node] += dead_force_slope(p, f);
+  }
+  for (const EndLoad& end : loads.ends) {
+    if (end.section != index_) continue;
+    const Pose& X = X_.back();
+    if (end.following) {
+      const Vector6d W = wrench_at(X.position, X.rotation * end.force, X.rotation * end.moment);
+      F_.back() += W;
+      D_.back() += following_slope(W);
+    } else {
+      F_.back() += wrench_at(X.position, end.force, end.moment);
+      D_.back() += dead_force_slope(X.position, end.force);
+    }
+  }
+}
+
+void RodElement::load(const RodLoads& loads, double share, const Vector6d& beyond) {
+  find_forces(loads);
+  Vector6d W = beyond;
+  for (std::size_t k = grid_.t.size() - 1; k > 0; --k) {
+    W += F_[k];
+    add_geometry(k - 1, W, 0, -share);
+    // step_ is how the interval's end moves by it.
+    by_share.noalias() -= step_.transpose().lazyProduct(W);
+    by_base.noalias() += share * step_.transpose().lazyProduct(bracket_form(W).transpose());
+    moved_.noalias() = share * D_[k] * A_[k];
+    by_base.noalias() += share * A_[k].transpose().lazyProduct(D_[k]);
+    tangent.noalias() -= A_[k].transpose().lazyProduct(moved_);
+    wrench_by_modes += moved_;
+    wrench_by_base += share * D_[k];
+    wrench += F_[k];
+  }
+  wrench_by_base += share * D_[0];
+  wrench += F_[0];
+  residual += share * by_share;
+}
+
+}  // namespace flexura

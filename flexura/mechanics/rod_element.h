@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "flexura/math/magnus.h"
+#include "flexura/math/pose.h"
+#include "flexura/math/se3.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_grid.h"
+
+namespace flexura {
+
+/// One section of a rod at work: its shape, and the balance of what it is made of with what pulls at it.
+/// Nothing is allocated after the constructor.
+///
+/// All in the frame of the rod's base. Twists and wrenches are about its origin, so that a column of a
+/// Jacobian stays the same beyond what it moves, and wrenches only add up.
+class RodElement {
+ public:
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+  /// `s_base`: arc length from the rod's base to the section's, m. `at`: places, from 0 to 1, that are to be
+  /// nodes.
+  RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
+             double s_base, std::span<const double> at);
+
+  [[nodiscard]] int size() const { return grid_.size; }
+  [[nodiscard]] const RodGrid& grid() const { return grid_; }
+  [[nodiscard]] double length() const { return length_; }
+  /// Whether its tendons' forces depend on how its parts lie to each other, not on its strains alone.
+  [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
+
+  /// What its modes are worth, `size()`.
+  void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);
+  [[nodiscard]] const Eigen::VectorXd& modes() const { return q_; }
+  /// Where the nodes lie when its base lies so.
+  void place(const Pose& X_BS);
+  /// The same, and how they move by the modes (columns()).
+  void place_with_columns(const Pose& X_BS);
+  /// Of the nodes, z along the rod.
+  [[nodiscard]] const std::vector<Pose>& poses() const { return X_; }
+  /// Of each node, 6 x size(): its twist by each mode.
+  [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
+
+  /// The balance of what it is made of and of its tendons: residual, tangent, tendons' lengths and their
+  /// slopes. `tension`: N, one a tendon of the rod. Chords need the columns.
+  void stress(std::span<const double> tension);
+  /// Adds what loads do, `share` of them, where `beyond` is the wrench of all of the loads of the sections
+  /// after this one. The columns are there.
+  void load(const RodLoads& loads, double share, const Vector6d& beyond);
+
+  /// The gradient of its energy by its modes, less what loads do.
+  Eigen::VectorXd residual;
+  /// Of the residual, by its modes.
+  Eigen::MatrixXd tangent;
+  /// Of the residual, by a twist of its base: size() x 6, negative.
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;
+  /// Of the residual, by the share of the loads.
+  Eigen::VectorXd by_share;
+  /// Of its loads' wrench, that share of it, by its modes and by a twist of its base.
+  Columns wrench_by_modes;
+  Matrix6d wrench_by_base = Matrix6d::Zero();
+  /// Of all of its loads.
+  Vector6d wrench = Vector6d::Zero();
+  /// How long each tendon of the rod is in it, m, and that by its modes: size() x tendons.
+  Eigen::VectorXd tendon_lengths;
+  Eigen::MatrixXd length_slopes;
+  /// Of its strains, J.
+  double strain_energy = 0;
+
+ private:
+  // Where a tendon passes a node.
+  struct Passage {
+    Eigen::Vector3d offset, slope;
+  };
+  // What a wrench makes of how the intervals turn each other.
+  void add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor);
+  void add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension);
+  void find_forces(const RodLoads& loads);
+  void add_block(const Matrix6d& block, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
+                 std::size_t column, double factor);
+  [[nodiscard]] MagnusStep::Moments moments_of(std::size_t interval) const;
+
+  RodGrid grid_;
+  double length_;
+  std::size_t index_;
+  std::vector<PointMass> masses_;
+  // Of each tendon that runs here: its place in the rod's list, and how it passes the nodes.
+  std::vector<std::size_t> tendons_;
+  std::vector<std::vector<Passage>> passages_;
+
+  Eigen::VectorXd q_;
+  std::vector<Vector6d> strain_;  // At the nodes.
+  std::vector<Pose> X_;
+  std::vector<Columns> A_;
+  // Of each interval: its twist by the moments of its strain, and exp of that.
+  std::vector<MagnusStep> twist_;
+  std::vector<MagnusStep::Slopes> by_moments_;
+  std::vector<TwistExponential> exp_;
+  // Of each node, what pulls there, and that by its twist.
+  std::vector<Vector6d> F_;
+  std::vector<Matrix6d> D_;
+  Columns step_, moved_;  // Space for columns.
+};
+
+}  // namespace flexura

@@ -1,0 +1,342 @@
+#include "flexura/mechanics/statics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/math/dense.h"
+
+namespace flexura {
+namespace {
+
+// Newton's steps are measured in radians of a section's bend, and parts of its length (RodChain::scales).
+constexpr double settled_step = 1e-10;
+// Steps that do not shrink by this lead somewhere else.
+constexpr double contraction = 0.6;
+constexpr int max_descent = 30;
+// Of a tendon at rest: slack within it is none.
+constexpr double slack_margin = 1e-12;
+
+// The way from no load on.
+constexpr double first_stride = 0.2, longest_stride = 1, shortest_stride = 1e-7;
+constexpr int max_strides = 2000, max_correction = 8;
+constexpr double longest_way = 400;     // Sections turn around many times.
+constexpr double least_share = -0.5;    // Of the load, where a way turned back.
+
+bool all_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+const char* words(StaticsEnd end) {
+  switch (end) {
+    case StaticsEnd::converged: return "converged";
+    case StaticsEnd::bad_input: return "bad input";
+    case StaticsEnd::no_equilibrium: return "no equilibrium found on the way from no load";
+    case StaticsEnd::out_of_steps: break;
+  }
+  return "out of steps";
+}
+
+RodStatics::RodStatics(Rod rod, std::span<const RodPlace> places) : chain_(std::move(rod), places) {
+  const auto count = static_cast<Eigen::Index>(chain_.tendons());
+  pulls_.resize(chain_.tendons());
+  taut_.resize(chain_.tendons());
+  newton_ = tangent_ = {Eigen::VectorXd::Zero(chain_.size()), Eigen::VectorXd::Zero(count)};
+  chain_.balance(newton_.q, pulls_, {}, 0);
+  rest_lengths_.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
+}
+
+std::string RodStatics::input_problem() const {
+  const auto count = chain_.tendons();
+  const auto &tensions = input_.tensions, &displacements = input_.displacements;
+  if (!tensions.empty() && !displacements.empty()) return "tensions and displacements: expected one of them";
+  for (const auto& [name, list] : {std::pair{"tensions", &tensions}, std::pair{"displacements", &displacements}}) {
+    if (!list->empty() && list->size() != count)
+      return fmt::format("{} {} given: expected {}, one a tendon", list->size(), name, count);
+    if (!all_finite(*list)) return fmt::format("{} that are not finite", name);
+  }
+  if (std::ranges::any_of(tensions, [](double tension) { return tension < 0; }))
+    return "a tension below 0: a tendon does not push";
+  if (!loads_.gravity.allFinite() || !loads_.per_length.allFinite()) return "gravity or a load that is not finite";
+  for (const EndLoad& end : loads_.ends) {
+    if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
+    if (end.section >= chain_.rod().sections.size()) return "a load at a section that the rod has not";
+  }
+  return "";
+}
+
+double RodStatics::measure(const Unknowns& change) const {
+  return change.q.size() > 0 ? change.q.cwiseProduct(chain_.scales()).cwiseAbs().maxCoeff() : 0;
+}
+
+bool RodStatics::linearize(const Unknowns& at, double share) {
+  ++iterations_;
+  const std::size_t count = pulls_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (by_displacement_) pulls_[i] = taut_[i] != 0 ? at.tensions[static_cast<Eigen::Index>(i)] : 0;
+    else pulls_[i] = input_.tensions.empty() ? 0 : share * input_.tensions[i];
+  }
+  chain_.balance(at.q, pulls_, loads_, share);
+  if (!chain_.residual().allFinite() || !chain_.factor()) return false;
+  negative_ = chain_.negative_count();
+
+  const Eigen::MatrixXd& slopes = chain_.length_slopes();
+  const auto tendons = static_cast<Eigen::Index>(count);
+  solved_.resize(chain_.size(), 2 + (by_displacement_ ? tendons : 0));
+  solved_.col(0) = -chain_.residual();
+  solved_.col(1) = -chain_.load_slope();
+  if (by_displacement_) {
+    solved_.rightCols(tendons) = -slopes;
+  } else if (!input_.tensions.empty()) {
+    for (std::size_t i = 0; i < count; ++i)
+      solved_.col(1) -= input_.tensions[i] * slopes.col(static_cast<Eigen::Index>(i));
+  }
+  chain_.solve(solved_);
+  newton_.q = solved_.col(0);
+  tangent_.q = solved_.col(1);
+  newton_.tensions.setZero(tendons);
+  tangent_.tensions.setZero(tendons);
+  if (!by_displacement_) return newton_.q.allFinite();
+
+  // Lengths of taut tendons are what their displacements leave: of the unknown tensions, a small system.
+  std::vector<Eigen::Index> taut;
+  for (std::size_t i = 0; i < count; ++i)
+    if (taut_[i] != 0) taut.push_back(static_cast<Eigen::Index>(i));
+  if (taut.empty()) return newton_.q.allFinite();
+  const auto m = static_cast<Eigen::Index>(taut.size());
+  Eigen::MatrixXd give(m, m);  // How lengths in excess answer to tensions.
+  Eigen::MatrixXd wanted(m, 2);
+  for (Eigen::Index a = 0; a < m; ++a) {
+    const auto i = static_cast<std::size_t>(taut[static_cast<std::size_t>(a)]);
+    const auto slope = slopes.col(taut[static_cast<std::size_t>(a)]);
+    const double compliance = chain_.rod().tendons[i].compliance, delta = input_.displacements[i];
+    for (Eigen::Index b = 0; b < m; ++b)
+      give(a, b) = slope.dot(solved_.col(2 + taut[static_cast<std::size_t>(b)])) - (a == b ? compliance : 0);
+    wanted(a, 0) = -(chain_.tendon_lengths()[taut[static_cast<std::size_t>(a)]] - rest_lengths_[i] + share * delta -
+                     compliance * pulls_[i] + slope.dot(newton_.q));
+    wanted(a, 1) = -(delta + slope.dot(tangent_.q));
+  }
+  if (!give.allFinite()) return false;
+  const SymmetricEigen eigen = symmetric_eigen(-0.5 * (give + give.transpose()));
+  negative_ -= static_cast<int>((eigen.values.array() < 0).count());
+  // Tendons that together say the same twice share what they pull.
+  const Eigen::MatrixXd inverse = pseudo_inverse(give);
+  const Eigen::MatrixXd tensions = inverse * wanted;
+  for (Eigen::Index a = 0; a < m; ++a) {
+    const Eigen::Index i = taut[static_cast<std::size_t>(a)];
+    newton_.tensions[i] = tensions(a, 0);
+    tangent_.tensions[i] = tensions(a, 1);
+    newton_.q += tensions(a, 0) * solved_.col(2 + i);
+    tangent_.q += tensions(a, 1) * solved_.col(2 + i);
+  }
+  return newton_.q.allFinite() && newton_.tensions.allFinite();
+}
+
+// A taut tendon that would push goes slack; a slack one that the rod takes more of than there is, taut.
+bool RodStatics::update_slack(Unknowns& at, double share) {
+  if (!by_displacement_) return false;
+  bool changed = false;
+  for (std::size_t i = 0; i < taut_.size(); ++i) {
+    double& tension = at.tensions[static_cast<Eigen::Index>(i)];
+    if (taut_[i] != 0) {
+      if (tension >= 0) continue;
+      taut_[i] = 0;
+      tension = 0;
+      changed = true;
+    } else {
+      const double length = chain_.tendon_lengths()[static_cast<Eigen::Index>(i)];
+      const double left = rest_lengths_[i] - share * input_.displacements[i];
+      if (length <= left + slack_margin * rest_lengths_[i]) continue;
+      taut_[i] = 1;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
+  Descent descent;
+  double before = 0;
+  int changes = 0;
+  for (int step = 0; step < max_descent; ++step) {
+    if (!linearize(at, share)) return descent;
+    const double size = measure(newton_);
+    if (before > 0 && size > contraction * before && size > settled_step) return descent;
+    at.q += newton_.q;
+    at.tensions += newton_.tensions;
+    descent.negative = negative_;
+    const int most = 4 + 2 * static_cast<int>(taut_.size());
+    if (update_slack(at, share)) {
+      if (++changes > most) return descent;
+      before = 0;
+      continue;
+    }
+    // What is left after a step falls with its square.
+    if (size <= settled_step || (before > 0 && size * size * size <= settled_step * before * before * 1e-2)) {
+      descent.settled = true;
+      return descent;
+    }
+    before = size;
+  }
+  return descent;
+}
+
+// By pseudo-arclength (H. Keller, 1977): along the way on which load and shape change together, which turns
+// where the load has an extremum.
+bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
+  const double a_section = 1.0 / static_cast<double>(chain_.elements().size());
+  const auto dot = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return a_section * a.cwiseProduct(chain_.scales()).dot(b.cwiseProduct(chain_.scales()));
+  };
+  double share = 0, stride = first_stride, way = 0;
+  Unknowns direction{Eigen::VectorXd::Zero(at.q.size()), Eigen::VectorXd::Zero(at.tensions.size())};
+  double rise = 1;  // The share's part of the direction.
+  int negative = 0;
+  result.end = StaticsEnd::out_of_steps;
+  for (int step = 0; step < max_strides; ++step) {
+    if (!linearize(at, share)) return false;
+    const double norm = std::sqrt(1 + dot(tangent_.q, tangent_.q));
+    const double sense = dot(tangent_.q, direction.q) + rise < 0 ? -1 : 1;
+    direction.q = sense / norm * tangent_.q;
+    direction.tensions = sense / norm * tangent_.tensions;
+    const double risen = sense / norm;
+    const bool turned = risen * rise < 0;
+    rise = risen;
+    if (turned) result.snapped = result.ambiguous = true;
+    if (negative_ != negative && !turned && step > 0) result.ambiguous = true;
+    negative = negative_;
+
+    const std::vector<char> taut = taut_;
+    for (;; stride *= 0.5) {
+      if (stride < shortest_stride) return false;
+      taut_ = taut;
+      Unknowns next{at.q + stride * direction.q, at.tensions + stride * direction.tensions};
+      double next_share = share + stride * rise, before = 0;
+      bool settled = false;
+      int correction = 0;
+      for (; correction < max_correction && !settled; ++correction) {
+        if (!linearize(next, next_share)) break;
+        const double change = -dot(direction.q, newton_.q) / (dot(direction.q, tangent_.q) + rise);
+        newton_.q += change * tangent_.q;
+        newton_.tensions += change * tangent_.tensions;
+        const double size = std::max(measure(newton_), std::abs(change));
+        if (!(size <= (correction == 0 ? 0.5 * stride : contraction * before)) && size > settled_step) break;
+        next.q += newton_.q;
+        next.tensions += newton_.tensions;
+        next_share += change;
+        before = size;
+        settled = size < 1e-6 && !update_slack(next, next_share);
+      }
+      if (!settled) continue;
+      if ((share < 1) == (next_share >= 1)) {
+        const double part = (1 - share) / (next_share - share);
+        Unknowns there{at.q + part * (next.q - at.q), at.tensions + part * (next.tensions - at.tensions)};
+        const Eigen::VectorXd started = there.q;
+        const Descent descent = descend(there, 1);
+        const Eigen::VectorXd moved = there.q - started;
+        if (!descent.settled || std::sqrt(dot(moved, moved)) > stride) continue;
+        at = there;
+        negative_ = descent.negative;
+        return true;
+      }
+      way += stride;
+      at = next;
+      share = next_share;
+      if (correction <= 3) stride = std::min(longest_stride, 1.6 * stride);
+      break;
+    }
+    if (way > longest_way || share < least_share) {
+      result.end = StaticsEnd::no_equilibrium;
+      return false;
+    }
+  }
+  return false;
+}
+
+void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
+  result.q = at.q;
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    if (by_displacement_) pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
+    else pulls_[i] = input_.tensions.empty() ? 0 : input_.tensions[i];
+  }
+  chain_.balance(at.q, pulls_, loads_, 1);
+  chain_.place(at.q);
+  result.tensions = pulls_;
+  result.tendon_lengths.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
+  result.displacements.clear();
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    result.displacements.push_back(rest_lengths_[i] - result.tendon_lengths[i] +
+                                   chain_.rod().tendons[i].compliance * pulls_[i]);
+  }
+  result.strain_energy = chain_.strain_energy();
+  result.tip = chain_.tip();
+  result.iterations = iterations_;
+}
+
+Equilibrium RodStatics::solve_from(Unknowns start, bool is_cold) {
+  Equilibrium result;
+  const Unknowns rest{Eigen::VectorXd::Zero(start.q.size()), Eigen::VectorXd::Zero(start.tensions.size())};
+  iterations_ = 0;
+  const std::vector<char> taut = taut_;
+  Unknowns at = start;
+  Descent descent = descend(at, 1);
+  bool found = descent.settled && descent.negative == 0;
+  if (!found) {
+    taut_ = taut;
+    if (!is_cold) {
+      std::ranges::fill(taut_, char{1});
+      at = rest;
+      descent = descend(at, 1);
+      found = descent.settled && descent.negative == 0;
+    }
+    if (!found) {
+      std::ranges::fill(taut_, char{1});
+      at = rest;
+      found = follow(result, at);
+      descent.negative = negative_;
+    }
+  }
+  is_solved_ = found;
+  if (found) {
+    result.end = StaticsEnd::converged;
+    result.stable = descent.negative == 0;
+  }
+  finish(result, at);
+  return result;
+}
+
+Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads) {
+  return solve(tendons, loads, {});
+}
+
+Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near) {
+  input_ = tendons;
+  loads_ = loads;
+  by_displacement_ = !tendons.displacements.empty();
+  is_solved_ = false;
+  if (std::string problem = input_problem(); !problem.empty()) {
+    Equilibrium result;
+    result.end = StaticsEnd::bad_input;
+    result.problem = std::move(problem);
+    return result;
+  }
+  std::ranges::fill(taut_, char{1});
+  const bool is_cold = near.q.size() != chain_.size() || near.tensions.size() != taut_.size() || !near.converged();
+  Unknowns start{Eigen::VectorXd::Zero(chain_.size()),
+                 Eigen::VectorXd::Zero(static_cast<Eigen::Index>(taut_.size()))};
+  if (!is_cold) {
+    start.q = near.q;
+    for (std::size_t i = 0; i < taut_.size() && by_displacement_; ++i) {
+      start.tensions[static_cast<Eigen::Index>(i)] = near.tensions[i];
+      taut_[i] = near.tensions[i] > 0 ? 1 : 0;
+    }
+  }
+  return solve_from(std::move(start), is_cold);
+}
+
+}  // namespace flexura

@@ -28,7 +28,7 @@ LegendrePair legendre_pair(int n, double x) {
 }
 
 // P_n' at x in (-1, 1).
-double legendre_slope(int n, double x) {
+double inner_slope(int n, double x) {
   const LegendrePair p = legendre_pair(n, x);
   return n * (p.before - x * p.value) / (1.0 - x * x);
 }
@@ -44,9 +44,9 @@ Quadrature gauss_legendre(int points) {
     // Tricomi's estimate of the root is good enough for Newton's method to settle in a few steps.
     double x = std::cos(std::numbers::pi * (i - 0.25) / (points + 0.5));
     for (int step = 0; step < 6; ++step) {
-      x -= legendre_pair(points, x).value / legendre_slope(points, x);
+      x -= legendre_pair(points, x).value / inner_slope(points, x);
     }
-    const double slope = legendre_slope(points, x);
+    const double slope = inner_slope(points, x);
     rule.nodes.push_back(x);
     rule.weights.push_back(2.0 / ((1.0 - x * x) * slope * slope));
   }
@@ -64,7 +64,7 @@ Quadrature gauss_lobatto(int points) {
     double x = std::cos(std::numbers::pi * i / n);
     for (int step = 0; step < 8 && i > 0 && i < n; ++step) {
       // P_n'' by Legendre's equation.
-      const double slope = legendre_slope(n, x), value = legendre_pair(n, x).value;
+      const double slope = inner_slope(n, x), value = legendre_pair(n, x).value;
       x -= slope * (1 - x * x) / (2 * x * slope - n * (n + 1) * value);
     }
     const double value = legendre_pair(n, x).value;
@@ -75,5 +75,12 @@ Quadrature gauss_lobatto(int points) {
 }
 
 double legendre(int degree, double x) { return legendre_pair(degree, x).value; }
+
+double legendre_slope(int degree, double x) {
+  // P_n' = n P_(n-1) + x P_(n-1)'.
+  double slope = 0;
+  for (int n = 1; n <= degree; ++n) slope = n * legendre(n - 1, x) + x * slope;
+  return slope;
+}
 
 }  // namespace flexura

@@ -21,6 +21,8 @@ struct Quadrature {
 
 /// P_degree(x) of Legendre, for x in [-1, 1].
 [[nodiscard]] double legendre(int degree, double x);
+/// Its derivative by x.
+[[nodiscard]] double legendre_slope(int degree, double x);
 
 /// The integral of f over [a, b], cut into `panels` >= 1 equal parts with `rule` in each. f takes a double
 /// and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).

@@ -43,6 +43,8 @@ TEST(Quadrature, PolynomialsOfLegendreAreSquareToEachOther) {
   const Quadrature rule = gauss_legendre(12);
   for (int m = 0; m < 10; ++m) {
     EXPECT_EQ(legendre(m, 1), 1);
+    EXPECT_DOUBLE_EQ(legendre_slope(m, 1), m * (m + 1) / 2.0);
+    EXPECT_NEAR(legendre_slope(m, 0.3), (legendre(m, 0.3 + 1e-6) - legendre(m, 0.3 - 1e-6)) / 2e-6, 1e-8);
     for (int n = 0; n < 10; ++n) {
       const double product =
           integrate(rule, [&](double x) { return legendre(m, x) * legendre(n, x); }, -1.0, 1.0);

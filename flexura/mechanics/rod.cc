@@ -16,10 +16,11 @@ double between(const std::array<double, 2>& ends, double t) { return ends[0] + (
 bool is_positive(double value) { return std::isfinite(value) && value > 0; }
 bool is_at_least_0(double value) { return std::isfinite(value) && value >= 0; }
 
-// Value and slope of a polynomial.
-std::array<double, 2> polynomial(const std::vector<double>& coefficients, double s) {
-  std::array<double, 2> p{};
+// Value and first two derivatives of a polynomial.
+std::array<double, 3> polynomial(const std::vector<double>& coefficients, double s) {
+  std::array<double, 3> p{};
   for (std::size_t i = coefficients.size(); i-- > 0;) {
+    p[2] = p[2] * s + 2 * p[1];
     p[1] = p[1] * s + p[0];
     p[0] = p[0] * s + coefficients[i];
   }
@@ -66,6 +67,7 @@ std::string tendon_problem(const TendonRoute& tendon, std::size_t sections) {
     for (const double value : *coefficients) is_finite = is_finite && std::isfinite(value);
   if (!is_finite) return "has a route that is not finite";
   if (!is_at_least_0(tendon.compliance)) return "must have a compliance of at least 0";
+  if (!is_at_least_0(tendon.friction)) return "must have a friction of at least 0";
   return "";
 }
 
@@ -98,12 +100,23 @@ Vector6d RodSection::rest_strain_at(double t) const {
   return strain;
 }
 
+Vector6d RodSection::rest_strain_slope_at(double t) const {
+  Vector6d slope = Vector6d::Zero();
+  for (std::size_t i = rest_curvature.size(); i-- > 1;) {
+    const Eigen::Vector3d next = slope.tail<3>() * t + static_cast<double>(i) * rest_curvature[i];
+    slope.tail<3>() = next;
+  }
+  return slope / length;
+}
+
 TendonRoute::Offset TendonRoute::at(double s) const {
   const double a = angle + angle_slope * s, r = radius + radius_slope * s;
   const Eigen::Vector3d out(std::cos(a), std::sin(a), 0), around(-out.y(), out.x(), 0);
   const auto px = polynomial(x, s), py = polynomial(y, s);
   return {.value = r * out + Eigen::Vector3d(px[0], py[0], 0),
-          .slope = radius_slope * out + r * angle_slope * around + Eigen::Vector3d(px[1], py[1], 0)};
+          .slope = radius_slope * out + r * angle_slope * around + Eigen::Vector3d(px[1], py[1], 0),
+          .second = 2 * radius_slope * angle_slope * around - r * angle_slope * angle_slope * out +
+                    Eigen::Vector3d(px[2], py[2], 0)};
 }
 
 double Rod::length() const {

@@ -19,13 +19,19 @@ namespace flexura {
 /// How many Legendre polynomials of arc length each strain of a section is a sum of: 1 is constant, 2 linear.
 /// 0: it stays as it is at rest, whatever pulls at it.
 struct StrainModes {
-  int shear = 2;
-  int stretch = 2;
-  int bend = 5;   ///< Each of the two directions.
+  int shear = 1;
+  int stretch = 1;
+  int bend = 5;  ///< Each of the two directions.
   int twist = 4;
 
+  /// Moves in the plane of x and z alone: bends about y, without twist and shear along y.
+  bool planar = false;
+
   /// Of the six strains, in their order.
-  [[nodiscard]] std::array<int, 6> counts() const { return {shear, shear, stretch, bend, bend, twist}; }
+  [[nodiscard]] std::array<int, 6> counts() const {
+    if (planar) return {shear, 0, stretch, 0, bend, 0};
+    return {shear, shear, stretch, bend, bend, twist};
+  }
 };
 
 /// A body that is fixed on a section's backbone: a guide disk, a camera, a weight.
@@ -62,6 +68,8 @@ struct RodSection {
   [[nodiscard]] Vector6d stiffness_at(double t) const;
   [[nodiscard]] double mass_per_length_at(double t) const;
   [[nodiscard]] Vector6d rest_strain_at(double t) const;
+  /// The last by arc length, 1/m and 1/m^2.
+  [[nodiscard]] Vector6d rest_strain_slope_at(double t) const;
 };
 
 /// Where a tendon runs: from the rod's base through all sections up to the end of one, where it is fastened.
@@ -75,10 +83,13 @@ struct TendonRoute {
   double angle_slope = 0;    ///< Helical, rad/m.
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;  ///< How much longer it is for each newton, m/N; >= 0. For displacements only.
+  /// Coulomb friction while it is pulled in: of the tension, exp(-friction angle) is left where the tendon has
+  /// turned by an angle since its base (L. Euler, J. Eytelwein); >= 0.
+  double friction = 0;
 
-  /// Its offset in the cross-section, and that by s; z is 0.
+  /// Its offset in the cross-section, and the first two derivatives of that by s; z is 0.
   struct Offset {
-    Eigen::Vector3d value, slope;
+    Eigen::Vector3d value, slope, second;
   };
   [[nodiscard]] Offset at(double s) const;
 };

@@ -53,6 +53,7 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   const auto count = static_cast<Eigen::Index>(tendons());
   lengths_.setZero(count);
   slopes_.setZero(size_, count);
+  pull_slopes_.setZero(size_, count);
   pivots_.resize(elements_.size());
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     const auto n = static_cast<Eigen::Index>(elements_[i].size());
@@ -90,6 +91,11 @@ void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tension
     for (std::size_t i = 0; i < elements_.size(); ++i)
       elements_[i].set_modes(q.segment(first_[i], elements_[i].size()));
   }
+  for (std::size_t i = 0; i < tendons(); ++i) {
+    if (rod_.tendons[i].friction == 0) continue;
+    RodElement::Run run;
+    for (RodElement& element : elements_) element.rub(i, rod_.tendons[i].friction, run);
+  }
   lengths_.setZero();
   Vector6d beyond = Vector6d::Zero();
   for (std::size_t i = elements_.size(); i-- > 0;) {
@@ -100,6 +106,7 @@ void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tension
     residual_.segment(first_[i], element.size()) = element.residual;
     load_slope_.segment(first_[i], element.size()) = element.by_share;
     lengths_ += element.tendon_lengths;
+    pull_slopes_.middleRows(first_[i], element.size()) = element.pull_slopes;
     slopes_.middleRows(first_[i], element.size()) = element.length_slopes;
   }
 }
@@ -176,6 +183,27 @@ void RodChain::solve(Eigen::Ref<Eigen::MatrixXd> rhs) {
     part.noalias() += pivots_[i].by_base * along;
     along.noalias() += elements_[i].columns().back() * part;
   }
+}
+
+bool RodChain::has_friction() const {
+  return std::ranges::any_of(rod_.tendons, [](const TendonRoute& tendon) { return tendon.friction > 0; });
+}
+
+Eigen::VectorXd RodChain::friction_change(const Eigen::VectorXd& dq, std::span<const double> tensions) const {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(size_);
+  for (std::size_t i = 0; i < tendons(); ++i) {
+    const double friction = rod_.tendons[i].friction;
+    if (friction == 0 || tensions[i] == 0) continue;
+    RodElement::Run run;
+    RodElement::RunChange change;
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+      const Eigen::VectorXd part = dq.segment(first_[e], elements_[e].size());
+      elements_[e].rub_change(i, friction, tensions[i], part, run, change,
+                              result.segment(first_[e], elements_[e].size()));
+      if (has_chords_) change.base += elements_[e].columns().back() * part;
+    }
+  }
+  return result;
 }
 
 void RodChain::columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const {

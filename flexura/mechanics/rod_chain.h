@@ -46,10 +46,12 @@ class RodChain {
   /// Balances the rod at q under tensions, N, and a share of the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons().
+  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons(); r by the tensions
+  /// at the base, which is the same where there is no friction.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
+  [[nodiscard]] const Eigen::MatrixXd& pull_slopes() const { return pull_slopes_; }
   /// r by the share of the loads, size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
@@ -61,6 +63,11 @@ class RodChain {
   [[nodiscard]] int negative_count() const { return negative_; }
   /// rhs becomes what the derivative makes to rhs; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
+
+  /// Whether a tendon rubs: then the derivative that is factored leaves out that friction changes with q.
+  [[nodiscard]] bool has_friction() const;
+  /// What that is along dq, of the residual at the last balance under these tensions.
+  [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq, std::span<const double> tensions) const;
 
   /// Poses of all nodes at q, and how they move. Balance does this only where loads or chords need it.
   void place(const Eigen::VectorXd& q);
@@ -86,7 +93,7 @@ class RodChain {
   std::vector<Eigen::Index> first_;
   Eigen::Index size_ = 0;
   Eigen::VectorXd scales_, residual_, load_slope_, lengths_;
-  Eigen::MatrixXd slopes_;
+  Eigen::MatrixXd slopes_, pull_slopes_;
   bool is_loaded_ = false, is_symmetric_ = true, has_chords_ = false;
   int negative_ = 0;
   std::vector<Pivot> pivots_;

@@ -37,7 +37,7 @@ RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> t
     std::vector<Passage>& passages = passages_.emplace_back();
     for (const double t : grid_.t) {
       const TendonRoute::Offset offset = tendons[i].at(s_base + t * length_);
-      passages.push_back({offset.value, offset.slope});
+      passages.push_back({offset.value, offset.slope, offset.second});
     }
   }
   const auto n = static_cast<Eigen::Index>(size());
@@ -48,8 +48,9 @@ RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> t
   by_base = Eigen::MatrixXd::Zero(n, 6);
   wrench_by_modes = step_ = moved_ = Columns::Zero(6, n);
   tendon_lengths = Eigen::VectorXd::Zero(count);
-  length_slopes = Eigen::MatrixXd::Zero(n, count);
+  length_slopes = pull_slopes = Eigen::MatrixXd::Zero(n, count);
   strain_ = grid_.rest;
+  rates_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(nodes));
   X_.resize(nodes);
   A_.resize(nodes, Columns::Zero(6, n));
   exp_.resize(nodes - 1, TwistExponential(Vector6d::Zero()));
@@ -112,6 +113,7 @@ void RodElement::stress(std::span<const double> tension) {
   tangent.setZero();
   tendon_lengths.setZero();
   length_slopes.setZero();
+  pull_slopes.setZero();
   strain_energy = 0;
   for (std::size_t k = 0; k < grid_.t.size(); ++k) {
     const double weight = grid_.weight[k] * length_;
@@ -122,17 +124,21 @@ void RodElement::stress(std::span<const double> tension) {
     Matrix6d by_strain = grid_.stiffness[k].asDiagonal();
     const auto column = static_cast<Eigen::Index>(k);
     for (std::size_t i = 0; i < tendons_.size() && !has_chords(); ++i) {
-      const Eigen::Vector3d& d = passages_[i][k].offset;
-      const Eigen::Vector3d way = strain.head<3>() + strain.tail<3>().cross(d) + passages_[i][k].slope;
-      const double stretch = way.norm();
-      const Eigen::Vector3d u = way / stretch;
+      const Passage& passage = passages_[i][k];
+      const Eigen::Vector3d& d = passage.offset;
+      const Eigen::Vector3d along = way(passage, strain);
+      const double stretch = along.norm();
+      const Eigen::Vector3d u = along / stretch;
       Vector6d slope;
       slope << u, d.cross(u);
       const auto place = static_cast<Eigen::Index>(tendons_[i]);
       tendon_lengths[place] += weight * stretch;
-      grid_.for_modes(
-          [&](int c, int j) { length_slopes(j, place) += weight * slope[c] * grid_.at_node(j, column); });
-      const double pull = tension[tendons_[i]];
+      grid_.for_modes([&](int c, int j) {
+        const double by_mode = weight * slope[c] * grid_.at_node(j, column);
+        length_slopes(j, place) += by_mode;
+        pull_slopes(j, place) += passage.left * by_mode;
+      });
+      const double pull = tension[tendons_[i]] * passage.left;
       if (pull == 0) continue;
       force += pull * slope;
       const Eigen::Matrix3d across = pull / stretch * (Eigen::Matrix3d::Identity() - u * u.transpose());
@@ -147,7 +153,8 @@ void RodElement::stress(std::span<const double> tension) {
   }
   for (std::size_t i = 0; i < tendons_.size() && has_chords(); ++i) {
     for (std::size_t piece = 0; piece + 1 < grid_.disks.size(); ++piece)
-      add_chord(i, grid_.disks[piece], grid_.disks[piece + 1], tension[tendons_[i]]);
+      add_chord(i, grid_.disks[piece], grid_.disks[piece + 1], tension[tendons_[i]],
+                passages_[i][grid_.disks[piece]].left);
   }
   by_share.setZero();
   by_base.setZero();
@@ -179,7 +186,7 @@ void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size
 }
 
 // The energy of a straight piece is its tension times its length.
-void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension) {
+void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension, double left) {
   const Eigen::Vector3d a = X_[from] * passages_[tendon][from].offset,
                         b = X_[to] * passages_[tendon][to].offset;
   const double distance = (b - a).norm();
@@ -189,7 +196,9 @@ void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to,
   tendon_lengths[place] += distance;
   moved_.noalias() = A_[to] - A_[from];
   length_slopes.col(place).noalias() += moved_.transpose().lazyProduct(W);
+  pull_slopes.col(place).noalias() += left * moved_.transpose().lazyProduct(W);
   if (tension == 0) return;
+  tension *= left;
   residual.noalias() += tension * moved_.transpose().lazyProduct(W);
   // The end b moves, as seen from a.
   Eigen::Matrix<double, 3, 6> point;

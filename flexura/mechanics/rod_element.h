@@ -45,8 +45,28 @@ class RodElement {
   /// Of each node, 6 x size(): its twist by each mode.
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
+  /// How a tendon has run since its base: by what angle it has turned, rad, and in what direction it leaves,
+  /// in the frame of a section's end; zero at the base.
+  struct Run {
+    double turned = 0;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  };
+  /// Of a run, by a change of the modes of all sections.
+  struct RunChange {
+    double turned = 0;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    Vector6d base = Vector6d::Zero();  ///< Twist of the next section's base.
+  };
+  /// Follows a tendon of the rod through the section: from its run at the base to that at the end. What is
+  /// left of its tension at each node by friction is kept for stress(). Chords need the poses.
+  void rub(std::size_t tendon, double friction, Run& run);
+  /// Follows what a change dq of the modes makes of that, as rub() found it last, and adds to the residual's
+  /// change what friction does to it. `run`: at the base, which is followed again. Chords need the columns.
+  void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
+                  RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// The balance of what it is made of and of its tendons: residual, tangent, tendons' lengths and their
-  /// slopes. `tension`: N, one a tendon of the rod. Chords need the columns.
+  /// slopes. `tension`: at the base, N, one a tendon of the rod. Chords need the columns. Friction is taken as
+  /// it is: what it loses more as the tendon turns further is not in the tangent.
   void stress(std::span<const double> tension);
   /// Adds what loads do, `share` of them, where `beyond` is the wrench of all of the loads of the sections
   /// after this one. The columns are there.
@@ -65,20 +85,27 @@ class RodElement {
   Matrix6d wrench_by_base = Matrix6d::Zero();
   /// Of all of its loads.
   Vector6d wrench = Vector6d::Zero();
-  /// How long each tendon of the rod is in it, m, and that by its modes: size() x tendons.
+  /// How long each tendon of the rod is in it, m; that by its modes, size() x tendons; and the residual by the
+  /// tensions at the base, which is the same where friction leaves all of them.
   Eigen::VectorXd tendon_lengths;
-  Eigen::MatrixXd length_slopes;
+  Eigen::MatrixXd length_slopes, pull_slopes;
   /// Of its strains, J.
   double strain_energy = 0;
 
  private:
   // Where a tendon passes a node.
   struct Passage {
-    Eigen::Vector3d offset, slope;
+    Eigen::Vector3d offset, slope, second;
+    double left = 1;  // Of the tension at the tendon's base; of a chord that begins here.
   };
+  [[nodiscard]] static Eigen::Vector3d way(const Passage& passage, const Vector6d& strain);
+  [[nodiscard]] static Eigen::Vector3d way_slope(const Passage& passage, const Vector6d& strain,
+                                                 const Vector6d& slope);
+  [[nodiscard]] Vector6d strain_slope(std::size_t node) const;
+  [[nodiscard]] const std::vector<Passage>* passages_of(std::size_t tendon) const;
   // What a wrench makes of how the intervals turn each other.
   void add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor);
-  void add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension);
+  void add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension, double left);
   void find_forces(const RodLoads& loads);
   void add_block(const Matrix6d& block, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                  std::size_t column, double factor);
@@ -92,7 +119,7 @@ class RodElement {
   std::vector<std::size_t> tendons_;
   std::vector<std::vector<Passage>> passages_;
 
-  Eigen::VectorXd q_;
+  Eigen::VectorXd q_, rates_;
   std::vector<Vector6d> strain_;  // At the nodes.
   std::vector<Pose> X_;
   std::vector<Columns> A_;

@@ -48,9 +48,16 @@ RodGrid::RodGrid(const RodSection& section, std::span<const double> at) : count(
     return modes;
   };
   at_node.resize(size, static_cast<Eigen::Index>(t.size()));
+  slope_at_node.resize(size, static_cast<Eigen::Index>(t.size()));
   for (std::size_t k = 0; k < t.size(); ++k) {
     at_node.col(static_cast<Eigen::Index>(k)) = modes_at(t[k]);
+    for_modes([&](int c, int j) {
+      const int degree = j - first[static_cast<std::size_t>(c)];
+      slope_at_node(j, static_cast<Eigen::Index>(k)) =
+          2 / section.length * legendre_slope(degree, 2 * t[k] - 1);
+    });
     stiffness.push_back(section.stiffness_at(t[k]));
+    rest_slope.push_back(section.rest_strain_slope_at(t[k]));
     rest.push_back(section.rest_strain_at(t[k]));
     mass_per_length.push_back(section.mass_per_length_at(t[k]));
   }
@@ -67,9 +74,29 @@ RodGrid::RodGrid(const RodSection& section, std::span<const double> at) : count(
                                           section.rest_strain_at(at_gauss[1]),
                                           section.rest_strain_at(at_gauss[2])));
   }
+  integrate_nodes();
   for (const PointMass& mass : section.masses) mass_nodes.push_back(node_at(mass.at));
   for (int i = 0; section.disks > 0 && i <= section.disks; ++i)
     disks.push_back(node_at(static_cast<double>(i) / section.disks));
+}
+
+void RodGrid::integrate_nodes() {
+  // Of the Lagrange polynomials of the nodes that count in integrals.
+  const auto nodes = static_cast<Eigen::Index>(t.size());
+  cumulative.setZero(nodes, nodes);
+  const Quadrature rule = gauss_legendre(static_cast<int>(t.size()));
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    for (std::size_t m = 0; m < t.size(); ++m) {
+      if (weight[m] == 0) continue;
+      const auto lagrange = [&](double at) {
+        double product = 1;
+        for (std::size_t i = 0; i < t.size(); ++i)
+          if (i != m && weight[i] != 0) product *= (at - t[i]) / (t[m] - t[i]);
+        return product;
+      };
+      cumulative(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(m)) = integrate(rule, lagrange, 0, t[k]);
+    }
+  }
 }
 
 std::size_t RodGrid::node_at(double place) const {

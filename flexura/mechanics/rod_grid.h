@@ -23,9 +23,13 @@ struct RodGrid {
   std::vector<double> t;       ///< Of the nodes, from 0 to 1.
   std::vector<double> weight;  ///< Of the nodes in an integral over t; their sum is 1.
   Eigen::MatrixXd at_node;     ///< Modes x nodes: what each mode is there.
+  Eigen::MatrixXd slope_at_node;  ///< The same by arc length, 1/m.
+  /// Nodes x nodes: integrals over t up to each node, of what has values at the nodes.
+  Eigen::MatrixXd cumulative;
   /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each.
   std::array<Eigen::MatrixXd, 3> moments;
-  std::vector<Vector6d> stiffness, rest;  ///< At the nodes: of the section, and its strain at rest.
+  /// At the nodes: of the section, its strain at rest, and that by arc length.
+  std::vector<Vector6d> stiffness, rest, rest_slope;
   std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Of that in the intervals.
   std::vector<double> mass_per_length;          ///< At the nodes, kg/m.
   std::vector<std::size_t> disks;               ///< The nodes that are disks, base and end among them; or none.
@@ -49,6 +53,9 @@ struct RodGrid {
     for_modes([&](int c, int j) { sum[c] += q[j] * modes[j]; });
     return sum;
   }
+
+ private:
+  void integrate_nodes();
 };
 
 }  // namespace flexura

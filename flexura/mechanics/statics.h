@@ -89,6 +89,8 @@ class RodStatics {
   struct Descent {
     bool settled = false;
     int negative = 0;  // Of the last derivative, as stability counts them.
+    // So were all on the way, the start under all of the load among them: no other branch lay between.
+    bool always_stable = true;
   };
   [[nodiscard]] std::string input_problem() const;
   // F, and the solutions of F' y = -F and F' y = -dF/dshare.
@@ -99,6 +101,7 @@ class RodStatics {
   bool follow(Equilibrium& result, Unknowns& at);
   void finish(Equilibrium& result, const Unknowns& at);
   Equilibrium solve_from(Unknowns start, bool is_cold);
+  void solve_with_friction(Eigen::MatrixXd& rhs);
 
   RodChain chain_;
   std::vector<double> rest_lengths_;
@@ -109,6 +112,7 @@ class RodStatics {
   std::vector<double> pulls_;   // Tensions as chain_ takes them.
   Eigen::MatrixXd solved_;      // Columns: by F, by the share, by each tendon's tension.
   Unknowns newton_, tangent_;
+  Eigen::VectorXd at_;  // q of what was last solved.
   int negative_ = 0, iterations_ = 0;
   bool is_solved_ = false;
 };

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "flexura/mechanics/statics.h"
+#include "tests/support/known_rods.h"
+#include "tests/support/random_cases.h"
+#include "tests/support/random_rods.h"
+#include "tests/support/shooting_rod.h"
+
+namespace flexura {
+namespace {
+
+// What pulls at the base, where a rod lies so: where shooting begins.
+Vector6d wrench_at_base(const Rod& rod, const Equilibrium& at, const std::vector<double>& tensions,
+                        const RodLoads& loads) {
+  RodChain chain(rod);
+  chain.balance(at.q, tensions, loads, 1);
+  Vector6d wrench = Vector6d::Zero();
+  for (const RodElement& element : chain.elements()) wrench += element.wrench;
+  return wrench;
+}
+
+Rod finer(Rod rod, int modes) {
+  for (RodSection& section : rod.sections)
+    section.modes = {.shear = modes - 2, .stretch = modes - 2, .bend = modes, .twist = modes};
+  return rod;
+}
+
+TEST(StaticsWitness, AThousandRobotsFromACold) {
+  double worst = 0;
+  for_random_cases(1000, [&](TestRandom& random) {
+    const Rod rod = random_rod(random);
+    const std::vector<double> tensions = random_tensions(random, rod, 8);
+    const RodLoads loads = random_loads(random, rod);
+    const Equilibrium at = RodStatics(rod).solve({.tensions = tensions}, loads);
+    ASSERT_TRUE(at.converged()) << words(at.end);
+    ShootingRod witness(rod, tensions, loads);
+    const ShootingRod::Shot shot = witness.shoot(wrench_at_base(rod, at, tensions, loads));
+    ASSERT_TRUE(shot.hit) << shot.miss;
+    const double difference = (shot.tip.position - at.tip.position).norm() / rod.length();
+    worst = std::max(worst, difference);
+    EXPECT_LE(difference, 2e-3);
+    if (difference < 1e-6) return;
+    // It was the modes that were too few.
+    const Equilibrium finely = RodStatics(finer(rod, 9)).solve({.tensions = tensions}, loads);
+    ASSERT_TRUE(finely.converged());
+    EXPECT_LE((shot.tip.position - finely.tip.position).norm(), 0.05 * difference + 1e-6);
+    for (std::size_t i = 0; i < rod.tendons.size(); ++i)
+      EXPECT_NEAR(shot.lengths[i], finely.tendon_lengths[i], 1e-6);
+  });
+  std::printf("the farthest from the witness: %.1e of the length\n", worst);
+}
+
+TEST(StaticsWitness, EachModeMoreComesNearer) {
+  for_random_cases(12, [](TestRandom& random) {
+    Rod rod = random_rod(random);
+    const std::vector<double> tensions = random_tensions(random, rod, 6);
+    RodLoads loads = random_loads(random, rod);
+    loads.gravity = random.vector<3>(-10.0, 10.0);
+    const Equilibrium first = RodStatics(rod).solve({.tensions = tensions}, loads);
+    ShootingRod witness(rod, tensions, loads);
+    const ShootingRod::Shot shot = witness.shoot(wrench_at_base(rod, first, tensions, loads));
+    ASSERT_TRUE(shot.hit);
+    const auto error = [&](int modes) {
+      const Equilibrium at = RodStatics(finer(rod, modes)).solve({.tensions = tensions}, loads);
+      EXPECT_TRUE(at.converged());
+      return (at.tip.position - shot.tip.position).norm();
+    };
+    const double coarse = error(3), fine = error(6), finest = error(9);
+    EXPECT_LE(fine, 0.2 * coarse + 1e-8);
+    EXPECT_LE(finest, 0.2 * fine + 2e-8);
+  });
+}
+
+}  // namespace
+}  // namespace flexura

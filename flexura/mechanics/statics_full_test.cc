@@ -56,6 +56,7 @@ TEST(StaticsWitness, AThousandRobotsFromACold) {
 TEST(StaticsWitness, EachModeMoreComesNearer) {
   for_random_cases(12, [](TestRandom& random) {
     Rod rod = random_rod(random);
+    for (RodSection& section : rod.sections) section.masses.clear();  // There the curvature has a kink.
     const std::vector<double> tensions = random_tensions(random, rod, 6);
     RodLoads loads = random_loads(random, rod);
     loads.gravity = random.vector<3>(-10.0, 10.0);

@@ -1,0 +1,109 @@
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/statics.h"
+#include "tests/support/known_rods.h"
+
+// How long an equilibrium takes: from the rod at rest (cold), and from one nearby (warm). `error_m` is how far the
+// tip is from that of an independent solver (tests/support/known_rods.h has the robots, statics_test.cc the figures).
+namespace flexura {
+namespace {
+
+struct Case {
+  Rod rod;
+  TendonInput tendons;
+  RodLoads loads;
+  Eigen::Vector3d tip;
+};
+
+// Under tendons alone; under a force; a heavy rod under one tendon.
+Case known_case(std::int64_t which) {
+  Case known{.rod = two_section_robot(), .tendons = {}, .loads = {}, .tip = {}};
+  if (which == 0) {
+    known.tendons.tensions = {4, 0, 0, 0, 2, 0};
+    known.tip = {0.127607603, 0.143467423, 0.336406799};
+  } else if (which == 1) {
+    known.loads.ends = {{.section = 1, .force = {0.1, 0, 0}}};
+    known.tip = {0.169688740, 0, 0.353786806};
+  } else {
+    known.rod = heavy_rod();
+    known.tendons.tensions = {15};
+    known.loads.gravity = {9.81, 0, 0};
+    known.tip = {0.182211695, 0, 0.453229271};
+  }
+  // With these the error of each is below a micrometre.
+  for (RodSection& section : known.rod.sections)
+    section.modes = {.shear = 1, .stretch = 1, .bend = 4, .twist = 2};
+  return known;
+}
+
+void statics_cold(benchmark::State& state) {
+  const Case known = known_case(state.range(0));
+  RodStatics statics(known.rod);
+  Equilibrium at;
+  for (auto _ : state) {
+    at = statics.solve(known.tendons, known.loads);
+    benchmark::DoNotOptimize(at);
+  }
+  state.counters["error_m"] = (at.tip.position - known.tip).norm();
+}
+BENCHMARK(statics_cold)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+void statics_warm(benchmark::State& state) {
+  const Case known = known_case(state.range(0));
+  RodStatics statics(known.rod);
+  const Equilibrium first = statics.solve(known.tendons, known.loads);
+  Equilibrium at = first;
+  Case other = known;
+  for (double& tension : other.tendons.tensions) tension *= 1.001;
+  for (EndLoad& end : other.loads.ends) end.force *= 1.001;
+  bool there = false;
+  for (auto _ : state) {
+    const Case& to = there ? known : other;
+    at = statics.solve(to.tendons, to.loads, at);
+    benchmark::DoNotOptimize(at);
+    there = !there;
+  }
+}
+BENCHMARK(statics_warm)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+
+// The two-section robot with its tendons pulled in by so much, which have 0.1 mm/N of give.
+void statics_displacements(benchmark::State& state) {
+  Rod rod = known_case(0).rod;
+  for (TendonRoute& tendon : rod.tendons) tendon.compliance = 1e-4;
+  RodStatics statics(rod);
+  const TendonInput pulled{.displacements = {0.004, -0.002, -0.002, 0.004, 0.002, -0.006}};
+  for (auto _ : state) benchmark::DoNotOptimize(statics.solve(pulled, {}));
+}
+BENCHMARK(statics_displacements)->Unit(benchmark::kMicrosecond);
+
+// A heavy arm of so many sections, a tendon to the end of each, warm: a cost that grows with their number.
+void statics_sections(benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  Rod rod;
+  RodSection section{.length = 1.0 / static_cast<double>(count), .radius = {2e-3, 2e-3}, .youngs_modulus = 54e9,
+                     .shear_modulus = 20e9, .density = 6000};
+  section.modes = {.shear = 1, .stretch = 1, .bend = 2, .twist = 1};
+  rod.sections.assign(count, section);
+  rod.tendons = {{.section = count - 1, .radius = 0.01, .angle = 0.3}};
+  RodStatics statics(rod);
+  const RodLoads weight{.gravity = {0, -9.81, 0}};
+  Equilibrium at = statics.solve({.tensions = {10}}, weight);
+  double tension = 10;
+  for (auto _ : state) {
+    tension = tension == 10 ? 10.01 : 10;
+    at = statics.solve({.tensions = {tension}}, weight, at);
+    benchmark::DoNotOptimize(at);
+  }
+  state.counters["us_a_section"] = benchmark::Counter(
+      static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(statics_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace flexura

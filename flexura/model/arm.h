@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/math/pose.h"
+#include "flexura/model/material.h"
 
 namespace flexura {
 
@@ -28,6 +29,8 @@ struct Section {
   /// How its bend is spread along it (Actuation): so many arcs of equal length, bent in these proportions,
   /// each at least 0, one above. None: one arc.
   std::optional<std::vector<double>> bend_profile = {};
+  /// Of the elastic rod in it. None: it bends as it is told to.
+  std::optional<MaterialConfig> material = {};
 
   /// Whether its limits leave it more than one length.
   [[nodiscard]] bool can_stretch() const { return stretch_limits[0] < stretch_limits[1]; }

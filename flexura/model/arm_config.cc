@@ -16,6 +16,8 @@ namespace {
 // More than any robot has; keeps a mistaken file from filling the memory.
 constexpr std::size_t max_sections = 1000;
 constexpr std::size_t max_arcs = 100;  // Of one section.
+constexpr std::size_t max_routes = 1000;
+constexpr std::size_t max_loads = 1000;
 
 // A micrometre: as far from the origin as coordinates go, doubles still tell such lengths apart.
 constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
@@ -39,6 +41,7 @@ void check_arm(const ArmConfig& config, Reader& reader) {
   if (arcs > max_sections)
     reader.problem_at("section", fmt::format("has {} arcs: expected up to {} in all", arcs, max_sections));
   check_shape(config.initial, config.kind, config.section.size(), "initial", reader);
+  check_mechanics(config, reader);
   check_look(config.look, config.arm(), "look", reader);
 }
 
@@ -84,6 +87,8 @@ const Table<Section>& fields_of(const Section*) {
                   .range = between(0, 1e6),
                   .count = {1, max_arcs},
                   .default_text = "one arc"})
+          .field("material", &Section::material,
+                 {.meaning = "What the elastic rod in the section is made of.", .default_text = "none"})
           .check([](const Section& section, Reader& reader) {
             const auto& profile = section.bend_profile;
             if (profile && std::ranges::all_of(*profile, [](double part) { return part == 0; }))
@@ -91,6 +96,7 @@ const Table<Section>& fields_of(const Section*) {
             if (section.stretch_limits[0] > section.stretch_limits[1]) {
               reader.problem_at("stretch_limits", "expected the smaller factor first");
             }
+            if (section.material) check_material(*section.material, section.radius, "material", reader);
           });
   return table;
 }
@@ -162,6 +168,23 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                   .count = {1, max_sections},
                   .required = true})
           .field("look", &ArmConfig::look, {.meaning = "What a camera sees of it beside its shape."})
+          .field(
+              "model", &ArmConfig::mechanics,
+              {.meaning = "kinematic: the arm's shape is as commands say. static: its sections are elastic "
+                          "rods, at rest under their tendons, gravity and loads; each needs a material."})
+          .field("gravity", &ArmConfig::gravity,
+                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. It bends "
+                             "elastic rods alone.",
+                  .unit = Unit::metre_per_second_squared,
+                  .range = between(-1e6, 1e6)})
+          .field("tendon", &ArmConfig::tendon,
+                 {.meaning = "Where tendons run in its sections, as tables [[arm.tendon]].",
+                  .count = {0, max_routes},
+                  .default_text = "those of [drive], if there is one"})
+          .field("load", &ArmConfig::load,
+                 {.meaning = "What pulls at the ends of sections, as tables [[arm.load]].",
+                  .count = {0, max_loads},
+                  .default_text = "none"})
           .check(check_arm);
   return table;
 }

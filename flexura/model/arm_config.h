@@ -9,6 +9,7 @@
 #include "flexura/base/field.h"
 #include "flexura/base/fields.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_mechanics.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/look.h"
 
@@ -44,6 +45,10 @@ struct ArmConfig {
   ShapeConfig initial;           ///< Where and how it starts.
   std::vector<Section> section;  ///< Base first.
   LookConfig look;
+  ArmMechanics mechanics = ArmMechanics::kinematic;
+  std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
+  std::vector<TendonRouteConfig> tendon;      ///< None: the drive's, if there is one.
+  std::vector<LoadConfig> load;
 
   /// The arm it describes, as its drives see it.
   [[nodiscard]] Arm arm() const;

@@ -68,12 +68,21 @@ bool lay_entries(Node& under, Node& over, const std::string& path) {
   return true;
 }
 
-// A mount says how it is turned in one of two ways (camera/mount.h); what lies above chooses it.
+// Keys that say one thing in different ways: a mount how it is turned (camera/mount.h), a rod how stiff and
+// how heavy it is (model/material.h). What lies above chooses the way.
+bool is_other_way(std::string_view above, std::string_view below) {
+  constexpr std::pair<std::string_view, std::string_view> ways[] = {
+      {"look_at", "rotation"},         {"rotation", "look_at"},        {"rotation", "roll"},
+      {"stiffness", "youngs_modulus"}, {"stiffness", "shear_modulus"}, {"stiffness", "poisson"},
+      {"youngs_modulus", "stiffness"}, {"shear_modulus", "stiffness"}, {"shear_modulus", "poisson"},
+      {"poisson", "stiffness"},        {"poisson", "shear_modulus"},   {"density", "mass_per_length"},
+      {"mass_per_length", "density"}};
+  return std::ranges::find(ways, std::pair{above, below}) != std::end(ways);
+}
+
 void drop_other_ways(Node::Table& below, std::string_view key) {
   std::erase_if(below, [&](const Node::Member& member) {
-    const auto below_key = without_unit(member.key);
-    if (without_unit(key) == "look_at") return below_key == "rotation";
-    return key == "rotation" && (below_key == "look_at" || below_key == "roll");
+    return is_other_way(without_unit(key), without_unit(member.key));
   });
 }
 

@@ -1,0 +1,156 @@
+#include "flexura/model/arm_mechanics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "flexura/base/table.h"
+#include "flexura/model/arm_config.h"
+
+namespace flexura {
+namespace {
+
+// So many places of each section are looked at, whether a tendon is in the tube.
+constexpr int places_looked_at = 50;
+constexpr double rounding = 1e-9;
+constexpr std::size_t max_coefficients = 20;
+
+Spec route(const char* direction) {
+  return {.meaning = fmt::format("Coefficients of powers of the arc length from the base in m, at rest, of "
+                                 "which the offset towards {} is the sum, in m; added to that by radius and "
+                                 "angle.",
+                                 direction),
+          .range = between(-1e9, 1e9),
+          .count = {0, max_coefficients},
+          .default_text = "0"};
+}
+
+double polynomial(const std::vector<double>& coefficients, double s) {
+  double sum = 0;
+  for (std::size_t i = coefficients.size(); i-- > 0;) sum = sum * s + coefficients[i];
+  return sum;
+}
+
+double end_of(const ArmConfig& arm, std::int64_t section) {
+  double end = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(section); ++i) end += arm.section[i].length;
+  return end;
+}
+
+bool ends_on_arm(std::int64_t section, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  const auto sections = static_cast<std::int64_t>(arm.section.size());
+  if (section <= sections) return true;
+  reader.problem_at(
+      path, fmt::format("is section {} of an arm of {}: expected 1 to {}", section, sections, sections));
+  return false;
+}
+
+void check_in_tube(const TendonRouteConfig& tendon, const ArmConfig& arm, const std::string& path,
+                   Reader& reader) {
+  const double end = end_of(arm, tendon.section);
+  double base = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tendon.section); ++i) {
+    const Section& section = arm.section[i];
+    for (int k = 0; k <= places_looked_at; ++k) {
+      const double t = static_cast<double>(k) / places_looked_at, s = base + t * section.length;
+      const double radius = section.radius[0] + (section.radius[1] - section.radius[0]) * t;
+      const double distance = tendon.offset(s, end).norm();
+      if (distance <= radius * (1 + rounding)) continue;
+      reader.problem_at(path,
+                        fmt::format("runs outside the tube: expected at most {:.6g} m off the backbone in "
+                                    "section {}, {:.6g} m from the base, not {:.6g} m",
+                                    radius, i + 1, s, distance));
+      return;
+    }
+    base += section.length;
+  }
+}
+
+}  // namespace
+
+Eigen::Vector2d TendonRouteConfig::offset(double s, double end) const {
+  const double part = s / end, r = radius + (end_radius.value_or(radius) - radius) * part;
+  const double a = angle + 2 * std::numbers::pi * turns * part;
+  return {polynomial(x, s) + r * std::cos(a), polynomial(y, s) + r * std::sin(a)};
+}
+
+const std::vector<std::string>& names_of(const ArmMechanics*) {
+  static const std::vector<std::string> names = {"kinematic", "static"};
+  return names;
+}
+
+const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
+  static const auto table =
+      Table<TendonRouteConfig>(
+          "tendon",
+          "Where a tendon runs in the tube, from the arm's base to the end of one section: "
+          "parallel to the backbone, converging, helical, or as polynomials say.")
+          .field("section", &TendonRouteConfig::section,
+                 {.meaning = "The section at whose end it ends, counted from 1 at the base.",
+                  .range = between(1, 1e6),
+                  .required = true})
+          .field("radius", &TendonRouteConfig::radius,
+                 {.meaning = "Distance from the backbone at the arm's base.",
+                  .unit = Unit::metre,
+                  .range = between(0, 1e3)})
+          .field("angle", &TendonRouteConfig::angle,
+                 {.meaning = "Where it lies around the backbone at the arm's base, from x towards y.",
+                  .unit = Unit::radian,
+                  .range = angle_range})
+          .field("end_radius", &TendonRouteConfig::end_radius,
+                 {.meaning = "Distance from the backbone at its end; in between it changes evenly.",
+                  .unit = Unit::metre,
+                  .range = between(0, 1e3),
+                  .default_text = "radius"})
+          .field("turns", &TendonRouteConfig::turns,
+                 {.meaning = "How often it runs around the backbone from the arm's base to its end, evenly, "
+                             "from x towards y.",
+                  .range = between(-1e3, 1e3)})
+          .field("x", &TendonRouteConfig::x, route("x"))
+          .field("y", &TendonRouteConfig::y, route("y"))
+          .field("compliance", &TendonRouteConfig::compliance,
+                 {.meaning = "How much longer it is for each newton, m/N, where it is told how far it is "
+                             "pulled in.",
+                  .range = between(0, 1e6)});
+  return table;
+}
+
+const Table<LoadConfig>& fields_of(const LoadConfig*) {
+  static const auto table =
+      Table<LoadConfig>("load", "A force and a moment at the end of a section.")
+          .field("section", &LoadConfig::section,
+                 {.meaning = "The section at whose end it pulls, counted from 1 at the base.",
+                  .range = between(1, 1e6),
+                  .required = true})
+          .field("force", &LoadConfig::force,
+                 {.meaning = "Force in the world's frame, N: X, Y, Z.", .range = between(-1e9, 1e9)})
+          .field("moment", &LoadConfig::moment,
+                 {.meaning = "Moment in the world's frame, N m: X, Y, Z.", .range = between(-1e9, 1e9)})
+          .field(
+              "following", &LoadConfig::following,
+              {.meaning = "Force and moment are in the frame of the section's end, z along the backbone, and "
+                          "turn with it."});
+  return table;
+}
+
+void check_mechanics(const ArmConfig& arm, Reader& reader) {
+  for (std::size_t i = 0; i < arm.tendon.size(); ++i) {
+    const std::string path = fmt::format("tendon[{}]", i);
+    if (ends_on_arm(arm.tendon[i].section, arm, path + ".section", reader))
+      check_in_tube(arm.tendon[i], arm, path, reader);
+  }
+  for (std::size_t i = 0; i < arm.load.size(); ++i)
+    ends_on_arm(arm.load[i].section, arm, fmt::format("load[{}].section", i), reader);
+  if (arm.mechanics != ArmMechanics::statics) return;
+  for (std::size_t i = 0; i < arm.section.size(); ++i) {
+    if (arm.section[i].material) continue;
+    reader.problem_at(
+        fmt::format("section[{}]", i),
+        "has no material: expected material.youngs_modulus or material.stiffness, for the arm's "
+        "model is \"static\"");
+    return;
+  }
+}
+
+}  // namespace flexura

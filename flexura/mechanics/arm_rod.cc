@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "flexura/math/arrays.h"
+#include "flexura/math/quadrature.h"
+#include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
@@ -100,6 +102,45 @@ RodLoads loads_of(const ArmConfig& arm) {
     loads.ends.push_back(end);
   }
   return loads;
+}
+
+TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state) {
+  require_fit(rod.sections.size(), state);
+  static const Quadrature rule = gauss_legendre(12);
+  const ArmState straight = ArmState::straight(rod.sections.size());
+  const auto length = [&](const TendonRoute& tendon, const ArmState& shape) {
+    double sum = 0, s_base = 0;
+    for (std::size_t i = 0; i <= tendon.section; ++i) {
+      const RodSection& section = rod.sections[i];
+      const Eigen::Vector2d& bend = shape.bends[i];
+      const Eigen::Vector3d curvature(-bend.y() / section.length, bend.x() / section.length, 0);
+      if (section.disks == 0) {
+        sum += integrate(
+            rule,
+            [&](double s) {
+              const TendonRoute::Offset offset = tendon.at(s);
+              return (Eigen::Vector3d(0, 0, shape.stretches[i]) + curvature.cross(offset.value) + offset.slope)
+                  .norm();
+            },
+            s_base, s_base + section.length);
+      } else {
+        Eigen::Vector3d before = tendon.at(s_base).value;
+        for (int piece = 1; piece <= section.disks; ++piece) {
+          const double t = static_cast<double>(piece) / section.disks;
+          const Eigen::Vector3d hole = arc_pose(t * bend, t * section.length * shape.stretches[i]) *
+                                       tendon.at(s_base + t * section.length).value;
+          sum += (hole - before).norm();
+          before = hole;
+        }
+      }
+      s_base += section.length;
+    }
+    return sum;
+  };
+  TendonDisplacements displacements;
+  for (const TendonRoute& tendon : rod.tendons)
+    displacements.pulled.push_back(length(tendon, straight) - length(tendon, state));
+  return displacements;
 }
 
 }  // namespace flexura

@@ -50,8 +50,8 @@ std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive, co
   return result;
 }
 
-ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
-                       const std::vector<double>& carried) {
+TendonDisplacements displacements_carried(const Drive& drive, const std::vector<double>& zero,
+                                          const std::vector<double>& carried) {
   if (zero.size() != drive.axes.size() || carried.size() != drive.axes.size())
     throw std::invalid_argument(
         fmt::format("{} positions for a drive of {} axes", carried.size(), drive.axes.size()));
@@ -60,7 +60,12 @@ ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<dou
     const double pulled = sense_of(drive.axes[i]) * carried[i] / drive.axes[i].microsteps_a_metre();
     displacements.pulled.push_back(zero[i] + pulled);
   }
-  return fit_state(arm, drive, displacements).state;
+  return displacements;
+}
+
+ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
+                       const std::vector<double>& carried) {
+  return fit_state(arm, drive, displacements_carried(drive, zero, carried)).state;
 }
 
 DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial)

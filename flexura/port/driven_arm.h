@@ -60,6 +60,11 @@ class DrivenArm : public ArmPort {
                                                         const ArmState& state,
                                                         const std::vector<std::int64_t>& positions);
 
+/// How far tendons are pulled in, m, when their spools stand at `carried`, microsteps, each in its motor's
+/// sense, and at 0 leave the displacements `zero`, m. std::invalid_argument: other numbers of axes.
+[[nodiscard]] TendonDisplacements displacements_carried(const Drive& drive, const std::vector<double>& zero,
+                                                        const std::vector<double>& carried);
+
 /// The shape that motors make when their spools stand at `carried`, microsteps, each in its motor's sense,
 /// and at 0 leave the displacements `zero`, m. std::invalid_argument: other numbers of axes.
 [[nodiscard]] ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,

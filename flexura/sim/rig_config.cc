@@ -11,6 +11,7 @@
 #include "flexura/base/source.h"
 #include "flexura/base/unit.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/mechanics/arm_rod.h"
 
 namespace flexura {
 namespace {
@@ -114,6 +115,8 @@ void lay(Node& under, Node over, std::string_view path) {
 ArmSetup::ArmSetup(const RigConfig& config) : arm(config.arm.arm()) {
   initial = arm_state(arm, config.arm.initial);
   if (config.drive) drive = config.drive->drive();
+  if (config.arm.mechanics == ArmMechanics::statics)
+    rod = {.rod = rod_of(config.arm, config.drive), .loads = loads_of(config.arm)};
 }
 
 Node truth_of(Node document) {

@@ -6,6 +6,7 @@
 
 #include "flexura/base/node.h"
 #include "flexura/camera/camera_config.h"
+#include "flexura/mechanics/rod.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive.h"
@@ -20,6 +21,12 @@ struct RigConfig {
   std::vector<CameraConfig> cameras;  ///< In the order in which tasks count them.
 };
 
+/// The rod that an arm is, and what pulls at it beside its tendons.
+struct ArmRod {
+  Rod rod;
+  RodLoads loads;
+};
+
 /// What a simulation needs to know of an arm and what moves it.
 struct ArmSetup {
   /// The arm, its drive and its start as `config` says. Errors as arm_state() says (kinematics/shape.h).
@@ -28,6 +35,7 @@ struct ArmSetup {
   Arm arm;
   ArmState initial;            ///< Where it starts, as the model or the truth has it.
   std::optional<Drive> drive;  ///< None: bends are moved as their own rates allow.
+  std::optional<ArmRod> rod;   ///< Of an arm whose model is static. None: its sections are arcs.
 };
 
 /// The document with its table [truth] laid upon the rest: the simulated world as the file describes it, to

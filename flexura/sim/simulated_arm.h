@@ -8,7 +8,7 @@
 #include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
 #include "flexura/sim/bend_motion.h"
-#include "flexura/sim/plant.h"
+#include "flexura/sim/static_plant.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/simulated_drive.h"
 #include "flexura/sim/simulated_link.h"
@@ -44,7 +44,7 @@ class SimulatedArm : public ArmPort {
   /// known back to `horizon` s before the last command. std::invalid_argument when the truth is another arm
   /// (truth_problem).
   SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon,
-               const MakePlant& make_plant = arc_plant);
+               const MakePlant& make_plant = true_plant);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;

@@ -7,7 +7,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/port/rig_ports.h"
-#include "flexura/sim/plant.h"
+#include "flexura/sim/static_plant.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/simulated_arm.h"
 #include "flexura/sim/simulated_camera.h"
@@ -53,7 +53,7 @@ class SimulatedRig {
   /// `make_plant` makes the arm as it truly is, which goes on with the rig's clock.
   /// std::invalid_argument: truth_problem's text, or what is no arm or camera.
   SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
-               std::uint64_t seed, const MakePlant& make_plant = arc_plant);
+               std::uint64_t seed, const MakePlant& make_plant = true_plant);
 
   /// Valid as long as the rig.
   [[nodiscard]] RigPorts ports();

@@ -1,0 +1,137 @@
+#include "flexura/sim/static_plant.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/port/driven_arm.h"
+
+namespace flexura {
+namespace {
+
+// Of the backbone that is shown, for each section.
+constexpr std::size_t samples_a_section = 12;
+
+std::vector<RodPlace> fine_places(const Rod& rod) {
+  std::vector<RodPlace> places;
+  for (std::size_t i = 0; i < rod.sections.size(); ++i)
+    for (std::size_t k = 0; k <= samples_a_section; ++k)
+      places.push_back({i, static_cast<double>(k) / static_cast<double>(samples_a_section)});
+  return places;
+}
+
+std::vector<std::int64_t> microsteps(const Eigen::VectorXd& u) {
+  std::vector<std::int64_t> positions;
+  for (const double position : u) positions.push_back(std::llround(position));
+  return positions;
+}
+
+const ArmRod& rod_in(const PlantSetup& setup) {
+  if (!setup.truth.rod) throw std::invalid_argument("the true arm is no rod");
+  if (setup.truth.drive && setup.truth.drive->axes.size() != setup.truth.rod->rod.tendons.size())
+    throw std::invalid_argument(fmt::format("the arm has {} tendons: expected {}, one for each axis of its drive",
+                                            setup.truth.rod->rod.tendons.size(), setup.truth.drive->axes.size()));
+  return *setup.truth.rod;
+}
+
+}  // namespace
+
+StaticPlant::StaticPlant(const PlantSetup& setup)
+    : arm_(setup.truth.arm),
+      loads_(rod_in(setup).loads),
+      horizon_(setup.horizon),
+      drive_(setup.truth.drive),
+      statics_(setup.truth.rod->rod),
+      fine_(setup.truth.rod->rod, fine_places(setup.truth.rod->rod)) {
+  if (drive_) {
+    motors_.emplace(*drive_, *drive_, microsteps(setup.start), setup.horizon);
+    zero_ = displacements_at_zero(arm_, *drive_, setup.truth.initial, microsteps(setup.start));
+  } else {
+    bends_.emplace(arm_, setup.truth.initial, setup.horizon);
+  }
+  snapshots_.push_back({0, solved(0, {})});
+}
+
+void StaticPlant::command(double time, const Eigen::VectorXd& u, double duration) {
+  if (motors_) {
+    motors_->command(time, {u.data(), static_cast<std::size_t>(u.size())}, duration);
+  } else {
+    bends_->command(time, commanded_state(u), duration);
+  }
+}
+
+void StaticPlant::halt(double time) {
+  if (motors_) {
+    motors_->halt(time);
+  } else {
+    bends_->halt(time);
+  }
+}
+
+void StaticPlant::advance(double time) {
+  const long last = static_cast<long>(std::floor(time / step));
+  for (long next = snapshots_.back().index + 1; next <= last; ++next)
+    snapshots_.push_back({next, solved(static_cast<double>(next) * step, snapshots_.back().at)});
+  const double oldest = time - horizon_ - 2 * step;
+  std::size_t gone = 0;
+  while (gone + 1 < snapshots_.size() && static_cast<double>(snapshots_[gone + 1].index) * step < oldest) ++gone;
+  snapshots_.erase(snapshots_.begin(), snapshots_.begin() + static_cast<std::ptrdiff_t>(gone));
+}
+
+Equilibrium StaticPlant::equilibrium(double time) const {
+  // The last step at or before it.
+  std::size_t from = snapshots_.size() - 1;
+  while (from > 0 && static_cast<double>(snapshots_[from].index) * step > time) --from;
+  return solved(time, snapshots_[from].at);
+}
+
+TendonDisplacements StaticPlant::displacements(double time) const {
+  if (motors_) return displacements_carried(*drive_, zero_, motors_->carried(time));
+  return arc_displacements(fine_.rod(), bends_->at(time));
+}
+
+Equilibrium StaticPlant::solved(double time, const Equilibrium& near) const {
+  const TendonInput input{.displacements = displacements(time).pulled};
+  const std::lock_guard lock(mutex_);
+  Equilibrium at = statics_.solve(input, loads_, near);
+  if (!at.converged())
+    throw std::runtime_error(
+        fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}", time, words(at.end)));
+  return at;
+}
+
+Backbone StaticPlant::backbone_of(const Equilibrium& at) const {
+  std::vector<BackboneSample> samples;
+  {
+    const std::lock_guard lock(mutex_);
+    fine_.place(at.q);
+    double s_rest = 0;
+    for (std::size_t i = 0; i < fine_.elements().size(); ++i) {
+      const RodElement& element = fine_.elements()[i];
+      const auto& radius = arm_.sections[i].radius;
+      const std::vector<double>& t = element.grid().t;
+      // A section's end is the next one's base.
+      const bool is_last = i + 1 == fine_.elements().size();
+      for (std::size_t k = 0; k + (is_last ? 0 : 1) < t.size(); ++k) {
+        samples.push_back({.X_WS = arm_.X_WB * element.poses()[k],
+                           .s_rest = s_rest + t[k] * element.length(),
+                           .radius = radius[0] + t[k] * (radius[1] - radius[0]),
+                           .section = i});
+      }
+      s_rest += element.length();
+    }
+  }
+  return Backbone::through(samples);
+}
+
+std::unique_ptr<Plant> true_plant(const PlantSetup& setup) {
+  if (setup.truth.rod) return std::make_unique<StaticPlant>(setup);
+  return arc_plant(setup);
+}
+
+}  // namespace flexura

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "flexura/kinematics/tendons.h"
+#include "flexura/mechanics/rod_chain.h"
+#include "flexura/mechanics/statics.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/sim/bend_motion.h"
+#include "flexura/sim/drive_motors.h"
+#include "flexura/sim/plant.h"
+
+namespace flexura {
+
+/// An arm that is an elastic rod: its tendons are pulled in, weight and loads pull at it, and it follows
+/// without inertia from equilibrium to equilibrium (docs/mechanics.md). Of several it takes the one that its
+/// way leads to, at steps of `step` s from time 0 on.
+///
+/// Behind a drive its spools pull the tendons in; without one, what commands call bends pulls each in as far as
+/// arcs of these bends would. std::runtime_error: the arm has no equilibrium.
+class StaticPlant : public Plant {
+ public:
+  static constexpr double step = 0.02;
+
+  /// The truth has a rod, with a tendon for each axis of its drive if it has one. std::invalid_argument: not so.
+  explicit StaticPlant(const PlantSetup& setup);
+
+  void command(double time, const Eigen::VectorXd& u, double duration) override;
+  void halt(double time) override;
+  void advance(double time) override;
+  [[nodiscard]] Backbone backbone(double time) const override { return backbone_of(equilibrium(time)); }
+
+  /// How the rod stands in its frame, with its tendons' tensions. Times as backbone().
+  [[nodiscard]] Equilibrium equilibrium(double time) const;
+
+ private:
+  struct Snapshot {
+    long index;  // Of steps.
+    Equilibrium at;
+  };
+  [[nodiscard]] TendonDisplacements displacements(double time) const;
+  [[nodiscard]] Equilibrium solved(double time, const Equilibrium& near) const;
+  [[nodiscard]] Backbone backbone_of(const Equilibrium& at) const;
+
+  Arm arm_;
+  RodLoads loads_;
+  double horizon_;
+  // What moves it: one of the two.
+  std::optional<DriveMotors> motors_;
+  std::optional<Drive> drive_;
+  std::vector<double> zero_;  // displacements where the motors are at 0, m
+  std::optional<BendMotion> bends_;
+
+  std::vector<Snapshot> snapshots_;  // back to the horizon
+  // Asked by several threads; what they get depends on none of what was solved before.
+  mutable std::mutex mutex_;
+  mutable RodStatics statics_;
+  mutable RodChain fine_;  // places many samples
+};
+
+/// The plant that the setup's truth is: a rod or a chain of arcs.
+[[nodiscard]] std::unique_ptr<Plant> true_plant(const PlantSetup& setup);
+
+}  // namespace flexura

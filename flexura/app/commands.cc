@@ -8,10 +8,13 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
+#include <string_view>
 
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
 #include "flexura/app/json_lines.h"
+#include "flexura/app/statics.h"
 #include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
 #include "flexura/app/view.h"
@@ -171,6 +174,18 @@ int forward_command(const std::string& arm_file, std::istream& in, std::ostream&
 
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
   answer_lines(load_experiment(arm_file).arm.arm(), answer_inverse, in, out);
+  return exit_done;
+}
+
+int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
+  const Experiment experiment = load_experiment(arm_file);
+  std::optional<StaticsAnswers> answers;
+  try {
+    answers.emplace(experiment.arm, experiment.drive);
+  } catch (const std::invalid_argument& error) {
+    throw input_error(arm_file, error.what());
+  }
+  answer_lines([&](std::string_view line) { return answers->answer(line); }, in, out);
   return exit_done;
 }
 

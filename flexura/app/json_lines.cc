@@ -36,11 +36,16 @@ std::string bytes_text(std::size_t bytes) {
 
 void answer_lines(const Arm& arm, LineAnswer answer, std::istream& in, std::ostream& out,
                   std::size_t longest) {
+  answer_lines([&arm, answer](std::string_view line) { return answer(arm, line); }, in, out, longest);
+}
+
+void answer_lines(const std::function<std::string(std::string_view line)>& answer, std::istream& in,
+                  std::ostream& out, std::size_t longest) {
   std::string line;
   bool too_long = false;
   while (read_line(*in.rdbuf(), longest, line, too_long)) {
     out << (too_long ? fmt::format(R"({{"error":"the line is longer than {}"}})", bytes_text(longest))
-                     : answer(arm, line))
+                     : answer(line))
         << '\n';
     // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
     if (in.rdbuf()->in_avail() <= 0) out.flush();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -19,5 +20,8 @@ using LineAnswer = std::string (*)(const Arm& arm, std::string_view line);
 /// with "\n" ("\r\n" too) or with the input; one that is longer than `longest` is answered by an error.
 void answer_lines(const Arm& arm, LineAnswer answer, std::istream& in, std::ostream& out,
                   std::size_t longest = longest_line);
+/// The same of what knows its arm.
+void answer_lines(const std::function<std::string(std::string_view line)>& answer, std::istream& in,
+                  std::ostream& out, std::size_t longest = longest_line);
 
 }  // namespace flexura

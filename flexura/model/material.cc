@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 
 #include "flexura/base/table.h"
@@ -34,8 +35,12 @@ void check_ways(const MaterialConfig& material, Reader& reader) {
     reader.problem_at("poisson", "is given beside shear_modulus: expected one of them");
   if (material.mass_per_length && material.density != 0)
     reader.problem_at("mass_per_length", "is given beside density: expected one of them");
-  if (material.nodes == 1)
-    reader.problem_at("nodes", "= 1: expected from 2 to 64, or 0 for as many as the modes need");
+  const ModesConfig& modes = material.modes;
+  const std::int64_t least =
+      std::max<std::int64_t>(2, 1 + std::max({modes.shear, modes.stretch, modes.bend, modes.twist}));
+  if (material.nodes != 0 && material.nodes < least)
+    reader.problem_at("nodes", fmt::format("{}: expected at least {}, or 0 for as many as the modes need",
+                                           material.nodes, least));
 }
 
 Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
@@ -134,8 +139,8 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
         .field("modes", &MaterialConfig::modes, {.meaning = "How finely its strains are told."})
         .field(
             "nodes", &MaterialConfig::nodes,
-            {.meaning = "Places along the section at which forces are summed up, its ends among them, from "
-                        "2 on; 0: as many as the modes need.",
+            {.meaning = "Places along the section at which forces are summed up, its ends among them, more "
+                        "than any strain has modes; 0: as many as the modes need.",
              .range = between(0, 64)})
         .field("mass", &MaterialConfig::mass,
                {.meaning = "Bodies on the section, as tables [[arm.section.material.mass]].",

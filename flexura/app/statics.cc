@@ -1,0 +1,170 @@
+#include "flexura/app/statics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/problems.h"
+#include "flexura/base/table.h"
+#include "flexura/log/messages.h"
+#include "flexura/math/arrays.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange load_range = {.min = -1e9, .max = 1e9};
+// Each is a node of the rod.
+constexpr std::size_t max_places = 1000;
+
+/// A line of input, in the frame of the arm's base.
+struct StaticsRequest {
+  std::optional<std::vector<double>> tensions;       ///< N
+  std::optional<std::vector<double>> displacements;  ///< m
+  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
+  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
+  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
+  std::optional<std::vector<double>> at;             ///< Arc lengths at rest, m.
+};
+
+const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
+  static const auto table =
+      Table<StaticsRequest>("statics request", "What pulls at the arm, and where along it to answer.")
+          .field("tensions", &StaticsRequest::tensions,
+                 {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
+          .field(
+              "displacements", &StaticsRequest::displacements,
+              {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+          .field("tip_force", &StaticsRequest::tip_force,
+                 {.meaning = "force at the tip, N", .range = load_range})
+          .field("tip_moment", &StaticsRequest::tip_moment,
+                 {.meaning = "moment at the tip, N m", .range = load_range})
+          .field("gravity", &StaticsRequest::gravity,
+                 {.meaning = "gravity, instead of the file's",
+                  .unit = Unit::metre_per_second_squared,
+                  .range = between(-1e6, 1e6)})
+          .field("at", &StaticsRequest::at,
+                 {.meaning = "arc lengths at rest",
+                  .unit = Unit::metre,
+                  .range = at_least(0),
+                  .count = {0, max_places}});
+  return table;
+}
+
+void check_count(const std::optional<std::vector<double>>& given, std::size_t tendons, const char* name,
+                 Reader& reader) {
+  if (!given || given->size() == tendons) return;
+  reader.problem_at(name, fmt::format("{} given: expected {}, one for each tendon", given->size(), tendons));
+}
+
+StaticsRequest read_request(const Rod& rod, std::string_view line) {
+  const Node document = parse_json(line, "");
+  Reader reader;
+  StaticsRequest request;
+  if (fields_of(static_cast<const StaticsRequest*>(nullptr)).read(document, reader, request)) {
+    check_count(request.tensions, rod.tendons.size(), "tensions", reader);
+    check_count(request.displacements, rod.tendons.size(), "displacements", reader);
+    if (request.tensions && request.displacements)
+      reader.problem_at("displacements", "are given beside tensions: expected one of them");
+    const double length = rod.length();
+    for (std::size_t i = 0; request.at && i < request.at->size(); ++i) {
+      if ((*request.at)[i] <= length * (1 + 1e-12)) continue;
+      reader.problem_at(fmt::format("at[{}]", i),
+                        fmt::format("{} is beyond the tip: expected at most {} m", (*request.at)[i], length));
+    }
+  }
+  reader.throw_if_any();
+  return request;
+}
+
+RodPlace place_of(const Rod& rod, double s) {
+  std::size_t section = 0;
+  while (section + 1 < rod.sections.size() && s > rod.sections[section].length) {
+    s -= rod.sections[section].length;
+    ++section;
+  }
+  return {.section = section, .at = std::clamp(s / rod.sections[section].length, 0.0, 1.0)};
+}
+
+Node numbers(const std::vector<double>& values) {
+  Node::Array entries;
+  for (const double value : values) entries.push_back({value, {}});
+  return {std::move(entries), {}};
+}
+
+Node place_nodes(const RodChain& chain, const std::vector<RodPlace>& places) {
+  Node::Array poses;
+  for (const RodPlace& place : places) {
+    const RodElement& element = chain.elements()[place.section];
+    poses.push_back(pose_node(element.poses()[element.grid().node_at(place.at)]));
+  }
+  return {std::move(poses), {}};
+}
+
+Node::Table unknown(const char* reason) {
+  return {{"converged", {}, {false, {}}}, {"reason", {}, {std::string(reason), {}}}};
+}
+
+bool is_finite(const Equilibrium& found) {
+  const auto all = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
+  return found.tip.position.allFinite() && found.tip.rotation.allFinite() && all(found.tensions) &&
+         all(found.displacements) && std::isfinite(found.strain_energy);
+}
+
+Node::Table answer_of(const Equilibrium& found) {
+  if (found.end == StaticsEnd::no_equilibrium) return unknown("no_equilibrium");
+  // Numbers beyond what doubles hold are as far from an answer.
+  if (!found.converged() || !is_finite(found)) return unknown("out_of_steps");
+  return {{"converged", {}, {true, {}}},
+          {"reason", {}, {std::string("converged"), {}}},
+          {"tip", {}, pose_node(found.tip)},
+          {"tensions", {}, numbers(found.tensions)},
+          {"displacements", {}, numbers(found.displacements)},
+          {"strain_energy", {}, {found.strain_energy, {}}},
+          {"stable", {}, {found.stable, {}}},
+          {"snapped", {}, {found.snapped, {}}},
+          {"ambiguous", {}, {found.ambiguous, {}}}};
+}
+
+Node error_node(std::string problem) { return {Node::Table{{"error", {}, {std::move(problem), {}}}}, {}}; }
+
+}  // namespace
+
+StaticsAnswers::StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive)
+    : rod_(rod_of(arm, drive)), loads_(loads_of(arm)), statics_(rod_) {}
+
+std::string StaticsAnswers::answer(std::string_view line) {
+  try {
+    const StaticsRequest request = read_request(rod_, line);
+    RodLoads loads = loads_;
+    if (request.gravity) loads.gravity = vector(*request.gravity);
+    const EndLoad tip{.section = rod_.sections.size() - 1,
+                      .force = vector(request.tip_force),
+                      .moment = vector(request.tip_moment)};
+    if (!tip.force.isZero(0) || !tip.moment.isZero(0)) loads.ends.push_back(tip);
+    std::vector<RodPlace> places;
+    for (const double s : request.at.value_or(std::vector<double>{})) places.push_back(place_of(rod_, s));
+    std::optional<RodStatics> with_places;
+    if (!places.empty()) with_places.emplace(rod_, places);
+    RodStatics& statics = with_places ? *with_places : statics_;
+    const Equilibrium found =
+        statics.solve({.tensions = request.tensions.value_or(std::vector<double>{}),
+                       .displacements = request.displacements.value_or(std::vector<double>{})},
+                      loads);
+    if (found.end == StaticsEnd::bad_input) return write_json(error_node(found.problem));
+    Node::Table members = answer_of(found);
+    if (request.at && members.size() > 2) members.push_back({"at", {}, place_nodes(statics.chain(), places)});
+    return write_json({std::move(members), {}});
+  } catch (const InputError& error) {
+    return write_json(error_node(joined(error.problems())));
+  }
+}
+
+}  // namespace flexura

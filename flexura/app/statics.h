@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/statics.h"
+#include "flexura/model/arm_config.h"
+#include "flexura/model/drive_config.h"
+
+namespace flexura {
+
+/// Answers lines of `flexura statics` about one arm: JSON objects {"tensions":[...]} or
+/// {"displacements":[...]}, or neither, with optional "tip_force", "tip_moment", "gravity" and "at"
+/// (docs/command-line.md), all in the frame of the arm's base. An answer depends on its line alone.
+class StaticsAnswers {
+ public:
+  /// std::invalid_argument: the arm has no rod that can be computed (rod_of, rod_problems).
+  StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
+
+  /// One line of JSON without its line end: {"converged":..,"reason":..} and, of what converged,
+  /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
+  /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] where asked for; {"error":"..."} for a line
+  /// that cannot be answered. Never throws on account of the line.
+  [[nodiscard]] std::string answer(std::string_view line);
+
+ private:
+  Rod rod_;
+  RodLoads loads_;
+  RodStatics statics_;  // For lines that ask for the tip alone.
+};
+
+}  // namespace flexura

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/math/factorial.h"
 #include "flexura/math/so3.h"
 
 namespace flexura {
@@ -18,17 +19,15 @@ struct JacobianCoefficients {
 };
 
 // Below this t^2 their power series serve, whose remainder is then under 1e-20.
-constexpr double series_limit = 1;
-constexpr std::size_t terms = 10;
-
-constexpr double factorial(std::size_t n) { return n < 2 ? 1.0 : static_cast<double>(n) * factorial(n - 1); }
+constexpr double square_limit = 1;
+constexpr std::size_t jacobian_terms = 10;
 
 // c_n as a series in t^2.
-constexpr std::array<std::array<double, terms>, 4> series = [] {
-  std::array<std::array<double, terms>, 4> c{};
+constexpr std::array<std::array<double, jacobian_terms>, 4> jacobian_series = [] {
+  std::array<std::array<double, jacobian_terms>, 4> c{};
   for (std::size_t n = 1; n <= 4; ++n) {
     const std::size_t first = n <= 2 ? 1 : 2, odd = n % 2 == 0 ? 1 : 0;
-    for (std::size_t i = 0; i < terms; ++i) {
+    for (std::size_t i = 0; i < jacobian_terms; ++i) {
       const std::size_t k = first + i;
       const double factor = static_cast<double>(2 * k) - (n <= 2 ? 4.0 : 2.0);
       c[n - 1][i] = (k % 2 == 0 ? 0.5 : -0.5) * factor / factorial(2 * k + odd);
@@ -39,11 +38,11 @@ constexpr std::array<std::array<double, terms>, 4> series = [] {
 
 JacobianCoefficients coefficients(double square) {
   JacobianCoefficients c{};
-  if (square < series_limit) {
+  if (square < square_limit) {
     for (std::size_t n = 0; n < 4; ++n) {
-      for (std::size_t i = terms; i-- > 0;) c.value[n] = series[n][i] + square * c.value[n];
-      for (std::size_t i = terms; i-- > 1;)
-        c.slope[n] = 2 * static_cast<double>(i) * series[n][i] + square * c.slope[n];
+      for (std::size_t i = jacobian_terms; i-- > 0;) c.value[n] = jacobian_series[n][i] + square * c.value[n];
+      for (std::size_t i = jacobian_terms; i-- > 1;)
+        c.slope[n] = 2 * static_cast<double>(i) * jacobian_series[n][i] + square * c.slope[n];
     }
     return c;
   }

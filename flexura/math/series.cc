@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "flexura/math/factorial.h"
+
 namespace flexura {
 namespace {
 
@@ -13,7 +15,6 @@ constexpr double series_limit = 1.5;
 constexpr std::size_t terms = 13;
 using Coefficients = std::array<double, terms>;
 
-constexpr double factorial(std::size_t n) { return n < 2 ? 1.0 : static_cast<double>(n) * factorial(n - 1); }
 constexpr double sign(std::size_t k) { return k % 2 == 0 ? 1.0 : -1.0; }
 
 // (t - sin t) / t^3 = sum (-1)^k t^2k / (2k + 3)!

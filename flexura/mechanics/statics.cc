@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "flexura/math/dense.h"
+#include "flexura/mechanics/complementary.h"
 
 namespace flexura {
 namespace {
@@ -78,19 +79,20 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   ++iterations_;
   const std::size_t count = pulls_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    if (by_displacement_) pulls_[i] = taut_[i] != 0 ? at.tensions[static_cast<Eigen::Index>(i)] : 0;
+    if (by_displacement_) pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
     else pulls_[i] = input_.tensions.empty() ? 0 : share * input_.tensions[i];
   }
   chain_.balance(at.q, pulls_, loads_, share);
   if (!chain_.residual().allFinite() || !chain_.factor()) return false;
   negative_ = chain_.negative_count();
 
-  const Eigen::MatrixXd& slopes = chain_.length_slopes();
   const auto tendons = static_cast<Eigen::Index>(count);
   solved_.resize(chain_.size(), 2 + (by_displacement_ ? tendons : 0));
   solved_.col(0) = -chain_.residual();
   solved_.col(1) = -chain_.load_slope();
   if (by_displacement_) {
+    // Of the residual without tendons: their tensions are found anew.
+    solved_.col(0) += chain_.pull_slopes() * at.tensions;
     solved_.rightCols(tendons) = -chain_.pull_slopes();
   } else if (!input_.tensions.empty()) {
     for (std::size_t i = 0; i < count; ++i)
@@ -101,62 +103,51 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   tangent_.q = solved_.col(1);
   newton_.tensions.setZero(tendons);
   tangent_.tensions.setZero(tendons);
-  if (!by_displacement_) return newton_.q.allFinite();
-
-  // Lengths of taut tendons are what their displacements leave: of the unknown tensions, a small system.
-  std::vector<Eigen::Index> taut;
-  for (std::size_t i = 0; i < count; ++i)
-    if (taut_[i] != 0) taut.push_back(static_cast<Eigen::Index>(i));
-  if (taut.empty()) return newton_.q.allFinite();
-  const auto m = static_cast<Eigen::Index>(taut.size());
-  Eigen::MatrixXd give(m, m);  // How lengths in excess answer to tensions.
-  Eigen::MatrixXd wanted(m, 2);
-  for (Eigen::Index a = 0; a < m; ++a) {
-    const auto i = static_cast<std::size_t>(taut[static_cast<std::size_t>(a)]);
-    const auto slope = slopes.col(taut[static_cast<std::size_t>(a)]);
-    const double compliance = chain_.rod().tendons[i].compliance, delta = input_.displacements[i];
-    for (Eigen::Index b = 0; b < m; ++b)
-      give(a, b) = slope.dot(solved_.col(2 + taut[static_cast<std::size_t>(b)])) - (a == b ? compliance : 0);
-    wanted(a, 0) = -(chain_.tendon_lengths()[taut[static_cast<std::size_t>(a)]] - rest_lengths_[i] + share * delta -
-                     compliance * pulls_[i] + slope.dot(newton_.q));
-    wanted(a, 1) = -(delta + slope.dot(tangent_.q));
-  }
-  if (!give.allFinite()) return false;
-  const SymmetricEigen eigen = symmetric_eigen(-0.5 * (give + give.transpose()));
-  negative_ -= static_cast<int>((eigen.values.array() < 0).count());
-  // Tendons that together say the same twice share what they pull.
-  const Eigen::MatrixXd inverse = pseudo_inverse(give);
-  const Eigen::MatrixXd tensions = inverse * wanted;
-  for (Eigen::Index a = 0; a < m; ++a) {
-    const Eigen::Index i = taut[static_cast<std::size_t>(a)];
-    newton_.tensions[i] = tensions(a, 0);
-    tangent_.tensions[i] = tensions(a, 1);
-    newton_.q += tensions(a, 0) * solved_.col(2 + i);
-    tangent_.q += tensions(a, 1) * solved_.col(2 + i);
-  }
-  return newton_.q.allFinite() && newton_.tensions.allFinite();
+  if (by_displacement_ && count > 0) find_tensions(at, share);
+  return newton_.q.allFinite() && newton_.tensions.allFinite() && tangent_.q.allFinite();
 }
 
-// A taut tendon that would push goes slack; a slack one that the rod takes more of than there is, taut.
-bool RodStatics::update_slack(Unknowns& at, double share) {
-  if (!by_displacement_) return false;
-  bool changed = false;
-  for (std::size_t i = 0; i < taut_.size(); ++i) {
-    double& tension = at.tensions[static_cast<Eigen::Index>(i)];
-    if (taut_[i] != 0) {
-      if (tension >= 0) continue;
-      taut_[i] = 0;
-      tension = 0;
-      changed = true;
-    } else {
-      const double length = chain_.tendon_lengths()[static_cast<Eigen::Index>(i)];
-      const double left = rest_lengths_[i] - share * input_.displacements[i];
-      if (length <= left + slack_margin * rest_lengths_[i]) continue;
-      taut_[i] = 1;
-      changed = true;
+// The lengths of tendons answer to shape and tensions alike: to first order, a tendon is too long by
+// excess - give tensions. It is not (it hangs slack), or it is as long as its displacement leaves it and pulls.
+void RodStatics::find_tensions(const Unknowns& at, double share) {
+  const auto tendons = static_cast<Eigen::Index>(pulls_.size());
+  const auto answers = solved_.rightCols(tendons);
+  Complementary problem{.matrix = -chain_.length_slopes().transpose() * answers, .rhs = {}, .kinds = {}};
+  problem.rhs = chain_.tendon_lengths() + chain_.length_slopes().transpose() * solved_.col(0);
+  Eigen::VectorXd by_share = chain_.length_slopes().transpose() * solved_.col(1);
+  for (Eigen::Index i = 0; i < tendons; ++i) {
+    const auto tendon = static_cast<std::size_t>(i);
+    problem.matrix(i, i) += chain_.rod().tendons[tendon].compliance;
+    problem.rhs[i] += share * input_.displacements[tendon] - rest_lengths_[tendon];
+    by_share[i] += input_.displacements[tendon];
+  }
+  problem.kinds.assign(pulls_.size(), Complementary::Kind::at_least_0);
+  const double rounding = slack_margin * chain_.rod().length();
+  const Eigen::VectorXd tensions = problem.solve(taut_, rounding);
+  newton_.tensions = tensions - at.tensions;
+  newton_.q += answers * tensions;
+
+  // As the load grows: what pulls goes on pulling; what is just taut may begin to.
+  const Eigen::VectorXd slack = problem.matrix * tensions - problem.rhs;
+  std::vector<Eigen::Index> pulling;
+  for (Eigen::Index i = 0; i < tendons; ++i) {
+    Complementary::Kind& kind = problem.kinds[static_cast<std::size_t>(i)];
+    if (tensions[i] > 0) {
+      kind = Complementary::Kind::free;
+      pulling.push_back(i);
+    } else if (slack[i] > rounding) {
+      kind = Complementary::Kind::none;
     }
   }
-  return changed;
+  problem.rhs = by_share;
+  std::vector<char> growing(pulls_.size(), 0);
+  tangent_.tensions = problem.solve(growing, rounding);
+  tangent_.q += answers * tangent_.tensions;
+
+  if (pulling.empty() || !problem.matrix.allFinite()) return;
+  const Eigen::MatrixXd give = problem.matrix(pulling, pulling);
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (give + give.transpose()));
+  negative_ -= static_cast<int>((eigen.values.array() < 0).count());
 }
 
 RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
@@ -164,19 +155,15 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
   double before = 0;
   int changes = 0;
   for (int step = 0; step < max_descent; ++step) {
+    const std::vector<char> taut = taut_;
     if (!linearize(at, share)) return descent;
+    if (step > 0 && taut_ != taut && ++changes <= max_descent / 2) before = 0;
     const double size = measure(newton_);
     if (before > 0 && size > contraction * before && size > settled_step) return descent;
     at.q += newton_.q;
     at.tensions += newton_.tensions;
     descent.negative = negative_;
     descent.always_stable = descent.always_stable && negative_ == 0;
-    const int most = 4 + 2 * static_cast<int>(taut_.size());
-    if (update_slack(at, share)) {
-      if (++changes > most) return descent;
-      before = 0;
-      continue;
-    }
     // What is left after a step falls with its square.
     if (size <= settled_step || (before > 0 && size * size * size <= settled_step * before * before * 1e-2)) {
       descent.settled = true;
@@ -231,7 +218,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
         next.tensions += newton_.tensions;
         next_share += change;
         before = size;
-        settled = size < 1e-6 && !update_slack(next, next_share);
+        settled = size < 1e-6;
       }
       if (!settled) continue;
       if ((share < 1) == (next_share >= 1)) {
@@ -350,7 +337,7 @@ EquilibriumSlopes RodStatics::slopes() {
   if (by_displacement_) {
     std::vector<Eigen::Index> taut;
     for (std::size_t i = 0; i < taut_.size(); ++i)
-      if (taut_[i] != 0) taut.push_back(static_cast<Eigen::Index>(i));
+      if (pulls_[i] > 0) taut.push_back(static_cast<Eigen::Index>(i));
     Eigen::MatrixXd give = lengths_by_q(taut, Eigen::all) * by_tension(Eigen::all, taut);
     for (std::size_t a = 0; a < taut.size(); ++a) {
       const auto at = static_cast<Eigen::Index>(a);

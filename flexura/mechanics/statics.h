@@ -96,7 +96,7 @@ class RodStatics {
   // F, and the solutions of F' y = -F and F' y = -dF/dshare.
   bool linearize(const Unknowns& at, double share);
   [[nodiscard]] double measure(const Unknowns& change) const;
-  bool update_slack(Unknowns& at, double share);
+  void find_tensions(const Unknowns& at, double share);
   Descent descend(Unknowns& at, double share);
   bool follow(Equilibrium& result, Unknowns& at);
   void finish(Equilibrium& result, const Unknowns& at);
@@ -108,7 +108,7 @@ class RodStatics {
   TendonInput input_;
   RodLoads loads_;
   bool by_displacement_ = false;
-  std::vector<char> taut_;      // Of displacement input.
+  std::vector<char> taut_;      // Of displacement input, as last found: where the next search begins.
   std::vector<double> pulls_;   // Tensions as chain_ takes them.
   Eigen::MatrixXd solved_;      // Columns: by F, by the share, by each tendon's tension.
   Unknowns newton_, tangent_;

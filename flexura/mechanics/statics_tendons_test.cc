@@ -107,7 +107,10 @@ TEST(StaticsTendons, BetweenManyDisksAreThoseOfAChannel) {
       return (at.tip.position - channel.tip.position).norm();
     };
     const double few = with_disks(10), many = with_disks(40);
-    if (few > 1e-7) EXPECT_NEAR(std::log2(few / many), 4, 1.2);  // The second power of the pieces' length.
+    // The second power of the pieces' length.
+    if (few > 1e-7) {
+      EXPECT_NEAR(std::log2(few / many), 4, 1.2);
+    }
     EXPECT_LE(many, 1e-3);
   });
 }

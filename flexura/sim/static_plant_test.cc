@@ -1,0 +1,111 @@
+#include "flexura/sim/static_plant.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+#include "flexura/sim/simulated_rig.h"
+#include "tests/support/rigs.h"
+
+namespace flexura {
+namespace {
+
+// The rig of two sections as a thin steel rod, its world's -Y downwards; light: without weight.
+RigConfig elastic_rig(double gravity = 0) {
+  RigConfig rig = two_section_rig();
+  for (Section& section : rig.arm.section) {
+    MaterialConfig& material = section.material.emplace();
+    material.youngs_modulus = 54e9, material.density = 6500, material.radius = {7e-4, 7e-4};
+  }
+  rig.arm.mechanics = ArmMechanics::statics;
+  rig.arm.gravity = {gravity, 0, 0};
+  for (TendonConfig& tendon : rig.drive->tendon) tendon.radius = 0.01;
+  return rig;
+}
+
+ArmState bent() {
+  ArmState state = ArmState::straight(2);
+  state.bends = {{0.5, 0.2}, {-0.3, 0.4}};
+  return state;
+}
+
+StaticPlant& plant_of(SimulatedRig& rig) { return dynamic_cast<StaticPlant&>(rig.arm().plant()); }
+
+// Without weight and play the rod is the arcs that the tendons make, but for what it shortens under them, some 0.03 mm of 0.5 m, which ten times the arm of a tendon shows as 0.5 mm.
+TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
+  RigConfig config = elastic_rig();
+  config.drive->spool.backlash = 0;
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  rig.clock().wait_until(8);
+  const ArmState read = rig.ports().arm->read().value().state;
+  EXPECT_NEAR(read.bends[0].x(), 0.5, 1e-3);
+  const Backbone believed = ArmModel(config.arm.arm()).backbone(read), truth = rig.arm().backbone(8);
+  EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
+  EXPECT_NEAR(truth.rest_length(), 0.5, 1e-12);
+}
+
+TEST(StaticPlant, SagsUnderItsWeightWhereThePortSaysThatItDoesNot) {
+  const RigConfig believed = elastic_rig(), heavy = elastic_rig(9.81);
+  SimulatedRig rig(believed, heavy, numbers_renderer, 1);
+  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  rig.clock().wait_until(8);
+  const Backbone arcs = ArmModel(believed.arm.arm()).backbone(rig.ports().arm->read().value().state);
+  const Eigen::Vector3d sag = rig.arm().backbone(8).tip().position - arcs.tip().position;
+  EXPECT_GT(sag.x(), 2e-3);
+  const Equilibrium at = plant_of(rig).equilibrium(8);
+  EXPECT_TRUE(at.converged() && at.stable);
+  for (const double tension : at.tensions) EXPECT_GE(tension, 0);
+}
+
+// What it answers does not depend on who asked before, nor on how the rig's time passed.
+TEST(StaticPlant, AnswersTheSameHoweverItIsAsked) {
+  const RigConfig config = elastic_rig(9.81);
+  SimulatedRig slow(config, config, numbers_renderer, 1), quick(config, config, numbers_renderer, 1);
+  for (SimulatedRig* rig : {&slow, &quick}) ASSERT_TRUE(rig->ports().arm->command(bent(), 0));
+  for (int i = 1; i <= 100; ++i) {
+    slow.clock().wait_until(0.011 * i);
+    (void)slow.arm().backbone(0.011 * i);
+  }
+  quick.clock().wait_until(1.1);
+  const double time = 1.093;
+  const Eigen::VectorXd q = plant_of(slow).equilibrium(time).q;
+  EXPECT_EQ(q, plant_of(quick).equilibrium(time).q);
+  std::vector<Eigen::VectorXd> asked(4);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < 4; ++i)
+      threads.emplace_back([&, i] {
+        (void)plant_of(quick).equilibrium(1.0 + 0.02 * static_cast<double>(i));
+        asked[i] = plant_of(quick).equilibrium(time).q;
+      });
+  }
+  for (const Eigen::VectorXd& same : asked) EXPECT_EQ(same, q);
+}
+
+TEST(StaticPlant, WithoutADriveIsPulledAsArcsWouldBe) {
+  RigConfig config = elastic_rig();
+  for (int i = 0; i < 6; ++i) {
+    config.arm.tendon.push_back({.section = i < 3 ? 1 : 2,
+                                 .radius = 0.01,
+                                 .angle = 2 * std::numbers::pi * i / 3 + (i < 3 ? 0 : 0.5)});
+  }
+  config.drive.reset();
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  rig.clock().wait_until(8);
+  const Backbone believed = ArmModel(config.arm.arm()).backbone(bent()), truth = rig.arm().backbone(8);
+  EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
+}
+
+TEST(StaticPlant, RefusesAnArmWithTooFewTendons) {
+  RigConfig config = elastic_rig();
+  config.arm.tendon.push_back({.section = 1, .radius = 0.01});
+  EXPECT_THROW(SimulatedRig(config, config, numbers_renderer, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -34,7 +34,6 @@ RodSection section_of(const Section& section) {
   result.radius = material.radius.value_or(section.radius);
   result.inner_radius = material.inner_radius;
   result.youngs_modulus = material.youngs_modulus.value_or(0);
-  constexpr double common_poisson = 0.3;
   result.shear_modulus = material.shear_modulus.value_or(
       result.youngs_modulus / (2 * (1 + material.poisson.value_or(common_poisson))));
   result.density = material.density;

@@ -14,7 +14,6 @@ namespace {
 constexpr NumberRange stiffness_range = {.min = 0, .max = 1e15, .open_min = true};
 constexpr NumberRange mode_range = {.min = 0, .max = 20};
 constexpr std::size_t max_bodies = 1000;  // Of one section.
-constexpr double default_poisson = 0.3;
 
 Spec stiffness(const char* meaning, bool both = false) {
   return {.meaning = meaning, .range = stiffness_range, .required = true, .one_for_all = both};
@@ -54,7 +53,7 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
       .field("poisson", &MaterialConfig::poisson,
              {.meaning = "Poisson's ratio, beside no shear_modulus.",
               .range = between(0, 0.5),
-              .default_text = fmt::format("{}", default_poisson)})
+              .default_text = fmt::format("{}", common_poisson)})
       .field("density", &MaterialConfig::density, {.meaning = "Density, kg/m^3.", .range = between(0, 1e6)})
       .field("radius", &MaterialConfig::radius,
              {.meaning = "Radius of the elastic rod; two numbers for a taper, at the section's base and end.",

@@ -10,6 +10,9 @@
 
 namespace flexura {
 
+/// Of most metals: Poisson's ratio of a material that names neither it nor a shear modulus.
+inline constexpr double common_poisson = 0.3;
+
 /// Stiffness of a rod, given directly.
 struct StiffnessConfig {
   std::array<double, 2> shear = {1, 1};  ///< GA towards the x and the y of the cross-section, N.

@@ -9,8 +9,9 @@
 #include "flexura/mechanics/statics.h"
 #include "tests/support/known_rods.h"
 
-// How long an equilibrium takes: from the rod at rest (cold), and from one nearby (warm). `error_m` is how far the
-// tip is from that of an independent solver (tests/support/known_rods.h has the robots, statics_test.cc the figures).
+// How long an equilibrium takes: from the rod at rest (cold), and from one nearby (warm). `error_m` is how
+// far the tip is from that of an independent solver (tests/support/known_rods.h has the robots,
+// statics_test.cc the figures).
 namespace flexura {
 namespace {
 
@@ -86,8 +87,11 @@ BENCHMARK(statics_displacements)->Unit(benchmark::kMicrosecond);
 void statics_sections(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   Rod rod;
-  RodSection section{.length = 1.0 / static_cast<double>(count), .radius = {2e-3, 2e-3}, .youngs_modulus = 54e9,
-                     .shear_modulus = 20e9, .density = 6000};
+  RodSection section{.length = 1.0 / static_cast<double>(count),
+                     .radius = {2e-3, 2e-3},
+                     .youngs_modulus = 54e9,
+                     .shear_modulus = 20e9,
+                     .density = 6000};
   section.modes = {.shear = 1, .stretch = 1, .bend = 2, .twist = 1};
   rod.sections.assign(count, section);
   rod.tendons = {{.section = count - 1, .radius = 0.01, .angle = 0.3}};
@@ -100,8 +104,9 @@ void statics_sections(benchmark::State& state) {
     at = statics.solve({.tensions = {tension}}, weight, at);
     benchmark::DoNotOptimize(at);
   }
-  state.counters["us_a_section"] = benchmark::Counter(
-      static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["us_a_section"] =
+      benchmark::Counter(static_cast<double>(count) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(statics_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
 

@@ -19,7 +19,7 @@ namespace flexura {
 namespace {
 
 constexpr NumberRange load_range = {.min = -1e9, .max = 1e9};
-// Each is a node of the rod.
+// Each becomes a node of the rod.
 constexpr std::size_t max_places = 1000;
 
 /// A line of input, in the frame of the arm's base.
@@ -151,16 +151,17 @@ std::string StaticsAnswers::answer(std::string_view line) {
     if (!tip.force.isZero(0) || !tip.moment.isZero(0)) loads.ends.push_back(tip);
     std::vector<RodPlace> places;
     for (const double s : request.at.value_or(std::vector<double>{})) places.push_back(place_of(rod_, s));
-    std::optional<RodStatics> with_places;
-    if (!places.empty()) with_places.emplace(rod_, places);
-    RodStatics& statics = with_places ? *with_places : statics_;
     const Equilibrium found =
-        statics.solve({.tensions = request.tensions.value_or(std::vector<double>{}),
-                       .displacements = request.displacements.value_or(std::vector<double>{})},
-                      loads);
+        statics_.solve({.tensions = request.tensions.value_or(std::vector<double>{}),
+                        .displacements = request.displacements.value_or(std::vector<double>{})},
+                       loads);
     if (found.end == StaticsEnd::bad_input) return write_json(error_node(found.problem));
     Node::Table members = answer_of(found);
-    if (request.at && members.size() > 2) members.push_back({"at", {}, place_nodes(statics.chain(), places)});
+    if (request.at && members.size() > 2) {
+      RodChain chain(rod_, places);
+      chain.place(found.q);
+      members.push_back({"at", {}, place_nodes(chain, places)});
+    }
     return write_json({std::move(members), {}});
   } catch (const InputError& error) {
     return write_json(error_node(joined(error.problems())));

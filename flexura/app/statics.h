@@ -28,7 +28,7 @@ class StaticsAnswers {
  private:
   Rod rod_;
   RodLoads loads_;
-  RodStatics statics_;  // For lines that ask for the tip alone.
+  RodStatics statics_;
 };
 
 }  // namespace flexura

@@ -51,8 +51,7 @@ MagnusStep::Form MagnusStep::form(const Vector6d& W) const {
   const Vector6d with_V = B * V_, with_U = B.transpose() * U_ / 60;
   const Matrix6d B_U = bracket_form(with_U);
   const Matrix6d twice = B_U * ad(a_[1]);
-  const Matrix6d mixed =
-      bracket_form(with_V - B_U.transpose() * a_[0]) - B_U * ad(a_[0]);
+  const Matrix6d mixed = bracket_form(with_V - B_U.transpose() * a_[0]) - B_U * ad(a_[0]);
   form[0][0] += twice + twice.transpose();
   form[0][1] += mixed;
   form[1][0] += mixed.transpose();

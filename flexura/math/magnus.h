@@ -29,6 +29,7 @@ class MagnusStep {
   using Slopes = std::array<Matrix6d, 3>;
   using Form = std::array<std::array<Matrix6d, 3>, 3>;
 
+  /// Of an interval whose strain has these moments.
   explicit MagnusStep(const Moments& moments);
 
   [[nodiscard]] const Vector6d& twist() const { return twist_; }

@@ -15,8 +15,8 @@ namespace {
 // Angles of all sizes, those around the change to series among them.
 Vector6d random_twist(TestRandom& random) {
   Vector6d twist = random.vector<6>(-1.0, 1.0);
-  const double angle = random.integer(0, 1) == 0 ? random.uniform(0.0, 6.0)
-                                                 : std::pow(10.0, random.uniform(-12.0, 0.3));
+  const double angle =
+      random.integer(0, 1) == 0 ? random.uniform(0.0, 6.0) : std::pow(10.0, random.uniform(-12.0, 0.3));
   twist.tail<3>() *= angle / twist.tail<3>().norm();
   return twist;
 }

@@ -20,14 +20,15 @@ Vector6d diagonal(const StiffnessConfig& stiffness) {
   return k;
 }
 
-StrainModes modes_of(const ModesConfig& modes) {
+StrainModes modes_of(const ModesConfig& modes, ArmKind kind) {
   return {.shear = static_cast<int>(modes.shear),
           .stretch = static_cast<int>(modes.stretch),
           .bend = static_cast<int>(modes.bend),
-          .twist = static_cast<int>(modes.twist)};
+          .twist = static_cast<int>(modes.twist),
+          .planar = kind == ArmKind::planar};
 }
 
-RodSection section_of(const Section& section) {
+RodSection section_of(const Section& section, ArmKind kind) {
   const MaterialConfig& material = *section.material;
   RodSection result;
   result.length = section.length;
@@ -44,7 +45,7 @@ RodSection section_of(const Section& section) {
   for (const BodyConfig& body : material.mass)
     result.masses.push_back({.at = body.at, .mass = body.mass, .offset = vector(body.offset)});
   result.disks = static_cast<int>(material.disks.value_or(0));
-  result.modes = modes_of(material.modes);
+  result.modes = modes_of(material.modes, kind);
   result.nodes = static_cast<int>(material.nodes);
   return result;
 }
@@ -60,7 +61,8 @@ TendonRoute route_of(const TendonRouteConfig& tendon, const ArmConfig& arm) {
           .angle_slope = 2 * std::numbers::pi * tendon.turns / end,
           .x = tendon.x,
           .y = tendon.y,
-          .compliance = tendon.compliance};
+          .compliance = tendon.compliance,
+          .friction = tendon.friction};
 }
 
 }  // namespace
@@ -71,7 +73,7 @@ Rod rod_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive) {
     if (!arm.section[i].material)
       throw std::invalid_argument(fmt::format(
           "arm.section[{}]: has no material: expected material.youngs_modulus or material.stiffness", i));
-    rod.sections.push_back(section_of(arm.section[i]));
+    rod.sections.push_back(section_of(arm.section[i], arm.kind));
   }
   for (const TendonRouteConfig& tendon : arm.tendon) rod.tendons.push_back(route_of(tendon, arm));
   if (!arm.tendon.empty() || !drive) return rod;
@@ -118,7 +120,8 @@ TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state) {
             rule,
             [&](double s) {
               const TendonRoute::Offset offset = tendon.at(s);
-              return (Eigen::Vector3d(0, 0, shape.stretches[i]) + curvature.cross(offset.value) + offset.slope)
+              return (Eigen::Vector3d(0, 0, shape.stretches[i]) + curvature.cross(offset.value) +
+                      offset.slope)
                   .norm();
             },
             s_base, s_base + section.length);

@@ -11,8 +11,8 @@ struct Complementary {
   enum class Kind { none, at_least_0, free };
 
   /// By changing one at a time what is held at 0 (principal pivots), from `held_off`, where what is not 0 is
-  /// not held, which it becomes: for positive definite matrices an end is found. `rounding`: what counts as 0 of
-  /// matrix x - rhs.
+  /// not held, which it becomes: for positive definite matrices an end is found. `rounding`: what counts as 0
+  /// of matrix x - rhs.
   [[nodiscard]] Eigen::VectorXd solve(std::vector<char>& held_off, double rounding) const;
 
   Eigen::MatrixXd matrix;

@@ -32,7 +32,8 @@ std::string section_problem(const RodSection& section) {
   for (const double t : {0.0, 1.0}) {
     const double outer = between(section.radius, t), inner = between(section.inner_radius, t);
     if (!is_positive(outer)) return "radius must be above 0";
-    if (!is_at_least_0(inner) || inner >= outer) return "inner radius must be at least 0 and below the radius";
+    if (!is_at_least_0(inner) || inner >= outer)
+      return "inner radius must be at least 0 and below the radius";
   }
   if (section.stiffness) {
     for (const double k : *section.stiffness)

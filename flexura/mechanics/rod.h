@@ -36,9 +36,9 @@ struct StrainModes {
 
 /// A body that is fixed on a section's backbone: a guide disk, a camera, a weight.
 struct PointMass {
-  double at = 1;                                      ///< Where, of the section's length; in [0, 1].
-  double mass = 0;                                    ///< kg
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< Its centre of mass in the cross-section's frame, m.
+  double at = 1;                                     ///< Where, of the section's length; in [0, 1].
+  double mass = 0;                                   ///< kg
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< Its centre of mass in the cross-section's frame, m.
 };
 
 /// One section of a rod: what it is made of, and how finely its strains are told apart.
@@ -64,11 +64,13 @@ struct RodSection {
   /// many as the modes need.
   int nodes = 0;
 
-  /// At t in [0, 1] of the length: the diagonal of the stiffness, the mass a metre, the strain at rest.
+  /// The diagonal of the stiffness at t in [0, 1] of the length, N and N m^2.
   [[nodiscard]] Vector6d stiffness_at(double t) const;
+  /// kg/m there.
   [[nodiscard]] double mass_per_length_at(double t) const;
+  /// The strain at rest there.
   [[nodiscard]] Vector6d rest_strain_at(double t) const;
-  /// The last by arc length, 1/m and 1/m^2.
+  /// And that by arc length, 1/m and 1/m^2.
   [[nodiscard]] Vector6d rest_strain_slope_at(double t) const;
 };
 
@@ -76,21 +78,22 @@ struct RodSection {
 /// At arc length s m from the base, at rest, it passes the cross-section at
 /// (x(s), y(s)) + r(s) (cos a(s), sin a(s)), with r = radius + radius_slope s and a = angle + angle_slope s.
 struct TendonRoute {
-  std::size_t section = 0;   ///< At whose end it is fastened, 0 at the base.
-  double radius = 0;         ///< m
-  double radius_slope = 0;   ///< Converging (< 0) or spreading, m/m.
-  double angle = 0;          ///< From x towards y, rad.
-  double angle_slope = 0;    ///< Helical, rad/m.
+  std::size_t section = 0;             ///< At whose end it is fastened, 0 at the base.
+  double radius = 0;                   ///< m
+  double radius_slope = 0;             ///< Converging (< 0) or spreading, m/m.
+  double angle = 0;                    ///< From x towards y, rad.
+  double angle_slope = 0;              ///< Helical, rad/m.
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;  ///< How much longer it is for each newton, m/N; >= 0. For displacements only.
-  /// Coulomb friction while it is pulled in: of the tension, exp(-friction angle) is left where the tendon has
-  /// turned by an angle since its base (L. Euler, J. Eytelwein); >= 0.
+  /// Coulomb friction while it is pulled in: of the tension, exp(-friction angle) is left where the tendon
+  /// has turned by an angle since its base (L. Euler, J. Eytelwein); >= 0.
   double friction = 0;
 
   /// Its offset in the cross-section, and the first two derivatives of that by s; z is 0.
   struct Offset {
     Eigen::Vector3d value, slope, second;
   };
+  /// At arc length s m from the base, at rest.
   [[nodiscard]] Offset at(double s) const;
 };
 
@@ -104,8 +107,9 @@ struct EndLoad {
 
 /// What pulls at a rod beside its tendons, in the frame of its base.
 struct RodLoads {
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();   ///< m/s^2
-  Eigen::Vector3d per_length = Eigen::Vector3d::Zero();  ///< A force along all of it, N for each metre at rest.
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< m/s^2
+  Eigen::Vector3d per_length =
+      Eigen::Vector3d::Zero();  ///< A force along all of it, N for each metre at rest.
   std::vector<EndLoad> ends = {};
 };
 

@@ -46,8 +46,8 @@ class RodChain {
   /// Balances the rod at q under tensions, N, and a share of the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons(); r by the tensions
-  /// at the base, which is the same where there is no friction.
+  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons(); r by the
+  /// tensions at the base, which is the same where there is no friction.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
@@ -67,14 +67,16 @@ class RodChain {
   /// Whether a tendon rubs: then the derivative that is factored leaves out that friction changes with q.
   [[nodiscard]] bool has_friction() const;
   /// What that is along dq, of the residual at the last balance under these tensions.
-  [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq, std::span<const double> tensions) const;
+  [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq,
+                                                std::span<const double> tensions) const;
 
-  /// Poses of all nodes at q, and how they move. Balance does this only where loads or chords need it.
+  /// Poses of all nodes at q. Balance finds them, with columns, only where loads or chords need them.
   void place(const Eigen::VectorXd& q);
+  /// The same, with columns.
   void place_with_columns(const Eigen::VectorXd& q);
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
-  /// The twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An Eigen::Ref is
-  /// written through.
+  /// The twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An Eigen::Ref
+  /// is written through.
   void columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const;
 
  private:
@@ -82,9 +84,9 @@ class RodChain {
     Eigen::LLT<Eigen::MatrixXd> cholesky;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     bool is_definite = false;
-    Eigen::MatrixXd matrix;                          // Condensed.
+    Eigen::MatrixXd matrix;                            // Condensed.
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
-    RodElement::Columns wrench_by_modes;             // Of all from this section on.
+    RodElement::Columns wrench_by_modes;               // Of all from this section on.
   };
   void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) const;
 

@@ -78,7 +78,8 @@ MagnusStep::Moments RodElement::moments_of(std::size_t interval) const {
 
 void RodElement::place(const Pose& X_BS) {
   X_[0] = X_BS;
-  for (std::size_t i = 0; i < exp_.size(); ++i) X_[i + 1] = X_[i] * se3_exp(MagnusStep(moments_of(i)).twist());
+  for (std::size_t i = 0; i < exp_.size(); ++i)
+    X_[i + 1] = X_[i] * se3_exp(MagnusStep(moments_of(i)).twist());
 }
 
 void RodElement::place_with_columns(const Pose& X_BS) {
@@ -186,7 +187,8 @@ void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size
 }
 
 // The energy of a straight piece is its tension times its length.
-void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension, double left) {
+void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension,
+                           double left) {
   const Eigen::Vector3d a = X_[from] * passages_[tendon][from].offset,
                         b = X_[to] * passages_[tendon][to].offset;
   const double distance = (b - a).norm();

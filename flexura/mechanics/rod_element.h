@@ -65,8 +65,8 @@ class RodElement {
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// The balance of what it is made of and of its tendons: residual, tangent, tendons' lengths and their
-  /// slopes. `tension`: at the base, N, one a tendon of the rod. Chords need the columns. Friction is taken as
-  /// it is: what it loses more as the tendon turns further is not in the tangent.
+  /// slopes. `tension`: at the base, N, one a tendon of the rod. Chords need the columns. Friction is taken
+  /// as it is: what it loses more as the tendon turns further is not in the tangent.
   void stress(std::span<const double> tension);
   /// Adds what loads do, `share` of them, where `beyond` is the wrench of all of the loads of the sections
   /// after this one. The columns are there.
@@ -85,8 +85,8 @@ class RodElement {
   Matrix6d wrench_by_base = Matrix6d::Zero();
   /// Of all of its loads.
   Vector6d wrench = Vector6d::Zero();
-  /// How long each tendon of the rod is in it, m; that by its modes, size() x tendons; and the residual by the
-  /// tensions at the base, which is the same where friction leaves all of them.
+  /// How long each tendon of the rod is in it, m; that by its modes, size() x tendons; and the residual by
+  /// the tensions at the base, which is the same where friction leaves all of them.
   Eigen::VectorXd tendon_lengths;
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Of its strains, J.

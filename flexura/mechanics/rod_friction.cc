@@ -133,7 +133,8 @@ void RodElement::rub_change(std::size_t tendon, double friction, double tension,
     const Passage& passage = (*passages)[k];
     const Eigen::Vector3d along = way(passage, strain_[k]),
                           turning = way_slope(passage, strain_[k], strain_slope(k));
-    const Vector6d by_strain = strain_change(grid_.at_node, k), by_slope = strain_change(grid_.slope_at_node, k);
+    const Vector6d by_strain = strain_change(grid_.at_node, k),
+                   by_slope = strain_change(grid_.slope_at_node, k);
     const Eigen::Vector3d d_along = way_change(k), du = by_strain.tail<3>();
     const Eigen::Vector3d d_turning = du.cross(along) + strain_[k].tail<3>().cross(d_along) +
                                       by_slope.head<3>() + by_slope.tail<3>().cross(passage.offset) +

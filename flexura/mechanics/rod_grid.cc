@@ -12,7 +12,9 @@ namespace {
 constexpr double same_place = 1e-9;
 
 // Its modes cannot be told apart by fewer, nor can loads be told from place to place.
-int nodes_needed(const std::array<int, 6>& counts) { return std::max(5, *std::ranges::max_element(counts) + 2); }
+int nodes_needed(const std::array<int, 6>& counts) {
+  return std::max(5, *std::ranges::max_element(counts) + 2);
+}
 
 }  // namespace
 
@@ -44,7 +46,8 @@ RodGrid::RodGrid(const RodSection& section, std::span<const double> at) : count(
 
   const auto modes_at = [&](double place) {
     Eigen::VectorXd modes(size);
-    for_modes([&](int c, int j) { modes[j] = legendre(j - first[static_cast<std::size_t>(c)], 2 * place - 1); });
+    for_modes(
+        [&](int c, int j) { modes[j] = legendre(j - first[static_cast<std::size_t>(c)], 2 * place - 1); });
     return modes;
   };
   at_node.resize(size, static_cast<Eigen::Index>(t.size()));
@@ -94,7 +97,8 @@ void RodGrid::integrate_nodes() {
           if (i != m && weight[i] != 0) product *= (at - t[i]) / (t[m] - t[i]);
         return product;
       };
-      cumulative(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(m)) = integrate(rule, lagrange, 0, t[k]);
+      cumulative(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(m)) =
+          integrate(rule, lagrange, 0, t[k]);
     }
   }
 }

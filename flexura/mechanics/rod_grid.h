@@ -20,9 +20,9 @@ struct RodGrid {
   std::array<int, 6> first{}, count{};
   int size = 0;  ///< Of all modes.
 
-  std::vector<double> t;       ///< Of the nodes, from 0 to 1.
-  std::vector<double> weight;  ///< Of the nodes in an integral over t; their sum is 1.
-  Eigen::MatrixXd at_node;     ///< Modes x nodes: what each mode is there.
+  std::vector<double> t;          ///< Of the nodes, from 0 to 1.
+  std::vector<double> weight;     ///< Of the nodes in an integral over t; their sum is 1.
+  Eigen::MatrixXd at_node;        ///< Modes x nodes: what each mode is there.
   Eigen::MatrixXd slope_at_node;  ///< The same by arc length, 1/m.
   /// Nodes x nodes: integrals over t up to each node, of what has values at the nodes.
   Eigen::MatrixXd cumulative;
@@ -31,9 +31,9 @@ struct RodGrid {
   /// At the nodes: of the section, its strain at rest, and that by arc length.
   std::vector<Vector6d> stiffness, rest, rest_slope;
   std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Of that in the intervals.
-  std::vector<double> mass_per_length;          ///< At the nodes, kg/m.
-  std::vector<std::size_t> disks;               ///< The nodes that are disks, base and end among them; or none.
-  std::vector<std::size_t> mass_nodes;          ///< Of the section's point masses.
+  std::vector<double> mass_per_length;                ///< At the nodes, kg/m.
+  std::vector<std::size_t> disks;       ///< The nodes that are disks, base and end among them; or none.
+  std::vector<std::size_t> mass_nodes;  ///< Of the section's point masses.
 
   /// The node at t. It is one.
   [[nodiscard]] std::size_t node_at(double place) const;
@@ -48,7 +48,8 @@ struct RodGrid {
   /// The strain, or its moment, that modes of the amounts q make beside that at rest; `modes` is a column of
   /// the above.
   template <typename Column>
-  [[nodiscard]] Vector6d strain(const Vector6d& at_rest, const Eigen::VectorXd& q, const Column& modes) const {
+  [[nodiscard]] Vector6d strain(const Vector6d& at_rest, const Eigen::VectorXd& q,
+                                const Column& modes) const {
     Vector6d sum = at_rest;
     for_modes([&](int c, int j) { sum[c] += q[j] * modes[j]; });
     return sum;

@@ -24,8 +24,8 @@ constexpr double slack_margin = 1e-12;
 // The way from no load on.
 constexpr double first_stride = 0.2, longest_stride = 1, shortest_stride = 1e-7;
 constexpr int max_strides = 2000, max_correction = 8;
-constexpr double longest_way = 400;     // Sections turn around many times.
-constexpr double least_share = -0.5;    // Of the load, where a way turned back.
+constexpr double longest_way = 400;   // Sections turn around many times.
+constexpr double least_share = -0.5;  // Of the load, where a way turned back.
 
 bool all_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
@@ -35,10 +35,14 @@ bool all_finite(const std::vector<double>& values) {
 
 const char* words(StaticsEnd end) {
   switch (end) {
-    case StaticsEnd::converged: return "converged";
-    case StaticsEnd::bad_input: return "bad input";
-    case StaticsEnd::no_equilibrium: return "no equilibrium found on the way from no load";
-    case StaticsEnd::out_of_steps: break;
+    case StaticsEnd::converged:
+      return "converged";
+    case StaticsEnd::bad_input:
+      return "bad input";
+    case StaticsEnd::no_equilibrium:
+      return "no equilibrium found on the way from no load";
+    case StaticsEnd::out_of_steps:
+      break;
   }
   return "out of steps";
 }
@@ -56,14 +60,16 @@ std::string RodStatics::input_problem() const {
   const auto count = chain_.tendons();
   const auto &tensions = input_.tensions, &displacements = input_.displacements;
   if (!tensions.empty() && !displacements.empty()) return "tensions and displacements: expected one of them";
-  for (const auto& [name, list] : {std::pair{"tensions", &tensions}, std::pair{"displacements", &displacements}}) {
+  for (const auto& [name, list] :
+       {std::pair{"tensions", &tensions}, std::pair{"displacements", &displacements}}) {
     if (!list->empty() && list->size() != count)
       return fmt::format("{} {} given: expected {}, one a tendon", list->size(), name, count);
     if (!all_finite(*list)) return fmt::format("{} that are not finite", name);
   }
   if (std::ranges::any_of(tensions, [](double tension) { return tension < 0; }))
     return "a tension below 0: a tendon does not push";
-  if (!loads_.gravity.allFinite() || !loads_.per_length.allFinite()) return "gravity or a load that is not finite";
+  if (!loads_.gravity.allFinite() || !loads_.per_length.allFinite())
+    return "gravity or a load that is not finite";
   for (const EndLoad& end : loads_.ends) {
     if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
     if (end.section >= chain_.rod().sections.size()) return "a load at a section that the rod has not";
@@ -79,8 +85,10 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   ++iterations_;
   const std::size_t count = pulls_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    if (by_displacement_) pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
-    else pulls_[i] = input_.tensions.empty() ? 0 : share * input_.tensions[i];
+    if (by_displacement_)
+      pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
+    else
+      pulls_[i] = input_.tensions.empty() ? 0 : share * input_.tensions[i];
   }
   chain_.balance(at.q, pulls_, loads_, share);
   if (!chain_.residual().allFinite() || !chain_.factor()) return false;
@@ -108,7 +116,8 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
 }
 
 // The lengths of tendons answer to shape and tensions alike: to first order, a tendon is too long by
-// excess - give tensions. It is not (it hangs slack), or it is as long as its displacement leaves it and pulls.
+// excess - give tensions. It is not (it hangs slack), or it is as long as its displacement leaves it and
+// pulls.
 void RodStatics::find_tensions(const Unknowns& at, double share) {
   const auto tendons = static_cast<Eigen::Index>(pulls_.size());
   const auto answers = solved_.rightCols(tendons);
@@ -250,8 +259,10 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
 void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
   result.q = at.q;
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
-    if (by_displacement_) pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
-    else pulls_[i] = input_.tensions.empty() ? 0 : input_.tensions[i];
+    if (by_displacement_)
+      pulls_[i] = at.tensions[static_cast<Eigen::Index>(i)];
+    else
+      pulls_[i] = input_.tensions.empty() ? 0 : input_.tensions[i];
   }
   chain_.balance(at.q, pulls_, loads_, 1);
   chain_.place(at.q);
@@ -374,7 +385,8 @@ Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads,
     return result;
   }
   std::ranges::fill(taut_, char{1});
-  const bool is_cold = near.q.size() != chain_.size() || near.tensions.size() != taut_.size() || !near.converged();
+  const bool is_cold =
+      near.q.size() != chain_.size() || near.tensions.size() != taut_.size() || !near.converged();
   Unknowns start{Eigen::VectorXd::Zero(chain_.size()),
                  Eigen::VectorXd::Zero(static_cast<Eigen::Index>(taut_.size()))};
   if (!is_cold) {

@@ -23,10 +23,11 @@ struct TendonInput {
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,    ///< A number that is not finite, a tension below 0, a list of another length.
+  bad_input,       ///< A number that is not finite, a tension below 0, a list of another length.
   no_equilibrium,  ///< The way from no load on led past every bound before all of the load was there.
-  out_of_steps,  ///< Nor was an end of it seen.
+  out_of_steps,    ///< Nor was an end of it seen.
 };
+/// That, for people.
 [[nodiscard]] const char* words(StaticsEnd end);
 
 /// A rod at rest under what pulls at it, in the frame of its base.
@@ -39,13 +40,14 @@ struct Equilibrium {
   bool snapped = false;
   /// More than one equilibrium was met: a branch left the way, or it turned.
   bool ambiguous = false;
-  int iterations = 0;               ///< Linear systems solved.
-  Eigen::VectorXd q;                ///< The strain modes (RodChain).
-  std::vector<double> tensions;     ///< N, at the base; 0 of slack ones.
+  int iterations = 0;                  ///< Linear systems solved.
+  Eigen::VectorXd q;                   ///< The strain modes (RodChain).
+  std::vector<double> tensions;        ///< N, at the base; 0 of slack ones.
   std::vector<double> tendon_lengths;  ///< Of their ways through the rod, from base to end, m.
-  std::vector<double> displacements;   ///< Pulled in at the base, m; of slack ones that at which they were taut.
-  double strain_energy = 0;            ///< J
-  Pose tip;                            ///< X_BT
+  std::vector<double>
+      displacements;         ///< Pulled in at the base, m; of slack ones that at which they were taut.
+  double strain_energy = 0;  ///< J
+  Pose tip;                  ///< X_BT
 
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }
 };
@@ -56,13 +58,14 @@ struct EquilibriumSlopes {
   Eigen::MatrixXd q_by_input;         ///< size() x tendons. Columns of slack tendons are 0.
   Eigen::MatrixXd tensions_by_input;  ///< Tendons x tendons, N/m; the identity where tensions are given.
   Eigen::MatrixXd lengths_by_input;   ///< Tendons x tendons.
-  Eigen::MatrixXd q_by_tip;           ///< size() x 6: by a force and a moment at the tip, in the base's frame.
-  Eigen::MatrixXd tip_by_input;  ///< 6 x tendons: velocity of the tip's origin and angular velocity, base's frame.
+  Eigen::MatrixXd q_by_tip;  ///< size() x 6: by a force and a moment at the tip, in the base's frame.
+  Eigen::MatrixXd
+      tip_by_input;  ///< 6 x tendons: velocity of the tip's origin and angular velocity, base's frame.
   Eigen::Matrix<double, 6, 6> tip_by_tip;  ///< Compliance: the same by a force and a moment at the tip.
 };
 
-/// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al., geometric
-/// variable strain), by Newton's method from no load on along a growing share of it.
+/// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
+/// geometric variable strain), by Newton's method from no load on along a growing share of it.
 class RodStatics {
  public:
   /// As RodChain.
@@ -108,9 +111,9 @@ class RodStatics {
   TendonInput input_;
   RodLoads loads_;
   bool by_displacement_ = false;
-  std::vector<char> taut_;      // Of displacement input, as last found: where the next search begins.
-  std::vector<double> pulls_;   // Tensions as chain_ takes them.
-  Eigen::MatrixXd solved_;      // Columns: by F, by the share, by each tendon's tension.
+  std::vector<char> taut_;     // Of displacement input, as last found: where the next search begins.
+  std::vector<double> pulls_;  // Tensions as chain_ takes them.
+  Eigen::MatrixXd solved_;     // Columns: by F, by the share, by each tendon's tension.
   Unknowns newton_, tangent_;
   Eigen::VectorXd at_;  // q of what was last solved.
   int negative_ = 0, iterations_ = 0;

@@ -92,7 +92,8 @@ void expect_slopes(RodStatics& statics, const TendonInput& input, const RodLoads
     EXPECT_LE((found - tip).norm(), 1e-5 * (1 + tip.norm())) << i;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double tension = (beside[1].tensions[j] - beside[0].tensions[j]) / (2 * step);
-      EXPECT_NEAR(slopes.tensions_by_input(static_cast<Eigen::Index>(j), column), tension, 2e-5 * (1 + std::abs(tension)));
+      EXPECT_NEAR(slopes.tensions_by_input(static_cast<Eigen::Index>(j), column), tension,
+                  2e-5 * (1 + std::abs(tension)));
     }
   }
   // By a force and a moment at the tip.

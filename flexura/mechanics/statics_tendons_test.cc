@@ -41,7 +41,8 @@ TEST(StaticsTendons, ATendonThatIsLetOutHangsSlackAndDoesNotPush) {
   EXPECT_GT(at.tensions[3], 0.1);
   EXPECT_NEAR(at.tendon_lengths[3], 0.4 - 0.004, 1e-12);
   // A pretension: all six are pulled in against each other.
-  const Equilibrium tight = statics.solve({.displacements = {2.5e-5, 2.5e-5, 2.5e-5, 3.5e-5, 3.5e-5, 3.5e-5}}, {});
+  const Equilibrium tight =
+      statics.solve({.displacements = {2.5e-5, 2.5e-5, 2.5e-5, 3.5e-5, 3.5e-5, 3.5e-5}}, {});
   ASSERT_TRUE(tight.converged());
   for (const double tension : tight.tensions) EXPECT_GT(tension, 0.1);
   EXPECT_LE((tight.tip.position - Eigen::Vector3d(0, 0, 0.4)).head<2>().norm(), 1e-9);
@@ -126,7 +127,8 @@ TEST(StaticsTendons, PassTheEndsOfSectionsAsIfThereWereNone) {
     rod.sections[0].modes = {.shear = 3, .stretch = 3, .bend = 9, .twist = 8};
     for (TendonRoute& tendon : rod.tendons) tendon.section = 0;
     const std::vector<double> tensions = random_tensions(random, rod, 5);
-    RodLoads loads{.gravity = random.vector<3>(-10.0, 10.0), .ends = {{.force = random.vector<3>(-0.1, 0.1)}}};
+    RodLoads loads{.gravity = random.vector<3>(-10.0, 10.0),
+                   .ends = {{.force = random.vector<3>(-0.1, 0.1)}}};
     const Equilibrium whole = RodStatics(rod).solve({.tensions = tensions}, loads);
     rod.sections[0].length *= 0.5;
     rod.sections.push_back(rod.sections[0]);

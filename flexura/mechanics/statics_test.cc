@@ -112,8 +112,8 @@ TEST(Statics, AColumnIsStableUpToItsBucklingLoad) {
   expect_near(above.tip.position, {0, 0, 1}, 1e-9);
 }
 
-// A column that is curved to one side, and heavier than it can bear, falls to that side; a tendon on the other
-// side holds it up, until it jumps over.
+// A column that is curved to one side, and heavier than it can bear, falls to that side; a tendon on the
+// other side holds it up, until it jumps over.
 TEST(Statics, AColumnThatIsPulledOverSnaps) {
   Rod rod = elastica(8);
   rod.sections[0].modes.planar = true;
@@ -156,9 +156,10 @@ TEST(Statics, RefusesWhatIsNoInput) {
     RodStatics refused(rod);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "section 2: Young's modulus and shear modulus must be above 0; tendon 1: ends at a section that "
-                 "the rod has not");
+    EXPECT_STREQ(
+        error.what(),
+        "section 2: Young's modulus and shear modulus must be above 0; tendon 1: ends at a section that "
+        "the rod has not");
   }
 }
 

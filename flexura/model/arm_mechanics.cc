@@ -112,7 +112,12 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
           .field("compliance", &TendonRouteConfig::compliance,
                  {.meaning = "How much longer it is for each newton, m/N, where it is told how far it is "
                              "pulled in.",
-                  .range = between(0, 1e6)});
+                  .range = between(0, 1e6)})
+          .field(
+              "friction", &TendonRouteConfig::friction,
+              {.meaning = "Coulomb friction along its way: exp(-friction angle) is left of a tension where "
+                          "the tendon has turned by an angle, in radians, since its base.",
+               .range = between(0, 10)});
   return table;
 }
 

@@ -28,6 +28,7 @@ struct TendonRouteConfig {
   double turns = 0;                       ///< Around the backbone from base to end, from x towards y.
   std::vector<double> x = {}, y = {};     ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;                  ///< How much longer it is for each newton, m/N.
+  double friction = 0;                    ///< Coulomb's, along its way.
 
   /// (x, y) at arc length `s` of a tendon that ends at `end`, m.
   [[nodiscard]] Eigen::Vector2d offset(double s, double end) const;

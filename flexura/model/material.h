@@ -23,8 +23,8 @@ struct StiffnessConfig {
 
 /// How many Legendre polynomials of arc length each strain of a section is a sum of; 0: it stays as at rest.
 struct ModesConfig {
-  std::int64_t shear = 2;  ///< Each of the two directions.
-  std::int64_t stretch = 2;
+  std::int64_t shear = 1;  ///< Each of the two directions.
+  std::int64_t stretch = 1;
   std::int64_t bend = 5;  ///< Each of the two directions.
   std::int64_t twist = 4;
 };

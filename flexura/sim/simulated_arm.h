@@ -8,10 +8,10 @@
 #include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
 #include "flexura/sim/bend_motion.h"
-#include "flexura/sim/static_plant.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/simulated_drive.h"
 #include "flexura/sim/simulated_link.h"
+#include "flexura/sim/static_plant.h"
 
 namespace flexura {
 

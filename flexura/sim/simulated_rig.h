@@ -7,12 +7,12 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/port/rig_ports.h"
-#include "flexura/sim/static_plant.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/simulated_arm.h"
 #include "flexura/sim/simulated_camera.h"
 #include "flexura/sim/simulated_clock.h"
 #include "flexura/sim/simulated_head.h"
+#include "flexura/sim/static_plant.h"
 
 namespace flexura {
 

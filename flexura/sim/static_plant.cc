@@ -34,8 +34,9 @@ std::vector<std::int64_t> microsteps(const Eigen::VectorXd& u) {
 const ArmRod& rod_in(const PlantSetup& setup) {
   if (!setup.truth.rod) throw std::invalid_argument("the true arm is no rod");
   if (setup.truth.drive && setup.truth.drive->axes.size() != setup.truth.rod->rod.tendons.size())
-    throw std::invalid_argument(fmt::format("the arm has {} tendons: expected {}, one for each axis of its drive",
-                                            setup.truth.rod->rod.tendons.size(), setup.truth.drive->axes.size()));
+    throw std::invalid_argument(
+        fmt::format("the arm has {} tendons: expected {}, one for each axis of its drive",
+                    setup.truth.rod->rod.tendons.size(), setup.truth.drive->axes.size()));
   return *setup.truth.rod;
 }
 
@@ -79,7 +80,8 @@ void StaticPlant::advance(double time) {
     snapshots_.push_back({next, solved(static_cast<double>(next) * step, snapshots_.back().at)});
   const double oldest = time - horizon_ - 2 * step;
   std::size_t gone = 0;
-  while (gone + 1 < snapshots_.size() && static_cast<double>(snapshots_[gone + 1].index) * step < oldest) ++gone;
+  while (gone + 1 < snapshots_.size() && static_cast<double>(snapshots_[gone + 1].index) * step < oldest)
+    ++gone;
   snapshots_.erase(snapshots_.begin(), snapshots_.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
@@ -100,8 +102,8 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near) const {
   const std::lock_guard lock(mutex_);
   Equilibrium at = statics_.solve(input, loads_, near);
   if (!at.converged())
-    throw std::runtime_error(
-        fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}", time, words(at.end)));
+    throw std::runtime_error(fmt::format(
+        "at {:.3f} s the arm comes to no rest under its tendons and loads: {}", time, words(at.end)));
   return at;
 }
 

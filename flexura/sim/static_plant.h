@@ -20,13 +20,14 @@ namespace flexura {
 /// without inertia from equilibrium to equilibrium (docs/mechanics.md). Of several it takes the one that its
 /// way leads to, at steps of `step` s from time 0 on.
 ///
-/// Behind a drive its spools pull the tendons in; without one, what commands call bends pulls each in as far as
-/// arcs of these bends would. std::runtime_error: the arm has no equilibrium.
+/// Behind a drive its spools pull the tendons in; without one, what commands call bends pulls each in as far
+/// as arcs of these bends would. std::runtime_error: the arm has no equilibrium.
 class StaticPlant : public Plant {
  public:
   static constexpr double step = 0.02;
 
-  /// The truth has a rod, with a tendon for each axis of its drive if it has one. std::invalid_argument: not so.
+  /// The truth has a rod, with a tendon for each axis of its drive if it has one. std::invalid_argument: not
+  /// so.
   explicit StaticPlant(const PlantSetup& setup);
 
   void command(double time, const Eigen::VectorXd& u, double duration) override;

@@ -34,7 +34,8 @@ ArmState bent() {
 
 StaticPlant& plant_of(SimulatedRig& rig) { return dynamic_cast<StaticPlant&>(rig.arm().plant()); }
 
-// Without weight and play the rod is the arcs that the tendons make, but for what it shortens under them, some 0.03 mm of 0.5 m, which ten times the arm of a tendon shows as 0.5 mm.
+// Without weight and play the rod is the arcs that the tendons make, but for what it shortens under them,
+// some 0.03 mm of 0.5 m, which ten times the arm of a tendon shows as 0.5 mm.
 TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
   RigConfig config = elastic_rig();
   config.drive->spool.backlash = 0;

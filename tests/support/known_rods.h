@@ -8,24 +8,25 @@
 
 namespace flexura {
 
-inline constexpr double degree = std::numbers::pi / 180;
-
-/// A robot of two sections and six tendons: L .2 + .2 m, E 54 GPa, nu 0.3, radius .7 mm, tendons 10 mm off axis
-/// at 90, -30 and 210 degrees that end at the first section, then the same of the second.
+/// A robot of two sections and six tendons: L .2 + .2 m, E 54 GPa, nu 0.3, radius .7 mm, tendons 10 mm off
+/// axis at 90, -30 and 210 degrees that end at the first section, then the same of the second.
 inline Rod two_section_robot() {
-  RodSection section{.length = 0.2, .radius = {0.7e-3, 0.7e-3}, .youngs_modulus = 54e9,
-                     .shear_modulus = 54e9 / 2.6};
+  RodSection section{
+      .length = 0.2, .radius = {0.7e-3, 0.7e-3}, .youngs_modulus = 54e9, .shear_modulus = 54e9 / 2.6};
   Rod rod{.sections = {section, section}, .tendons = {}};
   for (const std::size_t end : {0u, 1u})
     for (const double angle : {90.0, -30.0, 210.0})
-      rod.tendons.push_back({.section = end, .radius = 0.01, .angle = angle * degree});
+      rod.tendons.push_back({.section = end, .radius = 0.01, .angle = angle * std::numbers::pi / 180});
   return rod;
 }
 
 /// A spring steel rod of 0.5 m with one tendon at 0 degrees.
 inline Rod heavy_rod() {
-  return {.sections = {RodSection{.length = 0.5, .radius = {1e-3, 1e-3}, .youngs_modulus = 200e9,
-                                  .shear_modulus = 80e9, .density = 8000}},
+  return {.sections = {RodSection{.length = 0.5,
+                                  .radius = {1e-3, 1e-3},
+                                  .youngs_modulus = 200e9,
+                                  .shear_modulus = 80e9,
+                                  .density = 8000}},
           .tendons = {{.section = 0, .radius = 15.06e-3}}};
 }
 

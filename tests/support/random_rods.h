@@ -9,8 +9,9 @@
 
 namespace flexura {
 
-/// A rod of one to three sections with tapers, curved at rest, with straight, helical and converging tendons. It has
-/// the size of a laboratory's: sections of 0.1 to 0.3 m that tendons of some newtons bend by up to a turn.
+/// A rod of one to three sections with tapers, curved at rest, with straight, helical and converging tendons.
+/// It has the size of a laboratory's: sections of 0.1 to 0.3 m that tendons of some newtons bend by up to a
+/// turn.
 inline Rod random_rod(TestRandom& random, double friction = 0) {
   Rod rod;
   const int sections = random.integer(1, 3);
@@ -24,7 +25,8 @@ inline Rod random_rod(TestRandom& random, double friction = 0) {
     if (random.integer(0, 1) == 0)
       section.rest_curvature = {random.vector<3>(-3.0, 3.0), random.vector<3>(-2.0, 2.0)};
     if (random.integer(0, 2) == 0)
-      section.masses = {{.at = random.uniform(0.2, 1), .mass = random.uniform(0, 0.01),
+      section.masses = {{.at = random.uniform(0.2, 1),
+                         .mass = random.uniform(0, 0.01),
                          .offset = random.vector<3>(-0.01, 0.01)}};
     rod.sections.push_back(section);
   }
@@ -61,8 +63,9 @@ inline RodLoads random_loads(TestRandom& random, const Rod& rod) {
   if (random.integer(0, 1) == 0) loads.gravity = 9.81 * random.vector<3>(-1.0, 1.0).normalized();
   if (random.integer(0, 2) == 0) loads.per_length = random.vector<3>(-0.1, 0.1);
   if (random.integer(0, 1) == 0) {
-    EndLoad end{.section = static_cast<std::size_t>(random.integer(0, static_cast<int>(rod.sections.size()) - 1)),
-                .force = random.vector<3>(-0.15, 0.15)};
+    EndLoad end{
+        .section = static_cast<std::size_t>(random.integer(0, static_cast<int>(rod.sections.size()) - 1)),
+        .force = random.vector<3>(-0.15, 0.15)};
     if (random.integer(0, 1) == 0) end.moment = random.vector<3>(-0.01, 0.01);
     end.following = random.integer(0, 2) == 0;
     loads.ends.push_back(end);

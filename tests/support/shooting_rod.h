@@ -17,11 +17,11 @@
 
 namespace flexura {
 
-/// A rod found by shooting, to witness what mechanics finds by modes: the differential equations of a Cosserat
-/// rod with tendons (D. C. Rucker, R. J. Webster III, "Statics and dynamics of continuum robots with general
-/// tendon routing and external loading", 2011), integrated from the base with a guessed wrench of rod and
-/// tendons together, until that at the tip is what pulls there. It shares no mode, node or series with mechanics.
-/// Tendons run in channels.
+/// A rod found by shooting, to witness what mechanics finds by modes: the differential equations of a
+/// Cosserat rod with tendons (D. C. Rucker, R. J. Webster III, "Statics and dynamics of continuum robots with
+/// general tendon routing and external loading", 2011), integrated from the base with a guessed wrench of rod
+/// and tendons together, until that at the tip is what pulls there. It shares no mode, node or series with
+/// mechanics. Tendons run in channels.
 class ShootingRod {
  public:
   struct Shot {
@@ -80,7 +80,8 @@ class ShootingRod {
   }
 
   // The wrench of the strained rod and its tendons on a cross-section, in its frame.
-  Vector6d wrench_of(const RodSection& section, std::size_t index, double t, double s, const Vector6d& strain) const {
+  Vector6d wrench_of(const RodSection& section, std::size_t index, double t, double s,
+                     const Vector6d& strain) const {
     Vector6d wrench = section.stiffness_at(t).cwiseProduct(strain - section.rest_strain_at(t));
     for (std::size_t i = 0; i < tensions_.size(); ++i) {
       if (rod_.tendons[i].section < index) continue;
@@ -94,8 +95,8 @@ class ShootingRod {
   }
 
   // The strain at which that is what pulls.
-  Vector6d strain_for(const RodSection& section, std::size_t index, double t, double s, const Vector6d& wrench,
-                      Vector6d strain) const {
+  Vector6d strain_for(const RodSection& section, std::size_t index, double t, double s,
+                      const Vector6d& wrench, Vector6d strain) const {
     const auto counts = section.modes.counts();
     for (int i = 0; i < 20; ++i) {
       Vector6d excess = wrench_of(section, index, t, s, strain) - wrench;
@@ -105,7 +106,8 @@ class ShootingRod {
         const double step = c < 3 ? 1e-6 : 1e-4;
         plus[c] += step;
         minus[c] -= step;
-        slope.col(c) = (wrench_of(section, index, t, s, plus) - wrench_of(section, index, t, s, minus)) / (2 * step);
+        slope.col(c) =
+            (wrench_of(section, index, t, s, plus) - wrench_of(section, index, t, s, minus)) / (2 * step);
       }
       for (int c = 0; c < 6; ++c) {
         if (counts[static_cast<std::size_t>(c)] > 0) continue;  // A strain that stays.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "flexura/model/arm_model.h"
@@ -36,6 +37,11 @@ class Plant {
   /// How the arm stands, back to the horizon (PlantSetup) before the rig's time, and up to that time. Asking
   /// changes nothing. Several threads may ask at once, while nobody commands or advances.
   [[nodiscard]] virtual Backbone backbone(double time) const = 0;
+  /// What its sections are bent to, as the drives see it. None: it has no sections that drives bend. Times as
+  /// backbone(), and what is to come as far as commanded.
+  [[nodiscard]] virtual std::optional<ArmState> commanded(double /*time*/) const { return std::nullopt; }
+  /// By which each tendon pulls at the arm's base, N. Empty: nobody knows. Times as backbone().
+  [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
 };
 
 /// What a plant begins with.
@@ -57,6 +63,7 @@ class ArcPlant : public Plant {
   /// What its sections are bent to, as the drives see it; known in what is to come too, as far as commanded.
   [[nodiscard]] virtual ArmState state(double time) const = 0;
   [[nodiscard]] Backbone backbone(double time) const override { return arm_.backbone(state(time)); }
+  [[nodiscard]] std::optional<ArmState> commanded(double time) const override { return state(time); }
 
  private:
   ArmModel arm_;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -75,10 +76,9 @@ CommandOutcome SimulatedArm::halt() { return port_->halt(); }
 Outcome<ArmReading> SimulatedArm::read() { return port_->read(); }
 
 ArmState SimulatedArm::truth(double time) const {
-  const auto* arcs = dynamic_cast<const ArcPlant*>(plant_.get());
-  if (arcs == nullptr)
-    throw std::logic_error("the simulated arm is no chain of arcs: it has no state of one");
-  return arcs->state(time);
+  const std::optional<ArmState> state = plant_->commanded(time);
+  if (!state) throw std::logic_error("the simulated arm has no sections that drives bend: it has no state of one");
+  return *state;
 }
 
 }  // namespace flexura

@@ -51,7 +51,7 @@ class SimulatedArm : public ArmPort {
   Outcome<ArmReading> read() override;
 
   /// What the true arm is commanded to by its drives as they are, from `horizon` s before the last command
-  /// on: not for algorithms. std::logic_error: the plant is no chain of arcs.
+  /// on: not for algorithms. std::logic_error: the plant has none (Plant::commanded).
   [[nodiscard]] ArmState truth(double time) const;
   /// The true arm's; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return plant_->backbone(time); }

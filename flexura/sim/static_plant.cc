@@ -55,6 +55,11 @@ StaticPlant::StaticPlant(const PlantSetup& setup)
   } else {
     bends_.emplace(arm_, setup.truth.initial, setup.horizon);
   }
+  for (const RodElement& element : fine_.elements()) {
+    std::vector<std::size_t>& nodes = fine_nodes_.emplace_back();
+    for (std::size_t k = 0; k <= samples_a_section; ++k)
+      nodes.push_back(element.grid().node_at(static_cast<double>(k) / static_cast<double>(samples_a_section)));
+  }
   snapshots_.push_back({0, solved(0, {})});
 }
 
@@ -92,6 +97,11 @@ Equilibrium StaticPlant::equilibrium(double time) const {
   return solved(time, snapshots_[from].at);
 }
 
+std::optional<ArmState> StaticPlant::commanded(double time) const {
+  if (motors_) return shape_carried(arm_, *drive_, zero_, motors_->carried(time));
+  return bends_->at(time);
+}
+
 TendonDisplacements StaticPlant::displacements(double time) const {
   if (motors_) return displacements_carried(*drive_, zero_, motors_->carried(time));
   return arc_displacements(fine_.rod(), bends_->at(time));
@@ -118,11 +128,12 @@ Backbone StaticPlant::backbone_of(const Equilibrium& at) const {
       const auto& radius = arm_.sections[i].radius;
       const std::vector<double>& t = element.grid().t;
       // A section's end is the next one's base.
-      const bool is_last = i + 1 == fine_.elements().size();
-      for (std::size_t k = 0; k + (is_last ? 0 : 1) < t.size(); ++k) {
-        samples.push_back({.X_WS = arm_.X_WB * element.poses()[k],
-                           .s_rest = s_rest + t[k] * element.length(),
-                           .radius = radius[0] + t[k] * (radius[1] - radius[0]),
+      const std::size_t count = samples_a_section + (i + 1 == fine_.elements().size() ? 1 : 0);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t node = fine_nodes_[i][k];
+        samples.push_back({.X_WS = arm_.X_WB * element.poses()[node],
+                           .s_rest = s_rest + t[node] * element.length(),
+                           .radius = radius[0] + t[node] * (radius[1] - radius[0]),
                            .section = i});
       }
       s_rest += element.length();

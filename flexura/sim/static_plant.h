@@ -34,6 +34,8 @@ class StaticPlant : public Plant {
   void halt(double time) override;
   void advance(double time) override;
   [[nodiscard]] Backbone backbone(double time) const override { return backbone_of(equilibrium(time)); }
+  [[nodiscard]] std::optional<ArmState> commanded(double time) const override;
+  [[nodiscard]] std::vector<double> tensions(double time) const override { return equilibrium(time).tensions; }
 
   /// How the rod stands in its frame, with its tendons' tensions. Times as backbone().
   [[nodiscard]] Equilibrium equilibrium(double time) const;
@@ -60,7 +62,8 @@ class StaticPlant : public Plant {
   // Asked by several threads; what they get depends on none of what was solved before.
   mutable std::mutex mutex_;
   mutable RodStatics statics_;
-  mutable RodChain fine_;  // places many samples
+  mutable RodChain fine_;                             // places many samples
+  std::vector<std::vector<std::size_t>> fine_nodes_;  // of each section
 };
 
 /// The plant that the setup's truth is: a rod or a chain of arcs.

@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "flexura/experiment/report_safety.h"
 #include "flexura/log/logged_message.h"
 #include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
+#include "flexura/report/arm_drawing.h"
 
 namespace flexura {
 namespace {
@@ -16,6 +18,38 @@ namespace {
 constexpr std::size_t max_kept_states = 10000;
 
 }  // namespace
+
+std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& commanded) const {
+  if (times.empty()) return std::nullopt;
+  LineChart pulls{.heading = "tension of each tendon",
+                  .x_label = "t (s)",
+                  .value_label = "tension (N)",
+                  .least = 0.1,
+                  .x = times,
+                  .legend = "tendon"};
+  for (std::size_t i = 0; i < tensions.front().size(); ++i) {
+    ChartSeries& series = pulls.series.emplace_back();
+    series.name = std::to_string(i + 1);
+    for (const std::vector<double>& at : tensions) series.values.push_back(at[i]);
+  }
+  LineChart tip{.heading = "the true tip from the commanded one",
+                .x_label = "t (s)",
+                .value_label = "distance (mm)",
+                .least = 1,
+                .x = times};
+  ChartSeries& distance = tip.series.emplace_back();
+  for (const double metres : off) distance.values.push_back(1000 * metres);
+  return Chapter{
+      .heading = "The true arm",
+      .text =
+          "The simulated arm is an elastic rod, at rest under its tendons, its weight and its loads. "
+          "The pictures above show the arm as it was commanded.",
+      .figures = {{"true-arm", two_shapes_picture(arm, *last, commanded,
+                                                  "the true arm at the end, and as commanded (line)")},
+                  {"tensions", std::move(pulls)},
+                  {"tip-off", std::move(tip)}},
+      .is_first_tall = false};
+}
 
 Witness::Witness(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher)
     : log_(folder / log_file_name, model.driven(), watcher), model_(model) {}
@@ -34,6 +68,7 @@ void Witness::draw_scene(const Experiment& experiment) {
 
 void Witness::state(std::size_t step, double time, const ArmState& state) {
   const Backbone backbone = model_.backbone(state);
+  commanded_tip_ = backbone.tip().position;
   log_.recorder().state(time, state, backbone);
   if (drawn_color_ && (scene_times_.is_next(time) || step == last_step_)) {
     const SceneMessage arm = arm_message(*drawn_color_, time, backbone);
@@ -53,7 +88,19 @@ void Witness::readings(Rig& rig) {
   const std::int64_t told = std::llround(now * 1e9);
   if (std::exchange(read_at_, told) == told) return;
   Recorder& recorder = log_.recorder();
-  if (RigTruth* truth = rig.truth()) recorder.truth(now, truth->backbone(now));
+  if (RigTruth* truth = rig.truth()) {
+    const Backbone backbone = truth->backbone(now);
+    recorder.truth(now, backbone);
+    if (std::vector<double> tensions = truth->tensions(now); !tensions.empty()) {
+      recorder.write({arm_tensions_topic, now, TensionsMessage{now, tensions}});
+      if (readings_++ % kept_every_ == 0) {
+        rod_.times.push_back(now);
+        rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
+        rod_.tensions.push_back(std::move(tensions));
+      }
+      rod_.last = backbone;
+    }
+  }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
     if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
@@ -96,6 +143,8 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
                   .curve = experiment.record.curve,
                   .tension = experiment.record.tension,
                   .chapters = {}};
+  if (auto chapter = rod_.chapter(data.arm, model_.backbone(data.states.back())))
+    data.chapters.push_back(std::move(*chapter));
   add_safety(safety, schedule, data);
   // However few states are recorded, the picture in the middle is of the middle.
   if (!data.times.empty()) add_state((data.times.front() + data.times.back()) / 2, schedule, data);

@@ -17,6 +17,17 @@
 
 namespace flexura {
 
+/// What the report shows of a true arm that is an elastic rod.
+struct RodRecord {
+  std::vector<double> times;                  ///< s
+  std::vector<std::vector<double>> tensions;  ///< N, one list a time.
+  std::vector<double> off;                    ///< How far its tip is from the commanded one, m.
+  std::optional<Backbone> last;               ///< As it is at the last of these times.
+
+  /// None of an arm that is no rod; with `commanded`, how `arm` was to stand at last.
+  [[nodiscard]] std::optional<Chapter> chapter(const Arm& arm, const Backbone& commanded) const;
+};
+
 /// Everything that a run leaves behind while it plays: the log, and what the report will show.
 class Witness {
  public:
@@ -52,9 +63,11 @@ class Witness {
   ArmModel model_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
-  std::size_t recorded_ = 0;
+  std::size_t recorded_ = 0, readings_ = 0;
   std::vector<double> times_;
   std::vector<ArmState> states_;
+  Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
+  RodRecord rod_;
 };
 
 }  // namespace flexura

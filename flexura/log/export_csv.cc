@@ -132,6 +132,32 @@ class TruthTable : public LogTable {
   std::optional<std::size_t> arcs_;
 };
 
+// /arm/tensions: of the true arm's tendons.
+class TensionsTable : public LogTable {
+ public:
+  [[nodiscard]] std::string file_name() const override { return "tensions.csv"; }
+  [[nodiscard]] bool takes(std::string_view topic) const override { return topic == arm_tensions_topic; }
+  void add(std::string_view /*topic*/, double time, const Node& message) override {
+    const auto pulls = read_as<TensionsMessage>(message);
+    if (!tendons_) {
+      tendons_ = pulls.tensions.size();
+      csv_.cell("time");
+      for (std::size_t i = 1; i <= *tendons_; ++i) csv_.cell(fmt::format("tension_{}", i));
+      csv_.end_row();
+    }
+    if (pulls.tensions.size() != *tendons_)
+      throw std::runtime_error(fmt::format("the log's true arm at {} s has other tendons than before", time));
+    csv_.cell(time);
+    for (const double tension : pulls.tensions) csv_.cell(tension);
+    csv_.end_row();
+  }
+  [[nodiscard]] std::string text() const override { return csv_.text(); }
+
+ private:
+  CsvText csv_;
+  std::optional<std::size_t> tendons_;
+};
+
 class EventsTable : public LogTable {
  public:
   EventsTable() {
@@ -171,6 +197,7 @@ ExportResult export_csv(const std::filesystem::path& results, LogTables more) {
   LogTables tables;
   tables.push_back(std::make_unique<StatesTable>());
   tables.push_back(std::make_unique<TruthTable>());
+  tables.push_back(std::make_unique<TensionsTable>());
   tables.push_back(std::make_unique<EventsTable>());
   std::ranges::move(more, std::back_inserter(tables));
   from_log([&] { fill(tables, log, (results / log_file_name).string()); });

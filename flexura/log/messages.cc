@@ -98,6 +98,15 @@ const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*) {
   return table;
 }
 
+const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
+  static const auto table =
+      Table<TensionsMessage>("flexura.Tensions", "By which the tendons of the true arm pull.")
+          .field("time", &TensionsMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("tensions", &TensionsMessage::tensions,
+                 {.meaning = "Each tendon's tension at the arm's base, N."});
+  return table;
+}
+
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Where a camera's head says that it stands.")

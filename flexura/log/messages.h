@@ -87,6 +87,12 @@ struct ArmReadingMessage {
   bool moving = false;
 };
 
+/// flexura.Tensions, on /arm/tensions beside the true arm, where that is an elastic rod.
+struct TensionsMessage {
+  double time = 0;               ///< s
+  std::vector<double> tensions;  ///< By which each tendon pulls at the arm's base, N.
+};
+
 /// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.
 struct HeadReadingMessage {
   double time = 0;           ///< s
@@ -120,6 +126,7 @@ struct ImageMessage {
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_truth_topic = "/arm/truth";
+inline constexpr std::string_view arm_tensions_topic = "/arm/tensions";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
@@ -133,6 +140,7 @@ const Table<PosesMessage>& fields_of(const PosesMessage*);
 const Table<EventMessage>& fields_of(const EventMessage*);
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
+const Table<TensionsMessage>& fields_of(const TensionsMessage*);
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);

@@ -91,9 +91,9 @@ std::vector<Eigen::Vector2d> tip_points(const ReportMotion& motion, const PlotFr
   return points;
 }
 
-std::string backbone_path(const PlotScene& scene, std::size_t v, const ReportMotion& motion, std::size_t i) {
+std::string backbone_path(const PlotScene& scene, std::size_t v, const Backbone& backbone) {
   std::string path;
-  for (const Arc& arc : motion.backbones[i].arcs())
+  for (const Arc& arc : backbone.arcs())
     path += polyline_path(arc_points(arc, scene.views[v], scene.frames[v]));
   return path;
 }
@@ -214,6 +214,24 @@ Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene, const
   return drawing;
 }
 
+Drawing two_shapes_picture(const Arm& arm, const Backbone& shape, const Backbone& ghost,
+                           std::string_view heading) {
+  Eigen::AlignedBox3d box;
+  extend_by_tube(box, shape);
+  extend_by_tube(box, ghost);
+  const PlotScene scene = scene_of(box, lies_in_xoy(arm), 0.1 * arm.length());
+  XmlWriter svg;
+  draw_scene_axes(svg, scene, heading);
+  for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, ghost)}});
+    draw_base(svg, scene.frames[v], scene.views[v], arm);
+    for (const std::size_t k : back_to_front(scene.views[v], shape))
+      draw_tube(svg, scene, v, shape.arcs()[k], false);
+    svg.circle(scene.frames[v].page(seen(scene.views[v], shape.tip().position)), "tip", 5);
+  }
+  return {scene.width, scene.height, std::string(heading), svg.text()};
+}
+
 Drawing tip_path_picture(const ReportMotion& motion) {
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < motion.count(); ++i) box.extend(motion.tip(i));
@@ -243,7 +261,7 @@ Drawing player_picture(const ReportMotion& motion, const PlotScene& scene) {
     const PlotFrame& frame = scene.frames[v];
     draw_obstacles(svg, scene, v, motion);
     for (const std::size_t i : {std::size_t{0}, motion.end()}) {
-      svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion, i)}});
+      svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, motion.backbones[i])}});
     }
     for (const auto& violation : motion.violations) {
       if (violation.target) draw_target(svg, frame, frame.page(seen(scene.views[v], *violation.target)));

@@ -45,19 +45,21 @@ PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least) 
   return scene;
 }
 
-Eigen::AlignedBox3d swept_box(const ReportMotion& motion) {
+void extend_by_tube(Eigen::AlignedBox3d& box, const Backbone& backbone) {
   constexpr double step = 0.2;  // rad; an arc bulges at most step^2/8 of its radius between points.
-  Eigen::AlignedBox3d box;
-  for (const Backbone& backbone : motion.backbones) {
-    for (const Arc& arc : backbone.arcs()) {
-      const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(arc.radius[0], arc.radius[1]));
-      const double steps = 1.0 + std::floor(arc.bend.norm() / step);
-      for (double k = 0.0; k <= steps; ++k) {
-        const Eigen::Vector3d at = arc.pose(arc.length * k / steps).position;
-        box.extend(Eigen::AlignedBox3d(at - around, at + around));
-      }
+  for (const Arc& arc : backbone.arcs()) {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(arc.radius[0], arc.radius[1]));
+    const double steps = 1.0 + std::floor(arc.bend.norm() / step);
+    for (double k = 0.0; k <= steps; ++k) {
+      const Eigen::Vector3d at = arc.pose(arc.length * k / steps).position;
+      box.extend(Eigen::AlignedBox3d(at - around, at + around));
     }
   }
+}
+
+Eigen::AlignedBox3d swept_box(const ReportMotion& motion) {
+  Eigen::AlignedBox3d box;
+  for (const Backbone& backbone : motion.backbones) extend_by_tube(box, backbone);
   return box;
 }
 

@@ -29,6 +29,8 @@ struct PlotScene {
 /// Nothing shown is made smaller than `least` m across.
 [[nodiscard]] PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least);
 
+/// Extends a box by an arm's tube, m.
+void extend_by_tube(Eigen::AlignedBox3d& box, const Backbone& backbone);
 /// What the arm's tube sweeps over during the motion, m.
 [[nodiscard]] Eigen::AlignedBox3d swept_box(const ReportMotion& motion);
 

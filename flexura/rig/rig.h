@@ -35,6 +35,8 @@ class RigTruth {
   [[nodiscard]] virtual RigStance stance(std::size_t camera) = 0;
   /// How the arm truly lay at a time not long ago, s.
   [[nodiscard]] virtual Backbone backbone(double time) = 0;
+  /// By which each of its tendons pulled then, N; empty: of an arm without forces.
+  [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
 };
 
 /// A rig on which an experiment is played, simulated or real: its ports, and how its time passes.

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# an arm steered to random shapes by each law: ./dev study servo [TARGETS] [SEED] [TURNED]
+# an arm steered to random shapes by each law: ./dev study servo [TARGETS] [SEED] [TURNED] [SAGGING]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 targets=${1:-200}
 seed=${2:-1}
-turned=${3:-40} # Targets of the arm that is mounted a quarter turn round.
+turned=${3:-40}  # Targets of the arm that is mounted a quarter turn round,
+sagging=${4:-20} # and of the arm that sags.
 page=docs/studies/servo.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -31,11 +32,12 @@ own arm and cameras: about 1 mm at rest, 1.6 % of the picture's size, 2 to 2.6 %
 
 END
   echo '```console'
-  echo "\$ ./dev study servo $targets $seed $turned"
+  echo "\$ ./dev study servo $targets $seed $turned $sagging"
   echo '```'
   echo
   for part in calibrated wrong recorded; do "$build/bin/servo_study" "$targets" "$seed" "$(nproc)" "$part"; done
   "$build/bin/servo_study" "$turned" "$seed" "$(nproc)" turned
+  "$build/bin/servo_study" "$sagging" "$seed" "$(nproc)" sagging
   echo "## The same targets without pictures"
   echo
   echo "The same laws told exactly, two frames late, where an arm is that does what it is sent: by the derivatives of the"

@@ -1,6 +1,6 @@
 // Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
-// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded, turned and exact, and of
-// all ways of steering: the names of its rows. docs/studies/servo.md
+// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded, turned, sagging and
+// exact, and of all ways of steering: the names of its rows. docs/studies/servo.md
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,6 +81,12 @@ std::vector<Method> methods_of_turned_arm() {
   return methods;
 }
 
+std::vector<Method> laws_of_sagging_arm() {
+  return {{.name = "shape"},
+          {.name = "points", .law = ServoLawKind::points},
+          {.name = "shape, broyden", .jacobian = ServoJacobian::broyden}};
+}
+
 ArmState random_target(TestRandom& random) {
   ArmState state = ArmState::straight(3);
   for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-1.2, 1.2);
@@ -101,8 +107,27 @@ LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
   return rig;
 }
 
+// What the arm is, and what is believed of it.
+struct World {
+  int arcs = 1;       // A section, believed.
+  bool sags = false;  // Elastic rods under their tendons and their weight; else the arcs of one a section.
+};
+
+// A steel wire of 2 mm radius that carries 0.2 kg a metre, with three tendons to the end of each section, in
+// a file that has the true sections.
+void let_sag(std::string& text) {
+  const std::string section = "[[truth.arm.section]]\n";
+  for (std::size_t at = text.find(section); at != std::string::npos; at = text.find(section, at + 1))
+    text.insert(at + section.size(),
+                "material = { youngs_modulus = 200e9, radius_mm = 2, mass_per_length = 0.2 }\n");
+  text += "\n[truth.arm]\nmodel = \"static\"\ngravity = [0, -9.81, 0]\n";
+  for (int i = 0; i < 9; ++i)
+    text += fmt::format("[[truth.arm.tendon]]\nsection = {}\nradius_mm = 15\nangle_deg = {}\n", i / 3 + 1,
+                        120 * (i % 3) + 40 * (i / 3));
+}
+
 // In colour with bands, which the calibration goes by, or in gray without.
-std::string file_of(const LoopRig& rig, bool is_colored) {
+std::string file_of(const LoopRig& rig, bool is_colored, const World& world = {}) {
   std::string text = arcs_rig("method = \"bundle\"\n", rig);
   if (!is_colored) {
     const std::size_t look = text.find("[arm.look]");
@@ -115,7 +140,9 @@ std::string file_of(const LoopRig& rig, bool is_colored) {
   }
   const std::string limit = "max_bend_deg = 120\n";
   for (std::size_t at = text.find(limit); at != std::string::npos; at = text.find(limit, at + 1))
-    text.insert(at + limit.size(), "max_bend_rate_deg = 90\n");
+    text.insert(at + limit.size(), world.arcs == 1 ? "max_bend_rate_deg = 90\n"
+                                                   : "max_bend_rate_deg = 90\nbend_profile = [1, 1, 1]\n");
+  if (world.sags) let_sag(text);
   return text;
 }
 
@@ -173,12 +200,12 @@ double nearest_limit(const Arm& arm, const ServoResult& result) {
 // The rig of one group of targets, calibrated where that is asked for: with its colours, and without them.
 class StudyRig {
  public:
-  StudyRig(Cameras cameras, std::uint64_t seed)
+  StudyRig(Cameras cameras, const World& world, std::uint64_t seed)
       : random_(seed),
         cameras_(cameras),
         file_(study_rig(wrong(cameras))),
-        colored_(file_of(file_, true)),
-        gray_(file_of(file_, false)) {
+        colored_(file_of(file_, true, world)),
+        gray_(file_of(file_, false, world)) {
     believed_ = rig_model(gray_.experiment().arm.arm(), gray_.experiment().cameras());
     if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
       // And 1 % of focal length, believed.
@@ -209,7 +236,7 @@ class StudyRig {
     config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.timeout = 8;
     const Arm arm = bench.experiment().arm.arm();
     config.markers = band_places(bench.experiment(), believed_.arm);
-    config.goals = {{0, target}};
+    config.goals = {{0, bench.experiment().arm.model().actuation().shape(target)}};
     if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(bench, target)}};
     rest_at(bench, start_for(method, target, random));
     ServoNotes notes;
@@ -274,15 +301,15 @@ class StudyRig {
   std::string why_not_;
 };
 
-void study(Cameras cameras, std::vector<Method> methods, const std::string& way, std::size_t targets,
-           std::uint64_t seed, unsigned threads) {
+void study(Cameras cameras, const World& world, std::vector<Method> methods, const std::string& way,
+           std::size_t targets, std::uint64_t seed, unsigned threads) {
   if (!way.empty()) std::erase_if(methods, [&](const Method& method) { return method.name != way; });
   const std::size_t rigs = (targets + targets_a_rig - 1) / targets_a_rig;
   std::vector<std::vector<Arrival>> arrivals(methods.size(), std::vector<Arrival>(targets));
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < rigs; i = next++) {
-      StudyRig rig(cameras, seed + i);
+      StudyRig rig(cameras, world, seed + i);
       for (std::size_t k = i * targets_a_rig; k < std::min(targets, (i + 1) * targets_a_rig); ++k) {
         TestRandom random(1000 * seed + k);
         const ArmState target = random_target(random);
@@ -354,19 +381,26 @@ int main(int count, char** arguments) {
   const auto is_asked = [&](const char* name) { return part.empty() || part == name; };
   if (is_asked("calibrated")) {
     fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
-    study(Cameras::calibrated, all_methods(), way, targets, seed, threads);
+    study(Cameras::calibrated, {}, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("wrong")) {
     fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
-    study(Cameras::wrong, all_methods(), way, targets, seed, threads);
+    study(Cameras::wrong, {}, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("recorded")) {
     fmt::print("## The same cameras, targets that they recorded\n\n");
-    study(Cameras::recorded, laws(), way, targets, seed, threads);
+    study(Cameras::recorded, {}, laws(), way, targets, seed, threads);
   }
   if (is_asked("turned")) {
     fmt::print("## Calibrated cameras, an arm mounted a quarter turn round that bends 1.3 times as far\n\n");
-    study(Cameras::calibrated, methods_of_turned_arm(), way, targets, seed, threads);
+    study(Cameras::calibrated, {}, methods_of_turned_arm(), way, targets, seed, threads);
+  }
+  if (is_asked("sagging")) {
+    fmt::print(
+        "## An arm that sags, believed to be one arc a section; cameras half a degree and 1 % wrong\n\n");
+    study(Cameras::wrong, {.sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
+    fmt::print("## The same arm, believed to be three arcs a section; cameras and profile as calibrated\n\n");
+    study(Cameras::calibrated, {.arcs = 3, .sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
   }
   if (is_asked("exact")) study_exact(way, targets, seed);
   return 0;

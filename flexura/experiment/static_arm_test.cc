@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/run.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/messages.h"
+#include "flexura/store/text_file.h"
+#include "flexura/tasks/task_kinds.h"
+#include "tests/support/runs.h"
+
+// Runs whose true arm is an elastic rod.
+namespace flexura {
+namespace {
+
+const std::string rod_text = R"([clock]
+step = 0.1
+[arm]
+kind = "spatial"
+[[arm.section]]
+length = 0.5
+radius = 0.015
+[truth.arm]
+model = "static"
+gravity = [0, -9.81, 0]
+[[truth.arm.section]]
+material = { youngs_modulus = 200e9, radius_mm = 1.5, mass_per_length = 0.1 }
+[[truth.arm.tendon]]
+section = 1
+radius_mm = 10
+[[truth.arm.tendon]]
+section = 1
+radius_mm = 10
+angle_deg = 120
+[[truth.arm.tendon]]
+section = 1
+radius_mm = 10
+angle_deg = 240
+[[task]]
+kind = "move"
+duration = 1
+to.bends = [[1.2, 0.4]]
+)";
+
+class StaticArm : public Runs, public testing::Test {};
+
+// No task looks and nothing is filmed: what forces do is played all the same.
+TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
+  const RunResult result = run(rod_text);
+  const auto pulls = logged<TensionsMessage>(result, arm_tensions_topic);
+  const auto truth = logged<PosesMessage>(result, arm_truth_topic);
+  const auto commanded = logged<PosesMessage>(result, arm_poses_topic);
+  ASSERT_EQ(pulls.size(), truth.size());
+  ASSERT_EQ(commanded.size(), 11U);
+  EXPECT_NEAR(pulls.back().time, 1, 1e-9);
+  ASSERT_EQ(pulls.back().tensions.size(), 3U);
+  for (const TensionsMessage& at : pulls)
+    for (const double tension : at.tensions) EXPECT_GE(tension, 0);
+  EXPECT_GT(pulls.back().tensions[0], 1);
+  EXPECT_LT(pulls.front().tensions[0], pulls.back().tensions[0]);
+  // It is not as it was sent; its weight brings it lower, where its tendons let it, and that needs less of a
+  // pull.
+  const VectorMessage tip = truth.back().poses.back().position, sent = commanded.back().poses.back().position;
+  EXPECT_GT(std::abs(tip.y - sent.y), 1e-4);
+  const RunResult light = run(rod_text, {"truth.arm.gravity=[0,0,0]"});
+  const VectorMessage up = logged<PosesMessage>(light, arm_truth_topic).back().poses.back().position;
+  EXPECT_LT(tip.y, up.y - 5e-4);
+  EXPECT_GT(tip.x, up.x + 5e-4);
+  EXPECT_LT(pulls.back().tensions[0], logged<TensionsMessage>(light, arm_tensions_topic).back().tensions[0]);
+}
+
+TEST_F(StaticArm, IsInTheReportAndInTheTables) {
+  const RunResult result = run(rod_text);
+  EXPECT_THAT(text_of(result, "report.html"), testing::HasSubstr("The true arm"));
+  for (const char* figure : {"figures/true-arm.svg", "figures/tensions.svg", "figures/tip-off.svg"})
+    EXPECT_TRUE(std::filesystem::exists(result.folder / figure)) << figure;
+  const ExportResult exported = export_csv(result.folder, task_tables());
+  const std::string table = read_text_file(exported.folder / "tensions.csv", 1 << 20);
+  EXPECT_THAT(table, testing::StartsWith("time,tension_1,tension_2,tension_3\n"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 12);
+}
+
+TEST_F(StaticArm, GivesTheSameLogEachTime) {
+  const RunResult one = run(rod_text), other = run(rod_text);
+  EXPECT_EQ(text_of(one, "log.mcap"), text_of(other, "log.mcap"));
+}
+
+// What is believed to be a rod, with nothing else said of the truth, is one in truth.
+TEST_F(StaticArm, NeedsNoTruthOfItsOwn) {
+  std::string text = rod_text;
+  for (std::size_t at = text.find("truth."); at != std::string::npos; at = text.find("truth."))
+    text.erase(at, 6);
+  const std::string twice = "[arm]\nmodel = \"static\"\n";
+  text.replace(text.find(twice), twice.size(), "");
+  text.replace(text.find("[[arm.section]]\nmaterial"), 16, "");
+  text.replace(text.find("gravity = [0, -9.81, 0]\n"), 24, "");
+  text.replace(text.find("kind = \"spatial\"\n"), 17,
+               "kind = \"spatial\"\nmodel = \"static\"\ngravity = [0, -9.81, 0]\n");
+  EXPECT_EQ(logged<TensionsMessage>(run(text), arm_tensions_topic).back().tensions,
+            logged<TensionsMessage>(run(rod_text), arm_tensions_topic).back().tensions);
+}
+
+}  // namespace
+}  // namespace flexura

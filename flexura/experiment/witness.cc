@@ -1,5 +1,7 @@
 #include "flexura/experiment/witness.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -92,7 +94,11 @@ void Witness::readings(Rig& rig) {
     const Backbone backbone = truth->backbone(now);
     recorder.truth(now, backbone);
     if (std::vector<double> tensions = truth->tensions(now); !tensions.empty()) {
-      recorder.write({arm_tensions_topic, now, TensionsMessage{now, tensions}});
+      const std::vector<double> lost = truth->lost_steps(now);
+      TensionsMessage message{now, tensions, {}};
+      if (!lost.empty()) message.lost_steps = lost;
+      recorder.write({arm_tensions_topic, now, message});
+      tell_lost_steps(now, lost);
       if (readings_++ % kept_every_ == 0) {
         rod_.times.push_back(now);
         rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
@@ -105,6 +111,18 @@ void Witness::readings(Rig& rig) {
   for (const CameraPorts& camera : ports.cameras) {
     if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
     if (camera.stage != nullptr) recorder.reading(camera.name, camera.stage->read().value());
+  }
+}
+
+void Witness::tell_lost_steps(double time, const std::vector<double>& lost) {
+  lost_.resize(lost.size());
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    if (lost[i] != lost_[i])
+      log_.event(
+          time, Recorder::Level::warning, "drive",
+          fmt::format("the motor of axis {} loses {:.0f} microsteps, which its controller does not know",
+                      i + 1, lost[i] - lost_[i]));
+    lost_[i] = lost[i];
   }
 }
 

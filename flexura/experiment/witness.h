@@ -55,6 +55,9 @@ class Witness {
                                        const SafetyReport& safety) &&;
 
  private:
+  // What motors have lost since the last time.
+  void tell_lost_steps(double time, const std::vector<double>& lost);
+
   RunLog log_;
   std::optional<DriveCommands> commands_;
   std::optional<ColorConfig> drawn_color_;  // none: the scene is not kept
@@ -68,6 +71,7 @@ class Witness {
   std::vector<ArmState> states_;
   Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
   RodRecord rod_;
+  std::vector<double> lost_;  // Microsteps of each axis, as they were told.
 };
 
 }  // namespace flexura

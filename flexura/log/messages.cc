@@ -103,7 +103,11 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
       Table<TensionsMessage>("flexura.Tensions", "By which the tendons of the true arm pull.")
           .field("time", &TensionsMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("tensions", &TensionsMessage::tensions,
-                 {.meaning = "Each tendon's tension at the arm's base, N."});
+                 {.meaning = "Each tendon's tension at the arm's base, N."})
+          .field(
+              "lost_steps", &TensionsMessage::lost_steps,
+              {.meaning = "Microsteps that each motor has lost so far, unknown to its controller; arms with "
+                          "drives."});
   return table;
 }
 

@@ -91,6 +91,8 @@ struct ArmReadingMessage {
 struct TensionsMessage {
   double time = 0;               ///< s
   std::vector<double> tensions;  ///< By which each tendon pulls at the arm's base, N.
+  /// Microsteps that each motor has lost so far, unknown to its controller; arms with drives.
+  std::optional<std::vector<double>> lost_steps;
 };
 
 /// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.

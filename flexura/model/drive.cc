@@ -4,11 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace flexura {
 
 Eigen::Vector2d Tendon::offset() const { return {radius * std::cos(angle), radius * std::sin(angle)}; }
+
+double StepperMotor::pull_out_torque(double speed) const {
+  if (!pull_out) return std::numeric_limits<double>::infinity();
+  const auto& curve = *pull_out;
+  const auto after = std::ranges::upper_bound(curve, speed, {}, [](const auto& point) { return point[0]; });
+  if (after == curve.begin()) return curve.front()[1];
+  if (after == curve.end()) return curve.back()[1];
+  const auto& before = *(after - 1);
+  const double part = (speed - before[0]) / ((*after)[0] - before[0]);
+  return before[1] + part * ((*after)[1] - before[1]);
+}
 
 double Axis::microsteps_a_metre() const {
   return motor.resolution() * spool.gear / (2 * std::numbers::pi * spool.radius);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -36,9 +37,17 @@ struct StepperMotor {
   double max_acceleration = std::numeric_limits<double>::infinity();  ///< Of the motor, rad/s^2.
   double max_step_rate = std::numeric_limits<double>::infinity();     ///< Microsteps a second.
   double max_position = std::numeric_limits<double>::infinity();      ///< Microsteps to either side of 0.
+  /// Pull-out torque: pairs of speed, rad/s and rising from the first on, and torque, N m. Beyond its ends as
+  /// there. None: it pulls whatever it must.
+  std::optional<std::vector<std::array<double, 2>>> pull_out = {};
 
   /// Microsteps a turn.
   [[nodiscard]] double resolution() const { return static_cast<double>(steps * microsteps); }
+  /// The torque under which it loses its steps at a speed, rad/s, N m.
+  [[nodiscard]] double pull_out_torque(double speed) const;
+  /// Microsteps from one place where the rotor may lock to the windings' field to the next: one turn of the
+  /// field, two full steps for each phase.
+  [[nodiscard]] double field_turn() const { return static_cast<double>(2 * phases * microsteps); }
 };
 
 /// What turns a motor's turns into cable. The cable lies side by side: the radius does not grow.
@@ -58,6 +67,8 @@ struct Axis {
   [[nodiscard]] double microsteps_a_metre() const;
   /// The play in microsteps; >= 0, seldom whole.
   [[nodiscard]] double play() const;
+  /// By which the motor must turn against a tension, N m; without losses.
+  [[nodiscard]] double torque(double tension) const { return tension * spool.radius / spool.gear; }
   /// The fastest that the motor and its controller wind cable, m/s.
   [[nodiscard]] double max_cable_speed() const;
 };
@@ -70,6 +81,8 @@ struct Drive {
   /// otherwise in a continuous channel.
   std::optional<std::int64_t> disks;
   std::size_t axes_per_controller = 4;  ///< > 0; for names alone.
+  /// Of each tendon where the motors are at 0 and nothing else pulls, N; >= 0. Of arms that are elastic rods.
+  double pretension = 0;
 
   /// "CONTROLLER.AXIS", both counted from 1: the fifth axis is "2.1" where a controller has four.
   [[nodiscard]] std::string axis_name(std::size_t axis) const;

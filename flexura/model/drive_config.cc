@@ -89,7 +89,15 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
       .field("max_position", &StepperMotor::max_position,
              {.meaning = "Most microsteps to either side of where the arm is straight and unstretched.",
               .range = above(0),
-              .default_text = "no limit"});
+              .default_text = "no limit"})
+      .field(
+          "pull_out", &StepperMotor::pull_out,
+          {.meaning = "Pull-out torque as pairs [speed in rad/s, torque in N m], speeds rising; between them "
+                      "it changes evenly. Where a tendon of an arm whose model is static needs more, the "
+                      "motor loses steps.",
+           .range = between(0, 1e9),
+           .count = {1, 1000},
+           .default_text = "no limit"});
 }
 
 }  // namespace
@@ -106,6 +114,11 @@ const Table<StepperMotor>& fields_of(const StepperMotor*) {
                 .range = between(1, 1e5)});
     add_limits(motor);
     motor.check([](const StepperMotor& value, Reader& reader) {
+      for (std::size_t i = 1; value.pull_out && i < value.pull_out->size(); ++i) {
+        if ((*value.pull_out)[i][0] > (*value.pull_out)[i - 1][0]) continue;
+        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than the one before");
+        break;
+      }
       if (value.steps % value.phases == 0) return;
       reader.problem_at("steps", fmt::format("{} full steps a turn of a motor with {} phases: expected a "
                                              "multiple of the phases",
@@ -176,6 +189,11 @@ const Table<DriveConfig>& fields_of(const DriveConfig*) {
           .field("axes_per_controller", &DriveConfig::axes_per_controller,
                  {.meaning = "Motors on one controller: how the axes are named in command lists.",
                   .range = between(1, 1000)})
+          .field(
+              "pretension", &DriveConfig::pretension,
+              {.meaning = "Tension of each tendon where the motors are at 0 and nothing else pulls, N; for "
+                          "arms whose model is static.",
+               .range = between(0, 1e9)})
           .field("motor", &DriveConfig::motor, {.meaning = "The motors."})
           .field("spool", &DriveConfig::spool, {.meaning = "The spools and gears."})
           .field("tendon", &DriveConfig::tendon,
@@ -190,6 +208,7 @@ Drive DriveConfig::drive() const {
   Drive result;
   result.disks = disks;
   result.axes_per_controller = static_cast<std::size_t>(axes_per_controller);
+  result.pretension = pretension;
   for (const TendonConfig& one : tendon) {
     result.tendons.push_back(
         {static_cast<std::size_t>(one.section - 1), one.radius.value_or(radius), one.angle});

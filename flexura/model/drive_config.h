@@ -27,6 +27,7 @@ struct DriveConfig {
   double radius = 0.015;              ///< m
   std::optional<std::int64_t> disks;  ///< As Drive::disks.
   std::int64_t axes_per_controller = 4;
+  double pretension = 0;  ///< As Drive::pretension.
   /// Of tendons without one of their own.
   StepperMotor motor;
   Spool spool;

@@ -43,7 +43,12 @@ class Filming : public Rig, private RigTruth {
  private:
   [[nodiscard]] RigStance stance(std::size_t camera) override;
   [[nodiscard]] Backbone backbone(double time) override { return rig_.arm().backbone(time); }
-  [[nodiscard]] std::vector<double> tensions(double time) override { return rig_.arm().plant().tensions(time); }
+  [[nodiscard]] std::vector<double> tensions(double time) override {
+    return rig_.arm().plant().tensions(time);
+  }
+  [[nodiscard]] std::vector<double> lost_steps(double time) override {
+    return rig_.arm().plant().lost_steps(time);
+  }
   [[nodiscard]] std::vector<FilmedFrame> new_frames();
 
   std::vector<CameraConfig> cameras_;

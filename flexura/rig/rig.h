@@ -37,6 +37,8 @@ class RigTruth {
   [[nodiscard]] virtual Backbone backbone(double time) = 0;
   /// By which each of its tendons pulled then, N; empty: of an arm without forces.
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
+  /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
+  [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 
 /// A rig on which an experiment is played, simulated or real: its ports, and how its time passes.

@@ -45,6 +45,13 @@ std::vector<double> DriveMotors::positions(double time) const {
   return result;
 }
 
+std::vector<double> DriveMotors::rates(double time) const {
+  std::vector<double> result;
+  result.reserve(motions_.size());
+  for (std::size_t i = 0; i < motions_.size(); ++i) result.push_back(senses_[i] * motions_[i].rate(time));
+  return result;
+}
+
 std::vector<double> DriveMotors::carried(double time) const {
   std::vector<double> result;
   result.reserve(motions_.size());

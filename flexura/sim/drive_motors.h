@@ -27,6 +27,8 @@ class DriveMotors {
   [[nodiscard]] std::size_t axes() const { return motions_.size(); }
   /// Where the motors are at `time` s.
   [[nodiscard]] std::vector<double> positions(double time) const;
+  /// How fast they turn then, microsteps/s.
+  [[nodiscard]] std::vector<double> rates(double time) const;
   /// And what is behind their play.
   [[nodiscard]] std::vector<double> carried(double time) const;
   /// Whether a commanded motion of any is under way or still to come.

@@ -42,6 +42,9 @@ class Plant {
   [[nodiscard]] virtual std::optional<ArmState> commanded(double /*time*/) const { return std::nullopt; }
   /// By which each tendon pulls at the arm's base, N. Empty: nobody knows. Times as backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
+  /// How many microsteps each motor has lost up to then, of which its controller knows nothing. Empty: none
+  /// ever.
+  [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }
 };
 
 /// What a plant begins with.

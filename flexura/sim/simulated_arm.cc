@@ -77,7 +77,8 @@ Outcome<ArmReading> SimulatedArm::read() { return port_->read(); }
 
 ArmState SimulatedArm::truth(double time) const {
   const std::optional<ArmState> state = plant_->commanded(time);
-  if (!state) throw std::logic_error("the simulated arm has no sections that drives bend: it has no state of one");
+  if (!state)
+    throw std::logic_error("the simulated arm has no sections that drives bend: it has no state of one");
   return *state;
 }
 

@@ -5,14 +5,19 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/port/driven_arm.h"
 
 namespace flexura {
 namespace {
+
+// Of fields in one step: then it goes on losing in the next.
+constexpr int most_turns = 50;
 
 // Of the backbone that is shown, for each section.
 constexpr std::size_t samples_a_section = 12;
@@ -58,9 +63,19 @@ StaticPlant::StaticPlant(const PlantSetup& setup)
   for (const RodElement& element : fine_.elements()) {
     std::vector<std::size_t>& nodes = fine_nodes_.emplace_back();
     for (std::size_t k = 0; k <= samples_a_section; ++k)
-      nodes.push_back(element.grid().node_at(static_cast<double>(k) / static_cast<double>(samples_a_section)));
+      nodes.push_back(
+          element.grid().node_at(static_cast<double>(k) / static_cast<double>(samples_a_section)));
   }
-  snapshots_.push_back({0, solved(0, {})});
+  const std::size_t tendons = fine_.rod().tendons.size();
+  tight_.assign(tendons, 0.0);
+  if (drive_ && drive_->pretension > 0) {
+    const Equilibrium tight =
+        statics_.solve({.tensions = std::vector<double>(tendons, drive_->pretension)}, {});
+    if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
+    tight_ = tight.displacements;
+  }
+  const std::vector<double> lost(drive_ ? tendons : 0, 0.0);
+  snapshots_.push_back({0, solved(0, {}, lost), lost});
 }
 
 void StaticPlant::command(double time, const Eigen::VectorXd& u, double duration) {
@@ -81,8 +96,15 @@ void StaticPlant::halt(double time) {
 
 void StaticPlant::advance(double time) {
   const long last = static_cast<long>(std::floor(time / step));
-  for (long next = snapshots_.back().index + 1; next <= last; ++next)
-    snapshots_.push_back({next, solved(static_cast<double>(next) * step, snapshots_.back().at)});
+  for (long next = snapshots_.back().index + 1; next <= last; ++next) {
+    const double then = static_cast<double>(next) * step;
+    Snapshot snapshot{next, {}, snapshots_.back().lost};
+    snapshot.at = solved(then, snapshots_.back().at, snapshot.lost);
+    // Each turn of its field that a motor loses lets its tendon out, and others take over what it held.
+    for (int turn = 0; turn < most_turns && lose_steps(then, snapshot.at, snapshot.lost); ++turn)
+      snapshot.at = solved(then, snapshot.at, snapshot.lost);
+    snapshots_.push_back(std::move(snapshot));
+  }
   const double oldest = time - horizon_ - 2 * step;
   std::size_t gone = 0;
   while (gone + 1 < snapshots_.size() && static_cast<double>(snapshots_[gone + 1].index) * step < oldest)
@@ -90,11 +112,29 @@ void StaticPlant::advance(double time) {
   snapshots_.erase(snapshots_.begin(), snapshots_.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-Equilibrium StaticPlant::equilibrium(double time) const {
-  // The last step at or before it.
+bool StaticPlant::lose_steps(double time, const Equilibrium& at, std::vector<double>& lost) const {
+  if (!drive_) return false;
+  bool any = false;
+  const std::vector<double> rates = motors_->rates(time);
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const Axis& axis = drive_->axes[i];
+    const double speed = std::abs(rates[i]) * 2 * std::numbers::pi / axis.motor.resolution();
+    if (axis.torque(at.tensions[i]) <= axis.motor.pull_out_torque(speed)) continue;
+    lost[i] += axis.motor.field_turn();
+    any = true;
+  }
+  return any;
+}
+
+const StaticPlant::Snapshot& StaticPlant::snapshot(double time) const {
   std::size_t from = snapshots_.size() - 1;
   while (from > 0 && static_cast<double>(snapshots_[from].index) * step > time) --from;
-  return solved(time, snapshots_[from].at);
+  return snapshots_[from];
+}
+
+Equilibrium StaticPlant::equilibrium(double time) const {
+  const Snapshot& from = snapshot(time);
+  return solved(time, from.at, from.lost);
 }
 
 std::optional<ArmState> StaticPlant::commanded(double time) const {
@@ -102,13 +142,16 @@ std::optional<ArmState> StaticPlant::commanded(double time) const {
   return bends_->at(time);
 }
 
-TendonDisplacements StaticPlant::displacements(double time) const {
-  if (motors_) return displacements_carried(*drive_, zero_, motors_->carried(time));
-  return arc_displacements(fine_.rod(), bends_->at(time));
+std::vector<double> StaticPlant::displacements(double time, const std::vector<double>& lost) const {
+  if (!motors_) return arc_displacements(fine_.rod(), bends_->at(time)).pulled;
+  std::vector<double> pulled = displacements_carried(*drive_, zero_, motors_->carried(time)).pulled;
+  for (std::size_t i = 0; i < pulled.size(); ++i)
+    pulled[i] += tight_[i] - lost[i] / drive_->axes[i].microsteps_a_metre();
+  return pulled;
 }
 
-Equilibrium StaticPlant::solved(double time, const Equilibrium& near) const {
-  const TendonInput input{.displacements = displacements(time).pulled};
+Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std::vector<double>& lost) const {
+  const TendonInput input{.displacements = displacements(time, lost)};
   const std::lock_guard lock(mutex_);
   Equilibrium at = statics_.solve(input, loads_, near);
   if (!at.converged())

@@ -20,8 +20,10 @@ namespace flexura {
 /// without inertia from equilibrium to equilibrium (docs/mechanics.md). Of several it takes the one that its
 /// way leads to, at steps of `step` s from time 0 on.
 ///
-/// Behind a drive its spools pull the tendons in; without one, what commands call bends pulls each in as far
-/// as arcs of these bends would. std::runtime_error: the arm has no equilibrium.
+/// Behind a drive its spools pull the tendons in, from the pretension on; a motor that would have to turn
+/// against more than its pull-out torque loses steps, a turn of its field at a time. Without a drive, what
+/// commands call bends pulls each tendon in as far as arcs of these bends would. std::runtime_error: the arm
+/// has no equilibrium.
 class StaticPlant : public Plant {
  public:
   static constexpr double step = 0.02;
@@ -35,7 +37,10 @@ class StaticPlant : public Plant {
   void advance(double time) override;
   [[nodiscard]] Backbone backbone(double time) const override { return backbone_of(equilibrium(time)); }
   [[nodiscard]] std::optional<ArmState> commanded(double time) const override;
-  [[nodiscard]] std::vector<double> tensions(double time) const override { return equilibrium(time).tensions; }
+  [[nodiscard]] std::vector<double> tensions(double time) const override {
+    return equilibrium(time).tensions;
+  }
+  [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
 
   /// How the rod stands in its frame, with its tendons' tensions. Times as backbone().
   [[nodiscard]] Equilibrium equilibrium(double time) const;
@@ -44,9 +49,14 @@ class StaticPlant : public Plant {
   struct Snapshot {
     long index;  // Of steps.
     Equilibrium at;
+    std::vector<double> lost;  // Microsteps of each axis, since the start.
   };
-  [[nodiscard]] TendonDisplacements displacements(double time) const;
-  [[nodiscard]] Equilibrium solved(double time, const Equilibrium& near) const;
+  // The last one at or before a time.
+  [[nodiscard]] const Snapshot& snapshot(double time) const;
+  [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
+  [[nodiscard]] Equilibrium solved(double time, const Equilibrium& near,
+                                   const std::vector<double>& lost) const;
+  [[nodiscard]] bool lose_steps(double time, const Equilibrium& at, std::vector<double>& lost) const;
   [[nodiscard]] Backbone backbone_of(const Equilibrium& at) const;
 
   Arm arm_;
@@ -55,7 +65,8 @@ class StaticPlant : public Plant {
   // What moves it: one of the two.
   std::optional<DriveMotors> motors_;
   std::optional<Drive> drive_;
-  std::vector<double> zero_;  // displacements where the motors are at 0, m
+  std::vector<double> zero_;   // displacements where the motors are at 0, m, of an arm of arcs,
+  std::vector<double> tight_;  // and what the pretension adds to them
   std::optional<BendMotion> bends_;
 
   std::vector<Snapshot> snapshots_;  // back to the horizon

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <thread>
 #include <vector>
@@ -100,6 +102,60 @@ TEST(StaticPlant, WithoutADriveIsPulledAsArcsWouldBe) {
   rig.clock().wait_until(8);
   const Backbone believed = ArmModel(config.arm.arm()).backbone(bent()), truth = rig.arm().backbone(8);
   EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
+}
+
+// At rest and straight each tendon pulls by the pretension, and bending by little leaves none slack.
+TEST(StaticPlant, BeginsWithItsPretension) {
+  RigConfig config = elastic_rig();
+  config.drive->pretension = 3;
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  for (const double tension : plant_of(rig).tensions(0)) EXPECT_NEAR(tension, 3, 1e-6);
+  ArmState little = ArmState::straight(2);
+  little.bends[1] = {0.02, 0};
+  ASSERT_TRUE(rig.ports().arm->command(little, 0));
+  rig.clock().wait_until(3);
+  for (const double tension : plant_of(rig).tensions(3)) EXPECT_GT(tension, 0.5);
+}
+
+// A motor that cannot hold what its tendon pulls turns back by whole turns of its field until it can; its
+// controller goes on counting, and it stays behind for good.
+TEST(StaticPlant, LosesStepsUnderMoreThanThePullOutTorque) {
+  RigConfig config = elastic_rig(), weak = elastic_rig();
+  const double most = 1.5;  // N
+  weak.drive->motor.pull_out = {{{0, most * 0.01}, {100, 0.5 * most * 0.01}}};
+  SimulatedRig strong(config, config, numbers_renderer, 1), rig(config, weak, numbers_renderer, 1);
+  for (SimulatedRig* one : {&strong, &rig}) {
+    ASSERT_TRUE(one->ports().arm->command(bent(), 0));
+    one->clock().wait_until(8);
+  }
+  const std::vector<double> tensions = plant_of(strong).tensions(8), held = plant_of(rig).tensions(8),
+                            lost = plant_of(rig).lost_steps(8);
+  const double turn = weak.drive->motor.field_turn();
+  double all = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_LE(held[i], most + 1e-9) << i;
+    EXPECT_EQ(std::remainder(lost[i], turn), 0);
+    EXPECT_GE(lost[i], 0);
+    all += lost[i];
+  }
+  EXPECT_GT(*std::ranges::max_element(tensions), most);
+  EXPECT_GT(all, 0);
+  EXPECT_EQ(rig.ports().arm->read().value().positions, strong.ports().arm->read().value().positions);
+  EXPECT_EQ(plant_of(strong).lost_steps(8), std::vector<double>(6, 0.0));
+  // What is lost stays lost.
+  ASSERT_TRUE(rig.ports().arm->command(ArmState::straight(2), 0));
+  rig.clock().wait_until(16);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_GE(plant_of(rig).lost_steps(16)[i], lost[i]);
+}
+
+TEST(StaticPlant, APullOutTorqueIsBetweenItsPoints) {
+  StepperMotor motor;
+  EXPECT_EQ(motor.pull_out_torque(10), std::numeric_limits<double>::infinity());
+  motor.pull_out = {{{0, 1}, {10, 0.5}, {20, 0.1}}};
+  EXPECT_EQ(motor.pull_out_torque(0), 1);
+  EXPECT_DOUBLE_EQ(motor.pull_out_torque(5), 0.75);
+  EXPECT_DOUBLE_EQ(motor.pull_out_torque(15), 0.3);
+  EXPECT_EQ(motor.pull_out_torque(100), 0.1);
 }
 
 TEST(StaticPlant, RefusesAnArmWithTooFewTendons) {

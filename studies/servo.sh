@@ -37,6 +37,9 @@ END
   echo
   for part in calibrated wrong recorded; do "$build/bin/servo_study" "$targets" "$seed" "$(nproc)" "$part"; done
   "$build/bin/servo_study" "$turned" "$seed" "$(nproc)" turned
+  echo "The next two tables are of an arm that is three [elastic rods](../mechanics.md), steel wires of 2 mm radius that"
+  echo "carry 0.2 kg a metre, pulled by nine tendons; what is steered are arcs."
+  echo
   "$build/bin/servo_study" "$sagging" "$seed" "$(nproc)" sagging
   echo "## The same targets without pictures"
   echo

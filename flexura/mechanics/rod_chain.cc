@@ -185,6 +185,21 @@ void RodChain::solve(Eigen::Ref<Eigen::MatrixXd> rhs) {
   }
 }
 
+Eigen::MatrixXd RodChain::parameter_slopes(const Eigen::Vector3d& gravity) const {
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(size_, 5 * static_cast<Eigen::Index>(elements_.size()));
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const auto column = 5 * static_cast<Eigen::Index>(i);
+    elements_[i].add_stiffness_slopes(slopes.block(first_[i], column, elements_[i].size(), 4));
+    Vector6d wrench = Vector6d::Zero();
+    elements_[i].add_weight_slope(gravity, wrench,
+                                  slopes.col(column + 4).segment(first_[i], elements_[i].size()));
+    for (std::size_t before = 0; before < i; ++before)
+      slopes.col(column + 4).segment(first_[before], elements_[before].size()) -=
+          elements_[before].columns().back().transpose() * wrench;
+  }
+  return slopes;
+}
+
 bool RodChain::has_friction() const {
   return std::ranges::any_of(rod_.tendons, [](const TendonRoute& tendon) { return tendon.friction > 0; });
 }

@@ -64,6 +64,11 @@ class RodChain {
   /// rhs becomes what the derivative makes to rhs; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
+  /// r at the last balance by each section's parameters, size() x 5 sections: by parts by which its stiffness
+  /// against shear, stretch, bends and twist changes, and its mass along its length under this gravity. The
+  /// columns are there.
+  [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
+
   /// Whether a tendon rubs: then the derivative that is factored leaves out that friction changes with q.
   [[nodiscard]] bool has_friction() const;
   /// What that is along dq, of the residual at the last balance under these tensions.

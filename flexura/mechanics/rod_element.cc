@@ -1,5 +1,6 @@
 #include "flexura/mechanics/rod_element.h"
 
+#include <array>
 #include <cmath>
 
 #include "flexura/math/so3.h"
@@ -212,6 +213,29 @@ void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to,
   const Columns change = turned * moved_;
   tangent.noalias() += moved_.transpose().lazyProduct(change);
   for (std::size_t interval = from; interval < to; ++interval) add_geometry(interval, W, from, tension);
+}
+
+void RodElement::add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const {
+  constexpr std::array<int, 6> parameter = {0, 0, 1, 2, 2, 3};
+  for (std::size_t k = 0; k < grid_.t.size(); ++k) {
+    const Vector6d force =
+        grid_.weight[k] * length_ * grid_.stiffness[k].cwiseProduct(strain_[k] - grid_.rest[k]);
+    grid_.for_modes([&](int c, int j) {
+      slopes(j, parameter[static_cast<std::size_t>(c)]) +=
+          force[c] * grid_.at_node(j, static_cast<Eigen::Index>(k));
+    });
+  }
+}
+
+void RodElement::add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
+                                  Eigen::Ref<Eigen::VectorXd> slope) const {
+  for (std::size_t k = 0; k < grid_.t.size(); ++k) {
+    const Vector6d W =
+        wrench_at(X_[k].position, grid_.weight[k] * length_ * grid_.mass_per_length[k] * gravity,
+                  Eigen::Vector3d::Zero());
+    slope -= A_[k].transpose() * W;
+    all += W;
+  }
 }
 
 // What all of the loads do at each node.

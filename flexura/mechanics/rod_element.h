@@ -72,6 +72,14 @@ class RodElement {
   /// after this one. The columns are there.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
 
+  // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
+  /// Adds the residual's change by a part of its stiffness against shear, stretch, bends and twist.
+  void add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;
+  /// Adds that by a part of its mass along its length, and the wrench of all of that. The columns are there.
+  void add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
+                        Eigen::Ref<Eigen::VectorXd> slope) const;
+  // NOLINTEND(performance-unnecessary-value-param)
+
   /// The gradient of its energy by its modes, less what loads do.
   Eigen::VectorXd residual;
   /// Of the residual, by its modes.

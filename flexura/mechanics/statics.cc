@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "flexura/math/dense.h"
@@ -17,7 +16,7 @@ namespace {
 constexpr double settled_step = 1e-10;
 // Steps that do not shrink by this lead somewhere else.
 constexpr double contraction = 0.6;
-constexpr int max_descent = 30, max_corrections = 200;
+constexpr int max_descent = 30;
 // Of a tendon at rest: slack within it is none.
 constexpr double slack_margin = 1e-12;
 
@@ -309,64 +308,6 @@ Equilibrium RodStatics::solve_from(Unknowns start, bool is_cold) {
   }
   finish(result, at);
   return result;
-}
-
-// What the derivative makes to rhs, with what friction adds to it: by corrections, each smaller by about the
-// friction times the angle that tendons turn.
-void RodStatics::solve_with_friction(Eigen::MatrixXd& rhs) {
-  const Eigen::MatrixXd wanted = rhs;
-  chain_.solve(rhs);
-  for (int i = 0; i < max_corrections && chain_.has_friction(); ++i) {
-    Eigen::MatrixXd next = wanted;
-    for (Eigen::Index c = 0; c < rhs.cols(); ++c) next.col(c) -= chain_.friction_change(rhs.col(c), pulls_);
-    chain_.solve(next);
-    const double change = (next - rhs).cwiseAbs().maxCoeff(), size = next.cwiseAbs().maxCoeff();
-    rhs = next;
-    if (!(change > 1e-13 * size)) break;
-  }
-}
-
-EquilibriumSlopes RodStatics::slopes() {
-  if (!is_solved_) throw std::logic_error("slopes of an equilibrium that was not found");
-  const Eigen::Index n = chain_.size(), count = static_cast<Eigen::Index>(pulls_.size());
-  chain_.balance(at_, pulls_, loads_, 1);
-  chain_.place_with_columns(at_);
-  if (!chain_.factor()) throw std::runtime_error("an equilibrium whose derivative has no inverse");
-  const Eigen::MatrixXd lengths_by_q = chain_.length_slopes().transpose();
-  const std::vector<RodElement>& elements = chain_.elements();
-  RodElement::Columns J(6, n);
-  chain_.columns_at(elements.size() - 1, elements.back().poses().size() - 1, J);
-  // Of the tip's own origin, and a force and a moment there.
-  const Eigen::Vector3d p = chain_.tip().position;
-  for (Eigen::Index c = 0; c < n; ++c) J.col(c).head<3>() += J.col(c).tail<3>().cross(p);
-
-  Eigen::MatrixXd by_tension = -chain_.pull_slopes(), by_tip = J.transpose();
-  solve_with_friction(by_tension);
-  solve_with_friction(by_tip);
-  EquilibriumSlopes slopes;
-  slopes.tensions_by_input = Eigen::MatrixXd::Identity(count, count);
-  if (by_displacement_) {
-    std::vector<Eigen::Index> taut;
-    for (std::size_t i = 0; i < taut_.size(); ++i)
-      if (pulls_[i] > 0) taut.push_back(static_cast<Eigen::Index>(i));
-    Eigen::MatrixXd give = lengths_by_q(taut, Eigen::all) * by_tension(Eigen::all, taut);
-    for (std::size_t a = 0; a < taut.size(); ++a) {
-      const auto at = static_cast<Eigen::Index>(a);
-      give(at, at) -= chain_.rod().tendons[static_cast<std::size_t>(taut[a])].compliance;
-    }
-    slopes.tensions_by_input.setZero();
-    if (!taut.empty()) {
-      const Eigen::MatrixXd inverse = pseudo_inverse(give);
-      slopes.tensions_by_input(taut, taut) = -inverse;
-      by_tip -= by_tension(Eigen::all, taut) * inverse * lengths_by_q(taut, Eigen::all) * by_tip;
-    }
-  }
-  slopes.q_by_input = by_tension * slopes.tensions_by_input;
-  slopes.lengths_by_input = lengths_by_q * slopes.q_by_input;
-  slopes.q_by_tip = by_tip;
-  slopes.tip_by_input = J * slopes.q_by_input;
-  slopes.tip_by_tip = J * by_tip;
-  return slopes;
 }
 
 Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads) {

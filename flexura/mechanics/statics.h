@@ -62,6 +62,10 @@ struct EquilibriumSlopes {
   Eigen::MatrixXd
       tip_by_input;  ///< 6 x tendons: velocity of the tip's origin and angular velocity, base's frame.
   Eigen::Matrix<double, 6, 6> tip_by_tip;  ///< Compliance: the same by a force and a moment at the tip.
+  /// The same by each section's parameters, 6 x 5 sections: by parts by which its stiffness against shear,
+  /// stretch, bends and twist changes, and its mass along its length.
+  Eigen::MatrixXd tip_by_parameters;
+  Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections: likewise.
 };
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,

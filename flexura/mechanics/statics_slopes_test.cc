@@ -113,6 +113,50 @@ void expect_slopes(RodStatics& statics, const TendonInput& input, const RodLoads
   }
 }
 
+// By stiffness and weight of each section, with tensions kept and with displacements kept.
+TEST(StaticsSlopes, ByParametersAreThoseByDifferences) {
+  for_random_cases(12, [](TestRandom& random) {
+    Rod rod = coarse(random_rod(random), random);
+    for (RodSection& section : rod.sections) {
+      section.stiffness = section.stiffness_at(0.5);
+      section.mass_per_length = section.mass_per_length_at(0.5);
+    }
+    for (TendonRoute& tendon : rod.tendons) tendon.compliance = random.uniform(1e-4, 1e-3);
+    const RodLoads loads{.gravity = random.vector<3>(-10.0, 10.0)};
+    RodStatics statics(rod);
+    const Equilibrium pulled =
+        statics.solve({.tensions = std::vector<double>(rod.tendons.size(), 1.5)}, loads);
+    ASSERT_TRUE(pulled.converged());
+    TendonInput input{.tensions = pulled.tensions};
+    if (random.integer(0, 1) == 0) input = {.displacements = pulled.displacements};
+    ASSERT_TRUE(statics.solve(input, loads, pulled).converged());
+    const Eigen::MatrixXd slopes = statics.slopes().tip_by_parameters;
+    ASSERT_EQ(slopes.cols(), 5 * static_cast<Eigen::Index>(rod.sections.size()));
+    constexpr double step = 1e-4;
+    for (std::size_t i = 0; i < rod.sections.size(); ++i) {
+      for (int parameter = 0; parameter < 5; ++parameter) {
+        std::array<Eigen::Vector3d, 2> tips;
+        for (const std::size_t side : {0u, 1u}) {
+          Rod other = rod;
+          const double factor = side == 0 ? 1 - step : 1 + step;
+          Vector6d& k = *other.sections[i].stiffness;
+          if (parameter == 0) k.head<2>() *= factor;
+          if (parameter == 1) k[2] *= factor;
+          if (parameter == 2) k.segment<2>(3) *= factor;
+          if (parameter == 3) k[5] *= factor;
+          if (parameter == 4) *other.sections[i].mass_per_length *= factor;
+          const Equilibrium there = RodStatics(other).solve(input, loads, pulled);
+          ASSERT_TRUE(there.converged());
+          tips[side] = there.tip.position;
+        }
+        const Eigen::Vector3d by = (tips[1] - tips[0]) / (2 * step);
+        EXPECT_LE((slopes.col(5 * static_cast<Eigen::Index>(i) + parameter).head<3>() - by).norm(), 2e-6)
+            << parameter;
+      }
+    }
+  });
+}
+
 TEST(StaticsSlopes, ByTensionsAreThoseByDifferences) {
   for_random_cases(15, [](TestRandom& random) {
     const Rod rod = coarse(random_rod(random, random.integer(0, 1) == 0 ? 0.3 : 0), random);

@@ -150,6 +150,7 @@ class InverseSearch {
     const bool is_reached = is_within();
     const bool is_better = is_reached ? !is_reached_ || x_.squaredNorm() < best_.squaredNorm()
                                       : !is_reached_ && square < best_square_;
+    is_current_ = is_better;
     if (!is_better) return;
     best_ = x_, best_square_ = square;
     is_reached_ = is_reached, is_least_ = is_least;
@@ -160,6 +161,7 @@ class InverseSearch {
   void come_nearest() {
     if (best_.size() == 0) return;
     x_ = best_;
+    is_current_ = false;
     problem_.begin(near_);
     const Descent end = descent_.descend_gradient(slow, x_);
     is_stationary_ = end == Descent::stationary;
@@ -175,7 +177,7 @@ class InverseSearch {
 
   void finish(InverseStaticsResult& result) {
     x_ = best_.size() > 0 ? best_ : VectorXd::Zero(x_.size());
-    result.equilibrium = problem_.at(x_, from_, descent_.r, descent_.J);
+    result.equilibrium = is_current_ ? near_ : problem_.at(x_, from_, descent_.r, descent_.J);
     result.tensions = result.equilibrium.tensions;
     result.evaluations = problem_.evaluations;
     result.position_error = problem_.position_error(descent_.r);
@@ -203,6 +205,7 @@ class InverseSearch {
   VectorXd x_, best_;
   double best_square_ = std::numeric_limits<double>::infinity();
   bool is_reached_ = false, is_least_ = false, is_stationary_ = false;
+  bool is_current_ = false;  // The statics, r and J are those of the best.
 };
 
 }  // namespace

@@ -108,9 +108,10 @@ TEST(InverseStatics, AtTheLeastEffortNoTensionsThatKeepTheTipAreLess) {
     // Karush's, Kuhn's and Tucker's conditions, where they are unique.
     const Eigen::MatrixXd J = made.statics.slopes().tip_by_input.topRows<3>();
     const auto tensions = Eigen::Map<const Eigen::VectorXd>(result.tensions.data(), J.cols());
+    constexpr double slack = 1e-5;
     std::vector<Eigen::Index> open;
     for (Eigen::Index i = 0; i < J.cols(); ++i)
-      if (tensions[i] > 0 && tensions[i] < most_pull) open.push_back(i);
+      if (tensions[i] > slack && tensions[i] < most_pull - slack) open.push_back(i);
     if (open.size() < 4 || singular_values(J(Eigen::all, open))[2] < 1e-3 * J.norm()) return;
     ++redundant;
     const Eigen::MatrixXd J_open = J(Eigen::all, open);
@@ -118,8 +119,10 @@ TEST(InverseStatics, AtTheLeastEffortNoTensionsThatKeepTheTipAreLess) {
     const Eigen::VectorXd left = tensions - J.transpose() * multipliers;
     const double rounding = 1e-4 * tensions.norm();
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
-      EXPECT_TRUE(tensions[i] == 0 || left[i] <= rounding) << i;
-      EXPECT_TRUE(tensions[i] == most_pull || left[i] >= -rounding) << i;
+      EXPECT_TRUE(tensions[i] <= slack || left[i] <= rounding)
+          << i << ": " << left[i] << " of " << tensions[i];
+      EXPECT_TRUE(tensions[i] >= most_pull - slack || left[i] >= -rounding)
+          << i << ": " << left[i] << " of " << tensions[i];
     }
   });
   EXPECT_GE(redundant, 10 / one_case_of);

@@ -31,7 +31,7 @@ ArmConfig wire_arm_with_tendons() {
   ArmConfig arm = wire_arm();
   for (const int section : {1, 2})
     for (const double angle : {90.0, -30.0, 210.0})
-      arm.tendon.push_back({.section = section, .radius = 0.01, .angle = angle * degree});
+      arm.tendon.push_back({.section = section, .radius = 0.01, .angle = angle * std::numbers::pi / 180});
   return arm;
 }
 
@@ -42,7 +42,7 @@ DriveConfig wire_drive() {
     for (const double angle : {90.0, -30.0, 210.0}) {
       TendonConfig& tendon = drive.tendon.emplace_back();
       tendon.section = section;
-      tendon.angle = angle * degree;
+      tendon.angle = angle * std::numbers::pi / 180;
     }
   return drive;
 }

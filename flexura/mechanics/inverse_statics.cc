@@ -147,7 +147,7 @@ class InverseSearch {
     Equilibrium at = problem_.at(x_, from_, descent_.r, descent_.J);
     const double square = descent_.r.squaredNorm();
     // Reached from nearby alone it is another equilibrium than the robot's.
-    const bool is_reached = is_within();
+    const bool is_reached = at.stable && is_within();
     const bool is_better = is_reached ? !is_reached_ || x_.squaredNorm() < best_.squaredNorm()
                                       : !is_reached_ && square < best_square_;
     is_current_ = is_better;
@@ -159,16 +159,16 @@ class InverseSearch {
 
   // Where much is left, Gauss and Newton's model of the curvature is wrong by as much.
   void come_nearest() {
-    if (best_.size() == 0) return;
+    if (best_.size() == 0 || best_square_ == 0) return;
     x_ = best_;
     is_current_ = false;
     problem_.begin(near_);
     const Descent end = descent_.descend_gradient(slow, x_);
     is_stationary_ = end == Descent::stationary;
-    problem_.at(x_, from_, descent_.r, descent_.J);
+    const Equilibrium at = problem_.at(x_, from_, descent_.r, descent_.J);
     if (!(descent_.r.squaredNorm() < best_square_)) return;
     best_ = x_;
-    is_reached_ = is_within();
+    is_reached_ = at.stable && is_within();
   }
   [[nodiscard]] bool is_within() const {
     return problem_.position_error(descent_.r) <= config_.tolerance &&
@@ -185,9 +185,10 @@ class InverseSearch {
     for (const double tension : result.tensions) result.effort += tension * tension;
     result.is_least = is_reached_ && is_least_;
     result.end = is_reached_ ? InverseStaticsEnd::reached : InverseStaticsEnd::nearest;
-    if (!is_reached_) result.problem = why_not();
+    if (!is_reached_) result.problem = why_not(result.equilibrium);
   }
-  [[nodiscard]] std::string why_not() {
+  [[nodiscard]] std::string why_not(const Equilibrium& at) {
+    if (at.converged() && is_within()) return "the equilibrium there is not stable";
     if (!is_stationary_) return "out of steps before the nearest was found";
     descent_.gradient = descent_.J.transpose() * descent_.r;
     const bool is_held = pressure(bounds_, x_, descent_.gradient) > 1e-6 * descent_.r.norm();

@@ -43,7 +43,7 @@ struct InverseStaticsConfig {
 
 /// How a search for tensions ended.
 enum class InverseStaticsEnd {
-  reached,         ///< Within the tolerance.
+  reached,         ///< Within the tolerance, by a stable equilibrium.
   nearest,         ///< No search reached it; the tensions found are those that come nearest.
   bad_input,       ///< `problem` says what.
   no_equilibrium,  ///< None was found to begin with.

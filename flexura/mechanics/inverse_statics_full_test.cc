@@ -27,6 +27,7 @@ void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
   RodStatics statics(rod, wish == Wish::shape ? places : std::vector<RodPlace>{});
   const Equilibrium made = statics.solve({.tensions = tensions}, loads);
   ASSERT_TRUE(made.converged());
+  if (!made.stable) return;  // Nor is it reached.
   RodTarget target;
   if (wish != Wish::shape) target.position = made.tip.position;
   if (wish == Wish::direction) target.direction = made.tip.rotation.col(2);
@@ -38,6 +39,7 @@ void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
   }
   const InverseStaticsResult result =
       solve_inverse_statics(statics, target, loads, std::vector(tensions.size(), 8.0));
+  EXPECT_TRUE(result.reached()) << result.problem;
   double effort = 0;
   for (const double tension : tensions) effort += tension * tension;
   ++tally.robots;

@@ -67,6 +67,7 @@ void expect_no_more_effort(int cases, bool is_loaded) {
   for_random_cases(cases, [&](TestRandom& random) {
     Made made(random, is_loaded);
     ASSERT_TRUE(made.at.converged());
+    if (!made.at.stable) return;
     const RodTarget target{.position = made.at.tip.position};
     const double enough = (1 + 1e-6) * effort_of(made.tensions) + 1e-12;
     const InverseStaticsResult first = solve_inverse_statics(made.statics, target, made.loads, made.most);
@@ -101,6 +102,7 @@ TEST(InverseStatics, AtTheLeastEffortNoTensionsThatKeepTheTipAreLess) {
   for_random_cases(60, [&](TestRandom& random) {
     Made made(random, random.integer(0, 1) == 0);
     ASSERT_TRUE(made.at.converged());
+    if (!made.at.stable) return;
     const InverseStaticsResult result =
         solve_inverse_statics(made.statics, {.position = made.at.tip.position}, made.loads, made.most);
     expect_reached(result, made.most);
@@ -147,6 +149,7 @@ TEST(InverseStatics, DirectionsAndRotationsOfTheTipAreReached) {
   for_random_cases(40, [](TestRandom& random) {
     Made made(random, random.integer(0, 1) == 0);
     ASSERT_TRUE(made.at.converged());
+    if (!made.at.stable) return;
     RodTarget target{.position = made.at.tip.position};
     if (random.integer(0, 1) == 0)
       target.direction = random.uniform(0.1, 3) * made.at.tip.rotation.col(2);
@@ -172,7 +175,9 @@ TEST(InverseStatics, AShapeGivesBackTheTensionsThatMadeIt) {
     RodStatics statics(rod, places);
     const RodLoads loads = random_loads(random, rod);
     const std::vector<double> tensions = random_tensions(random, rod, 4);
-    ASSERT_TRUE(statics.solve({.tensions = tensions}, loads).converged());
+    const Equilibrium made = statics.solve({.tensions = tensions}, loads);
+    ASSERT_TRUE(made.converged());
+    if (!made.stable) return;
     RodTarget target;
     for (const RodPlace& place : places) {
       const RodElement& element = statics.chain().elements()[place.section];

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "flexura/mechanics/inverse_statics.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/statics.h"
 #include "tests/support/known_rods.h"
@@ -109,6 +110,28 @@ void statics_sections(benchmark::State& state) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(statics_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
+
+// Tensions of least effort for tips beside that of 4 0 0 0 2 0: from rest (0), and from the robot at the last
+// of them (1).
+void inverse_statics(benchmark::State& state) {
+  const Case known = known_case(0);
+  RodStatics statics(known.rod);
+  const std::vector<double> most(known.rod.tendons.size(), 10);
+  InverseStaticsConfig config;
+  InverseStaticsResult result;
+  double evaluations = 0;
+  bool there = false;
+  for (auto _ : state) {
+    const Eigen::Vector3d beside = known.tip + Eigen::Vector3d(there ? 1e-3 : 0, -2e-3, 0);
+    result = solve_inverse_statics(statics, {.position = beside}, {}, most, config);
+    evaluations += result.evaluations;
+    if (state.range(0) == 1) config.start = result.equilibrium;
+    there = !there;
+  }
+  state.counters["error_m"] = result.position_error;
+  state.counters["equilibria"] = benchmark::Counter(evaluations, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(inverse_statics)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace flexura

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/kinematics/bounded_least_squares.h"
+#include "flexura/mechanics/inverse_statics.h"
+#include "flexura/mechanics/statics.h"
+
+namespace flexura {
+
+/// How far a rod under tensions x (in `unit`s of N) is from a target: r in lengths of the rod. Each
+/// evaluation is an equilibrium, found from the nearest of those before it, with its exact derivatives.
+class RodTargetProblem final : public BoundedProblem {
+ public:
+  /// `most`: of each tension, N. Where it is 0 the tendon is left out.
+  RodTargetProblem(RodStatics& statics, const RodTarget& target, const RodLoads& loads,
+                   std::span<const double> most, double tolerance);
+
+  [[nodiscard]] Eigen::Index row_count() const override { return rows_; }
+  void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
+  [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override;
+
+  /// The next search begins here; from rest where it did not converge.
+  void begin(const Equilibrium& near);
+  /// The equilibrium at x, from that near; r and J as in linearise().
+  Equilibrium at(const Eigen::VectorXd& x, const Equilibrium& near, Eigen::VectorXd& r, Eigen::MatrixXd& J);
+  /// Of r: the largest distance of a place, m; the angle, rad.
+  [[nodiscard]] double position_error(const Eigen::VectorXd& r) const;
+  [[nodiscard]] double angle_error(const Eigen::VectorXd& r) const;
+
+  double unit = 1;      ///< N
+  int evaluations = 0;  ///< Equilibria looked for.
+
+ private:
+  struct Node {
+    std::size_t element, node;
+    Eigen::Vector3d position;
+  };
+  void turn_rows(Eigen::VectorXd& r, Eigen::MatrixXd& J) const;
+
+  RodStatics& statics_;
+  const RodTarget& target_;
+  const RodLoads& loads_;
+  std::vector<double> most_;
+  double length_, tolerance_;
+  std::vector<Node> nodes_;
+  Eigen::Index rows_ = 0, angles_ = 0;  // The rows of angles are the last.
+  TendonInput input_;
+  Equilibrium near_;
+  double near_square_ = 0;
+  EquilibriumSlopes slopes_;
+  RodElement::Columns columns_, twist_;
+};
+
+/// The node of a rod at a place, which is one; empty: it is none.
+[[nodiscard]] std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place);
+
+}  // namespace flexura

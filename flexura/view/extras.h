@@ -38,6 +38,14 @@ struct AlongCurve {
   std::vector<double> values;
 };
 
+/// A thing that is shown in more than one place has one name and one colour there.
+struct ExtraName {
+  const char *id, *label;
+  const char* color;  ///< "#rrggbb"
+};
+/// The simulated truth.
+inline constexpr ExtraName true_arm{"truth", "True", "#51cf66"};
+
 struct Extras {
   double time = 0;          ///< s
   std::string title, text;  ///< What this is of, and how that stands, a line each.

@@ -1,19 +1,37 @@
 #include "flexura/view/live_rig.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
+#include "flexura/model/arm_way.h"
+#include "flexura/sim/plant.h"
+#include "flexura/sim/rig_config.h"
+#include "flexura/sim/static_plant.h"
 
 namespace flexura {
 namespace {
 
+// How often a picture of a rod knows how it lies, s: motion in between is as good as straight.
+constexpr double rod_interval = 0.0049;
+
 // The rig's own cameras are never asked for frames: pictures are made of value_shot elsewhere.
 Picture no_picture(const Shot& /*shot*/) {
   throw std::logic_error("the live rig's pictures are taken elsewhere");
+}
+
+// But for what a client's numbers are rounded to.
+bool are_alike(const ArmState& a, const ArmState& b) {
+  constexpr double rounding = 1e-6;  // rad, and of a length
+  const ArmWay way = minus(a, b);
+  return std::ranges::all_of(way.bends, [](const auto& bend) { return bend.norm() <= rounding; }) &&
+         std::ranges::all_of(way.stretches, [](double stretch) { return std::abs(stretch) <= rounding; });
 }
 
 }  // namespace
@@ -23,12 +41,30 @@ LiveRig::LiveRig(ViewedRigPtr rig, double now) : rig_(std::move(rig)) { restart(
 void LiveRig::restart(double now) {
   simulated_ = std::make_unique<SimulatedRig>(rig_->experiment.model_rig(), rig_->experiment.true_rig(),
                                               no_picture, static_cast<std::uint64_t>(rig_->experiment.seed));
-  go_to(now);
+  start_ = now;
+}
+
+void LiveRig::skip_to(double next) {
+  constexpr double most = 0.1;  // s
+  if (rig_->is_rod) start_ += std::max(0.0, next - now() - most);
 }
 
 // The simulated rig has no links that are lost: a fault here is a fault of the program.
 ArmState LiveRig::believed() { return simulated_->arm().read().value().state; }
 bool LiveRig::is_arm_moving() { return simulated_->arm().read().value().moving; }
+
+// How a rod lies may depend on how it came there.
+Backbone LiveRig::at_rest(const ArmState& state) {
+  if (!rig_->is_rod) return rig_->truth.backbone(state);
+  if (are_alike(state, truth(now()))) return backbone(now());
+  ArmSetup setup(rig_->experiment.true_rig());
+  setup.initial = state;
+  // Where motors count from is all the same.
+  const Eigen::VectorXd start =
+      setup.drive ? Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.drive->axes.size()))
+                  : plant_command(state);
+  return true_plant({setup, start, 0})->backbone(0);
+}
 
 StateMessage LiveRig::state() {
   StateMessage message;
@@ -36,9 +72,9 @@ StateMessage LiveRig::state() {
   const ArmReading reading = simulated_->arm().read().value();
   message.is_moving = reading.moving;
   message.arm = truth(message.time);
-  message.samples = arm_samples(rig_->truth.backbone(message.arm));
+  message.samples = arm_samples(backbone(message.time));
   for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
-    const CameraStance stance = simulated_->camera(i).stance(message.time);
+    const CameraStance stance = simulated_->camera(i).stance(rig_time(message.time));
     message.cameras.push_back(camera_sample(rig_->cameras[i], stance));
   }
   if (rig_->drive) {
@@ -58,8 +94,21 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
   const double start = frame_times(rig_->sensors.at(camera), frame).start;
   SimulatedView& view = simulated_->camera(camera);
   std::vector<Instant> instants;
-  for (const double time : times_of_instants(rig_->sensors[camera], start))
-    instants.push_back({time, truth(time), view.stance(time)});
+  const std::vector<double> times = times_of_instants(rig_->sensors[camera], start);
+  for (const double time : times) {
+    // To find how a rod lies takes a while.
+    if (rig_->is_rod && time != times.back() && !instants.empty() &&
+        time - instants.back().time < rod_interval)
+      continue;
+    Instant instant{time, truth(time), view.stance(rig_time(time))};
+    // If its drives rest it does so, too.
+    if (rig_->is_rod && !instants.empty() && instants.back().arm == instant.arm) {
+      instant.shape = instants.back().shape;
+    } else if (rig_->is_rod) {
+      instant.shape = std::make_shared<const Backbone>(backbone(time));
+    }
+    instants.push_back(std::move(instant));
+  }
   return value_shot(rig_, camera, frame, start, std::move(instants));
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "flexura/model/backbone.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/sim/simulated_rig.h"
 #include "flexura/view/state_message.h"
@@ -23,14 +24,22 @@ class LiveRig {
   void restart(double now);
 
   [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
-  [[nodiscard]] double now() { return simulated_->clock().now(); }
+  [[nodiscard]] double now() { return start_ + simulated_->clock().now(); }
   /// Goes on to a time, not before the last one.
-  void go_to(double now) { simulated_->clock().wait_until(now); }
+  void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
+  /// Before it goes on to a time: a rod is followed step by step, and has no time to make up for what nobody
+  /// saw. All but the last 0.1 s up to then pass without it.
+  void skip_to(double next);
 
   /// The shape that the arm is believed to be in.
   [[nodiscard]] ArmState believed();
-  /// Its true shape, now or in what is to come as far as it was commanded, s.
-  [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(time); }
+  /// What its drives truly bend it to, and how it lies: now, or in what is to come as far as it was
+  /// commanded, s.
+  [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }
+  [[nodiscard]] Backbone backbone(double time) { return simulated_->arm().backbone(rig_time(time)); }
+  /// How it would lie at rest, bent to this: where it is bent so now, as it lies. std::runtime_error: a rod
+  /// finds no rest there.
+  [[nodiscard]] Backbone at_rest(const ArmState& state);
   [[nodiscard]] bool is_arm_moving();
 
   /// All that moves, as it stands now; its flags but for the arm's motion, and its sequence, are others' to
@@ -42,7 +51,10 @@ class LiveRig {
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t frame);
 
  private:
+  [[nodiscard]] double rig_time(double time) const { return time - start_; }
+
   ViewedRigPtr rig_;
+  double start_ = 0;  // when the simulated rig's time is 0, s
   std::unique_ptr<SimulatedRig> simulated_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include "flexura/base/node.h"
@@ -82,12 +83,9 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.room().pixel({client, camera}, session.newest_shot(camera), static_cast<int>(pixel.u),
                          static_cast<int>(pixel.v), std::move(reply));
   }
-  void operator()(const PointRequest& point) const {
-    done(point_answer(session.viewed()->truth.backbone(session.shown_state()), point.s));
-  }
+  void operator()(const PointRequest& point) const { done(point_answer(session.shown_backbone(), point.s)); }
   void operator()(const BackboneRequest& backbone) const {
-    done(backbone_answer(
-        session.viewed()->truth.backbone(shape_wanted(session.viewed()->truth.driven(), backbone))));
+    done(backbone_answer(session.rig_.at_rest(shape_wanted(session.viewed()->truth.driven(), backbone))));
   }
 };
 
@@ -244,13 +242,13 @@ void LiveSession::reset() {
     head_targets_.push_back(camera.initial_head());
     stage_targets_.push_back(camera.initial_stage());
   }
-  is_touching_ = !touched(viewed()->truth, viewed()->obstacles, rig_.truth(rig_.now())).empty();
+  is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->obstacles).empty();
 }
 
 // Stops the arm before a step that would bring it to touch something.
 void LiveSession::keep_clear(double next) {
   if (!rig_.is_arm_moving()) return;
-  const std::string text = touched(viewed()->truth, viewed()->obstacles, rig_.truth(next));
+  const std::string text = touched(rig_.backbone(next), viewed()->obstacles);
   const bool was_touching = std::exchange(is_touching_, !text.empty());
   if (text.empty() || was_touching) return;
   ++generation_;
@@ -299,19 +297,30 @@ void LiveSession::follow_run() {
   run_.reset();
 }
 
+// A rod may come to where it finds no rest.
+void LiveSession::move_on(double next) {
+  rig_.skip_to(next);
+  try {
+    keep_clear(next);
+    rig_.go_to(next);
+  } catch (const std::runtime_error& error) {
+    event("error", "safety", std::string("everything is put back: ") + error.what());
+    reset();
+  }
+}
+
 void LiveSession::advance(double now) {
   clock_ = std::max(clock_, now);
   const double next = clock_ - config_.start;
-  keep_clear(next);
-  rig_.go_to(next);
+  move_on(next);
   follow_run();
   if (clients_.empty()) return;
   send_states();
   send_images();
 }
 
-ArmState LiveSession::shown_state() {
-  return run_ != nullptr && news_.time ? news_.state : rig_.truth(rig_.now());
+Backbone LiveSession::shown_backbone() {
+  return is_run_shown() ? viewed()->truth.backbone(news_.state) : rig_.backbone(rig_.now());
 }
 
 // Where the run's cameras stand, as far as it says so.
@@ -342,7 +351,7 @@ void LiveSession::send_states() {
 
 ValueShot LiveSession::newest_shot(std::size_t camera) {
   const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
-  if (run_ == nullptr || !news_.time) return rig_.shot(camera, number);
+  if (!is_run_shown()) return rig_.shot(camera, number);
   const CameraStance stance = run_stances().at(camera);
   const SensorConfig& sensor = viewed()->sensors[camera];
   // As the states: the time is the page's own, or that of a run which it watches from the start to the end.

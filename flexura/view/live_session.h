@@ -75,9 +75,11 @@ class LiveSession : public PictureSession {
   void halt();
   void reset();
   void keep_clear(double next);
+  void move_on(double next);
   void send_states();
   void send_images();
-  [[nodiscard]] ArmState shown_state();
+  [[nodiscard]] bool is_run_shown() const { return run_ != nullptr && news_.time; }
+  [[nodiscard]] Backbone shown_backbone();
   [[nodiscard]] std::vector<CameraStance> run_stances() const;
   [[nodiscard]] ValueShot newest_shot(std::size_t camera);
   void event(const char* level, const std::string& name, const std::string& text);

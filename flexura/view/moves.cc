@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,6 +42,26 @@ SafetyReport check_way(const ArmModel& arm, const std::vector<Obstacle>& obstacl
   constexpr double step = 0.02;
   return check_motions(arm, obstacles, from, {{motion, 0, ""}}, step);
 }
+
+// An arm that lies as a backbone does, with a section for each of its arcs. Its sections have no twist: what
+// twists before an arc turns the arc's bend instead.
+struct ArcArm {
+  explicit ArcArm(const Backbone& backbone) {
+    arm.kind = ArmKind::spatial;
+    arm.X_WB = backbone.arcs().front().X_WS;
+    double twist = 0;
+    for (const Arc& arc : backbone.arcs()) {
+      Section& section = arm.sections.emplace_back();
+      section.length = arc.rest_length, section.radius = arc.radius;
+      state.bends.emplace_back(twist == 0 ? arc.bend : Eigen::Rotation2Dd(twist) * arc.bend);
+      state.stretches.push_back(arc.length / arc.rest_length);
+      twist += arc.twist;
+    }
+  }
+
+  Arm arm;
+  ArmState state;
+};
 
 std::string contact_text(const ContactWatch& watch, const Contact& contact) {
   Violation violation;
@@ -123,18 +144,18 @@ std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obst
   return {};
 }
 
-std::string touched(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& state) {
+std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles) {
+  const ArcArm arm(backbone);
   const auto touching = [&](const ContactWatch& watch) -> std::string {
-    Contact contact = watch.contact(arm.actuation().shape(state), 0);
+    Contact contact = watch.contact(arm.state, 0);
     if (contact.clearance >= -contact_tolerance) return {};
-    const auto& section_of = arm.actuation().section_of();
-    contact.section = section_of[contact.section];
-    if (contact.other_section) contact.other_section = section_of[*contact.other_section];
+    contact.section = backbone.arcs()[contact.section].section;
+    if (contact.other_section) contact.other_section = backbone.arcs()[*contact.other_section].section;
     return contact_text(watch, contact);
   };
-  std::string text = touching(ContactWatch(arm.shaped()));
+  std::string text = touching(ContactWatch(arm.arm));
   for (std::size_t i = 0; i < obstacles.size() && text.empty(); ++i)
-    text = touching(ContactWatch(arm.shaped(), obstacles[i]));
+    text = touching(ContactWatch(arm.arm, obstacles[i]));
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include "flexura/camera/camera.h"
 #include "flexura/kinematics/inverse.h"
 #include "flexura/model/arm_model.h"
+#include "flexura/model/backbone.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/view/request.h"
@@ -34,8 +35,7 @@ void require_travel(const Camera& camera, const StageRequest& request);
 [[nodiscard]] std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                         const ArmState& from, const ArmState& to);
 
-/// What the arm touches in the shape of a command, one line; "" when nothing.
-[[nodiscard]] std::string touched(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
-                                  const ArmState& state);
+/// What an arm touches that lies so, one line; "" when nothing.
+[[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);
 
 }  // namespace flexura

@@ -17,6 +17,7 @@
 #include "flexura/store/text_file.h"
 #include "flexura/tasks/calibrate/calibration_messages.h"
 #include "flexura/tasks/servo/servo_messages.h"
+#include "flexura/view/truth_extras.h"
 
 namespace flexura {
 namespace {
@@ -70,6 +71,7 @@ void Recording::index() {
     const std::string& topic = message.channel->topic;
     const Entry entry{message.log_time, &message};
     if (topic == arm_state_topic) states_.push_back(entry);
+    if (topic == arm_truth_topic) truths_.push_back(entry);
     if (topic == servo_steps_topic) servo_steps_.push_back(entry);
     if (topic == calibration_decisions_topic) decisions_.push_back(entry);
     const bool is_servo = topic == servo_sightings_topic,
@@ -91,6 +93,7 @@ void Recording::index() {
   std::ranges::for_each(images_, sort);
   std::ranges::for_each(heads_, sort);
   std::ranges::for_each(stages_, sort);
+  sort(truths_);
   sort(servo_steps_);
   sort(decisions_);
   std::ranges::for_each(servo_sightings_, sort);
@@ -247,6 +250,24 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
   }
   if (!shown.decision && shown.pictures.empty()) return std::nullopt;
   return shown;
+}
+
+// The rig's time has steps of its own while a task waits for it: between two of them what lies between.
+std::optional<std::vector<ArmSample>> Recording::truth(double time) const {
+  constexpr double rounding = 1e-6, longest = 0.5, late = 0.1;  // s
+  if (truths_.empty() || seconds(truths_.front().time) > time + rounding) return std::nullopt;
+  const std::size_t place = place_at(truths_, time + rounding);
+  const Entry& before = truths_[place];
+  const double begun = seconds(before.time);
+  LoggedArm arm = logged_arm(message_of<PosesMessage>(*before.message));
+  if (place + 1 < truths_.size() && seconds(truths_[place + 1].time) - begun <= longest) {
+    const Entry& after = truths_[place + 1];
+    const double part = std::max(0.0, time - begun) / (seconds(after.time) - begun);
+    if (part > 0) arm = between(arm, logged_arm(message_of<PosesMessage>(*after.message)), part);
+  } else if (time - begun > late) {
+    return std::nullopt;
+  }
+  return samples_of(arm);
 }
 
 CameraStance Recording::stance(std::size_t camera, double time) const {

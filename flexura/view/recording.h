@@ -60,6 +60,10 @@ class Recording {
   /// that are shown then, while one goes on. InputError likewise.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
+  /// Whether the log has how the arm truly lay; and how at a time, s, its base first and its tip last: none
+  /// where the log has it of no time near that. InputError where it is no arm.
+  [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
+  [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
   /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
   /// starts.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
@@ -88,6 +92,7 @@ class Recording {
   McapReader log_;
   Entries states_;
   std::vector<Entries> images_, heads_, stages_;  // by camera
+  Entries truths_;
   Entries servo_steps_;
   std::vector<Entries> servo_sightings_, calibration_sightings_;  // by camera
   Entries decisions_;                                             // of calibrations

@@ -18,6 +18,7 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/pixel.h"
 #include "flexura/view/series.h"
+#include "flexura/view/truth_extras.h"
 
 namespace flexura {
 namespace {
@@ -132,7 +133,7 @@ void RecordingSession::take(const Document& document, std::function<void(HttpAns
 
 // Before the state, so that it has come when that is drawn.
 void RecordingSession::send_extras(ClientId client) {
-  if (!recording_->has_servo() && !recording_->has_calibration()) return;
+  if (!recording_->has_servo() && !recording_->has_calibration() && !recording_->has_truth()) return;
   const double time = times_.at(client);
   Extras extras;
   extras.time = time;
@@ -145,7 +146,19 @@ void RecordingSession::send_extras(ClientId client) {
   } catch (const InputError&) {
     extras = {};  // What is damaged is not drawn.
   }
+  add_truth(time, extras);
   messenger().post(client, extras_stream, std::make_shared<const std::string>(extras_message(extras)));
+}
+
+// As it was when the arm was commanded as the state has it.
+void RecordingSession::add_truth(double time, Extras& extras) const {
+  const std::size_t place = recording_->state_at(time);
+  try {
+    if (const auto truth = recording_->truth(recording_->time_of_state(place)))
+      add_true_arm(*truth, viewed()->model.backbone(recording_->state(place)), extras);
+  } catch (const InputError&) {
+    // Nor is this.
+  }
 }
 
 void RecordingSession::send_state(ClientId client) {

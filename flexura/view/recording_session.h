@@ -7,6 +7,7 @@
 #include <string>
 
 #include "flexura/view/background.h"
+#include "flexura/view/extras.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/picture_session.h"
 #include "flexura/view/recording.h"
@@ -32,6 +33,7 @@ class RecordingSession : public PictureSession {
 
   [[nodiscard]] Look look(const ImageStreams::Key& key) override;
   void send_extras(ClientId client);
+  void add_truth(double time, Extras& extras) const;
   void send_state(ClientId client);
   void show_state(const ImageStreams::Key& key, std::int64_t place);
   void send_image(const ImageStreams::Key& key, std::int64_t place);

@@ -16,14 +16,9 @@
 namespace flexura {
 namespace {
 
-// A thing that is shown in more than one place has one name and one colour there.
-struct Named {
-  const char *id, *label, *color;
-};
-constexpr Named wanted{"wanted", "Wanted", "#ff922b"};
-constexpr Named seen{"seen", "Seen", "#22b8cf"};
-constexpr Named truth{"truth", "True", "#51cf66"};
-constexpr Named features{"features", "Features", "#da77f2"};
+constexpr ExtraName wanted{"wanted", "Wanted", "#ff922b"};
+constexpr ExtraName seen{"seen", "Seen", "#22b8cf"};
+constexpr ExtraName features{"features", "Features", "#da77f2"};
 
 struct Shape {
   Arm arm;
@@ -55,18 +50,20 @@ struct Shapes {
 Shapes shapes_of(const ViewedRig& rig, const ServoStep& step) {
   Shapes shapes{shape_of(rig.model.shaped(), step.lengths, step.desired), {}, {}};
   if (step.seen) shapes.seen = shape_of(rig.model.shaped(), step.lengths, *step.seen);
-  if (step.truth)
+  // A rod has as many arcs as its plant places it by, of which the rig's arm knows nothing: it is drawn by
+  // who has its poses.
+  if (step.truth && step.truth->bends.size() == rig.truth.shaped().sections.size())
     shapes.truth = shape_of(rig.truth.shaped(), step.truth->lengths,
                             {step.truth->bends, std::vector<double>(rig.truth.shaped().sections.size(), 1)});
   return shapes;
 }
 
-GhostArm ghost_of(const Named& mark, const Shape& shape) {
+GhostArm ghost_of(const ExtraName& mark, const Shape& shape) {
   return {mark.id, mark.label, mark.color, arm_samples(Backbone(shape.arm, shape.state))};
 }
 
 // Between points of equal shares of both lengths, mm.
-AlongCurve distances(const Named& mark, const Shape& shape, const Shape& desired) {
+AlongCurve distances(const ExtraName& mark, const Shape& shape, const Shape& desired) {
   AlongCurve curve{mark.id, mark.label, mark.color, {}};
   for (const double off :
        shape_distances(Backbone(shape.arm, shape.state), Backbone(desired.arm, desired.state)))
@@ -77,7 +74,7 @@ AlongCurve distances(const Named& mark, const Shape& shape, const Shape& desired
 using Pixels = std::vector<Eigen::Vector2d>;
 
 // What the law compares, as one of both sides has it: pixels as crosses, lines as such.
-void add_marks(const Named& side, bool is_dashed, const Pixels& crosses, const std::vector<Pixels>& lines,
+void add_marks(const ExtraName& side, bool is_dashed, const Pixels& crosses, const std::vector<Pixels>& lines,
                Node::Array& layers) {
   const LayerMark mark{features.id, features.label, side.color, side.id};
   if (!crosses.empty()) layers.push_back(points_layer(mark, crosses));
@@ -145,8 +142,8 @@ Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
     extras.along.push_back(distances(seen, *shapes.seen, shapes.wanted));
   }
   if (shapes.truth) {
-    extras.ghosts.push_back(ghost_of(truth, *shapes.truth));
-    extras.along.push_back(distances(truth, *shapes.truth, shapes.wanted));
+    extras.ghosts.push_back(ghost_of(true_arm, *shapes.truth));
+    extras.along.push_back(distances(true_arm, *shapes.truth, shapes.wanted));
   }
   for (const ServoPicture& picture : servo.pictures) extras.overlays.push_back(layers_of(picture));
   const auto names = servo_quantities();

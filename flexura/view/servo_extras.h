@@ -28,8 +28,8 @@ struct ShownServo {
 };
 
 /// What is drawn of a servo: the wanted shape, the one that is seen and the simulated truth as ghosts, the
-/// measured axes and the wanted shape's images, the distances along the arm. InputError where its shapes do
-/// not fit the rig's arm.
+/// measured axes and the wanted shape's images, the distances along the arm. Of a truth that has other arcs
+/// than the rig's arm (a rod) there is no shape. InputError where its shapes do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
 /// A servo's errors over time, in percent of the arm's length, and those at one command.

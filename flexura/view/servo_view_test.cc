@@ -32,6 +32,7 @@ namespace flexura {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -172,8 +173,10 @@ TEST_F(ServoView, IsInTheRecordingUponItsPictures) {
     EXPECT_EQ(list_in(overlays[i], "layers").size(), 2);
   }
   const double end = session.hello().duration;
-  EXPECT_TRUE(list_in(extras_at(session, messenger, end), "ghosts").empty()) << "at rest nothing is wanted";
-  EXPECT_FALSE(list_in(extras_at(session, messenger, end - 1.05), "ghosts").empty()) << "to its last command";
+  EXPECT_THAT(ids_of(list_in(extras_at(session, messenger, end), "ghosts")), ElementsAre("truth"))
+      << "at rest nothing is wanted";
+  EXPECT_THAT(ids_of(list_in(extras_at(session, messenger, end - 1.05), "ghosts")), Contains("wanted"))
+      << "to its last command";
 }
 
 TEST_F(ServoView, IsAQuantityOfTheRecording) {

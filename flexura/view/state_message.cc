@@ -106,9 +106,13 @@ std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cam
 }  // namespace
 
 std::vector<ArmSample> arm_samples(const Backbone& backbone) {
+  return arm_samples(backbone.arcs(), backbone.tip());
+}
+
+std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip) {
   constexpr double largest_turn = std::numbers::pi / 2, most = 64;
   std::vector<ArmSample> samples;
-  for (const Arc& arc : backbone.arcs()) {
+  for (const Arc& arc : arcs) {
     const auto pieces =
         static_cast<int>(std::clamp(std::ceil(arc.bend.norm() / largest_turn - 1e-9), 1.0, most));
     for (int piece = 0; piece < pieces; ++piece) {
@@ -117,7 +121,7 @@ std::vector<ArmSample> arm_samples(const Backbone& backbone) {
           {arc.s_rest + part * arc.rest_length, piece == 0 ? arc.X_WS : arc.pose(part * arc.length)});
     }
   }
-  samples.push_back({backbone.rest_length(), backbone.tip()});
+  if (!arcs.empty()) samples.push_back({arcs.back().s_rest + arcs.back().rest_length, tip});
   return samples;
 }
 

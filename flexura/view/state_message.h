@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,8 @@ struct StateMessage {
 /// The samples of a state message: the ends of every arc, and so many points between that from one to the
 /// next the backbone is one arc that turns by a right angle at most.
 [[nodiscard]] std::vector<ArmSample> arm_samples(const Backbone& backbone);
+/// The same of arcs that lead from the base to the tip's frame.
+[[nodiscard]] std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip);
 
 /// std::length_error for more than 65535 of anything.
 [[nodiscard]] std::string state_message(const StateMessage& state);

@@ -1,8 +1,12 @@
 #include "flexura/view/viewed_rig.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <utility>
 
+#include "flexura/math/so3.h"
 #include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/rig_config.h"
@@ -10,10 +14,27 @@
 namespace flexura {
 namespace {
 
-// What lies `part` of the way from one instant to the next.
-Instant between_instants(const Instant& a, const Instant& b, double part) {
-  return {a.time + part * (b.time - a.time), interpolate(a.arm, b.arm, part),
-          interpolate(a.stance, b.stance, part)};
+// What a time lies between: `part` of the way from one instant to the next, or at one alone.
+struct Between {
+  const Instant &from, &to;
+  double part = 0;
+
+  [[nodiscard]] bool is_one() const { return &from == &to; }
+};
+
+// What lies between two shapes of a rod, which are both placed by samples at the same places along it: two
+// arcs lead from each to the next.
+Backbone between_shapes(const Backbone& a, const Backbone& b, double part) {
+  const std::span<const Arc> from = a.arcs(), to = b.arcs();
+  if (from.size() != to.size() || from.size() % 2 != 0) return part < 0.5 ? a : b;
+  std::vector<BackboneSample> samples;
+  samples.reserve(from.size() / 2 + 1);
+  for (std::size_t i = 0; i < from.size(); i += 2)
+    samples.push_back(
+        {interpolate(from[i].X_WS, to[i].X_WS, part), from[i].s_rest, from[i].radius[0], from[i].section});
+  samples.push_back({interpolate(a.tip(), b.tip(), part), from.back().s_rest + from.back().rest_length,
+                     from.back().radius[1], from.back().section});
+  return Backbone::through(samples);
 }
 
 // `from` and the way from one state to another.
@@ -39,14 +60,40 @@ CameraReading within_ends(const Camera& camera, CameraReading reading) {
   return reading;
 }
 
-bool stand_alike(const Instant& a, const Instant& b) { return a.arm == b.arm && a.stance == b.stance; }
+// A rod comes to rest but for the last digits of its equilibrium, of which no picture shows anything.
+bool lie_alike(const Instant& a, const Instant& b) {
+  constexpr double unseen = 1e-7;  // m
+  if (a.shape == b.shape) return true;
+  if (a.shape == nullptr || b.shape == nullptr) return false;
+  const auto is_near = [](const Arc& one, const Arc& other) {
+    return (one.X_WS.position - other.X_WS.position).norm() <= unseen;
+  };
+  return std::ranges::equal(a.shape->arcs(), b.shape->arcs(), is_near) &&
+         (a.shape->tip().position - b.shape->tip().position).norm() <= unseen;
+}
 
-Instant instant_at(const std::vector<Instant>& instants, double time) {
+bool stand_alike(const Instant& a, const Instant& b) {
+  return a.arm == b.arm && a.stance == b.stance && lie_alike(a, b);
+}
+
+Between between(const std::vector<Instant>& instants, double time) {
   const auto after = std::ranges::upper_bound(instants, time, {}, &Instant::time);
-  if (after == instants.begin()) return instants.front();
-  if (after == instants.end()) return instants.back();
+  if (after == instants.begin()) return {instants.front(), instants.front()};
+  if (after == instants.end()) return {instants.back(), instants.back()};
   const Instant& before = *(after - 1);
-  return between_instants(before, *after, (time - before.time) / (after->time - before.time));
+  return {before, *after, (time - before.time) / (after->time - before.time)};
+}
+
+CameraStance stance_at(const std::vector<Instant>& instants, double time) {
+  const Between at = between(instants, time);
+  return at.is_one() ? at.from.stance : interpolate(at.from.stance, at.to.stance, at.part);
+}
+
+Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants, double time) {
+  const Between at = between(instants, time);
+  const auto &from = at.from.shape, &to = at.to.shape;
+  if (from != nullptr && to != nullptr) return from == to ? *from : between_shapes(*from, *to, at.part);
+  return rig.truth.backbone(at.is_one() ? at.from.arm : interpolate(at.from.arm, at.to.arm, at.part));
 }
 
 }  // namespace
@@ -56,6 +103,7 @@ ViewedRig::ViewedRig(Experiment read)
       model(experiment.arm.model()),
       truth(experiment.true_rig().arm.model()),
       initial(ArmSetup(experiment.true_rig()).initial),
+      is_rod(experiment.true_rig().arm.mechanics == ArmMechanics::statics),
       obstacles(flexura::obstacles(experiment.obstacle)) {
   if (experiment.drive) drive = experiment.drive->drive();
   for (const CameraConfig& config : experiment.true_rig().cameras) {
@@ -100,6 +148,11 @@ View ViewedRig::believed_view(std::size_t camera, const CameraReading& reading) 
   return described.view({head, reading.stage});
 }
 
+Pose interpolate(const Pose& from, const Pose& to, double part) {
+  const Eigen::Vector3d turn = so3_log(from.rotation.transpose() * to.rotation);
+  return {from.rotation * so3_exp(part * turn), from.position + part * (to.position - from.position)};
+}
+
 CameraSample camera_sample(const Camera& camera, const CameraStance& stance) {
   const View view = camera.view(stance);
   const Intrinsics& lens = view.lens.intrinsics();
@@ -116,9 +169,9 @@ ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t f
   shot.start = start;
   shot.sensor = &rig->sensors.at(camera);
   shot.view = [rig, camera, shown](double time) {
-    return rig->cameras[camera].view(instant_at(*shown, time).stance);
+    return rig->cameras[camera].view(stance_at(*shown, time));
   };
-  shot.backbone = [rig, shown](double time) { return rig->truth.backbone(instant_at(*shown, time).arm); };
+  shot.backbone = [rig, shown](double time) { return backbone_at(*rig, *shown, time); };
   return {std::move(shot), shown};
 }
 
@@ -129,7 +182,7 @@ ValueShot with_covers(ValueShot shot, double time) {
 
 CameraStance stance_in(const ValueShot& shot) {
   const double middle = times_of_frame_at(*shot.shot.sensor, shot.shot.start).middle;
-  return instant_at(*shot.instants, middle).stance;
+  return stance_at(*shot.instants, middle);
 }
 
 bool show_the_same(const ValueShot& a, const ValueShot& b) {

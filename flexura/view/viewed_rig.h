@@ -10,7 +10,9 @@
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/log/run_watcher.h"
+#include "flexura/math/pose.h"
 #include "flexura/model/arm_model.h"
+#include "flexura/model/backbone.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/sim/simulated_camera.h"
@@ -18,11 +20,15 @@
 
 namespace flexura {
 
+/// What lies `part` of the way from one pose to another.
+[[nodiscard]] Pose interpolate(const Pose& from, const Pose& to, double part);
+
 /// What is seen at one instant.
 struct Instant {
   double time = 0;  ///< s
-  ArmState arm;
+  ArmState arm;     ///< What its drives bend it to.
   CameraStance stance;
+  std::shared_ptr<const Backbone> shape = {};  ///< How a rod lies; null: the true arm's arcs, so bent.
 };
 
 /// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
@@ -33,6 +39,7 @@ class ViewedRig {
   Experiment experiment;
   ArmModel model, truth;  ///< The arm as it is believed to be, and as it is.
   ArmState initial;       ///< As it is.
+  bool is_rod;            ///< The arm as it is: it lies as its plant says, which `truth` does not know.
   std::vector<Obstacle> obstacles;
   std::optional<Drive> drive;    ///< As it is believed to be.
   std::vector<Camera> cameras;   ///< As they are.

@@ -30,12 +30,12 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
   if (most.size() != count)
     return fmt::format("{} greatest tensions given: expected {}, one a tendon", most.size(), count);
   for (const double each : most)
-    if (!(each >= 0 && std::isfinite(each))) return "a greatest tension that is negative or not finite";
+    if (!std::isfinite(each) || each < 0) return "a greatest tension that is negative or not finite";
   if (!target.position && !target.direction && !target.rotation && target.places.empty())
     return "a target that asks for nothing";
   if (target.position && !target.position->allFinite()) return "a position that is not finite";
   if (target.direction && target.rotation) return "direction and rotation: expected one of them";
-  if (target.direction && !(target.direction->allFinite() && target.direction->norm() > 0))
+  if (target.direction && (!target.direction->allFinite() || target.direction->norm() == 0))
     return "a direction that is not finite, or zero";
   if (target.rotation) {
     const Eigen::Matrix3d& R = *target.rotation;
@@ -43,7 +43,7 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
         !(R.col(0).cross(R.col(1)).dot(R.col(2)) > 0))
       return "a rotation that is none";
   }
-  if (!(target.angle_weight > 0 && std::isfinite(target.angle_weight)))
+  if (!std::isfinite(target.angle_weight) || target.angle_weight <= 0)
     return "a weight of angles that is not positive";
   for (const RodTarget::Place& place : target.places) {
     if (!place.position.allFinite()) return "a place's position that is not finite";
@@ -51,10 +51,10 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
       return fmt::format("a place at {} of section {}, which is no node of the rod", place.place.at,
                          place.place.section);
   }
-  if (!(config.tolerance > 0 && std::isfinite(config.tolerance))) return "a tolerance that is not positive";
+  if (!std::isfinite(config.tolerance) || config.tolerance <= 0) return "a tolerance that is not positive";
   if (config.max_starts < 1) return "no starts";
-  if (config.start && !(config.start->converged() && config.start->tensions.size() == count &&
-                        config.start->q.size() == statics.chain().size()))
+  if (config.start && (!config.start->converged() || config.start->tensions.size() != count ||
+                       config.start->q.size() != statics.chain().size()))
     return "a start that is no equilibrium of this rod";
   if (config.start && std::ranges::any_of(config.start->tensions, [](double t) { return !std::isfinite(t); }))
     return "a start whose tensions are not finite";

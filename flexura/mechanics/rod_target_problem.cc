@@ -27,7 +27,7 @@ TurnFactor turn_factor(double angle) {
 }  // namespace
 
 std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place) {
-  if (place.section >= chain.elements().size() || !(place.at >= 0 && place.at <= 1)) return {};
+  if (place.section >= chain.elements().size() || !std::isfinite(place.at)) return {};
   const RodGrid& grid = chain.elements()[place.section].grid();
   const std::size_t node = grid.node_at(place.at);
   if (!(std::abs(grid.t[node] - place.at) < 1e-9)) return {};
@@ -63,7 +63,7 @@ void RodTargetProblem::begin(const Equilibrium& near) {
 void RodTargetProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
   Equilibrium found = at(x, near_, r, J);
   const double square = r.squaredNorm();
-  if (!found.converged() || !(square < near_square_ || is_met(r))) return;
+  if (!found.converged() || (square >= near_square_ && !is_met(r))) return;
   near_ = std::move(found);
   near_square_ = square;
 }

@@ -66,6 +66,15 @@ Backbone LiveRig::at_rest(const ArmState& state) {
   return true_plant({setup, start, 0})->backbone(0);
 }
 
+std::shared_ptr<const Backbone> LiveRig::rod_at_rest(const ArmState& state) {
+  if (!rig_->is_rod) return nullptr;
+  try {
+    return std::make_shared<const Backbone>(at_rest(state));
+  } catch (const std::runtime_error&) {
+    return nullptr;
+  }
+}
+
 StateMessage LiveRig::state() {
   StateMessage message;
   message.time = now();

@@ -40,6 +40,8 @@ class LiveRig {
   /// How it would lie at rest, bent to this: where it is bent so now, as it lies. std::runtime_error: a rod
   /// finds no rest there.
   [[nodiscard]] Backbone at_rest(const ArmState& state);
+  /// The same of a rod, for pictures; null where the arm is none, or finds no rest.
+  [[nodiscard]] std::shared_ptr<const Backbone> rod_at_rest(const ArmState& state);
   [[nodiscard]] bool is_arm_moving();
 
   /// All that moves, as it stands now; its flags but for the arm's motion, and its sequence, are others' to

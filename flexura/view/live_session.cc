@@ -358,8 +358,8 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
   // So a picture's exposure has its middle at the time of the state that it shows.
   const double start = is_watched_run() ? *news_.time - times_of_frame_at(sensor, 0).middle
                                         : frame_times(sensor, number).start;
-  return with_covers(value_shot(viewed(), camera, number, start, {{start, news_.state, stance}}),
-                     *news_.time);
+  Instant shown{start, news_.state, stance, rig_.rod_at_rest(news_.state)};
+  return with_covers(value_shot(viewed(), camera, number, start, {std::move(shown)}), *news_.time);
 }
 
 void LiveSession::send_images() {

@@ -157,7 +157,7 @@ void RecordingSession::add_truth(double time, Extras& extras) const {
     if (const auto truth = recording_->truth(recording_->time_of_state(place)))
       add_true_arm(*truth, viewed()->model.backbone(recording_->state(place)), extras);
   } catch (const InputError&) {
-    // Nor is this.
+    return;  // Nor is this.
   }
 }
 

@@ -38,7 +38,8 @@ Arc arc_between(const Pose& X_WS, const Pose& X_WE) {
   arc.X_WS = X_WS;
   arc.length = way.norm() / sinc(half);
   if (across > 0) arc.bend = way.head<2>() * (2 * half / across);
-  if (!(arc.length > 0 && arc.length < largest)) throw no_arm();
+  const bool is_arc = arc.length > 0 && arc.length < largest;  // Neither holds of what is no number.
+  if (!is_arc) throw no_arm();
   return arc;
 }
 

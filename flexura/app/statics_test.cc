@@ -119,9 +119,9 @@ TEST(AnswerStatics, AnswersAlongTheArmAtRestOnlyWhenAsked) {
   ASSERT_EQ(at.size(), 6U);
   const auto position = [&](std::size_t i) { return listed_numbers(at[i].find("position")); };
   EXPECT_THAT(position(0), near({0, 0, 0}, 0));
-  EXPECT_THAT(position(3), near(tip_position(answer), 0));
+  EXPECT_THAT(position(3), near(tip_position(answer), 1e-12));
   EXPECT_THAT(position(3), near({0.127607603, 0.143467423, 0.336406799}, 2e-8));
-  EXPECT_THAT(position(5), near(position(2), 0));
+  EXPECT_THAT(position(5), near(position(2), 1e-12));
   EXPECT_EQ(listed_numbers(at[0].find("rotation")).size(), 4U);
   EXPECT_TRUE(answer_to(answers, R"({"at":[]})").find("at")->as<Node::Array>()->empty());
   const Node straight = answer_to(answers, R"({"at":[0.25]})");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace flexura {
@@ -13,7 +14,8 @@ struct Complementary {
   /// By changing one at a time what is held at 0 (principal pivots), from `held_off`, where what is not 0 is
   /// not held, which it becomes: for positive definite matrices an end is found. `rounding`: what counts as 0
   /// of matrix x - rhs.
-  [[nodiscard]] Eigen::VectorXd solve(std::vector<char>& held_off, double rounding) const;
+  /// None: no end was found, or the numbers are not finite.
+  [[nodiscard]] std::optional<Eigen::VectorXd> solve(std::vector<char>& held_off, double rounding) const;
 
   Eigen::MatrixXd matrix;
   Eigen::VectorXd rhs;

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +23,26 @@ bool is_conservative(const RodLoads& loads) {
                              [](const EndLoad& end) { return !end.following && end.moment.isZero(0); });
 }
 
+// As many nodes as it takes to follow how tendons wind, where nothing is said.
+void set_nodes(RodSection& section, const std::vector<TendonRoute>& tendons, std::size_t index) {
+  if (section.nodes != 0) return;
+  double turns = 0;
+  for (const TendonRoute& tendon : tendons)
+    if (tendon.section >= index)
+      turns = std::max(turns, std::abs(tendon.angle_slope) * section.length / (2 * std::numbers::pi));
+  const auto counts = section.modes.counts();
+  constexpr int least = 5, most = 64, a_turn = 8;
+  const double wound = std::min(a_turn * turns, static_cast<double>(most));
+  section.nodes =
+      std::min(most, std::max(least, *std::ranges::max_element(counts) + 2) + static_cast<int>(wound));
+}
+
+// The sign of the determinant, which itself may be beyond what doubles hold.
+bool is_negative(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) {
+  const auto below = (lu.matrixLU().diagonal().array() < 0).count();
+  return (lu.permutationP().determinant() < 0) != (below % 2 != 0);
+}
+
 }  // namespace
 
 RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(rod)) {
@@ -34,6 +55,7 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   std::vector<double> at;
   for (std::size_t i = 0; i < rod_.sections.size(); ++i) {
     at.clear();
+    set_nodes(rod_.sections[i], rod_.tendons, i);
     for (const RodPlace& place : places)
       if (place.section == i) at.push_back(place.at);
     const RodElement& element = elements_.emplace_back(rod_.sections[i], rod_.tendons, i, s, at);
@@ -145,9 +167,12 @@ bool RodChain::factor() {
     }
     if (!pivot.is_definite) {
       pivot.lu.compute(pivot.matrix);
-      const Eigen::MatrixXd symmetric = 0.5 * (pivot.matrix + pivot.matrix.transpose());
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric, Eigen::EigenvaluesOnly);
-      negative_ += static_cast<int>((eigen.eigenvalues().array() < 0).count());
+      if (is_symmetric_) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(pivot.matrix, Eigen::EigenvaluesOnly);
+        negative_ += static_cast<int>((eigen.eigenvalues().array() < 0).count());
+      } else if (is_negative(pivot.lu)) {
+        negative_ = 1 - negative_;
+      }
     }
     if (is_loaded_) {
       solve_pivot(pivot, pivot.by_base);

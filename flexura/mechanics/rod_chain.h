@@ -58,8 +58,9 @@ class RodChain {
 
   /// Factors the derivative of r at the last balance. False: it has no inverse.
   bool factor();
-  /// How many negative eigenvalues its symmetric part has, as the elimination counts them; 0: the rod is
-  /// stable while tensions and loads stay.
+  /// How many negative eigenvalues it has, as the elimination counts them; 0: the rod is stable while
+  /// tensions and loads stay. Of loads without an energy (moments, loads that follow) 1 where its determinant
+  /// is negative, else 0: the rod does not fall aside slowly; whether it flutters is a matter of its mass.
   [[nodiscard]] int negative_count() const { return negative_; }
   /// rhs becomes what the derivative makes to rhs; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);

@@ -40,6 +40,8 @@ class RodElement {
   void place(const Pose& X_BS);
   /// The same, and how they move by the modes (columns()).
   void place_with_columns(const Pose& X_BS);
+  /// At the nodes.
+  [[nodiscard]] const std::vector<Vector6d>& strains() const { return strain_; }
   /// Of the nodes, z along the rod.
   [[nodiscard]] const std::vector<Pose>& poses() const { return X_; }
   /// Of each node, 6 x size(): its twist by each mode.

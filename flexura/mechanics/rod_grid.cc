@@ -87,14 +87,16 @@ void RodGrid::integrate_nodes() {
   // Of the Lagrange polynomials of the nodes that count in integrals.
   const auto nodes = static_cast<Eigen::Index>(t.size());
   cumulative.setZero(nodes, nodes);
-  const Quadrature rule = gauss_legendre(static_cast<int>(t.size()));
+  std::vector<std::size_t> counting;
+  for (std::size_t m = 0; m < t.size(); ++m)
+    if (weight[m] != 0) counting.push_back(m);
+  const Quadrature rule = gauss_legendre(static_cast<int>(counting.size()));
   for (std::size_t k = 1; k < t.size(); ++k) {
-    for (std::size_t m = 0; m < t.size(); ++m) {
-      if (weight[m] == 0) continue;
+    for (const std::size_t m : counting) {
       const auto lagrange = [&](double at) {
         double product = 1;
-        for (std::size_t i = 0; i < t.size(); ++i)
-          if (i != m && weight[i] != 0) product *= (at - t[i]) / (t[m] - t[i]);
+        for (const std::size_t i : counting)
+          if (i != m) product *= (at - t[i]) / (t[m] - t[i]);
         return product;
       };
       cumulative(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(m)) =

@@ -19,10 +19,14 @@ constexpr double contraction = 0.6;
 constexpr int max_descent = 30;
 // Of a tendon at rest: slack within it is none.
 constexpr double slack_margin = 1e-12;
+// Of tendons that are said to give nothing: of what the rod gives.
+constexpr double stiff_part = 1e-8;
 
 // The way from no load on.
 constexpr double first_stride = 0.2, longest_stride = 1, shortest_stride = 1e-7;
+constexpr double shortest_at_branch = 1e-3;
 constexpr int max_strides = 2000, max_correction = 8;
+constexpr int max_iterations = 1500;  // Linear systems of one search.
 constexpr double longest_way = 400;   // Sections turn around many times.
 constexpr double least_share = -0.5;  // Of the load, where a way turned back.
 
@@ -53,6 +57,15 @@ RodStatics::RodStatics(Rod rod, std::span<const RodPlace> places) : chain_(std::
   newton_ = tangent_ = {Eigen::VectorXd::Zero(chain_.size()), Eigen::VectorXd::Zero(count)};
   chain_.balance(newton_.q, pulls_, {}, 0);
   rest_lengths_.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
+  if (count == 0) return;
+  // Of how the rod at rest gives to its tendons, a part that no measurement would show.
+  solved_ = chain_.pull_slopes();
+  double give = 0;
+  if (chain_.size() > 0 && chain_.factor()) {
+    chain_.solve(solved_);
+    give = (chain_.length_slopes().transpose() * solved_).diagonal().cwiseAbs().maxCoeff();
+  }
+  least_compliance_ = give > 0 ? stiff_part * give : stiff_part * chain_.rod().length();
 }
 
 std::string RodStatics::input_problem() const {
@@ -110,14 +123,14 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   tangent_.q = solved_.col(1);
   newton_.tensions.setZero(tendons);
   tangent_.tensions.setZero(tendons);
-  if (by_displacement_ && count > 0) find_tensions(at, share);
+  if (by_displacement_ && count > 0 && !find_tensions(at, share)) return false;
   return newton_.q.allFinite() && newton_.tensions.allFinite() && tangent_.q.allFinite();
 }
 
 // The lengths of tendons answer to shape and tensions alike: to first order, a tendon is too long by
 // excess - give tensions. It is not (it hangs slack), or it is as long as its displacement leaves it and
 // pulls.
-void RodStatics::find_tensions(const Unknowns& at, double share) {
+bool RodStatics::find_tensions(const Unknowns& at, double share) {
   const auto tendons = static_cast<Eigen::Index>(pulls_.size());
   const auto answers = solved_.rightCols(tendons);
   Complementary problem{.matrix = -chain_.length_slopes().transpose() * answers, .rhs = {}, .kinds = {}};
@@ -125,13 +138,15 @@ void RodStatics::find_tensions(const Unknowns& at, double share) {
   Eigen::VectorXd by_share = chain_.length_slopes().transpose() * solved_.col(1);
   for (Eigen::Index i = 0; i < tendons; ++i) {
     const auto tendon = static_cast<std::size_t>(i);
-    problem.matrix(i, i) += chain_.rod().tendons[tendon].compliance;
+    problem.matrix(i, i) += compliance(tendon);
     problem.rhs[i] += share * input_.displacements[tendon] - rest_lengths_[tendon];
     by_share[i] += input_.displacements[tendon];
   }
   problem.kinds.assign(pulls_.size(), Complementary::Kind::at_least_0);
   const double rounding = slack_margin * chain_.rod().length();
-  const Eigen::VectorXd tensions = problem.solve(taut_, rounding);
+  const std::optional<Eigen::VectorXd> found = problem.solve(taut_, rounding);
+  if (!found) return false;
+  const Eigen::VectorXd& tensions = *found;
   newton_.tensions = tensions - at.tensions;
   newton_.q += answers * tensions;
 
@@ -149,13 +164,20 @@ void RodStatics::find_tensions(const Unknowns& at, double share) {
   }
   problem.rhs = by_share;
   std::vector<char> growing(pulls_.size(), 0);
-  tangent_.tensions = problem.solve(growing, rounding);
+  // Where that has no end the way goes on as if none began.
+  tangent_.tensions = problem.solve(growing, rounding).value_or(Eigen::VectorXd::Zero(tendons));
   tangent_.q += answers * tangent_.tensions;
 
-  if (pulling.empty() || !problem.matrix.allFinite()) return;
+  if (pulling.empty()) return true;
   const Eigen::MatrixXd give = problem.matrix(pulling, pulling);
   const SymmetricEigen eigen = symmetric_eigen(0.5 * (give + give.transpose()));
   negative_ -= static_cast<int>((eigen.values.array() < 0).count());
+  return true;
+}
+
+// Tendons that say the same twice share what they pull by what little each gives.
+double RodStatics::compliance(std::size_t tendon) const {
+  return std::max(chain_.rod().tendons[tendon].compliance, least_compliance_);
 }
 
 RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
@@ -195,7 +217,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
   int negative = 0;
   result.end = StaticsEnd::out_of_steps;
   for (int step = 0; step < max_strides; ++step) {
-    if (!linearize(at, share)) return false;
+    if (iterations_ > max_iterations || !linearize(at, share)) return false;
     const double norm = std::sqrt(1 + dot(tangent_.q, tangent_.q));
     const double sense = dot(tangent_.q, direction.q) + rise < 0 ? -1 : 1;
     direction.q = sense / norm * tangent_.q;
@@ -229,6 +251,10 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
         settled = size < 1e-6;
       }
       if (!settled) continue;
+      // Another sign of stability without a turn: a branch leaves the way here, or it was jumped over. Only
+      // the first stays however short the stride is.
+      const bool turns = dot(tangent_.q, direction.q) + rise < 0;
+      if (negative_ != negative && !turns && stride > shortest_at_branch) continue;
       if ((share < 1) == (next_share >= 1)) {
         const double part = (1 - share) / (next_share - share);
         Unknowns there{at.q + part * (next.q - at.q), at.tensions + part * (next.tensions - at.tensions)};
@@ -255,6 +281,13 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
   return false;
 }
 
+// Whether no part of the rod is turned inside out.
+bool RodStatics::is_right_way_out() const {
+  return std::ranges::all_of(chain_.elements(), [](const RodElement& element) {
+    return std::ranges::all_of(element.strains(), [](const Vector6d& strain) { return strain[2] > 0; });
+  });
+}
+
 void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
   result.q = at.q;
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
@@ -269,8 +302,8 @@ void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
   result.tendon_lengths.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
   result.displacements.clear();
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
-    result.displacements.push_back(rest_lengths_[i] - result.tendon_lengths[i] +
-                                   chain_.rod().tendons[i].compliance * pulls_[i]);
+    result.tensions[i] += 0.0;  // No negative zeros.
+    result.displacements.push_back(rest_lengths_[i] - result.tendon_lengths[i] + compliance(i) * pulls_[i]);
   }
   result.strain_energy = chain_.strain_energy();
   result.tip = chain_.tip();
@@ -300,6 +333,8 @@ Equilibrium RodStatics::solve_from(Unknowns start, bool is_cold) {
       descent.negative = negative_;
     }
   }
+  // A rod cannot pass through itself.
+  found = found && is_right_way_out();
   is_solved_ = found;
   at_ = at.q;
   if (found) {

@@ -103,15 +103,18 @@ class RodStatics {
   // F, and the solutions of F' y = -F and F' y = -dF/dshare.
   bool linearize(const Unknowns& at, double share);
   [[nodiscard]] double measure(const Unknowns& change) const;
-  void find_tensions(const Unknowns& at, double share);
+  bool find_tensions(const Unknowns& at, double share);
+  [[nodiscard]] double compliance(std::size_t tendon) const;
   Descent descend(Unknowns& at, double share);
   bool follow(Equilibrium& result, Unknowns& at);
+  [[nodiscard]] bool is_right_way_out() const;
   void finish(Equilibrium& result, const Unknowns& at);
   Equilibrium solve_from(Unknowns start, bool is_cold);
   void solve_with_friction(Eigen::MatrixXd& rhs);
 
   RodChain chain_;
   std::vector<double> rest_lengths_;
+  double least_compliance_ = 0;  // m/N
   TendonInput input_;
   RodLoads loads_;
   bool by_displacement_ = false;

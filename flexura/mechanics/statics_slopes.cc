@@ -57,7 +57,7 @@ EquilibriumSlopes RodStatics::slopes() {
     Eigen::MatrixXd give = lengths_by_q(taut, Eigen::all) * by_tension(Eigen::all, taut);
     for (std::size_t a = 0; a < taut.size(); ++a) {
       const auto at = static_cast<Eigen::Index>(a);
-      give(at, at) -= chain_.rod().tendons[static_cast<std::size_t>(taut[a])].compliance;
+      give(at, at) -= compliance(static_cast<std::size_t>(taut[a]));
     }
     slopes.tensions_by_input.setZero();
     if (!taut.empty()) {

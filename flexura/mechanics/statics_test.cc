@@ -112,6 +112,45 @@ TEST(Statics, AColumnIsStableUpToItsBucklingLoad) {
   expect_near(above.tip.position, {0, 0, 1}, 1e-9);
 }
 
+// Pushed aside by ever so little, it falls to that side: the way bends off before the branch point.
+TEST(Statics, AColumnFallsTheWayItIsPushed) {
+  const double critical = std::numbers::pi * std::numbers::pi / 4;
+  for (const double over : {1.02, 1.5, 3.0}) {
+    for (const double side : {0.003, -0.001}) {
+      Rod column = elastica(10);
+      column.sections[0].modes.planar = true;
+      RodStatics statics(column);
+      const Equilibrium at =
+          statics.solve({}, {.ends = {{.section = 0, .force = {side * critical, 0, -over * critical}}}});
+      ASSERT_TRUE(at.converged());
+      EXPECT_TRUE(at.stable);
+      EXPECT_GT(at.tip.position.x() * side, 0) << over;
+    }
+  }
+}
+
+// M. Beck's column, under a force that follows its end, does not fall aside however it is cut into sections.
+TEST(Statics, StabilityUnderFollowingLoadsDoesNotDependOnSections) {
+  for (const std::size_t cut : {1u, 2u, 4u}) {
+    Rod column = elastica(6);
+    column.sections[0].length = 1.0 / static_cast<double>(cut);
+    column.sections.assign(cut, column.sections[0]);
+    RodStatics statics(column);
+    const Equilibrium at =
+        statics.solve({}, {.ends = {{.section = cut - 1, .force = {0, 0, -12}, .following = true}}});
+    ASSERT_TRUE(at.converged());
+    EXPECT_TRUE(at.stable);
+    EXPECT_FALSE(at.ambiguous);
+  }
+}
+
+TEST(Statics, ARodIsNotTurnedInsideOut) {
+  RodSection soft{.length = 0.5, .stiffness = Vector6d((Vector6d() << 1, 1, 1, 1e3, 1e3, 1e3).finished())};
+  const Equilibrium at =
+      RodStatics({.sections = {soft}, .tendons = {}}).solve({}, {.ends = {{.force = {0, 0, -2}}}});
+  EXPECT_FALSE(at.converged());
+}
+
 // A column that is curved to one side, and heavier than it can bear, falls to that side; a tendon on the
 // other side holds it up, until it jumps over.
 TEST(Statics, AColumnThatIsPulledOverSnaps) {

@@ -50,10 +50,9 @@ void check_setup(const Setup& setup, Reader& reader) {
     reader.problem_at("truth.stand.camera_distances",
                       "moves no camera: expected a mount.position in [[truth.camera]]");
   }
-  if (setup.truth) {
-    const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());
-    if (!problem.empty()) reader.problem_at("truth", problem);
-  }
+  // Without a truth of its own the world is the model.
+  const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());
+  if (!problem.empty()) reader.problem_at(setup.truth ? "truth" : "arm", problem);
 }
 
 const Table<ClockConfig>& fields_of(const ClockConfig*) {

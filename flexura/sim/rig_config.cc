@@ -146,6 +146,10 @@ std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
     return fmt::format("the true drive has {} tendons: expected {}, as the model's",
                        truth.drive->tendon.size(), model.drive->tendon.size());
   }
+  if (truth.arm.mechanics == ArmMechanics::statics && truth.drive && !truth.arm.tendon.empty() &&
+      truth.arm.tendon.size() != truth.drive->tendon.size())
+    return fmt::format("the true arm has {} tendons: expected {}, one for each of the drive's",
+                       truth.arm.tendon.size(), truth.drive->tendon.size());
   if (!std::ranges::equal(truth.cameras, model.cameras, {}, &CameraConfig::name, &CameraConfig::name))
     return "expected the model's cameras in the truth, by name and order";
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {

@@ -74,8 +74,7 @@ StaticPlant::StaticPlant(const PlantSetup& setup)
     if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
     tight_ = tight.displacements;
   }
-  const std::vector<double> lost(drive_ ? tendons : 0, 0.0);
-  snapshots_.push_back({0, solved(0, {}, lost), lost});
+  snapshots_.push_back(settled(0, {0, {}, std::vector<double>(drive_ ? tendons : 0, 0.0)}));
 }
 
 void StaticPlant::command(double time, const Eigen::VectorXd& u, double duration) {
@@ -97,19 +96,24 @@ void StaticPlant::halt(double time) {
 void StaticPlant::advance(double time) {
   const long last = static_cast<long>(std::floor(time / step));
   for (long next = snapshots_.back().index + 1; next <= last; ++next) {
-    const double then = static_cast<double>(next) * step;
-    Snapshot snapshot{next, {}, snapshots_.back().lost};
-    snapshot.at = solved(then, snapshots_.back().at, snapshot.lost);
-    // Each turn of its field that a motor loses lets its tendon out, and others take over what it held.
-    for (int turn = 0; turn < most_turns && lose_steps(then, snapshot.at, snapshot.lost); ++turn)
-      snapshot.at = solved(then, snapshot.at, snapshot.lost);
-    snapshots_.push_back(std::move(snapshot));
+    snapshots_.push_back(settled(next, snapshots_.back()));
   }
   const double oldest = time - horizon_ - 2 * step;
   std::size_t gone = 0;
   while (gone + 1 < snapshots_.size() && static_cast<double>(snapshots_[gone + 1].index) * step < oldest)
     ++gone;
   snapshots_.erase(snapshots_.begin(), snapshots_.begin() + static_cast<std::ptrdiff_t>(gone));
+}
+
+// What becomes of a snapshot by a later step.
+StaticPlant::Snapshot StaticPlant::settled(long index, Snapshot from) const {
+  const double then = static_cast<double>(index) * step;
+  from.index = index;
+  from.at = solved(then, from.at, from.lost);
+  // Each turn of its field that a motor loses lets its tendon out, and others take over what it held.
+  for (int turn = 0; turn < most_turns && lose_steps(then, from.at, from.lost); ++turn)
+    from.at = solved(then, from.at, from.lost);
+  return from;
 }
 
 bool StaticPlant::lose_steps(double time, const Equilibrium& at, std::vector<double>& lost) const {

@@ -47,7 +47,7 @@ class StaticPlant : public Plant {
 
  private:
   struct Snapshot {
-    long index;  // Of steps.
+    long index = 0;  // Of steps.
     Equilibrium at;
     std::vector<double> lost;  // Microsteps of each axis, since the start.
   };
@@ -56,6 +56,7 @@ class StaticPlant : public Plant {
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
   [[nodiscard]] Equilibrium solved(double time, const Equilibrium& near,
                                    const std::vector<double>& lost) const;
+  [[nodiscard]] Snapshot settled(long index, Snapshot from) const;
   [[nodiscard]] bool lose_steps(double time, const Equilibrium& at, std::vector<double>& lost) const;
   [[nodiscard]] Backbone backbone_of(const Equilibrium& at) const;
 

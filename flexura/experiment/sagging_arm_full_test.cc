@@ -23,7 +23,7 @@ double number_in(const Node& entry, const char* table, const char* name) {
 TEST_F(SaggingArmExample, IsCalibratedAndSteeredIntoBothShapes) {
   const RunResult result =
       run(load_experiment(checkout_file("examples/10_sagging_arm/experiment.toml"), {{}, {}}));
-  ASSERT_EQ(result.status, RunStatus::done);
+  ASSERT_EQ(result.outcome, RunOutcome::done);
   EXPECT_TRUE(*entry_of(result, "calibrations").find("done")->as<bool>());
   for (const std::size_t servo : {0u, 1u}) {
     const Node& summary = entry_of(result, "servos", servo);

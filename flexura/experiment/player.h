@@ -30,7 +30,7 @@ class Player {
  public:
   /// Nothing that is unsafe is done by rigs: then tasks that they would do are only gone through, and none
   /// but a simulated one moves. `make_rig` is asked for a rig where cameras are recorded, a task is done by
-  /// one, or the true arm is an elastic rod.
+  /// one, or the true arm is another than the believed one.
   Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 

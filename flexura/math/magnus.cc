@@ -49,14 +49,14 @@ MagnusStep::Form MagnusStep::form(const Vector6d& W) const {
   }
   // W . [U'', V] and W . [U, V''].
   const Vector6d with_V = B * V_, with_U = B.transpose() * U_ / 60;
-  const Matrix6d B_U = bracket_form(with_U);
-  const Matrix6d twice = B_U * ad(a_[1]);
-  const Matrix6d mixed = bracket_form(with_V - B_U.transpose() * a_[0]) - B_U * ad(a_[0]);
+  const Matrix6d turned = bracket_form(with_U);
+  const Matrix6d twice = turned * ad(a_[1]);
+  const Matrix6d mixed = bracket_form(with_V - turned.transpose() * a_[0]) - turned * ad(a_[0]);
   form[0][0] += twice + twice.transpose();
   form[0][1] += mixed;
   form[1][0] += mixed.transpose();
-  form[0][2] += 2 * B_U;
-  form[2][0] += 2 * B_U.transpose();
+  form[0][2] += 2 * turned;
+  form[2][0] += 2 * turned.transpose();
   return form;
 }
 

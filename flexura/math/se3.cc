@@ -101,8 +101,8 @@ TwistExponential::TwistExponential(const Vector6d& given)
   const auto c = coefficients(angle_squared_).value;
   // By 3 x 3 blocks: the powers of ad are [W^n, Q_n; 0, W^n].
   const Eigen::Matrix3d W = ad_.topLeftCorner<3, 3>(), V = ad_.topRightCorner<3, 3>();
-  const Eigen::Matrix3d W2 = W * W, WV = W * V;
-  const Eigen::Matrix3d Q2 = WV + V * W, Q3 = W * Q2 + V * W2, Q4 = W * Q3 - angle_squared_ * V * W;
+  const Eigen::Matrix3d W2 = W * W, mixed = W * V;
+  const Eigen::Matrix3d Q2 = mixed + V * W, Q3 = W * Q2 + V * W2, Q4 = W * Q3 - angle_squared_ * V * W;
   Eigen::Matrix3d corner = (c[0] - c[2] * angle_squared_) * W + (c[1] - c[3] * angle_squared_) * W2;
   corner.diagonal().array() += 1;
   jacobian.topLeftCorner<3, 3>() = corner;

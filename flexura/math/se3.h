@@ -29,8 +29,8 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 /// exp of a twist t and its first two derivatives, in closed form (J. M. Selig, Geometric Fundamentals of
 /// Robotics, sec. 4.4), without cancellation at 0.
 struct TwistExponential {
-  /// exp of `twist`, with its first derivative.
-  explicit TwistExponential(const Vector6d& twist);
+  /// exp of a twist, with its first derivative.
+  explicit TwistExponential(const Vector6d& given);
 
   /// Of a wrench W, in A: M with W . (d jacobian(t + h a) / dh) b = a^T M b.
   [[nodiscard]] Matrix6d jacobian_form(const Vector6d& W) const;

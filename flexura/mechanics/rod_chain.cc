@@ -37,6 +37,8 @@ void set_nodes(RodSection& section, const std::vector<TendonRoute>& tendons, std
       std::min(most, std::max(least, *std::ranges::max_element(counts) + 2) + static_cast<int>(wound));
 }
 
+bool is_part(double at) { return at >= 0 && at <= 1; }
+
 // The sign of the determinant, which itself may be beyond what doubles hold.
 bool is_negative(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) {
   const auto below = (lu.matrixLU().diagonal().array() < 0).count();
@@ -49,7 +51,7 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   const std::vector<std::string> problems = rod_problems(rod_);
   if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "; ")));
   for (const RodPlace& place : places)
-    if (place.section >= rod_.sections.size() || !(place.at >= 0 && place.at <= 1))
+    if (place.section >= rod_.sections.size() || !is_part(place.at))
       throw std::invalid_argument("a place outside the rod");
   double s = 0;
   std::vector<double> at;
@@ -183,7 +185,7 @@ bool RodChain::factor() {
   return true;
 }
 
-void RodChain::solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) const {
+void RodChain::solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) {
   if (pivot.is_definite) {
     pivot.cholesky.solveInPlace(rhs);
   } else {

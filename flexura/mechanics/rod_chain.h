@@ -94,7 +94,7 @@ class RodChain {
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
     RodElement::Columns wrench_by_modes;               // Of all from this section on.
   };
-  void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs) const;
+  static void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs);
 
   Rod rod_;
   std::vector<RodElement> elements_;

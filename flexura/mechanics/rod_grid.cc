@@ -29,6 +29,7 @@ RodGrid::RodGrid(const RodSection& section, std::span<const double> at) : count(
     double t, weight;
   };
   std::vector<Node> nodes;
+  nodes.reserve(rule.nodes.size());
   for (std::size_t i = 0; i < rule.nodes.size(); ++i)
     nodes.push_back({0.5 * (rule.nodes[i] + 1), 0.5 * rule.weights[i]});
   const auto add = [&](double place) {

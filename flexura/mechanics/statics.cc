@@ -310,7 +310,7 @@ void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
   result.iterations = iterations_;
 }
 
-Equilibrium RodStatics::solve_from(Unknowns start, bool is_cold) {
+Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
   Equilibrium result;
   const Unknowns rest{Eigen::VectorXd::Zero(start.q.size()), Eigen::VectorXd::Zero(start.tensions.size())};
   iterations_ = 0;
@@ -372,7 +372,7 @@ Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads,
       taut_[i] = near.tensions[i] > 0 ? 1 : 0;
     }
   }
-  return solve_from(std::move(start), is_cold);
+  return solve_from(start, is_cold);
 }
 
 }  // namespace flexura

@@ -109,7 +109,7 @@ class RodStatics {
   bool follow(Equilibrium& result, Unknowns& at);
   [[nodiscard]] bool is_right_way_out() const;
   void finish(Equilibrium& result, const Unknowns& at);
-  Equilibrium solve_from(Unknowns start, bool is_cold);
+  Equilibrium solve_from(const Unknowns& start, bool is_cold);
   void solve_with_friction(Eigen::MatrixXd& rhs);
 
   RodChain chain_;

@@ -31,8 +31,8 @@ namespace flexura {
 class DrivenArm : public ArmPort {
  public:
   /// `port` outlives this; the arm stands in `initial`, its motors at believed_positions().
-  /// std::invalid_argument: a controller of tensions, for what they make of an arm is statics, which nothing
-  /// here knows; another number of axes than the drive's; a drive or a shape of another arm.
+  /// std::invalid_argument: a controller of tensions, for what they make of an arm is statics, which what is
+  /// believed of it does not know; another number of axes than the drive's; a drive or a shape of another arm.
   DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial);
 
   CommandOutcome command(const ArmState& state, double duration) override;

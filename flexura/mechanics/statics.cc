@@ -230,6 +230,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
     negative = negative_;
 
     const std::vector<char> taut = taut_;
+    double afterwards = 0;  // The stride before it became short at a branch point.
     for (;; stride *= 0.5) {
       if (stride < shortest_stride) return false;
       taut_ = taut;
@@ -254,7 +255,10 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
       // Another sign of stability without a turn: a branch leaves the way here, or it was jumped over. Only
       // the first stays however short the stride is.
       const bool turns = dot(tangent_.q, direction.q) + rise < 0;
-      if (negative_ != negative && !turns && stride > shortest_at_branch) continue;
+      if (negative_ != negative && !turns) {
+        afterwards = std::max(afterwards, stride);
+        if (stride > shortest_at_branch) continue;
+      }
       if ((share < 1) == (next_share >= 1)) {
         const double part = (1 - share) / (next_share - share);
         Unknowns there{at.q + part * (next.q - at.q), at.tensions + part * (next.tensions - at.tensions)};
@@ -271,6 +275,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
       at = next;
       share = next_share;
       if (correction <= 3) stride = std::min(longest_stride, 1.6 * stride);
+      if (negative_ != negative && !turns) stride = std::max(stride, afterwards);
       break;
     }
     if (way > longest_way || share < least_share) {

@@ -9,8 +9,8 @@
 namespace flexura {
 
 /// viewed_text with an arm that truly is a steel wire of 2 mm radius, which weighs so much, kg/m, and is
-/// pulled by three tendons to the end of each section.
-inline std::string viewed_rod(double mass = 0.5) {
+/// pulled by three tendons to the end of each section, with friction.
+inline std::string viewed_rod(double mass = 0.5, double friction = 0) {
   std::string text = viewed_text + "[truth.arm]\nmodel = \"static\"\ngravity = [0, -9.81, 0]\n";
   for (int section = 0; section < 2; ++section)
     text += fmt::format(
@@ -18,8 +18,8 @@ inline std::string viewed_rod(double mass = 0.5) {
         "material = {{ youngs_modulus = 200e9, poisson = 0.3, radius_mm = 2, mass_per_length = {} }}\n",
         mass);
   for (int tendon = 0; tendon < 6; ++tendon)
-    text += fmt::format("[[truth.arm.tendon]]\nsection = {}\nradius_mm = 15\nangle_deg = {}\n",
-                        1 + tendon / 3, 120 * (tendon % 3) + 40 * (tendon / 3));
+    text += fmt::format("[[truth.arm.tendon]]\nsection = {}\nradius_mm = 15\nangle_deg = {}\nfriction = {}\n",
+                        1 + tendon / 3, 120 * (tendon % 3) + 40 * (tendon / 3), friction);
   return text;
 }
 

@@ -108,6 +108,24 @@ TEST(UnevenArmExample, FindsHowItsSectionsBend) {
   EXPECT_GT(std::ranges::count(table, '\n'), 500);
 }
 
+// An arm that bends a little unevenly is calibrated as one of one arc a section: the rig that fits best is
+// taken, and the summary says that it does not fit.
+TEST(UnevenArmExample, IsCalibratedAsNearlyOneArcASectionWithANote) {
+  Experiment experiment = load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml"),
+                                          {{"task.0.images=8", "record.report=false"}, {}});
+  experiment.task.resize(1);
+  for (Section& section : experiment.arm.section) section.bend_profile.reset();
+  for (Section& section : experiment.truth->arm->section) section.bend_profile = {1.2, 1, 0.8};
+  const TemporaryFolder folder;
+  Quiet quiet;
+  const RunResult result = run_experiment(experiment, folder.path(), quiet);
+  ASSERT_EQ(result.outcome, RunOutcome::done) << result.reasons.front();
+  const Node& calibration = result.summary.find("calibrations")->as<Node::Array>()->front();
+  EXPECT_GT(*calibration.find("rms")->as<double>(), 1.2);
+  const Node& last = calibration.find("notes")->as<Node::Array>()->back();
+  EXPECT_NE(last.as<std::string>()->find("the arm may bend otherwise"), std::string::npos);
+}
+
 // Believed to be one arc a section: what it sees then has no explanation, and no rig is made up.
 TEST(UnevenArmExample, IsNotCalibratedAsAnArmOfOneArcASection) {
   Experiment experiment = load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml"),
